@@ -1,0 +1,55 @@
+// The runtime asset file (.sinew): one skeleton, its clips and meshes.
+//
+// FlatBuffers (schema: sinew/io/sinew.fbs), little-endian on every machine, verified before anything is read, then checked semantically
+// (see validate(Skeleton), validate(Clip)). A broken file gives an error, never a crash.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sinew/animation/clip.h"
+#include "sinew/skeleton/skeleton.h"
+
+namespace sinew {
+
+/// Triangle mesh in model space at the bind pose. Skinned when `joints` is not empty.
+struct Mesh {
+  std::string name;
+  std::vector<float> positions;        ///< [vertex][3], m
+  std::vector<float> normals;          ///< [vertex][3], unit
+  std::vector<float> uvs;              ///< [vertex][2] or empty; origin top left
+  std::vector<std::uint32_t> indices;  ///< triangles, counter-clockwise seen from outside
+  std::vector<std::uint16_t> joints;   ///< [vertex][4] skeleton joint of each influence
+  std::vector<float> weights;          ///< [vertex][4], sum 1
+  int material = -1;
+};
+
+struct Material {
+  std::string name;
+  float base_color[4] = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGBA
+  std::vector<std::uint8_t> texture;            ///< PNG or JPEG file bytes, or empty
+};
+
+struct Asset {
+  Skeleton skeleton;
+  std::vector<Clip> clips;
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Transform<float>> inverse_bind;  ///< [joint] model space at bind → joint; empty without meshes
+  std::string report_json;                     ///< what the converter decided, as JSON text
+
+  int find_clip(const std::string& name) const;  ///< index, or -1
+};
+
+/// Reads a file image. On error `out` is left as it was. Cost: one pass over the bytes.
+Status read_asset(std::span<const std::uint8_t> bytes, Asset& out);
+
+/// Maps the file and reads it; the one place in the runtime that touches the file system.
+Status load_asset(const char* path, Asset& out);
+
+/// File image of an asset; the same asset always gives the same bytes.
+std::vector<std::uint8_t> write_asset(const Asset& asset);
+
+}  // namespace sinew

@@ -1,0 +1,111 @@
+#include "sinew/skeleton/skeleton.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace sinew {
+
+int Skeleton::dof_total() const {
+  int total = 0;
+  for (int i = 0; i < body_count; ++i) total += dof_count(joints[i].type);
+  return total;
+}
+
+int Skeleton::find(const char* joint_name) const {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (joints[i].name == joint_name) return static_cast<int>(i);
+  return -1;
+}
+
+int Skeleton::find(Role role) const {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (joints[i].role == role) return static_cast<int>(i);
+  return -1;
+}
+
+double Skeleton::total_mass() const {
+  double total = 0;
+  for (const Joint& joint : joints) total += joint.mass;
+  return total;
+}
+
+namespace {
+
+bool is_unit(const Vec3<double>& v) { return std::abs(v.norm() - 1) < 1e-6; }
+
+bool is_finite(const Transform<double>& x) {
+  return x.rotation.coeffs().allFinite() && x.translation.allFinite() && std::abs(x.rotation.norm() - 1) < 1e-6;
+}
+
+/// Second moment P = ½ tr(I)·1 − I positive semidefinite, up to rounding: a body with this inertia can exist.
+bool can_exist(const Mat3<double>& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(inertia, Eigen::EigenvaluesOnly);
+  const Vec3<double> principal = eigen.eigenvalues();  // ascending
+  const double slack = 1e-9 * principal[2];
+  return principal[0] >= -slack && principal[0] + principal[1] >= principal[2] - slack;
+}
+
+Status check_dof(const DofLimits& dof, int index) {
+  if (std::isnan(dof.lower) || std::isnan(dof.upper)) return Status::error(Code::kNotFinite, "limit is NaN", index);
+  if (dof.lower > dof.upper) return Status::error(Code::kInvalidArgument, "lower limit above upper", index);
+  for (const double strength : {dof.torque_minus, dof.torque_plus, dof.damping, dof.dry_friction}) {
+    if (std::isnan(strength)) return Status::error(Code::kNotFinite, "muscle limit or damping is NaN", index);
+    if (strength < 0) return Status::error(Code::kInvalidArgument, "muscle limit or damping is negative", index);
+  }
+  return {};
+}
+
+Status check_joint(const Skeleton& skeleton, int i) {
+  const Joint& joint = skeleton.joints[i];
+  if (joint.parent >= i || joint.parent < -1)
+    return Status::error(Code::kInvalidArgument, "parent does not come before its child", i);
+  if (!is_finite(joint.rest)) return Status::error(Code::kNotFinite, "rest transform is not a finite rotation", i);
+  const bool simulated = i < skeleton.body_count;
+  if (!simulated && joint.mass != 0)
+    return Status::error(Code::kInvalidArgument, "ride-along joint has mass", i);
+  if (simulated && joint.parent >= skeleton.body_count)
+    return Status::error(Code::kInvalidArgument, "simulated joint hangs on a ride-along joint", i);
+  if (!is_unit(joint.axis) || !is_unit(joint.axis2) || !is_unit(joint.swing_axis))
+    return Status::error(Code::kInvalidArgument, "axis is not of length 1", i);
+  if (!std::isfinite(joint.mass) || !joint.center_of_mass.allFinite() || !joint.inertia.allFinite())
+    return Status::error(Code::kNotFinite, "mass, centre of mass or inertia is not finite", i);
+  if (joint.mass < 0) return Status::error(Code::kInvalidArgument, "negative mass", i);
+  if (!joint.inertia.isApprox(joint.inertia.transpose(), 1e-9) && joint.inertia.norm() > 0)
+    return Status::error(Code::kInvalidArgument, "inertia is not symmetric", i);
+  if (!can_exist(joint.inertia)) return Status::error(Code::kInvalidArgument, "inertia breaks the triangle inequality", i);
+  for (int k = 0; k < dof_count(joint.type); ++k)
+    if (Status status = check_dof(joint.dofs[k], i); !status) return status;
+  return {};
+}
+
+}  // namespace
+
+Status validate(const Skeleton& skeleton) {
+  const int count = static_cast<int>(skeleton.joints.size());
+  if (count == 0) return Status::error(Code::kInvalidArgument, "no joints");
+  if (skeleton.body_count < 1 || skeleton.body_count > count)
+    return Status::error(Code::kInvalidArgument, "body_count out of range");
+  for (int i = 0; i < count; ++i)
+    if (Status status = check_joint(skeleton, i); !status) return status;
+
+  // Every degree of freedom must move some mass, or its inertia is singular.
+  std::vector<double> subtree(skeleton.body_count, 0.0);
+  for (int i = skeleton.body_count - 1; i >= 0; --i) {
+    subtree[i] += skeleton.joints[i].mass;
+    if (skeleton.joints[i].parent >= 0) subtree[skeleton.joints[i].parent] += subtree[i];
+    if (subtree[i] <= 0 && dof_count(skeleton.joints[i].type) > 0)
+      return Status::error(Code::kInvalidArgument, "joint moves no mass", i);
+  }
+  for (std::size_t k = 0; k < skeleton.colliders.size(); ++k) {
+    const Collider& collider = skeleton.colliders[k];
+    if (collider.joint < 0 || collider.joint >= count)
+      return Status::error(Code::kInvalidArgument, "collider on a joint that does not exist", collider.joint);
+    if (!is_finite(collider.local) || !collider.size.allFinite() || collider.size.minCoeff() < 0 ||
+        !std::isfinite(collider.friction) || collider.friction < 0)
+      return Status::error(Code::kInvalidArgument, "collider has no meaningful size, place or friction",
+                           collider.joint);
+  }
+  return {};
+}
+
+}  // namespace sinew

@@ -1,0 +1,35 @@
+// Source files → runtime asset: clean-up, units, physical body, clip fitting, report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "import/source_scene.h"
+#include "sinew/io/asset.h"
+
+namespace sinew::convert {
+
+/// Outcome of a tools-side call: empty message means it worked; otherwise one line "FILE: what is wrong (where)".
+struct Error {
+  std::string message;
+  explicit operator bool() const { return !message.empty(); }
+};
+
+/// Converts one or more source files (mesh and clips may come from several) into an asset.
+/// `options` overrides the defaults that `reference_options()` documents; unknown keys are an error.
+/// `report` receives what was decided, as JSON (also stored in the asset).
+Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& options, Asset& out,
+                    nlohmann::json& report);
+
+/// All options with defaults and comments, as JSON with // comments (nlohmann parses it with ignore_comments).
+std::string reference_options();
+
+/// The report as text for a person.
+std::string report_text(const nlohmann::json& report);
+
+/// Loads a .sinew asset or converts a source file on the fly, by magic bytes. Used by info, evaluate and render.
+Error open_any(const std::string& path, const nlohmann::json& options, Asset& out, nlohmann::json& report);
+
+}  // namespace sinew::convert

@@ -1,0 +1,62 @@
+// What a simulation leaves behind for the renderer and the plots: everything that a frame of video shows.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/io/asset.h"
+
+namespace sinew::scene {
+
+/// One character in one frame.
+struct CharacterFrame {
+  std::vector<Transform<float>> model;  ///< [joint] joint → world
+  std::vector<float> load;              ///< [joint] largest |residual| / limit over the joint's DOFs; 1 = saturated
+  std::vector<float> torque;            ///< [joint] of the most loaded DOF, N·m
+  std::vector<float> limit;             ///< [joint] of that DOF and direction, N·m
+  int unknown_dofs = 0;                 ///< DOFs handed to the optimizer in this frame (0 = playback)
+  int total_dofs = 0;
+  float microseconds = 0;               ///< of the step
+  int most_loaded_joint = -1;
+  float strength = 1;
+  bool root_free = false;
+};
+
+struct PropFrame {
+  Transform<float> world;
+};
+
+struct Prop {
+  std::string name;
+  Shape shape = Shape::kSphere;
+  Vec3<float> size = Vec3<float>::Constant(0.1f);
+  float mass = 1;
+};
+
+struct Frame {
+  double time = 0;  ///< s
+  std::vector<CharacterFrame> characters;
+  std::vector<PropFrame> props;
+  std::string caption;  ///< "walk · playback", "hit", … lower third; may be empty
+};
+
+struct Camera {
+  Vec3<float> eye{3.5f, -3.5f, 1.6f}, target{0, 0, 0.9f};
+  float vertical_fov_deg = 32;
+  int follow_character = -1;  ///< eye and target move with its pelvis horizontally (smoothed), when ≥ 0
+  bool frame_automatically = true;  ///< ignore eye distance; fit the bounding box of the whole recording
+};
+
+struct Recording {
+  std::string title;
+  double frame_rate = 60;
+  std::vector<std::shared_ptr<const Asset>> characters;
+  std::vector<Prop> props;
+  std::vector<Frame> frames;
+  Camera camera;
+  std::vector<Collider> obstacles;  ///< static boxes, spheres, capsules in world space (joint unused)
+  int plotted_joint = -1;           ///< torque curve in the overlay; -1: the most loaded over the recording
+};
+
+}  // namespace sinew::scene
