@@ -1,0 +1,145 @@
+// One frame of a scene: characters that follow their animation, props that collide with them, a floor.
+//
+//     World<float> world(settings);
+//     int hero = world.add_character(asset.skeleton, {}, status);
+//     …each frame:
+//     SamplingJob<float>{&clip, time, 1, jets}.Run();     // what the animation wants at the END of the frame
+//     world.character(hero).set_target(jets);
+//     world.step(1 / 60.f);
+//     draw(world.character(hero).model());                // joint → world transforms
+//
+// Undisturbed characters cost a residual pass; the pose is then the clip's, bit for bit. Where the residual exceeds
+// a muscle's limit, those degrees of freedom are solved together with contacts and friction.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sinew/animation/clip.h"
+#include "sinew/optimizer/accuracy.h"
+#include "sinew/skeleton/skeleton.h"
+
+namespace sinew {
+
+/// What holds a character's root joint.
+enum class RootDrive : std::uint8_t {
+  kKinematic,  ///< follows the animation whatever it takes
+  kAssisted,   ///< follows it up to `root_force` and `root_torque`
+  kFree,       ///< unactuated: only contacts hold it
+};
+
+struct CharacterSettings {
+  RootDrive root = RootDrive::kKinematic;
+  double root_force = 2000;   ///< N, assisted
+  double root_torque = 600;   ///< N·m, assisted
+  double strength = 1;        ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  bool ground_contact = true;
+};
+
+/// What the last step did with one character.
+struct CharacterReport {
+  int dofs = 0;             ///< degrees of freedom of the character
+  int unknown_dofs = 0;     ///< of these, handed to the optimizer; 0 = pure playback
+  int outer_passes = 0;
+  int factorisations = 0;
+  int contacts = 0;         ///< active contact points
+  bool converged = true;
+  bool used_bdf2 = false;
+  double kinetic_energy = 0;    ///< J
+  double potential_energy = 0;  ///< J, gravity
+  double penetration = 0;       ///< m, deepest contact
+};
+
+/// One-body tree: a ball, a box.
+struct PropSettings {
+  Shape shape = Shape::kSphere;
+  Vec3<double> size = Vec3<double>::Constant(0.1);  ///< as Collider::size
+  double mass = 1;
+  double friction = 0.6;
+  Transform<double> pose;
+  Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
+  Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
+};
+
+struct WorldSettings {
+  Accuracy accuracy;
+  Vec3<double> gravity{0, 0, -9.81};
+  double ground_height = 0;
+  bool ground = true;
+  double ground_friction = 1.0;  ///< multiplies the collider's
+};
+
+template <class T>
+struct CharacterState;  // residual, history and solver state; world.cpp
+
+/// Handle on one character of a world; cheap to copy, valid while the world lives.
+template <class T>
+class Character {
+ public:
+  explicit Character(CharacterState<T>* state) : state_(state) {}
+
+  /// What the animation wants at the end of the next step: local jets of all joints of the skeleton (see
+  /// SamplingJob). NaN is refused and leaves the old target in place.
+  Status set_target(std::span<const JointJet<T>> jets);
+  /// Puts the character on the present target at once, with the target's velocity; forgets its history.
+  void reset();
+  /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
+  Status set_strength(T strength);
+  Status set_strength(int joint, T strength);
+  void set_root_drive(RootDrive drive);
+  /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
+  Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
+  /// Force (N, world) held until changed; same place rules.
+  const Skeleton& skeleton() const;
+  std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
+  std::span<const Transform<T>> model() const;  ///< [joint] joint → world
+  /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| / limit.
+  std::span<const T> torque() const;
+  std::span<const T> load() const;      ///< 0 where the DOF has no muscle (root); 1 = saturated
+  std::span<const T> limit() const;     ///< of the direction in which it pulls now
+  int first_dof(int joint) const;       ///< index into the spans above; joint < body_count
+  std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
+  bool on_animation() const;            ///< every joint is exactly where the clip wants it
+  const CharacterReport& report() const;
+
+ private:
+  CharacterState<T>* state_;
+};
+
+template <class T>
+class World {
+ public:
+  explicit World(const WorldSettings& settings);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// Set-up: allocates everything that stepping needs. Returns an index, or -1 with `status` set. The skeleton is
+  /// copied. The character stands at its rest pose until a target is set and reset() called.
+  int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
+  int add_prop(const PropSettings& settings, Status& status);
+  Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
+
+  Character<T> character(int index);
+  int character_count() const;
+  int prop_count() const;
+  Transform<T> prop_pose(int index) const;
+  Vec3<T> prop_velocity(int index) const;
+  void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity, const Vec3<T>& angular_velocity);
+  const CharacterReport& prop_report(int index) const;
+
+  /// Advances by h seconds (0 < h ≤ 0.25). Allocates nothing, throws nothing. On an error nothing has moved.
+  Status step(T h);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+extern template class Character<float>;
+extern template class Character<double>;
+extern template class World<float>;
+extern template class World<double>;
+
+}  // namespace sinew
