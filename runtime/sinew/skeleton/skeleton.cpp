@@ -31,10 +31,13 @@ double Skeleton::total_mass() const {
 
 namespace {
 
-bool is_unit(const Vec3<double>& v) { return std::abs(v.norm() - 1) < 1e-6; }
+bool is_unit(const Vec3<double>& v) {
+  return std::abs(v.norm() - 1) < 1e-6;
+}
 
 bool is_finite(const Transform<double>& x) {
-  return x.rotation.coeffs().allFinite() && x.translation.allFinite() && std::abs(x.rotation.norm() - 1) < 1e-6;
+  return x.rotation.coeffs().allFinite() && x.translation.allFinite() &&
+         std::abs(x.rotation.norm() - 1) < 1e-6;
 }
 
 /// Second moment P = ½ tr(I)·1 − I positive semidefinite, up to rounding: a body with this inertia can exist.
@@ -46,11 +49,13 @@ bool can_exist(const Mat3<double>& inertia) {
 }
 
 Status check_dof(const DofLimits& dof, int index) {
-  if (std::isnan(dof.lower) || std::isnan(dof.upper)) return Status::error(Code::kNotFinite, "limit is NaN", index);
+  if (std::isnan(dof.lower) || std::isnan(dof.upper))
+    return Status::error(Code::kNotFinite, "limit is NaN", index);
   if (dof.lower > dof.upper) return Status::error(Code::kInvalidArgument, "lower limit above upper", index);
   for (const double strength : {dof.torque_minus, dof.torque_plus, dof.damping, dof.dry_friction}) {
     if (std::isnan(strength)) return Status::error(Code::kNotFinite, "muscle limit or damping is NaN", index);
-    if (strength < 0) return Status::error(Code::kInvalidArgument, "muscle limit or damping is negative", index);
+    if (strength < 0)
+      return Status::error(Code::kInvalidArgument, "muscle limit or damping is negative", index);
   }
   return {};
 }
@@ -59,7 +64,8 @@ Status check_joint(const Skeleton& skeleton, int i) {
   const Joint& joint = skeleton.joints[i];
   if (joint.parent >= i || joint.parent < -1)
     return Status::error(Code::kInvalidArgument, "parent does not come before its child", i);
-  if (!is_finite(joint.rest)) return Status::error(Code::kNotFinite, "rest transform is not a finite rotation", i);
+  if (!is_finite(joint.rest))
+    return Status::error(Code::kNotFinite, "rest transform is not a finite rotation", i);
   const bool simulated = i < skeleton.body_count;
   if (!simulated && joint.mass != 0)
     return Status::error(Code::kInvalidArgument, "ride-along joint has mass", i);
@@ -72,7 +78,8 @@ Status check_joint(const Skeleton& skeleton, int i) {
   if (joint.mass < 0) return Status::error(Code::kInvalidArgument, "negative mass", i);
   if (!joint.inertia.isApprox(joint.inertia.transpose(), 1e-9) && joint.inertia.norm() > 0)
     return Status::error(Code::kInvalidArgument, "inertia is not symmetric", i);
-  if (!can_exist(joint.inertia)) return Status::error(Code::kInvalidArgument, "inertia breaks the triangle inequality", i);
+  if (!can_exist(joint.inertia))
+    return Status::error(Code::kInvalidArgument, "inertia breaks the triangle inequality", i);
   for (int k = 0; k < dof_count(joint.type); ++k)
     if (Status status = check_dof(joint.dofs[k], i); !status) return status;
   return {};

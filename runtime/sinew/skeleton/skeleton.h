@@ -1,10 +1,11 @@
 // What a character is: a tree of joints, the rigid body that each carries, its limits, muscles and colliders.
 //
 // World and model space are right-handed, Z up, X forward, Y left; metres, kilograms, seconds, radians.
-// A joint frame has its origin at the joint and its axes fixed in the child body. Parents come before children.
-// Joints [0, body_count) are simulated: they have degrees of freedom, mass or simulated descendants. Joints
-// [body_count, joints.size()) ride along: they have no mass and no freedom, their local transform is always the
-// clip's (fingers, control bones, slots). A simulated joint never has a ride-along parent.
+// A joint frame has its origin at the joint and its axes fixed in the child body. Parents come before
+// children. Joints [0, body_count) are simulated: they have degrees of freedom, mass or simulated
+// descendants. Joints [body_count, joints.size()) ride along: they have no mass and no freedom, their local
+// transform is always the clip's (fingers, control bones, slots). A simulated joint never has a ride-along
+// parent.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ namespace sinew {
 
 /// How a simulated joint may move relative to its rest frame.
 /// Degrees of freedom, in this order: revolute/prismatic 1 (along `axis`), universal 2 (about `axis`, then
-/// `axis2`), ball 3 (rotation vector in child axes), planar 3 (translation along the two axes normal to `axis`,
-/// then rotation about it), free 6 (translation in parent axes, then rotation vector in parent axes).
+/// `axis2`), ball 3 (rotation vector in child axes), planar 3 (translation along the two axes normal to
+/// `axis`, then rotation about it), free 6 (translation in parent axes, then rotation vector in parent axes).
 enum class JointType : std::uint8_t { kFixed, kRevolute, kPrismatic, kUniversal, kBall, kPlanar, kFree };
 
 constexpr int dof_count(JointType type) {
@@ -28,10 +29,10 @@ constexpr int dof_count(JointType type) {
 }
 
 /// Limits and passive properties of one degree of freedom. Angles in rad, lengths in m, torques in N·m
-/// (forces in N for translations). Ball joints: `lower`/`upper` bound the components of the rotation vector from
-/// rest, unless the joint has a swing cone.
+/// (forces in N for translations). Ball joints: `lower`/`upper` bound the components of the rotation vector
+/// from rest, unless the joint has a swing cone.
 struct DofLimits {
-  double lower = -1e9;         ///< range of motion; |bound| ≥ 1e9 means unlimited
+  double lower = -1e9;  ///< range of motion; |bound| ≥ 1e9 means unlimited
   double upper = 1e9;
   double torque_minus = 0;     ///< largest muscle torque in the negative direction, ≥ 0
   double torque_plus = 0;      ///< largest muscle torque in the positive direction, ≥ 0
@@ -46,15 +47,36 @@ struct Collider {
   int joint = 0;
   Shape shape = Shape::kSphere;
   Transform<double> local;                           ///< shape → joint frame
-  Vec3<double> size = Vec3<double>::Constant(0.05);  ///< sphere: x = radius; capsule: x = radius, z = half length
-                                                     ///< of the segment; box: half extents
+  Vec3<double> size = Vec3<double>::Constant(0.05);  ///< sphere: x = radius; capsule: x = radius, z = half
+                                                     ///< length of the segment; box: half extents
   double friction = 0.8;
 };
 
-/// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a name.
+/// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a
+/// name.
 enum class Role : std::uint8_t {
-  kNone, kPelvis, kSpine, kChest, kNeck, kHead, kClavicleL, kClavicleR, kUpperArmL, kUpperArmR, kForearmL,
-  kForearmR, kHandL, kHandR, kThighL, kThighR, kShinL, kShinR, kFootL, kFootR, kToesL, kToesR,
+  kNone,
+  kPelvis,
+  kSpine,
+  kChest,
+  kNeck,
+  kHead,
+  kClavicleL,
+  kClavicleR,
+  kUpperArmL,
+  kUpperArmR,
+  kForearmL,
+  kForearmR,
+  kHandL,
+  kHandR,
+  kThighL,
+  kThighR,
+  kShinL,
+  kShinR,
+  kFootL,
+  kFootR,
+  kToesL,
+  kToesR,
 };
 
 struct Joint {
@@ -62,20 +84,21 @@ struct Joint {
   int parent = -1;
   JointType type = JointType::kFixed;
   Role role = Role::kNone;
-  Transform<double> rest;                               ///< joint → parent joint, at q = 0
-  Vec3<double> axis = Vec3<double>::UnitZ();            ///< unit; child axes at rest
-  Vec3<double> axis2 = Vec3<double>::UnitX();           ///< universal only
-  double mass = 0;                                      ///< kg
-  Vec3<double> center_of_mass = Vec3<double>::Zero();   ///< in joint axes
-  Mat3<double> inertia = Mat3<double>::Zero();          ///< about the centre of mass, in joint axes, kg·m²
-  DofLimits dofs[6];                                    ///< first dof_count(type) are used
-  double swing_limit = -1;                              ///< ball: half angle of the cone about rest, rad; < 0 none
-  Vec3<double> swing_axis = Vec3<double>::UnitZ();      ///< bone direction whose swing is limited, child axes
-  double twist_lower = -1e9, twist_upper = 1e9;         ///< ball with swing cone: rotation about swing_axis
-  std::string source_joint;                             ///< URDF: name of the joint that moves this link
+  Transform<double> rest;                              ///< joint → parent joint, at q = 0
+  Vec3<double> axis = Vec3<double>::UnitZ();           ///< unit; child axes at rest
+  Vec3<double> axis2 = Vec3<double>::UnitX();          ///< universal only
+  double mass = 0;                                     ///< kg
+  Vec3<double> center_of_mass = Vec3<double>::Zero();  ///< in joint axes
+  Mat3<double> inertia = Mat3<double>::Zero();         ///< about the centre of mass, in joint axes, kg·m²
+  DofLimits dofs[6];                                   ///< first dof_count(type) are used
+  double swing_limit = -1;  ///< ball: half angle of the cone about rest, rad; < 0 none
+  Vec3<double> swing_axis = Vec3<double>::UnitZ();  ///< bone direction whose swing is limited, child axes
+  double twist_lower = -1e9, twist_upper = 1e9;     ///< ball with swing cone: rotation about swing_axis
+  std::string source_joint;                         ///< URDF: name of the joint that moves this link
 };
 
-/// Editable description; `validate` says what is wrong with it. Everything else in the runtime takes it as valid.
+/// Editable description; `validate` says what is wrong with it. Everything else in the runtime takes it as
+/// valid.
 struct Skeleton {
   std::string name;
   std::vector<Joint> joints;  ///< parents first; simulated joints first
@@ -89,8 +112,8 @@ struct Skeleton {
 };
 
 /// Checks order, indices, finiteness, unit axes, positive masses and positive-semidefinite second moments
-/// (the triangle inequality of inertias), ranges (lower ≤ upper), non-negative strengths, and that every degree of
-/// freedom moves some mass. Cost O(joints). `Status::index` is the joint at fault.
+/// (the triangle inequality of inertias), ranges (lower ≤ upper), non-negative strengths, and that every
+/// degree of freedom moves some mass. Cost O(joints). `Status::index` is the joint at fault.
 Status validate(const Skeleton& skeleton);
 
 }  // namespace sinew

@@ -1,0 +1,79 @@
+#include "sinew/residual/composite.h"
+
+namespace sinew {
+
+void Unknowns::reserve(int dofs) {
+  pattern.reserve(dofs);
+  of_dof.reserve(dofs);
+  dof.reserve(dofs);
+}
+
+void Unknowns::clear() {
+  pattern.clear();
+  of_dof.clear();
+  dof.clear();
+}
+
+template <class T>
+int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unknowns& out) {
+  const int first = static_cast<int>(out.of_dof.size());
+  for (int d = 0; d < tree.dofs; ++d) {
+    out.of_dof.push_back(-1);
+    if (!free[d]) continue;
+    int above = tree.dof_parent[d];
+    while (above >= 0 && out.of_dof[first + above] < 0) above = tree.dof_parent[above];
+    out.of_dof.back() = out.pattern.add(above < 0 ? -1 : out.of_dof[first + above]);
+    out.dof.push_back(d);
+  }
+  return first;
+}
+
+namespace {
+
+/// Second derivative of the pose: l acts on what k moves.
+template <class T>
+Vec3<T> geometric_column(const Composite<T>& c, const Vec3<T>& w, const Vec3<T>& v) {
+  return c.virial * w + v.cross(c.force) + T(0.5) * w.cross(c.couple);
+}
+
+}  // namespace
+
+template <class T>
+void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, std::span<Composite<T>> bodies,
+                          const Unknowns& unknowns, int first, bool geometric, TreeMatrix<T>& out) {
+  const TreePattern& pattern = unknowns.pattern;
+  for (int i = tree.bodies - 1; i >= 0; --i) {
+    const Composite<T>& c = bodies[i];
+    for (int d = tree.first_dof[i]; d < tree.first_dof[i + 1]; ++d) {
+      const int k = unknowns.of_dof[first + d];
+      if (k < 0) continue;
+      const Vec3<T> force = c.mass * kin.v[d] + kin.w[d].cross(c.first);
+      const Vec3<T> moment = c.rotational * kin.w[d] + c.first.cross(kin.v[d]);
+      Vec3<T> turned = Vec3<T>::Zero();
+      if (geometric) turned = geometric_column(c, kin.w[d], kin.v[d]);
+      T* path = out.row(k);
+      for (int l = k; l >= 0; l = pattern.parent[l]) {
+        const int e = unknowns.dof[l];
+        T value = kin.w[e].dot(moment) + kin.v[e].dot(force);
+        if (geometric) {
+          const bool same_ball =
+              tree.dof_body[e] == i && (tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree);
+          if (same_ball && kin.w[d].squaredNorm() > T(0)) {
+            // One rotation vector: neither axis acts first.
+            const Vec3<T> other = geometric_column(c, kin.w[e], kin.v[e]);
+            if (kin.w[e].squaredNorm() > T(0)) value += T(0.5) * (kin.w[e].dot(turned) + kin.w[d].dot(other));
+          } else {
+            value += kin.w[e].dot(turned);
+          }
+        }
+        path[pattern.depth[l]] = value;
+      }
+    }
+    if (const int p = tree.parent[i]; p >= 0) bodies[p] += bodies[i];
+  }
+}
+
+SINEW_COMPOSITE_INSTANCES(template, float)
+SINEW_COMPOSITE_INSTANCES(template, double)
+
+}  // namespace sinew

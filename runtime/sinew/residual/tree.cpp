@@ -1,0 +1,213 @@
+#include "sinew/residual/tree.h"
+
+namespace sinew {
+
+template <class T>
+Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
+  for (int i = 0; i < bodies; ++i) {
+    const Joint& joint = skeleton.joints[i];
+    parent.push_back(joint.parent);
+    type.push_back(joint.type);
+    first_dof.push_back(dofs);
+    rest.push_back(joint.rest.cast<T>());
+    axis.push_back(joint.axis.cast<T>());
+    axis2.push_back(joint.axis2.cast<T>());
+    mass.push_back(T(joint.mass));
+    center_of_mass.push_back(joint.center_of_mass.cast<T>());
+    inertia.push_back(joint.inertia.cast<T>());
+    second_moment.push_back(
+        (0.5 * joint.inertia.trace() * Mat3<double>::Identity() - joint.inertia).cast<T>());
+    int above = -1;  // the last degree of freedom on the way down to this joint
+    for (int p = joint.parent; p >= 0 && above < 0; p = skeleton.joints[p].parent)
+      if (sinew::dof_count(skeleton.joints[p].type) > 0)
+        above = first_dof[p] + sinew::dof_count(skeleton.joints[p].type) - 1;
+    for (int k = 0; k < sinew::dof_count(joint.type); ++k) {
+      dof_body.push_back(i);
+      dof_parent.push_back(k == 0 ? above : dofs - 1);
+      ++dofs;
+    }
+  }
+  first_dof.push_back(dofs);
+}
+
+namespace {
+
+/// The two directions that a planar joint slides along.
+template <class T>
+void planar_axes(const Vec3<T>& normal, Vec3<T>& a, Vec3<T>& b) {
+  a = normal.unitOrthogonal();
+  b = normal.cross(a);
+}
+
+/// Motion axes of one joint at its present local transform.
+template <class T>
+void motion_axes(const Tree<T>& tree, int i, const Transform<T>& local, Kinematics<T>& k) {
+  const int first = tree.first_dof[i];
+  const Vec3<T>& o = k.origin[i];
+  const int p = tree.parent[i];
+  const auto turn = [&](int dof, const Vec3<T>& w) {
+    k.w[dof] = w;
+    k.v[dof] = o.cross(w);
+  };
+  const auto slide = [&](int dof, const Vec3<T>& v) {
+    k.w[dof].setZero();
+    k.v[dof] = v;
+  };
+  switch (tree.type[i]) {
+    case JointType::kFixed:
+      break;
+    case JointType::kRevolute:
+      turn(first, k.rotation[i] * tree.axis[i]);
+      break;
+    case JointType::kPrismatic:
+      slide(first, k.rotation[i] * tree.axis[i]);
+      break;
+    case JointType::kUniversal: {
+      // local = rest·exp(axis·q0)·exp(axis2·q1): the first axis turns with the parent side.
+      const Vec3<T> second = k.rotation[i] * tree.axis2[i];
+      const T q1 = twist_angle<T>(tree.rest[i].rotation.conjugate() * local.rotation, tree.axis2[i]);
+      turn(first, k.rotation[i] * (rotation_exp<T>(-q1 * tree.axis2[i]) * tree.axis[i]));
+      turn(first + 1, second);
+      break;
+    }
+    case JointType::kBall:
+      for (int a = 0; a < 3; ++a) turn(first + a, k.rotation[i].col(a));
+      break;
+    case JointType::kPlanar: {
+      const Mat3<T> frame =
+          (p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p]) * tree.rest[i].rotation.toRotationMatrix();
+      Vec3<T> a, b;
+      planar_axes(tree.axis[i], a, b);
+      slide(first, frame * a);
+      slide(first + 1, frame * b);
+      turn(first + 2, frame * tree.axis[i]);
+      break;
+    }
+    case JointType::kFree: {
+      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
+      for (int a = 0; a < 3; ++a) {
+        slide(first + a, frame.col(a));
+        turn(first + 3 + a, frame.col(a));
+      }
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+template <class T>
+void forward_kinematics(const Tree<T>& tree, std::span<const Transform<T>> local,
+                        const Vec3<T>& common_origin, Kinematics<T>& out) {
+  for (int i = 0; i < tree.bodies; ++i) {
+    const int p = tree.parent[i];
+    const Mat3<T> relative = local[i].rotation.toRotationMatrix();
+    if (p < 0) {
+      out.rotation[i] = relative;
+      out.origin[i] = local[i].translation - common_origin;
+    } else {
+      out.rotation[i].noalias() = out.rotation[p] * relative;
+      out.origin[i] = out.origin[p] + out.rotation[p] * local[i].translation;
+    }
+    out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i];
+    motion_axes(tree, i, local[i], out);
+  }
+}
+
+template <class T>
+Transform<T> displaced(const Tree<T>& tree, int i, const Transform<T>& local, const T* d) {
+  Transform<T> moved = local;
+  switch (tree.type[i]) {
+    case JointType::kFixed:
+      break;
+    case JointType::kRevolute:
+      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[0]);
+      break;
+    case JointType::kPrismatic:
+      moved.translation += local.rotation * (tree.axis[i] * d[0]);
+      break;
+    case JointType::kUniversal: {
+      const Quat<T> relative = tree.rest[i].rotation.conjugate() * local.rotation;
+      const Quat<T> last = rotation_exp<T>(tree.axis2[i] * twist_angle<T>(relative, tree.axis2[i]));
+      moved.rotation = local.rotation * last.conjugate() * rotation_exp<T>(tree.axis[i] * d[0]) * last *
+                       rotation_exp<T>(tree.axis2[i] * d[1]);
+      break;
+    }
+    case JointType::kBall:
+      moved.rotation = local.rotation * rotation_exp<T>({d[0], d[1], d[2]});
+      break;
+    case JointType::kPlanar: {
+      Vec3<T> a, b;
+      planar_axes(tree.axis[i], a, b);
+      moved.translation += tree.rest[i].rotation * (a * d[0] + b * d[1]);
+      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[2]);
+      break;
+    }
+    case JointType::kFree:
+      moved.translation += Vec3<T>(d[0], d[1], d[2]);
+      moved.rotation = rotation_exp<T>({d[3], d[4], d[5]}) * local.rotation;
+      break;
+  }
+  moved.rotation.normalize();
+  return moved;
+}
+
+template <class T>
+void project_wrenches(const Tree<T>& tree, const Kinematics<T>& k, std::span<Vec3<T>> force,
+                      std::span<Vec3<T>> moment, std::span<T> projection) {
+  for (int i = tree.bodies - 1; i >= 0; --i) {
+    for (int d = tree.first_dof[i]; d < tree.first_dof[i + 1]; ++d)
+      projection[d] = k.w[d].dot(moment[i]) + k.v[d].dot(force[i]);
+    if (const int p = tree.parent[i]; p >= 0) {
+      force[p] += force[i];
+      moment[p] += moment[i];
+    }
+  }
+}
+
+template <class T>
+void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
+                       const Vec3<T>& common_origin, Kinematics<T>& k, Motion<T>& m, std::span<Vec3<T>> force,
+                       std::span<Vec3<T>> moment) {
+  for (int i = 0; i < tree.bodies; ++i) {
+    const int p = tree.parent[i];
+    const JointJet<T>& jet = jets[i];
+    const Mat3<T> relative = jet.rotation.toRotationMatrix();
+    if (p < 0) {
+      k.rotation[i] = relative;
+      k.origin[i] = jet.translation - common_origin;
+      m.omega[i] = relative * jet.omega;
+      m.alpha[i] = relative * jet.alpha;
+      m.origin_velocity[i] = jet.velocity;
+      m.origin_acceleration[i] = jet.acceleration;
+    } else {
+      const Mat3<T>& rp = k.rotation[p];
+      const Vec3<T>& wp = m.omega[p];
+      k.rotation[i].noalias() = rp * relative;
+      const Vec3<T> arm = rp * jet.translation;
+      const Vec3<T> slide = rp * jet.velocity;
+      const Vec3<T> spin = k.rotation[i] * jet.omega;
+      k.origin[i] = k.origin[p] + arm;
+      m.omega[i] = wp + spin;
+      m.alpha[i] = m.alpha[p] + k.rotation[i] * jet.alpha + wp.cross(spin);
+      m.origin_velocity[i] = m.origin_velocity[p] + wp.cross(arm) + slide;
+      m.origin_acceleration[i] = m.origin_acceleration[p] + m.alpha[p].cross(arm) + wp.cross(wp.cross(arm)) +
+                                 T(2) * wp.cross(slide) + rp * jet.acceleration;
+    }
+    const Vec3<T> arm = k.rotation[i] * tree.center_of_mass[i];
+    k.center[i] = k.origin[i] + arm;
+    m.velocity[i] = m.origin_velocity[i] + m.omega[i].cross(arm);
+    m.acceleration[i] =
+        m.origin_acceleration[i] + m.alpha[i].cross(arm) + m.omega[i].cross(m.omega[i].cross(arm));
+    motion_axes(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
+
+    const Mat3<T> inertia = k.rotation[i] * tree.inertia[i] * k.rotation[i].transpose();
+    force[i] = tree.mass[i] * (m.acceleration[i] - gravity);
+    moment[i] = k.center[i].cross(force[i]) + inertia * m.alpha[i] + m.omega[i].cross(inertia * m.omega[i]);
+  }
+}
+
+SINEW_RESIDUAL_INSTANCES(template, float)
+SINEW_RESIDUAL_INSTANCES(template, double)
+
+}  // namespace sinew

@@ -1,0 +1,86 @@
+#include "sinew/residual/tree_factor.h"
+
+#include <cmath>
+
+namespace sinew {
+
+void TreePattern::reserve(int capacity) {
+  parent.reserve(capacity);
+  depth.reserve(capacity);
+  row.reserve(capacity);
+}
+
+void TreePattern::clear() {
+  parent.clear();
+  depth.clear();
+  row.clear();
+  size = entries = 0;
+}
+
+int TreePattern::add(int above) {
+  parent.push_back(above);
+  depth.push_back(above < 0 ? 0 : depth[above] + 1);
+  row.push_back(entries);
+  entries += depth.back() + 1;
+  return size++;
+}
+
+template <class T>
+void TreeMatrix<T>::multiply(std::span<const T> x, std::span<T> y) const {
+  const TreePattern& p = *pattern_;
+  for (int k = 0; k < p.size; ++k) y[k] = T(0);
+  for (int k = 0; k < p.size; ++k) {
+    const T* values = row(k);
+    T sum = values[p.depth[k]] * x[k];
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l]) {
+      sum += values[p.depth[l]] * x[l];
+      y[l] += values[p.depth[l]] * x[k];
+    }
+    y[k] += sum;
+  }
+}
+
+template <class T>
+bool TreeMatrix<T>::factorise() {
+  const TreePattern& p = *pattern_;
+  for (int k = p.size - 1; k >= 0; --k) {
+    T* path = row(k);
+    const int depth = p.depth[k];
+    const T pivot = path[depth];
+    if (!(pivot > T(0))) return false;  // also catches NaN
+    const T root = std::sqrt(pivot);
+    const T inverse = T(1) / root;
+    path[depth] = root;
+    for (int i = 0; i < depth; ++i) path[i] *= inverse;
+    int position = depth - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) {
+      T* target = row(l);
+      const T factor = path[position];
+      for (int i = 0; i <= position; ++i) target[i] -= factor * path[i];
+    }
+  }
+  return true;
+}
+
+template <class T>
+void TreeMatrix<T>::solve(std::span<T> b) const {
+  const TreePattern& p = *pattern_;
+  for (int k = p.size - 1; k >= 0; --k) {  // Lᵀ y = b
+    const T* path = row(k);
+    b[k] /= path[p.depth[k]];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) b[l] -= path[position] * b[k];
+  }
+  for (int k = 0; k < p.size; ++k) {  // L x = y
+    const T* path = row(k);
+    T sum = b[k];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * b[l];
+    b[k] = sum / path[p.depth[k]];
+  }
+}
+
+template class TreeMatrix<float>;
+template class TreeMatrix<double>;
+
+}  // namespace sinew

@@ -1,0 +1,56 @@
+// Symmetric matrices with the sparsity of a tree, and their factorisation without fill-in.
+//
+// Entry (k, l) is non-zero only where l lies on the path from k to the root, so row k holds the path:
+// contiguous, root first, k last. H = LᵀL, solved leaves → root and back (Featherstone, "Rigid Body Dynamics
+// Algorithms", 2008, section 6.5). O(n·depth²). Storing whole paths contiguously makes the inner loop a plain
+// vector update: 2.9 times faster than the pointer-chasing form (solver-prototype, addendum A).
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace sinew {
+
+/// Which unknowns there are and how they hang together; shared by all matrices of one solve.
+struct TreePattern {
+  std::vector<int> parent;  ///< [unknown] next unknown towards the root, or -1
+  std::vector<int> depth;   ///< [unknown] position in its own path = number of unknowns above it
+  std::vector<int> row;     ///< [unknown] first entry of its path in the value array
+  int size = 0;
+  int entries = 0;
+
+  /// Set-up for at most `capacity` unknowns: later rebuilds allocate nothing.
+  void reserve(int capacity);
+  void clear();
+  /// Appends an unknown below `above` (-1: a root). Returns its index.
+  int add(int above);
+};
+
+/// Value array of a symmetric tree matrix: entry (k, position on the path of k).
+template <class T>
+class TreeMatrix {
+ public:
+  explicit TreeMatrix(const TreePattern& pattern) : pattern_(&pattern) {}
+  void reserve(int entries) { values_.reserve(entries); }
+  void set_zero() { values_.assign(pattern_->entries, T(0)); }
+  T* row(int k) { return values_.data() + pattern_->row[k]; }
+  const T* row(int k) const { return values_.data() + pattern_->row[k]; }
+  std::vector<T>& values() { return values_; }
+  const std::vector<T>& values() const { return values_; }
+
+  /// y = H·x.
+  void multiply(std::span<const T> x, std::span<T> y) const;
+  /// Replaces H by its factor L. False (and a half-finished factor) when H is not positive definite.
+  bool factorise();
+  /// Solves LᵀL·x = b in place; call after factorise().
+  void solve(std::span<T> b) const;
+
+ private:
+  const TreePattern* pattern_;
+  std::vector<T> values_;
+};
+
+extern template class TreeMatrix<float>;
+extern template class TreeMatrix<double>;
+
+}  // namespace sinew

@@ -1,0 +1,91 @@
+// Rotation vectors: exponential, logarithm and the Jacobians of both.
+//
+// Source: the standard formulas on SO(3), e.g. Solà, Deray & Atchuthan, "A micro Lie theory for state
+// estimation in robotics", 2018, equations (132)–(146). Series below 1e-4 rad (float) where the closed forms
+// cancel.
+#pragma once
+
+#include <cmath>
+
+#include "sinew/skeleton/transform.h"
+
+namespace sinew {
+
+/// Matrix of the cross product: skew(a)·b = a × b.
+template <class T>
+Mat3<T> skew(const Vec3<T>& a) {
+  Mat3<T> m;
+  m << T(0), -a.z(), a.y(), a.z(), T(0), -a.x(), -a.y(), a.x(), T(0);
+  return m;
+}
+
+/// Rotation by the vector d (rad).
+template <class T>
+Quat<T> rotation_exp(const Vec3<T>& d) {
+  const T angle2 = d.squaredNorm();
+  T real, scale;  // cos(angle/2), sin(angle/2)/angle
+  if (angle2 < T(1e-6)) {
+    real = T(1) - angle2 / 8;
+    scale = T(0.5) - angle2 / 48;
+  } else {
+    const T angle = std::sqrt(angle2);
+    real = std::cos(angle / 2);
+    scale = std::sin(angle / 2) / angle;
+  }
+  Quat<T> q(real, scale * d.x(), scale * d.y(), scale * d.z());
+  q.normalize();
+  return q;
+}
+
+/// Rotation vector of q, the shorter way round: |result| ≤ π.
+template <class T>
+Vec3<T> rotation_log(const Quat<T>& q) {
+  const Vec3<T> v = q.w() < 0 ? Vec3<T>(-q.vec()) : Vec3<T>(q.vec());
+  const T sine = v.norm();
+  const T cosine = std::abs(q.w());
+  if (sine < T(1e-6)) return v * (T(2) / std::max(cosine, T(0.5)));
+  return v * (T(2) * std::atan2(sine, cosine) / sine);
+}
+
+/// Right Jacobian: exp(d + δ) ≈ exp(d)·exp(Jr·δ).
+template <class T>
+Mat3<T> right_jacobian(const Vec3<T>& d) {
+  const T a2 = d.squaredNorm();
+  T b, c;  // (1 − cos a)/a², (a − sin a)/a³
+  if (a2 < T(1e-3)) {
+    b = T(0.5) - a2 / 24;
+    c = T(1) / 6 - a2 / 120;
+  } else {
+    const T a = std::sqrt(a2);
+    b = (T(1) - std::cos(a)) / a2;
+    c = (a - std::sin(a)) / (a2 * a);
+  }
+  const Mat3<T> s = skew(d);
+  return Mat3<T>::Identity() - b * s + c * (s * s);
+}
+
+/// Inverse of the right Jacobian: log(exp(d)·exp(δ)) ≈ d + Jr⁻¹·δ. Valid for |d| < 2π.
+template <class T>
+Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
+  const T a2 = d.squaredNorm();
+  T c;  // 1/a² − (1 + cos a)/(2 a sin a)
+  if (a2 < T(1e-3)) {
+    c = T(1) / 12 + a2 / 720;
+  } else {
+    const T a = std::sqrt(a2);
+    c = T(1) / a2 - std::cos(a / 2) / (T(2) * a * std::sin(a / 2));
+  }
+  const Mat3<T> s = skew(d);
+  return Mat3<T>::Identity() + T(0.5) * s + c * (s * s);
+}
+
+/// Angle of the part of q that turns about the unit vector `axis` (swing–twist decomposition), in (−π, π].
+template <class T>
+T twist_angle(const Quat<T>& q, const Vec3<T>& axis) {
+  const T along = q.vec().dot(axis);
+  const T angle = T(2) * std::atan2(along, q.w());
+  constexpr T pi = T(3.14159265358979323846);
+  return angle > pi ? angle - 2 * pi : (angle <= -pi ? angle + 2 * pi : angle);
+}
+
+}  // namespace sinew
