@@ -8,8 +8,8 @@
 //     world.step(1 / 60.f);
 //     draw(world.character(hero).model());                // joint → world transforms
 //
-// Undisturbed characters cost a residual pass; the pose is then the clip's, bit for bit. Where the residual exceeds
-// a muscle's limit, those degrees of freedom are solved together with contacts and friction.
+// Undisturbed characters cost a residual pass; the pose is then the clip's, bit for bit. Where the residual
+// exceeds a muscle's limit, those degrees of freedom are solved together with contacts and friction.
 #pragma once
 
 #include <memory>
@@ -31,19 +31,19 @@ enum class RootDrive : std::uint8_t {
 
 struct CharacterSettings {
   RootDrive root = RootDrive::kKinematic;
-  double root_force = 2000;   ///< N, assisted
-  double root_torque = 600;   ///< N·m, assisted
-  double strength = 1;        ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  double root_force = 2000;  ///< N, assisted
+  double root_torque = 600;  ///< N·m, assisted
+  double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
 };
 
 /// What the last step did with one character.
 struct CharacterReport {
-  int dofs = 0;             ///< degrees of freedom of the character
-  int unknown_dofs = 0;     ///< of these, handed to the optimizer; 0 = pure playback
+  int dofs = 0;          ///< degrees of freedom of the character
+  int unknown_dofs = 0;  ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
-  int contacts = 0;         ///< active contact points
+  int contacts = 0;  ///< active contact points
   bool converged = true;
   bool used_bdf2 = false;
   double kinetic_energy = 0;    ///< J
@@ -90,17 +90,17 @@ class Character {
   void set_root_drive(RootDrive drive);
   /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
-  /// Force (N, world) held until changed; same place rules.
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
   std::span<const Transform<T>> model() const;  ///< [joint] joint → world
-  /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| / limit.
+  /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
+  /// limit.
   std::span<const T> torque() const;
-  std::span<const T> load() const;      ///< 0 where the DOF has no muscle (root); 1 = saturated
-  std::span<const T> limit() const;     ///< of the direction in which it pulls now
-  int first_dof(int joint) const;       ///< index into the spans above; joint < body_count
+  std::span<const T> load() const;                ///< 0 where the DOF has no muscle (root); 1 = saturated
+  std::span<const T> limit() const;               ///< of the direction in which it pulls now
+  int first_dof(int joint) const;                 ///< index into the spans above; joint < body_count
   std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
-  bool on_animation() const;            ///< every joint is exactly where the clip wants it
+  bool on_animation() const;                      ///< every joint is exactly where the clip wants it
   const CharacterReport& report() const;
 
  private:
@@ -115,8 +115,8 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Set-up: allocates everything that stepping needs. Returns an index, or -1 with `status` set. The skeleton is
-  /// copied. The character stands at its rest pose until a target is set and reset() called.
+  /// Set-up: allocates everything that stepping needs. Returns an index, or -1 with `status` set. The
+  /// skeleton is copied. The character stands at its rest pose until a target is set and reset() called.
   int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
   int add_prop(const PropSettings& settings, Status& status);
   Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
@@ -126,7 +126,8 @@ class World {
   int prop_count() const;
   Transform<T> prop_pose(int index) const;
   Vec3<T> prop_velocity(int index) const;
-  void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity, const Vec3<T>& angular_velocity);
+  void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
+                const Vec3<T>& angular_velocity);
   const CharacterReport& prop_report(int index) const;
 
   /// Advances by h seconds (0 < h ≤ 0.25). Allocates nothing, throws nothing. On an error nothing has moved.

@@ -1,0 +1,138 @@
+#include <cmath>
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kFarthest = 1e6;  ///< m; beyond this float has no millimetres left
+constexpr double kFastest = 1e5;   ///< m/s and rad/s
+
+template <class T>
+Status check(const JointJet<T>& jet, int joint) {
+  const bool finite = jet.rotation.coeffs().allFinite() && jet.omega.allFinite() && jet.alpha.allFinite() &&
+                      jet.translation.allFinite() && jet.velocity.allFinite() && jet.acceleration.allFinite();
+  if (!finite) return Status::error(Code::kNotFinite, "target is not finite", joint);
+  if (std::abs(jet.rotation.norm() - T(1)) > T(1e-2))
+    return Status::error(Code::kInvalidArgument, "target rotation is not a unit quaternion", joint);
+  if (jet.translation.norm() > T(kFarthest) || jet.velocity.norm() > T(kFastest) ||
+      jet.omega.norm() > T(kFastest))
+    return Status::error(Code::kOutOfRange, "target is absurdly far or fast", joint);
+  return {};
+}
+
+}  // namespace
+
+template <class T>
+Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
+  if (jets.size() != state_->target.size())
+    return Status::error(Code::kInvalidArgument, "target needs one jet per joint of the skeleton");
+  for (std::size_t i = 0; i < jets.size(); ++i)
+    if (Status status = check(jets[i], static_cast<int>(i)); !status) return status;
+  std::copy(jets.begin(), jets.end(), state_->target.begin());
+  return {};
+}
+
+template <class T>
+void Character<T>::reset() {
+  state_->reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+Status Character<T>::set_strength(T strength) {
+  if (std::isnan(strength) || strength < T(0))
+    return Status::error(Code::kInvalidArgument, "strength must be ≥ 0");
+  state_->settings.strength = double(strength);
+  state_->refresh_limits();
+  return {};
+}
+
+template <class T>
+Status Character<T>::set_strength(int joint, T strength) {
+  if (joint < 0 || joint >= state_->tree.bodies)
+    return Status::error(Code::kInvalidArgument, "no such simulated joint", joint);
+  if (std::isnan(strength) || strength < T(0))
+    return Status::error(Code::kInvalidArgument, "strength must be ≥ 0", joint);
+  for (int i = joint; i < state_->tree.bodies; ++i) {
+    int ancestor = i;
+    while (ancestor > joint) ancestor = state_->tree.parent[ancestor];
+    if (ancestor == joint) state_->joint_strength[i] = strength;
+  }
+  state_->refresh_limits();
+  return {};
+}
+
+template <class T>
+void Character<T>::set_root_drive(RootDrive drive) {
+  state_->settings.root = drive;
+  state_->refresh_limits();
+}
+
+template <class T>
+Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse) {
+  if (joint < 0 || joint >= static_cast<int>(state_->local.size()))
+    return Status::error(Code::kInvalidArgument, "no such joint", joint);
+  if (!point.allFinite() || !impulse.allFinite())
+    return Status::error(Code::kNotFinite, "impulse is not finite", joint);
+  if (impulse.norm() > T(1e5)) return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s", joint);
+  if (state_->impulses.size() == state_->impulses.capacity())
+    return Status::error(Code::kOutOfRange, "more than 64 impulses in one step", joint);
+  const int body = state_->body_of(joint);
+  state_->impulses.push_back({body, state_->model[body].inverse() * point, impulse});
+  return {};
+}
+
+template <class T>
+const Skeleton& Character<T>::skeleton() const {
+  return state_->skeleton;
+}
+
+template <class T>
+std::span<const Transform<T>> Character<T>::local() const {
+  return state_->local;
+}
+
+template <class T>
+std::span<const Transform<T>> Character<T>::model() const {
+  return state_->model;
+}
+
+template <class T>
+std::span<const T> Character<T>::torque() const {
+  return state_->torque;
+}
+
+template <class T>
+std::span<const T> Character<T>::load() const {
+  return state_->load;
+}
+
+template <class T>
+std::span<const T> Character<T>::limit() const {
+  return state_->limit;
+}
+
+template <class T>
+int Character<T>::first_dof(int joint) const {
+  return state_->tree.first_dof[joint];
+}
+
+template <class T>
+std::span<const std::uint8_t> Character<T>::unknown() const {
+  return state_->unknown;
+}
+
+template <class T>
+bool Character<T>::on_animation() const {
+  return state_->undisturbed();
+}
+
+template <class T>
+const CharacterReport& Character<T>::report() const {
+  return state_->report;
+}
+
+template class Character<float>;
+template class Character<double>;
+
+}  // namespace sinew

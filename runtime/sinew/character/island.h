@@ -1,0 +1,53 @@
+// One solve: characters and props that may touch each other, stepped together. Internal to the character
+// layer.
+#pragma once
+
+#include <vector>
+
+#include "sinew/character/state.h"
+#include "sinew/optimizer/newton.h"
+
+namespace sinew {
+
+/// A contact's normal force, remembered for the friction of the next step.
+template <class T>
+struct LaggedForce {
+  std::uint64_t id = 0;
+  T force = T(0);
+};
+
+/// Working memory of island steps; one per world, sized when characters are added.
+template <class T>
+class IslandStepper {
+ public:
+  void reserve(int trees, int dofs, int bodies, int contact_points);
+
+  /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
+  /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
+  /// `lagged_out`.
+  void step(const WorldSettings& world, std::span<const Collider> obstacles, T h,
+            std::span<CharacterState<T>* const> states, std::span<const int> indices,
+            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out);
+
+ private:
+  void choose_targets(CharacterState<T>& state, const WorldSettings& world, T h);
+  void choose_unknowns(CharacterState<T>& state);
+  bool release_overloaded(CharacterState<T>& state);
+  void first_guess(CharacterState<T>& state, T h);
+  void collect_contacts(const WorldSettings& world, std::span<const Collider> obstacles, T h,
+                        std::span<const int> indices, std::span<const LaggedForce<T>> lagged);
+  void add_contact(Contact<T> contact, T reach, std::span<const LaggedForce<T>> lagged);
+  bool contacts_unchanged(const WorldSettings& world, T h, int tree) const;
+  void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h, const SolveReport& solved);
+
+  std::span<CharacterState<T>* const> states_;
+  StepSettings<T> settings_;
+  std::vector<TreeProblem<T>*> problems_;
+  std::vector<Contact<T>> contacts_;
+  NewtonSolver<T> solver_;
+};
+
+extern template class IslandStepper<float>;
+extern template class IslandStepper<double>;
+
+}  // namespace sinew

@@ -1,0 +1,65 @@
+// What one character (or prop) carries from step to step. Internal to the character layer.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sinew/character/world.h"
+#include "sinew/effects/contact.h"
+#include "sinew/optimizer/problem.h"
+
+namespace sinew {
+
+/// Motion of one joint relative to the animation; zero while it is on it.
+template <class T>
+struct Deviation {
+  std::array<T, 6> offset{};  ///< see joint_offset, from the animation
+  std::array<T, 6> rate{};    ///< 1/s
+  bool on_animation = true;   ///< exactly where the clip wants it
+  bool released = false;      ///< was an unknown in the last step
+};
+
+template <class T>
+struct CharacterState {
+  Skeleton skeleton;
+  Tree<T> tree;
+  CharacterSettings settings;
+  bool is_prop = false;
+
+  std::vector<JointJet<T>> target,
+      target_before;                       ///< [joint] what the animation wants now, and wanted last step
+  std::vector<Transform<T>> local, model;  ///< [joint]
+  std::vector<std::array<T, 6>> rate;      ///< [body] joint speed over the last step, as joint_offset
+  std::vector<Deviation<T>> deviation;     ///< [body]
+  std::vector<T> joint_strength;           ///< [body]
+  std::vector<T> torque, load, limit;      ///< [dof]
+  std::vector<std::uint8_t> unknown;       ///< [dof]
+  std::vector<ExternalForce<T>> impulses;  ///< N·s, waiting for the next step
+
+  TreeProblem<T> problem;
+  History<T> history;
+  Motion<T> motion;
+  std::vector<ContactPoint<T>> points;
+  T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
+  std::uint64_t contact_signature = 0;  ///< of the contacts that were active after the last step
+  int steps_unchanged = 0;
+  CharacterReport report;
+
+  CharacterState(const Skeleton& s, const CharacterSettings& c);
+
+  /// Muscle limits of this moment: strengths and the root's drive applied.
+  void refresh_limits();
+  /// Model transforms of all joints from the local ones.
+  void update_model();
+  /// Puts everything on the present target, with its velocity.
+  void reset_to_target(const Vec3<T>& gravity);
+  bool undisturbed() const;
+  /// The simulated joint that carries `joint`, itself or an ancestor.
+  int body_of(int joint) const;
+  bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
+};
+
+extern template struct CharacterState<float>;
+extern template struct CharacterState<double>;
+
+}  // namespace sinew

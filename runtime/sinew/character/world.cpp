@@ -1,0 +1,296 @@
+#include "sinew/character/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/character/island.h"
+#include "sinew/effects/support.h"
+
+namespace sinew {
+
+template <class T>
+struct World<T>::Impl {
+  WorldSettings settings;
+  std::vector<std::unique_ptr<CharacterState<T>>>
+      states;                          ///< characters and props in the order they were added
+  std::vector<int> characters, props;  ///< into states
+  std::vector<Collider> obstacles;
+  IslandStepper<T> stepper;
+  std::vector<LaggedForce<T>> lagged, lagged_new;
+  std::vector<int> group;  ///< [state] island, or -1 where the state is on its own animation
+  std::vector<CharacterState<T>*> members;
+  std::vector<int> member_indices;
+
+  void reserve();
+  bool play(CharacterState<T>& state, T h);
+  bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
+  void step_once(T h);
+};
+
+template <class T>
+World<T>::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
+  impl_->settings = settings;
+}
+
+template <class T>
+World<T>::~World() = default;
+
+template <class T>
+void World<T>::Impl::reserve() {
+  int dofs = 0, bodies = 0, points = 0, shapes = 0;
+  for (const auto& s : states) {
+    dofs += s->tree.dofs;
+    bodies += s->tree.bodies;
+    points += static_cast<int>(s->points.size());
+    shapes += static_cast<int>(s->skeleton.colliders.size());
+  }
+  // Every point may touch the floor, an obstacle, and a few shapes of others; what does not fit is dropped
+  // furthest last.
+  const int contacts =
+      points * (2 + static_cast<int>(obstacles.size())) + std::min(points * shapes, 4 * points + 64);
+  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts);
+  lagged.reserve(contacts);
+  lagged_new.reserve(contacts);
+  group.reserve(states.size());
+  members.reserve(states.size());
+  member_indices.reserve(states.size());
+}
+
+template <class T>
+int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status) {
+  status = validate(skeleton);
+  if (!status) return -1;
+  if (std::isnan(settings.strength) || settings.strength < 0 || !(settings.root_force >= 0) ||
+      !(settings.root_torque >= 0)) {
+    status = Status::error(Code::kInvalidArgument, "strength and root drive limits must be ≥ 0");
+    return -1;
+  }
+  impl_->states.push_back(std::make_unique<CharacterState<T>>(skeleton, settings));
+  impl_->characters.push_back(static_cast<int>(impl_->states.size()) - 1);
+  impl_->reserve();
+  return static_cast<int>(impl_->characters.size()) - 1;
+}
+
+namespace {
+
+/// Solid inertia of a shape about its centre, kg·m².
+Mat3<double> solid_inertia(Shape shape, const Vec3<double>& size, double mass) {
+  Vec3<double> diagonal = Vec3<double>::Zero();
+  switch (shape) {
+    case Shape::kSphere:
+      diagonal.setConstant(0.4 * mass * size.x() * size.x());
+      break;
+    case Shape::kCapsule: {  // cylinder and two half balls by volume
+      const double r = size.x(), l = 2 * size.z();
+      const double cylinder = mass * l / (l + 4.0 / 3.0 * r), caps = mass - cylinder;
+      const double along = cylinder * r * r / 2 + caps * 0.4 * r * r;
+      const double across =
+          cylinder * (r * r / 4 + l * l / 12) + caps * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
+      diagonal = {across, across, along};
+      break;
+    }
+    case Shape::kBox: {
+      const Vec3<double> square = size.cwiseProduct(size) * (mass / 3);
+      diagonal = {square.y() + square.z(), square.x() + square.z(), square.x() + square.y()};
+      break;
+    }
+  }
+  return diagonal.asDiagonal();
+}
+
+}  // namespace
+
+template <class T>
+int World<T>::add_prop(const PropSettings& prop, Status& status) {
+  Skeleton body;
+  body.name = "prop";
+  body.body_count = 1;
+  Joint& joint = body.joints.emplace_back();
+  joint.name = "prop";
+  joint.type = JointType::kFree;
+  joint.rest = prop.pose;
+  joint.mass = prop.mass;
+  joint.inertia = solid_inertia(prop.shape, prop.size, prop.mass);
+  Collider collider;
+  collider.shape = prop.shape;
+  collider.size = prop.size;
+  collider.friction = prop.friction;
+  body.colliders.push_back(collider);
+  status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
+  if (status && !(prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
+    status = Status::error(Code::kNotFinite, "prop velocity is not finite");
+  if (!status) return -1;
+  CharacterSettings limp;
+  limp.root = RootDrive::kFree;
+  impl_->states.push_back(std::make_unique<CharacterState<T>>(body, limp));
+  impl_->states.back()->is_prop = true;
+  impl_->states.back()->refresh_limits();
+  impl_->props.push_back(static_cast<int>(impl_->states.size()) - 1);
+  impl_->reserve();
+  const int index = static_cast<int>(impl_->props.size()) - 1;
+  set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
+           prop.angular_velocity.template cast<T>());
+  return index;
+}
+
+template <class T>
+void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
+                        const Vec3<T>& angular_velocity) {
+  CharacterState<T>& s = *impl_->states[impl_->props[index]];
+  JointJet<T>& jet = s.target[0];
+  jet = {};
+  jet.rotation = pose.rotation;
+  jet.translation = pose.translation;
+  jet.velocity = velocity;
+  jet.omega = pose.rotation.conjugate() * angular_velocity;
+  s.reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+Status World<T>::add_obstacle(const Collider& obstacle) {
+  if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
+      !obstacle.local.rotation.coeffs().allFinite())
+    return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
+  impl_->obstacles.push_back(obstacle);
+  impl_->reserve();
+  return {};
+}
+
+template <class T>
+Character<T> World<T>::character(int index) {
+  return Character<T>(impl_->states[impl_->characters[index]].get());
+}
+
+template <class T>
+int World<T>::character_count() const {
+  return static_cast<int>(impl_->characters.size());
+}
+
+template <class T>
+int World<T>::prop_count() const {
+  return static_cast<int>(impl_->props.size());
+}
+
+template <class T>
+Transform<T> World<T>::prop_pose(int index) const {
+  return impl_->states[impl_->props[index]]->model[0];
+}
+
+template <class T>
+Vec3<T> World<T>::prop_velocity(int index) const {
+  return impl_->states[impl_->props[index]]->history.velocity[0];
+}
+
+template <class T>
+const CharacterReport& World<T>::prop_report(int index) const {
+  return impl_->states[impl_->props[index]]->report;
+}
+
+template <class T>
+bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
+  const T reach =
+      a.radius + b.radius + T(0.1) + 2 * h * (a.history.velocity[0].norm() + b.history.velocity[0].norm());
+  return (a.model[0].translation - b.model[0].translation).norm() < reach;
+}
+
+/// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
+/// they can't.
+template <class T>
+bool World<T>::Impl::play(CharacterState<T>& s, T h) {
+  TreeProblem<T>& p = s.problem;
+  const Vec3<T> origin = s.model[0].translation;
+  inertial_wrenches<T>(s.tree, s.target, settings.gravity.template cast<T>(), origin, p.kinematics, s.motion,
+                       p.force, p.moment);
+  for (const ExternalForce<T>& j : s.impulses) {
+    const Vec3<T> x = p.kinematics.origin[j.body] + p.kinematics.rotation[j.body] * j.local;
+    p.force[j.body] -= j.force / h;
+    p.moment[j.body] -= x.cross(j.force / h);
+  }
+  if (settings.ground && s.settings.ground_contact)
+    share_support<T>(s.tree, p.kinematics, s.points, T(settings.ground_height) - origin.z(), {}, p.force,
+                     p.moment);
+  project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
+  const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
+  for (int dof = s.root_is_kinematic() ? root_dofs : 0; dof < s.tree.dofs; ++dof) {
+    const T torque = p.gradient[dof];
+    const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
+    if (std::abs(torque) > limit) return false;
+  }
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    const T torque = p.gradient[dof];
+    s.torque[dof] = torque;
+    s.limit[dof] = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
+    s.load[dof] = s.limit[dof] > T(0) && std::isfinite(s.limit[dof]) ? std::abs(torque) / s.limit[dof] : T(0);
+    s.unknown[dof] = 0;
+  }
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Transform<T> before = s.local[i];
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+    s.rate[i] = joint_offset<T>(s.tree, i, before, s.local[i]).value;
+    for (T& r : s.rate[i]) r /= h;
+  }
+  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.update_model();
+  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
+  s.contact_signature = 0;
+  s.steps_unchanged = 0;
+  s.report = {};
+  s.report.dofs = s.tree.dofs;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    s.report.kinetic_energy += 0.5 * double(s.tree.mass[i] * s.motion.velocity[i].squaredNorm() +
+                                            s.motion.omega[i].dot(s.history.momentum[i]));
+    s.report.potential_energy -=
+        double(s.tree.mass[i]) * settings.gravity.dot(s.history.center[i].template cast<double>());
+  }
+  return true;
+}
+
+template <class T>
+void World<T>::Impl::step_once(T h) {
+  const int count = static_cast<int>(states.size());
+  group.assign(count, 0);
+  for (int i = 0; i < count; ++i) group[i] = i;
+  // Islands: whoever is near enough to touch. Few characters per world so far, so all pairs.
+  for (int i = 0; i < count; ++i)
+    for (int j = i + 1; j < count; ++j)
+      if (near(*states[i], *states[j], h)) {
+        const int from = std::max(group[i], group[j]), to = std::min(group[i], group[j]);
+        for (int& g : group)
+          if (g == from) g = to;
+      }
+  lagged_new.clear();
+  for (int g = 0; g < count; ++g) {
+    members.clear();
+    member_indices.clear();
+    for (int i = 0; i < count; ++i)
+      if (group[i] == g) {
+        members.push_back(states[i].get());
+        member_indices.push_back(i);
+      }
+    if (members.empty()) continue;
+    if (members.size() == 1 && members[0]->undisturbed() && play(*members[0], h)) continue;
+    stepper.step(settings, obstacles, h, members, member_indices, lagged, lagged_new);
+  }
+  std::sort(lagged_new.begin(), lagged_new.end(),
+            [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+  lagged.swap(lagged_new);
+  for (auto& s : states) {
+    s->impulses.clear();
+    s->target_before = s->target;
+  }
+}
+
+template <class T>
+Status World<T>::step(T h) {
+  if (!std::isfinite(h)) return Status::error(Code::kNotFinite, "step is not finite");
+  if (h <= T(0)) return Status::error(Code::kInvalidArgument, "step must be positive");
+  if (h > T(0.25)) return Status::error(Code::kOutOfRange, "step above 0.25 s");
+  impl_->step_once(h);
+  return {};
+}
+
+template class World<float>;
+template class World<double>;
+
+}  // namespace sinew

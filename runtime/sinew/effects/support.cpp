@@ -1,0 +1,69 @@
+#include "sinew/effects/support.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace sinew {
+namespace {
+
+/// How much of its share a point may bear: 1 on the floor, smoothly 0 at `reach` above it.
+template <class T>
+T bearing(const Kinematics<T>& k, const ContactPoint<T>& p, T ground, T reach, Vec3<T>& where) {
+  where = k.origin[p.body] + k.rotation[p.body] * p.local - Vec3<T>(0, 0, p.radius);
+  const T up = std::clamp((where.z() - ground) / reach, T(0), T(1));
+  return (1 - up) * (1 - up);
+}
+
+}  // namespace
+
+template <class T>
+void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const ContactPoint<T>> points,
+                   T ground, const SupportSettings& settings, std::span<Vec3<T>> force,
+                   std::span<Vec3<T>> moment) {
+  Vec3<T> total = Vec3<T>::Zero(), tilt = Vec3<T>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    total += force[i];
+    tilt += moment[i];
+  }
+  if (total.z() <= T(0)) return;
+  // Vertical forces f_p = w_p·(1, y, −x)·λ balance (F_z, M_x, M_y): weighted least squares with three
+  // multipliers.
+  const T reach = T(settings.reach);
+  Mat3<T> gram = Mat3<T>::Zero();
+  T sum = T(0);
+  Vec3<T> x;
+  for (const ContactPoint<T>& p : points) {
+    const T w = bearing(k, p, ground, reach, x);
+    const Vec3<T> arm(T(1), x.y(), -x.x());
+    gram += w * arm * arm.transpose();
+    sum += w;
+  }
+  if (sum <= T(1e-3)) return;
+  gram += T(1e-6) * (T(1) + gram.trace()) * Mat3<T>::Identity();  // one point alone can't hold a tilt
+  // A point can't pull: dropping negative forces and scaling the rest keeps the total.
+  const Vec3<T> multiplier = gram.inverse() * Vec3<T>(total.z(), tilt.x(), tilt.y());
+  T carried = T(0);
+  for (const ContactPoint<T>& p : points) {
+    const T w = bearing(k, p, ground, reach, x);
+    carried += std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
+  }
+  if (carried <= T(0)) return;
+  const T scale = total.z() / carried;
+  for (const ContactPoint<T>& p : points) {
+    const T w = bearing(k, p, ground, reach, x);
+    const T up = scale * std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
+    if (up <= T(0)) continue;
+    const Vec3<T> f(total.x() * up / total.z(), total.y() * up / total.z(), up);
+    force[p.body] -= f;
+    moment[p.body] -= x.cross(f);
+  }
+}
+
+template void share_support<float>(const Tree<float>&, const Kinematics<float>&,
+                                   std::span<const ContactPoint<float>>, float, const SupportSettings&,
+                                   std::span<Vec3<float>>, std::span<Vec3<float>>);
+template void share_support<double>(const Tree<double>&, const Kinematics<double>&,
+                                    std::span<const ContactPoint<double>>, double, const SupportSettings&,
+                                    std::span<Vec3<double>>, std::span<Vec3<double>>);
+
+}  // namespace sinew

@@ -1,0 +1,73 @@
+// Scalar energies of joints: muscles, dry friction, damping, limits.
+//
+// Each row is a function ψ(s) of one scalar s of one joint (an offset from the muscle's target, from the
+// step's start, or beyond a limit). Within the inner convex problem s is linear in the joint's unknowns.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "sinew/skeleton/transform.h"
+
+namespace sinew {
+
+enum class RowKind : std::uint8_t {
+  kKink,  ///< |s| times the limit of its side, rounded over `width`: a muscle at its target, or dry friction
+  kSpring,    ///< ½ k s²: damping over the step
+  kOneSided,  ///< ½ k max(s, 0)²: joint limit
+};
+
+template <class T>
+struct JointRow {
+  RowKind kind = RowKind::kKink;
+  bool muscle = false;
+  int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
+  int count = 1;                ///< how many
+  std::array<T, 3> gradient{};  ///< ds/dd
+  T value = T(0);               ///< s at the chart centre
+  T minus = T(0), plus = T(0);  ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
+  T width = T(1e-5);            ///< kink: rounding
+  T stiffness = T(0);           ///< spring and one-sided
+
+  T energy(T s) const {
+    switch (kind) {
+      case RowKind::kSpring:
+        return T(0.5) * stiffness * s * s;
+      case RowKind::kOneSided:
+        return s > T(0) ? T(0.5) * stiffness * s * s : T(0);
+      case RowKind::kKink:
+        break;
+    }
+    const T slope = s > T(0) ? minus : plus;
+    const T a = std::abs(s);
+    return a < width ? slope * a * a / (2 * width) : slope * (a - width / 2);
+  }
+  T slope(T s) const {
+    switch (kind) {
+      case RowKind::kSpring:
+        return stiffness * s;
+      case RowKind::kOneSided:
+        return s > T(0) ? stiffness * s : T(0);
+      case RowKind::kKink:
+        break;
+    }
+    const T limit = s > T(0) ? minus : plus;
+    if (s >= width) return limit;
+    if (s <= -width) return -limit;
+    return limit * s / width;
+  }
+  T curvature(T s) const {
+    switch (kind) {
+      case RowKind::kSpring:
+        return stiffness;
+      case RowKind::kOneSided:
+        return s > T(0) ? stiffness : T(0);
+      case RowKind::kKink:
+        break;
+    }
+    return std::abs(s) < width ? (s > T(0) ? minus : plus) / width : T(0);
+  }
+};
+
+}  // namespace sinew

@@ -1,0 +1,93 @@
+// The energy of one tree over one step: inertia, gravity, pushes and the scalar energies of its joints.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sinew/effects/contact.h"
+#include "sinew/muscle/joint_coordinates.h"
+#include "sinew/muscle/joint_rows.h"
+#include "sinew/optimizer/scheme.h"
+#include "sinew/residual/composite.h"
+
+namespace sinew {
+
+/// Limits and passive properties of a tree's joints, as the step needs them.
+template <class T>
+struct JointLaw {
+  std::vector<T> torque_minus, torque_plus;  ///< [dof] muscle limits now (strength applied), N·m
+  std::vector<T> dry_friction, damping;      ///< [dof] N·m, N·m·s/rad
+  std::vector<T> lower, upper;               ///< [dof] rad or m; |bound| ≥ 1e9: none
+  std::vector<T> swing_limit;                ///< [body] rad, < 0: none
+  std::vector<Vec3<T>> swing_axis;           ///< [body]
+  std::vector<T> twist_lower, twist_upper;   ///< [body]
+
+  JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
+};
+
+/// A force (N) on a material point of a body, constant over the step.
+template <class T>
+struct ExternalForce {
+  int body = 0;
+  Vec3<T> local = Vec3<T>::Zero();  ///< body axes
+  Vec3<T> force = Vec3<T>::Zero();  ///< world
+};
+
+/// Everything a solve knows and computes about one tree. Sized once.
+template <class T>
+struct TreeProblem {
+  const Tree<T>* tree;
+  JointLaw<T> law;
+  Prediction<T> prediction;
+  std::vector<Transform<T>> local;   ///< [body] present solution, joint → parent
+  std::vector<Transform<T>> target;  ///< [body] where the muscles pull
+  std::vector<Transform<T>> start;   ///< [body] at the beginning of the step
+  std::vector<std::uint8_t> free;    ///< [dof] 1: an unknown of the solve
+  std::vector<ExternalForce<T>> pushes;
+  Kinematics<T> kinematics;            ///< at `local`
+  std::vector<Vec3<T>> force, moment;  ///< [body] gradient wrenches; subtree sums after the projection
+  std::vector<Vec3<T>> body_force;     ///< [body] inertia + gravity + pushes, at the centre of mass
+  std::vector<Vec3<T>> couple;         ///< [body] rotational part of the inertial gradient
+  std::vector<T> gradient;             ///< [dof] ∂E/∂d in the chart centred at `local`
+  std::vector<JointRow<T>> rows;
+  std::vector<Composite<T>> composite;
+  int first_unknown_map = 0;  ///< where this tree's part of Unknowns::of_dof begins
+
+  TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
+};
+
+/// Values that all trees of a solve share.
+template <class T>
+struct StepSettings {
+  T h = T(1) / 60;                  ///< s
+  Vec3<T> gravity{0, 0, T(-9.81)};  ///< m/s²
+  Vec3<T> common_origin = Vec3<T>::Zero();
+  T limit_stiffness = T(2000);  ///< N·m/rad
+  T stick = T(0.01) / 60;       ///< m per step
+  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
+};
+
+/// Kinematics, wrenches and energy of inertia, gravity and pushes at `problem.local`; rows re-measured.
+/// Contacts add their wrenches afterwards; then finish_gradient projects. Returns the energy (J).
+template <class T>
+double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& problem);
+
+/// Projects the wrenches on the motion axes and adds the rows.
+template <class T>
+void finish_gradient(TreeProblem<T>& problem);
+
+/// Fills `problem.composite` from inertia and (for the geometric terms) the forces on the bodies.
+template <class T>
+void begin_composite(TreeProblem<T>& problem);
+
+#define SINEW_PROBLEM_INSTANCES(prefix, T)                                    \
+  prefix struct JointLaw<T>;                                                  \
+  prefix struct TreeProblem<T>;                                               \
+  prefix double begin_evaluation<T>(const StepSettings<T>&, TreeProblem<T>&); \
+  prefix void finish_gradient<T>(TreeProblem<T>&);                            \
+  prefix void begin_composite<T>(TreeProblem<T>&);
+SINEW_PROBLEM_INSTANCES(extern template, float)
+SINEW_PROBLEM_INSTANCES(extern template, double)
+
+}  // namespace sinew

@@ -1,0 +1,139 @@
+#include "sinew/optimizer/scheme.h"
+
+#include <Eigen/LU>
+
+namespace sinew {
+
+template <class T>
+History<T>::History(int bodies)
+    : center(bodies),
+      center_before(bodies),
+      velocity(bodies),
+      velocity_before(bodies),
+      rotation(bodies),
+      rotation_before(bodies),
+      rotation_rate(bodies),
+      momentum(bodies),
+      momentum_before(bodies) {}
+
+template <class T>
+Prediction<T>::Prediction(int bodies) : center(bodies), rotation(bodies), momentum(bodies) {}
+
+namespace {
+
+/// Rotation vector x over one step of a free body whose backward-difference momentum equation is
+/// I (k₁x − k₂x₋)/h = exp(−x)·l, in body axes. False where Newton does not converge or the turn is too large
+/// to trust. Fixed-point iteration fails from h|ω| = 0.5 on.
+template <class T>
+bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T>& before, T k1, T k2, T h,
+                          Vec3<T>& x) {
+  const T scale = l.norm();
+  if (scale <= T(0)) {
+    x.setZero();
+    return true;
+  }
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    const Vec3<T> carried = rotation_exp<T>(-x) * l;
+    const Vec3<T> error = inertia * (k1 * x - k2 * before) / h - carried;
+    const Mat3<T> jacobian = inertia * (k1 / h) - skew(carried) * right_jacobian(x);
+    Vec3<T> step = jacobian.inverse() * error;
+    if (!step.allFinite()) return false;
+    if (const T length = step.norm(); length > T(0.7)) step *= T(0.7) / length;
+    x -= step;
+    if (step.norm() < T(1e-6)) return x.norm() < T(2);
+  }
+  return false;
+}
+
+}  // namespace
+
+template <class T>
+void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h, const Vec3<T>& common_origin,
+             Prediction<T>& out) {
+  const bool second = scheme == Scheme::kBdf2 && history.step_before > T(0);
+  out.scheme = second ? Scheme::kBdf2 : Scheme::kBdf1;
+  if (!second) {
+    out.weight = T(1) / (h * h);
+    out.momentum_step = h;
+    for (int i = 0; i < tree.bodies; ++i) {
+      out.center[i] = history.center[i] - common_origin + h * history.velocity[i];
+      out.rotation[i] = history.rotation[i] + h * history.rotation_rate[i];
+      out.momentum[i] = history.momentum[i];
+    }
+    return;
+  }
+  const T w = h / history.step_before;
+  const T a0 = (1 + w) * (1 + w) / (1 + 2 * w);
+  const T a1 = -w * w / (1 + 2 * w);
+  const T beta = (1 + w) / (1 + 2 * w);
+  out.weight = T(1) / (beta * h * beta * h);
+  out.momentum_step = beta * h;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> now = history.center[i] - common_origin;
+    const Vec3<T> before = history.center_before[i] - common_origin;
+    out.center[i] =
+        a0 * now + a1 * before + beta * h * (a0 * history.velocity[i] + a1 * history.velocity_before[i]);
+    out.momentum[i] = a0 * history.momentum[i] + a1 * history.momentum_before[i];
+    const Mat3<T>& r0 = history.rotation[i];
+    const Vec3<T> turned = rotation_log<T>(Quat<T>(Mat3<T>(history.rotation_before[i].transpose() * r0)));
+    Vec3<T> x = turned * w;
+    if (torque_free_rotation<T>(tree.inertia[i], r0.transpose() * out.momentum[i], turned,
+                                (1 + 2 * w) / (1 + w), w * w / (1 + w), h, x)) {
+      out.rotation[i] = r0 * rotation_exp<T>(x).toRotationMatrix();
+    } else {
+      out.rotation[i] = r0 + (beta * h) * history.rotation_rate[i] + (a1 * (history.rotation_before[i] - r0));
+    }
+  }
+}
+
+template <class T>
+void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
+             std::span<const Vec3<T>> torque, T h, const Vec3<T>& common_origin, History<T>& history) {
+  const bool second = prediction.scheme == Scheme::kBdf2;
+  // Backward difference of the last three (or two) states; the same coefficients serve positions and
+  // rotations.
+  const T w = second ? h / history.step_before : T(0);
+  const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1);
+  const T k2 = second ? w * w / (1 + w) : T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> c1 = kinematics.center[i] + common_origin;
+    const Mat3<T>& r1 = kinematics.rotation[i];
+    const Vec3<T> velocity =
+        (k1 * (c1 - history.center[i]) - k2 * (history.center[i] - history.center_before[i])) / h;
+    const Mat3<T> rate =
+        (k1 * (r1 - history.rotation[i]) - k2 * (history.rotation[i] - history.rotation_before[i])) / h;
+    history.center_before[i] = history.center[i];
+    history.center[i] = c1;
+    history.velocity_before[i] = history.velocity[i];
+    history.velocity[i] = velocity;
+    history.rotation_before[i] = history.rotation[i];
+    history.rotation[i] = r1;
+    history.rotation_rate[i] = rate;
+    history.momentum_before[i] = history.momentum[i];
+    history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * torque[i];
+  }
+  history.step_before = h;
+}
+
+template <class T>
+void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
+                     const Vec3<T>& common_origin, History<T>& history) {
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Mat3<T>& r = kinematics.rotation[i];
+    history.center_before[i] = history.center[i];
+    history.center[i] = kinematics.center[i] + common_origin;
+    history.velocity_before[i] = history.velocity[i];
+    history.velocity[i] = motion.velocity[i];
+    history.rotation_before[i] = history.rotation[i];
+    history.rotation[i] = r;
+    history.rotation_rate[i] = skew<T>(motion.omega[i]) * r;
+    history.momentum_before[i] = history.momentum[i];
+    history.momentum[i] = r * (tree.inertia[i] * (r.transpose() * motion.omega[i]));
+  }
+  history.step_before = h;
+}
+
+SINEW_SCHEME_INSTANCES(template, float)
+SINEW_SCHEME_INSTANCES(template, double)
+
+}  // namespace sinew

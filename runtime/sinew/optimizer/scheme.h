@@ -1,0 +1,74 @@
+// Implicit schemes: where inertia alone would carry each body, and the history that this needs.
+//
+// The step minimises  E(q) = α/2 Σ [ m‖c − ĉ‖² + tr((R − R̂) P (R − R̂)ᵀ) ] + potentials  (Gauss's principle of
+// least constraint at finite displacement). ĉ, R̂ and α are what a scheme is:
+//
+//   bdf1   ĉ = c₀ + h ċ₀                     R̂ = R₀ + h Ṙ₀ (affine)      α = 1/h²
+//   bdf2   ĉ = a₀c₀ + a₁c₋₁ + βh(a₀ċ₀ + a₁ċ₋₁)   R̂ = R₀ exp(x)           α = 1/(βh)²
+//          a₀ = (1+w)²/(1+2w), a₁ = −w²/(1+2w), β = (1+w)/(1+2w), w = h/h₋₁
+//
+// x is the torque-free rotation: I·(derivative of the rotation vector) = exp(−x) R₀ᵀ L*, L* = a₀L₀ + a₁L₋₁.
+// With an affine R̂ bdf2 would be as stable, but free spin would decay.
+#pragma once
+
+#include <vector>
+
+#include "sinew/optimizer/accuracy.h"
+#include "sinew/residual/tree.h"
+
+namespace sinew {
+
+/// Present and previous state of every body; positions in world coordinates.
+template <class T>
+struct History {
+  std::vector<Vec3<T>> center, center_before;      ///< m
+  std::vector<Vec3<T>> velocity, velocity_before;  ///< of the centre of mass, m/s
+  std::vector<Mat3<T>> rotation, rotation_before;
+  std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
+  std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
+  T step_before = T(0);                            ///< s between before and now; 0: no earlier state
+
+  explicit History(int bodies);
+};
+
+/// Targets of inertia for one step, relative to the common origin.
+template <class T>
+struct Prediction {
+  std::vector<Vec3<T>> center;    ///< ĉ
+  std::vector<Mat3<T>> rotation;  ///< R̂
+  std::vector<Vec3<T>> momentum;  ///< L*, so that L₁ = L* + βh·g
+  T weight = T(0);                ///< α, 1/s²
+  T momentum_step = T(0);         ///< βh, s
+  Scheme scheme = Scheme::kBdf1;
+
+  explicit Prediction(int bodies);
+};
+
+/// Fills `out` for a step of h seconds. bdf2 needs an earlier state; without one, bdf1 is used.
+template <class T>
+void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h, const Vec3<T>& common_origin,
+             Prediction<T>& out);
+
+/// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
+/// gradient there (about each centre of mass).
+template <class T>
+void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
+             std::span<const Vec3<T>> torque, T h, const Vec3<T>& common_origin, History<T>& history);
+
+/// Moves the history on to a pose whose velocities are known exactly (playback).
+template <class T>
+void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
+                     const Vec3<T>& common_origin, History<T>& history);
+
+#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                   \
+  prefix struct History<T>;                                                                                 \
+  prefix struct Prediction<T>;                                                                              \
+  prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<T>&, Prediction<T>&);     \
+  prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                        \
+                         std::span<const Vec3<T>>, T, const Vec3<T>&, History<T>&);                         \
+  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&, \
+                                 History<T>&);
+SINEW_SCHEME_INSTANCES(extern template, float)
+SINEW_SCHEME_INSTANCES(extern template, double)
+
+}  // namespace sinew
