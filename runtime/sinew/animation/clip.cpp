@@ -1,0 +1,50 @@
+#include "sinew/animation/clip.h"
+
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+bool is_finite(const Transform<float>& x) {
+  return x.rotation.coeffs().allFinite() && x.translation.allFinite() && std::abs(x.rotation.norm() - 1.f) < 1e-3f;
+}
+
+Status check_group(const Clip& clip, const Clip::Group& group, int index) {
+  const std::size_t components = group.rotation ? 4 : 3;
+  if (group.degree != 3 && group.degree != 5)
+    return Status::error(Code::kInvalidArgument, "degree is neither 3 nor 5", index);
+  if (!std::isfinite(group.knot_interval) || group.knot_interval <= 0)
+    return Status::error(Code::kInvalidArgument, "knot interval is not positive", index);
+  if (group.control_count < (clip.loops ? 1 : group.degree + 1))
+    return Status::error(Code::kInvalidArgument, "too few control points", index);
+  const double covered = group.knot_interval * double(group.control_count - (clip.loops ? 0 : group.degree));
+  if (covered < clip.duration * (1 - 1e-4)) return Status::error(Code::kInvalidArgument, "knots end before the clip", index);
+  if (group.controls.size() != components * group.tracks.size() * std::size_t(group.control_count))
+    return Status::error(Code::kInvalidArgument, "number of controls does not match tracks and knots", index);
+  for (const Clip::Track& track : group.tracks)
+    if (track.joint < 0 || track.joint >= clip.joint_count)
+      return Status::error(Code::kInvalidArgument, "track of a joint that does not exist", index);
+  for (const float value : group.controls)
+    if (!std::isfinite(value)) return Status::error(Code::kNotFinite, "control point is not finite", index);
+  return {};
+}
+
+}  // namespace
+
+Status validate(const Clip& clip) {
+  if (!std::isfinite(clip.duration) || clip.duration < 0)
+    return Status::error(Code::kInvalidArgument, "duration is not a time");
+  if (clip.joint_count < 0 || clip.constants.size() != std::size_t(clip.joint_count))
+    return Status::error(Code::kInvalidArgument, "one constant transform per joint is needed");
+  for (const Transform<float>& constant : clip.constants)
+    if (!is_finite(constant)) return Status::error(Code::kNotFinite, "constant transform is not a finite rotation");
+  if (!clip.root_step.allFinite()) return Status::error(Code::kNotFinite, "root step is not finite");
+  for (const ContactWindow& window : clip.contacts)
+    if (window.joint < 0 || window.joint >= clip.joint_count || !(window.begin <= window.end))
+      return Status::error(Code::kInvalidArgument, "contact window has no joint or no length");
+  for (std::size_t g = 0; g < clip.groups.size(); ++g)
+    if (Status status = check_group(clip, clip.groups[g], static_cast<int>(g)); !status) return status;
+  return {};
+}
+
+}  // namespace sinew
