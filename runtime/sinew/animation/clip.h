@@ -37,7 +37,6 @@ struct ContactWindow {
 struct Clip {
   struct Track {
     int joint = 0;
-    int first_control = 0;  ///< index into `controls`, in groups of 4 (rotation) or 3 (translation) floats
   };
   struct Group {
     bool rotation = true;      ///< quaternion tracks (4 floats) or translation tracks (3 floats)

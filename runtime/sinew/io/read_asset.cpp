@@ -1,0 +1,212 @@
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sinew/io/asset.h"
+#include "sinew/io/schema_version.h"
+#include "sinew_generated.h"
+
+namespace sinew {
+namespace {
+
+constexpr int kMaxDepth = 64;            ///< of nested tables; the schema needs 4
+constexpr int kMaxTables = 1'000'000;
+constexpr std::size_t kMaxJoints = 100'000;
+
+Status bad(const char* reason, int index = -1) { return Status::error(Code::kBadFile, reason, index); }
+
+Vec3<double> unpack(const fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Transform<double> unpack(const fb::Transform& x) {
+  const fb::Quat& q = x.rotation();
+  return {Quat<double>(q.w(), q.x(), q.y(), q.z()), unpack(x.translation())};
+}
+
+Transform<float> unpack(const fb::TransformF& x) {
+  return {Quat<float>(x.qw(), x.qx(), x.qy(), x.qz()), {x.x(), x.y(), x.z()}};
+}
+
+template <class Value>
+std::vector<Value> copied(const flatbuffers::Vector<Value>* v) {
+  return v ? std::vector<Value>(v->begin(), v->end()) : std::vector<Value>();
+}
+
+template <class Value>
+std::size_t size_of(const flatbuffers::Vector<Value>* v) {
+  return v ? v->size() : 0;
+}
+
+Status unpack(const fb::Joint& in, int index, Joint& out) {
+  if (in.type() > static_cast<int>(JointType::kFree)) return bad("unknown joint type", index);
+  if (in.role() > static_cast<int>(Role::kToesR)) return bad("unknown joint role", index);
+  if (in.inertia()->size() != 9 || in.dofs()->size() != 6) return bad("inertia or limits have the wrong size", index);
+  out.name = in.name()->str();
+  if (in.source_joint()) out.source_joint = in.source_joint()->str();
+  out.parent = in.parent();
+  out.type = static_cast<JointType>(in.type());
+  out.role = static_cast<Role>(in.role());
+  out.rest = unpack(*in.rest());
+  out.axis = unpack(*in.axis());
+  out.axis2 = unpack(*in.axis2());
+  out.mass = in.mass();
+  out.center_of_mass = unpack(*in.center_of_mass());
+  for (unsigned k = 0; k < 9; ++k) out.inertia(k / 3, k % 3) = in.inertia()->Get(k);
+  for (unsigned k = 0; k < 6; ++k) {
+    const fb::Dof& d = *in.dofs()->Get(k);
+    out.dofs[k] = {d.lower(), d.upper(), d.torque_minus(), d.torque_plus(), d.damping(), d.dry_friction()};
+  }
+  out.swing_limit = in.swing_limit();
+  out.swing_axis = unpack(*in.swing_axis());
+  out.twist_lower = in.twist_lower();
+  out.twist_upper = in.twist_upper();
+  if (std::isnan(out.swing_limit) || std::isnan(out.twist_lower) || std::isnan(out.twist_upper))
+    return bad("swing or twist limit is NaN", index);
+  return {};
+}
+
+Status unpack(const fb::Skeleton& in, Skeleton& out) {
+  if (in.joints()->size() > kMaxJoints) return bad("too many joints");
+  out.name = in.name()->str();
+  out.body_count = in.body_count();
+  for (unsigned i = 0; i < in.joints()->size(); ++i)
+    if (Status status = unpack(*in.joints()->Get(i), static_cast<int>(i), out.joints.emplace_back()); !status) return status;
+  for (unsigned i = 0; i < size_of(in.colliders()); ++i) {
+    const fb::Collider& c = *in.colliders()->Get(i);
+    if (c.shape() > static_cast<int>(Shape::kBox)) return bad("unknown collider shape", c.joint());
+    out.colliders.push_back({c.joint(), static_cast<Shape>(c.shape()), unpack(c.local()), unpack(c.size()), c.friction()});
+  }
+  return validate(out);
+}
+
+Status unpack(const fb::Clip& in, int joints, Clip& out) {
+  out.name = in.name()->str();
+  out.duration = in.duration();
+  out.loops = in.loops();
+  out.joint_count = static_cast<int>(in.constants()->size());
+  if (out.joint_count != joints) return bad("clip has another number of joints than the skeleton");
+  for (const fb::TransformF* c : *in.constants()) out.constants.push_back(unpack(*c));
+  if (in.root_step()->size() != 3) return bad("root step needs three numbers");
+  out.root_step = {in.root_step()->Get(0), in.root_step()->Get(1), in.root_step()->Get(2)};
+  for (unsigned g = 0; g < size_of(in.groups()); ++g) {
+    const fb::Group& group = *in.groups()->Get(g);
+    Clip::Group& made = out.groups.emplace_back();
+    made.rotation = group.rotation();
+    made.degree = group.degree();
+    made.knot_interval = group.knot_interval();
+    made.control_count = group.control_count();
+    for (const int joint : *group.joints()) made.tracks.push_back({joint});
+    made.controls = copied(group.controls());
+  }
+  for (unsigned k = 0; k < size_of(in.contacts()); ++k) {
+    const fb::Contact& c = *in.contacts()->Get(k);
+    out.contacts.push_back({c.joint(), c.begin(), c.end()});
+  }
+  return validate(out);
+}
+
+Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& out) {
+  out.name = in.name()->str();
+  out.positions = copied(in.positions());
+  out.normals = copied(in.normals());
+  out.uvs = copied(in.uvs());
+  out.indices = copied(in.indices());
+  out.joints = copied(in.joints());
+  out.weights = copied(in.weights());
+  out.material = in.material();
+  const std::size_t vertices = out.positions.size() / 3;
+  if (out.positions.size() != 3 * vertices || out.normals.size() != 3 * vertices ||
+      (!out.uvs.empty() && out.uvs.size() != 2 * vertices) ||
+      (!out.joints.empty() && (out.joints.size() != 4 * vertices || out.weights.size() != 4 * vertices)))
+    return bad("mesh arrays disagree in length", index);
+  if (out.indices.size() % 3 != 0) return bad("mesh indices are not triangles", index);
+  for (const std::uint32_t i : out.indices)
+    if (i >= vertices) return bad("mesh index out of range", index);
+  for (const std::uint16_t j : out.joints)
+    if (j >= joints) return bad("mesh influence of a joint that does not exist", index);
+  for (const std::vector<float>* values : {&out.positions, &out.normals, &out.uvs, &out.weights})
+    for (const float v : *values)
+      if (!std::isfinite(v)) return bad("mesh has a number that is not finite", index);
+  if (out.material < -1 || out.material >= materials) return bad("mesh names a material that does not exist", index);
+  return {};
+}
+
+}  // namespace
+
+int Asset::find_clip(const std::string& name) const {
+  for (std::size_t i = 0; i < clips.size(); ++i)
+    if (clips[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
+  if (bytes.size() < 16) return bad("too short for a Sinew asset");
+  if (bytes.size() > std::size_t(std::numeric_limits<std::int32_t>::max())) return bad("larger than 2 GiB");
+  if (!fb::AssetBufferHasIdentifier(bytes.data())) return bad("not a Sinew asset");
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size(), kMaxDepth, kMaxTables);
+  if (!fb::VerifyAssetBuffer(verifier)) return bad("truncated or damaged");
+  const fb::Asset& in = *fb::GetAsset(bytes.data());
+  if (in.schema_major() > kSchemaMajor) return Status::error(Code::kBadVersion, "written by a newer version of Sinew");
+  if (in.schema_major() < 1) return bad("has no version");
+
+  Asset asset;
+  if (Status status = unpack(*in.skeleton(), asset.skeleton); !status) return status;
+  const int joints = static_cast<int>(asset.skeleton.joints.size());
+  for (unsigned i = 0; i < size_of(in.clips()); ++i)
+    if (Status status = unpack(*in.clips()->Get(i), joints, asset.clips.emplace_back()); !status) return status;
+  for (unsigned i = 0; i < size_of(in.materials()); ++i) {
+    const fb::Material& m = *in.materials()->Get(i);
+    Material& material = asset.materials.emplace_back();
+    material.name = m.name()->str();
+    if (m.base_color()->size() != 4) return bad("material colour needs four numbers", static_cast<int>(i));
+    for (unsigned k = 0; k < 4; ++k) {
+      material.base_color[k] = m.base_color()->Get(k);
+      if (!std::isfinite(material.base_color[k])) return bad("material colour is not finite", static_cast<int>(i));
+    }
+    material.texture = copied(m.texture());
+  }
+  const int materials = static_cast<int>(asset.materials.size());
+  for (unsigned i = 0; i < size_of(in.meshes()); ++i)
+    if (Status status = unpack(*in.meshes()->Get(i), joints, materials, static_cast<int>(i), asset.meshes.emplace_back());
+        !status)
+      return status;
+  for (unsigned i = 0; i < size_of(in.inverse_bind()); ++i) {
+    asset.inverse_bind.push_back(unpack(*in.inverse_bind()->Get(i)));
+    const Transform<float>& x = asset.inverse_bind.back();
+    if (!x.rotation.coeffs().allFinite() || !x.translation.allFinite()) return bad("bind pose is not finite", static_cast<int>(i));
+  }
+  if (!asset.inverse_bind.empty() && asset.inverse_bind.size() != asset.skeleton.joints.size())
+    return bad("bind pose has another number of joints than the skeleton");
+  if (asset.inverse_bind.empty())
+    for (const Mesh& mesh : asset.meshes)
+      if (!mesh.joints.empty()) return bad("skinned mesh without a bind pose");
+  if (in.report_json()) asset.report_json = in.report_json()->str();
+  out = std::move(asset);
+  return {};
+}
+
+Status load_asset(const char* path, Asset& out) {
+  const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0) return Status::error(Code::kIo, "file cannot be opened");
+  struct stat info {};
+  if (::fstat(file, &info) != 0 || !S_ISREG(info.st_mode)) {
+    ::close(file);
+    return Status::error(Code::kIo, "not a regular file");
+  }
+  const std::size_t size = static_cast<std::size_t>(info.st_size);
+  if (size == 0) {
+    ::close(file);
+    return bad("file is empty");
+  }
+  void* mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+  ::close(file);
+  if (mapped == MAP_FAILED) return Status::error(Code::kIo, "file cannot be mapped");
+  const Status status = read_asset({static_cast<const std::uint8_t*>(mapped), size}, out);
+  ::munmap(mapped, size);
+  return status;
+}
+
+}  // namespace sinew

@@ -1,0 +1,116 @@
+#include "sinew/io/asset.h"
+#include "sinew/io/schema_version.h"
+#include "sinew_generated.h"
+
+namespace sinew {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+fb::Vec3 pack(const Vec3<double>& v) { return {v.x(), v.y(), v.z()}; }
+
+fb::Transform pack(const Transform<double>& x) {
+  const Quat<double>& q = x.rotation;
+  return {fb::Quat(q.x(), q.y(), q.z(), q.w()), pack(x.translation)};
+}
+
+fb::TransformF pack(const Transform<float>& x) {
+  const Quat<float>& q = x.rotation;
+  const Vec3<float>& t = x.translation;
+  return {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
+}
+
+Offset<fb::Joint> pack(FlatBufferBuilder& b, const Joint& joint) {
+  const auto name = b.CreateString(joint.name), source = b.CreateString(joint.source_joint);
+  std::vector<double> inertia;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) inertia.push_back(joint.inertia(r, c));
+  std::vector<fb::Dof> dofs;
+  for (const DofLimits& d : joint.dofs)
+    dofs.emplace_back(d.lower, d.upper, d.torque_minus, d.torque_plus, d.damping, d.dry_friction);
+  const auto inertia_offset = b.CreateVector(inertia);
+  const auto dofs_offset = b.CreateVectorOfStructs(dofs);
+  const fb::Transform rest = pack(joint.rest);
+  const fb::Vec3 axis = pack(joint.axis), axis2 = pack(joint.axis2), center = pack(joint.center_of_mass),
+                 swing = pack(joint.swing_axis);
+  return fb::CreateJoint(b, name, source, joint.parent, static_cast<std::uint8_t>(joint.type),
+                         static_cast<std::uint8_t>(joint.role), &rest, &axis, &axis2, joint.mass, &center, inertia_offset,
+                         dofs_offset, joint.swing_limit, &swing, joint.twist_lower, joint.twist_upper);
+}
+
+Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
+  std::vector<Offset<fb::Joint>> joints;
+  for (const Joint& joint : skeleton.joints) joints.push_back(pack(b, joint));
+  std::vector<fb::Collider> colliders;
+  for (const Collider& c : skeleton.colliders)
+    colliders.emplace_back(c.joint, static_cast<std::uint8_t>(c.shape), c.friction, pack(c.local), pack(c.size));
+  const auto name = b.CreateString(skeleton.name);
+  const auto joints_offset = b.CreateVector(joints);
+  const auto colliders_offset = b.CreateVectorOfStructs(colliders);
+  return fb::CreateSkeleton(b, name, skeleton.body_count, joints_offset, colliders_offset);
+}
+
+Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip) {
+  std::vector<fb::TransformF> constants;
+  for (const Transform<float>& c : clip.constants) constants.push_back(pack(c));
+  std::vector<Offset<fb::Group>> groups;
+  for (const Clip::Group& group : clip.groups) {
+    std::vector<int> joints;
+    for (const Clip::Track& track : group.tracks) joints.push_back(track.joint);
+    const auto joints_offset = b.CreateVector(joints);
+    const auto controls = b.CreateVector(group.controls);
+    groups.push_back(fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval, group.control_count,
+                                     joints_offset, controls));
+  }
+  std::vector<fb::Contact> contacts;
+  for (const ContactWindow& c : clip.contacts) contacts.emplace_back(c.joint, c.begin, c.end);
+  const auto name = b.CreateString(clip.name);
+  const auto constants_offset = b.CreateVectorOfStructs(constants);
+  const auto groups_offset = b.CreateVector(groups);
+  const auto contacts_offset = b.CreateVectorOfStructs(contacts);
+  const auto step = b.CreateVector(clip.root_step.data(), 3);
+  return fb::CreateClip(b, name, clip.duration, clip.loops, constants_offset, groups_offset, contacts_offset, step);
+}
+
+Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
+  const auto name = b.CreateString(mesh.name);
+  const auto positions = b.CreateVector(mesh.positions), normals = b.CreateVector(mesh.normals),
+             uvs = b.CreateVector(mesh.uvs);
+  const auto indices = b.CreateVector(mesh.indices);
+  const auto joints = b.CreateVector(mesh.joints);
+  const auto weights = b.CreateVector(mesh.weights);
+  return fb::CreateMesh(b, name, positions, normals, uvs, indices, joints, weights, mesh.material);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> write_asset(const Asset& asset) {
+  FlatBufferBuilder b(1 << 20);
+  b.ForceDefaults(true);
+  const auto skeleton = pack(b, asset.skeleton);
+  std::vector<Offset<fb::Clip>> clips;
+  for (const Clip& clip : asset.clips) clips.push_back(pack(b, clip));
+  std::vector<Offset<fb::Mesh>> meshes;
+  for (const Mesh& mesh : asset.meshes) meshes.push_back(pack(b, mesh));
+  std::vector<Offset<fb::Material>> materials;
+  for (const Material& material : asset.materials) {
+    const auto name = b.CreateString(material.name);
+    const auto color = b.CreateVector(material.base_color, 4);
+    const auto texture = b.CreateVector(material.texture);
+    materials.push_back(fb::CreateMaterial(b, name, color, texture));
+  }
+  std::vector<fb::TransformF> bind;
+  for (const Transform<float>& x : asset.inverse_bind) bind.push_back(pack(x));
+  const auto clips_offset = b.CreateVector(clips);
+  const auto meshes_offset = b.CreateVector(meshes);
+  const auto materials_offset = b.CreateVector(materials);
+  const auto bind_offset = b.CreateVectorOfStructs(bind);
+  const auto report = b.CreateString(asset.report_json);
+  b.Finish(fb::CreateAsset(b, kSchemaMajor, kSchemaMinor, skeleton, clips_offset, meshes_offset, materials_offset,
+                           bind_offset, report),
+           fb::AssetIdentifier());
+  return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
+}
+
+}  // namespace sinew
