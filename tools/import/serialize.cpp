@@ -1,0 +1,204 @@
+#include "import/serialize.h"
+
+#include <cmath>
+
+#include "import/bytes.h"
+
+namespace sinew::import {
+namespace {
+
+// One visitor per type serves both directions: `Io` is a writer or a reader.
+struct Write {
+  ByteWriter bytes;
+  template <class T>
+  bool pod(const T& v) {
+    bytes.pod(v);
+    return true;
+  }
+  bool text(const std::string& s) {
+    bytes.text(s);
+    return true;
+  }
+  template <class T>
+  bool array(const std::vector<T>& v) {
+    bytes.array(v);
+    return true;
+  }
+  template <class T, class Each>
+  bool list(const std::vector<T>& v, Each each) {
+    bytes.pod(std::uint64_t(v.size()));
+    for (const T& item : v) each(*this, item);
+    return true;
+  }
+};
+
+struct Read {
+  ByteReader bytes;
+  template <class T>
+  bool pod(T& v) {
+    return bytes.pod(v);
+  }
+  bool text(std::string& s) { return bytes.text(s); }
+  template <class T>
+  bool array(std::vector<T>& v) {
+    return bytes.array(v);
+  }
+  template <class T, class Each>
+  bool list(std::vector<T>& v, Each each) {
+    std::uint64_t n = 0;
+    if (!bytes.count(n, 1)) return false;
+    v.clear();
+    for (std::uint64_t i = 0; i < n; ++i)
+      if (!each(*this, v.emplace_back())) return false;
+    return true;
+  }
+};
+
+template <class Io, class Matrix>
+bool matrix(Io& io, Matrix& m) {
+  for (Eigen::Index i = 0; i < m.size(); ++i)
+    if (!io.pod(*(m.data() + i))) return false;
+  return true;
+}
+
+template <class Io, class X>
+bool transform(Io& io, X& x) {
+  return matrix(io, x.rotation.coeffs()) && matrix(io, x.translation);
+}
+
+template <class Io, class V>
+bool vectors(Io& io, V& list) {
+  return io.list(list, [](auto& i, auto& v) { return matrix(i, v); });
+}
+
+template <class Io, class V>
+bool quaternions(Io& io, V& list) {
+  return io.list(list, [](auto& i, auto& q) { return matrix(i, q.coeffs()); });
+}
+
+const auto node_io = [](auto& io, auto& n) {
+  return io.text(n.name) && io.text(n.original_name) && io.pod(n.parent) && matrix(io, n.local) && io.pod(n.is_bone);
+};
+
+const auto bone_io = [](auto& io, auto& b) {
+  return io.pod(b.node) && matrix(io, b.inverse_bind) && io.list(b.weights, [](auto& i, auto& w) {
+    return i.pod(w.first) && i.pod(w.second);
+  });
+};
+
+const auto mesh_io = [](auto& io, auto& m) {
+  return io.text(m.name) && io.pod(m.node) && io.array(m.positions) && io.array(m.normals) && io.array(m.uvs) &&
+         io.array(m.indices) && io.list(m.bones, bone_io) && io.pod(m.material);
+};
+
+const auto material_io = [](auto& io, auto& m) { return io.text(m.name) && io.pod(m.base_color) && io.array(m.texture); };
+
+const auto channel_io = [](auto& io, auto& c) {
+  return io.pod(c.node) && io.array(c.position_times) && io.array(c.rotation_times) && io.array(c.scale_times) &&
+         vectors(io, c.positions) && quaternions(io, c.rotations) && vectors(io, c.scales);
+};
+
+const auto clip_io = [](auto& io, auto& c) {
+  return io.text(c.name) && io.pod(c.duration) && io.pod(c.key_rate) && io.list(c.channels, channel_io);
+};
+
+const auto link_io = [](auto& io, auto& l) {
+  return io.text(l.name) && io.text(l.joint_name) && io.pod(l.parent) && io.pod(l.type) && transform(io, l.origin) &&
+         matrix(io, l.axis) && io.pod(l.has_inertial) && io.pod(l.mass) && transform(io, l.inertial_origin) &&
+         matrix(io, l.inertia) && io.pod(l.has_limits) && io.pod(l.lower) && io.pod(l.upper) && io.pod(l.effort) &&
+         io.pod(l.velocity) && io.pod(l.damping) && io.pod(l.friction) && io.text(l.mimic_joint) &&
+         io.pod(l.mimic_multiplier) && io.pod(l.mimic_offset) && io.pod(l.mesh_count) &&
+         io.list(l.shapes, [](auto& i, auto& g) {
+           return i.pod(g.shape) && transform(i, g.origin) && matrix(i, g.size) && i.pod(g.collision);
+         });
+};
+
+template <class Io, class Scene>
+bool scene_io(Io& io, Scene& s) {
+  return io.text(s.format) && io.text(s.name) && io.pod(s.meters_per_unit) && io.pod(s.up_axis) &&
+         io.list(s.nodes, node_io) && io.list(s.meshes, mesh_io) && io.list(s.materials, material_io) &&
+         io.list(s.clips, clip_io) && io.list(s.links, link_io) &&
+         io.list(s.notes, [](auto& i, auto& n) { return i.text(n); });
+}
+
+/// What is wrong with a scene that came in, or empty.
+std::string fault(const SourceScene& s) {
+  const int nodes = static_cast<int>(s.nodes.size());
+  for (int i = 0; i < nodes; ++i) {
+    const SourceNode& n = s.nodes[i];
+    if (n.parent < -1 || n.parent >= i) return "node '" + n.name + "' comes before its parent";
+    if (!n.local.allFinite()) return "node '" + n.name + "' has a transform that is not finite";
+  }
+  for (const SourceMesh& m : s.meshes) {
+    if (m.node < -1 || m.node >= nodes) return "mesh '" + m.name + "' hangs on a node that does not exist";
+    for (const auto& p : m.positions)
+      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+        return "mesh '" + m.name + "' has a vertex that is not finite";
+    if (m.indices.size() % 3 != 0) return "mesh '" + m.name + "' is not made of triangles";
+    for (const std::uint32_t i : m.indices)
+      if (i >= m.positions.size()) return "mesh '" + m.name + "' has an index out of range";
+    if ((!m.normals.empty() && m.normals.size() != m.positions.size()) || (!m.uvs.empty() && m.uvs.size() != m.positions.size()))
+      return "mesh '" + m.name + "' has arrays of different length";
+    for (const auto& b : m.bones) {
+      if (b.node < 0 || b.node >= nodes) return "mesh '" + m.name + "' has a bone that is no node";
+      if (!b.inverse_bind.allFinite()) return "mesh '" + m.name + "' has a bind matrix that is not finite";
+      for (const auto& [vertex, weight] : b.weights)
+        if (vertex >= m.positions.size() || !std::isfinite(weight)) return "mesh '" + m.name + "' has a bad weight";
+    }
+    if (m.material < -1 || m.material >= static_cast<int>(s.materials.size())) return "mesh '" + m.name + "' has no such material";
+  }
+  for (const SourceClip& clip : s.clips) {
+    if (!std::isfinite(clip.duration) || clip.duration < 0) return "clip '" + clip.name + "' has no meaningful duration";
+    for (const SourceChannel& c : clip.channels) {
+      if (c.node < 0 || c.node >= nodes) return "clip '" + clip.name + "' moves a node that does not exist";
+      const std::string where = "clip '" + clip.name + "', node '" + s.nodes[c.node].name + "': ";
+      if (c.positions.size() != c.position_times.size() || c.rotations.size() != c.rotation_times.size() ||
+          c.scales.size() != c.scale_times.size())
+        return where + "keys and times differ in number";
+      for (const auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
+        for (const double t : *times)
+          if (!std::isfinite(t)) return where + "a key time is not finite";
+      for (const auto& p : c.positions)
+        if (!p.allFinite()) return where + "a position key is not finite";
+      for (const auto& q : c.rotations)
+        if (!q.coeffs().allFinite() || q.norm() < 1e-6) return where + "a rotation key is not a rotation";
+      for (const auto& v : c.scales)
+        if (!v.allFinite()) return where + "a scale key is not finite";
+    }
+  }
+  const int links = static_cast<int>(s.links.size());
+  for (int i = 0; i < links; ++i) {
+    const SourceUrdfLink& l = s.links[i];
+    if (l.parent < -1 || l.parent >= i) return "link '" + l.name + "' comes before its parent";
+    if (!l.origin.translation.allFinite() || !l.origin.rotation.coeffs().allFinite() || !l.axis.allFinite())
+      return "joint '" + l.joint_name + "' has a place or axis that is not finite";
+    if (!std::isfinite(l.mass) || !l.inertia.allFinite() || !l.inertial_origin.translation.allFinite())
+      return "link '" + l.name + "' has an inertial that is not finite";
+    if (!std::isfinite(l.lower) || !std::isfinite(l.upper) || !std::isfinite(l.effort))
+      return "joint '" + l.joint_name + "' has a limit that is not finite";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string to_bytes(const SourceScene& scene) {
+  Write io;
+  scene_io(io, scene);
+  return io.bytes.data();
+}
+
+bool from_bytes(const std::string& bytes, SourceScene& out, std::string& error) {
+  SourceScene scene;
+  Read io{ByteReader(bytes)};
+  if (!scene_io(io, scene) || !io.bytes.done()) {
+    error = "the reader's answer is damaged";
+    return false;
+  }
+  error = fault(scene);
+  if (!error.empty()) return false;
+  out = std::move(scene);
+  return true;
+}
+
+}  // namespace sinew::import
