@@ -132,7 +132,11 @@ class SceneBuilder {
     collect_nodes();
     collect_metadata();
     collect_materials();
-    for (unsigned m = 0; m < in_.mNumMeshes; ++m) collect_mesh(*in_.mMeshes[m], m);
+    if (out_.format == "bvh") {
+      out_.materials.clear();
+    } else {
+      for (unsigned m = 0; m < in_.mNumMeshes; ++m) collect_mesh(*in_.mMeshes[m], m);
+    }
     for (unsigned a = 0; a < in_.mNumAnimations; ++a) collect_clip(*in_.mAnimations[a]);
     fold_pivots();
     mark_bones();
@@ -431,7 +435,8 @@ SourceScene read_with_assimp(const std::string& content, const std::string& form
   auto files = std::make_unique<ClosedWorld>(name, content, side_files, limits.max_file_bytes);
   const ClosedWorld& world = *files;
   importer.SetIOHandler(files.release());
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  // Stick figures only for BVH, whose scenes would not pass validation without a mesh; they are dropped again.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, format != "bvh");
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   unsigned steps = aiProcess_ValidateDataStructure;

@@ -1,0 +1,335 @@
+#include "convert/rig.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "convert/roles.h"
+
+namespace sinew::convert {
+namespace {
+
+using import::SourceChannel;
+using import::SourceClip;
+using import::SourceScene;
+using Matrix = Eigen::Matrix4d;
+
+template <class V>
+V interpolate(const std::vector<double>& times, const std::vector<V>& keys, double t, const V& otherwise) {
+  if (keys.empty()) return otherwise;
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  if (after == times.begin()) return keys.front();
+  if (after == times.end()) return keys.back();
+  const std::size_t i = static_cast<std::size_t>(after - times.begin());
+  const double span = times[i] - times[i - 1], u = span > 0 ? (t - times[i - 1]) / span : 0;
+  if constexpr (std::is_same_v<V, Eigen::Quaterniond>) {
+    return keys[i - 1].slerp(u, keys[i]);
+  } else {
+    return keys[i - 1] + u * (keys[i] - keys[i - 1]);
+  }
+}
+
+/// Node transforms of a scene, at rest or at a time of a clip; scale and shear included.
+std::vector<Matrix> globals(const SourceScene& scene, const SourceClip* clip, double t) {
+  std::vector<const SourceChannel*> channel(scene.nodes.size(), nullptr);
+  if (clip)
+    for (const SourceChannel& c : clip->channels) channel[c.node] = &c;
+  std::vector<Matrix> world(scene.nodes.size());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Matrix local = scene.nodes[i].local;
+    if (const SourceChannel* c = channel[i]) {
+      Eigen::Vector3d position = local.block<3, 1>(0, 3);
+      Eigen::Matrix3d a = local.block<3, 3>(0, 0);
+      Eigen::Vector3d scale = a.colwise().norm();
+      if (a.determinant() < 0) scale[0] = -scale[0];
+      for (int k = 0; k < 3; ++k) a.col(k) /= std::abs(scale[k]) > 1e-12 ? scale[k] : 1;
+      Eigen::Quaterniond rotation(a);
+      position = interpolate(c->position_times, c->positions, t, position);
+      rotation = interpolate(c->rotation_times, c->rotations, t, rotation).normalized();
+      scale = interpolate(c->scale_times, c->scales, t, scale);
+      local.setIdentity();
+      local.block<3, 3>(0, 0) = rotation.toRotationMatrix() * scale.asDiagonal();
+      local.block<3, 1>(0, 3) = position;
+    }
+    world[i] = scene.nodes[i].parent < 0 ? local : Matrix(world[scene.nodes[i].parent] * local);
+  }
+  return world;
+}
+
+/// Source axes and unit → Sinew: metres, Z up, X forward for Y-up sources (which face +Z).
+Matrix basis(int up, double unit) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (up == 1) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  if (up == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  Matrix m = Matrix::Identity();
+  m.block<3, 3>(0, 0) = unit * turn;
+  return m;
+}
+
+/// Nearest rigid transform: columns normalised, shear and mirror taken out.
+Transform<double> rigid(const Matrix& m) {
+  Eigen::Matrix3d a = m.block<3, 3>(0, 0);
+  if (a.determinant() < 0) a.col(0) = -a.col(0);
+  for (int k = 0; k < 3; ++k)
+    if (const double length = a.col(k).norm(); length > 1e-12) a.col(k) /= length;
+    else a = Eigen::Matrix3d::Identity(), k = 3;
+  a.col(1) = (a.col(1) - a.col(0).dot(a.col(1)) * a.col(0)).normalized();
+  a.col(2) = a.col(0).cross(a.col(1));
+  return {Eigen::Quaterniond(a).normalized(), m.block<3, 1>(0, 3)};
+}
+
+std::string plain_name(const std::string& name) {
+  const auto cut = name.find_last_of(":|");
+  return cut == std::string::npos ? name : name.substr(cut + 1);
+}
+
+/// Bones, what lies between them, and their lowest common ancestor as the root.
+std::vector<int> joint_nodes(const SourceScene& scene) {
+  const int count = static_cast<int>(scene.nodes.size());
+  std::vector<int> below(count, 0);  // bones in the subtree
+  int bones = 0;
+  for (int i = count - 1; i >= 0; --i) {
+    if (scene.nodes[i].is_bone) {
+      ++below[i];
+      ++bones;
+    }
+    if (scene.nodes[i].parent >= 0) below[scene.nodes[i].parent] += below[i];
+  }
+  if (bones == 0) return {};
+  int root = 0;
+  for (int i = 0; i < count; ++i)
+    if (below[i] == bones) root = i;  // nodes come parents first: the last one that holds all bones is the lowest
+  for (int i = root; i >= 0; i = scene.nodes[i].parent)
+    if (scene.nodes[i].is_bone) root = i;
+  std::vector<int> nodes;
+  std::vector<std::uint8_t> inside(count, 0);
+  for (int i = root; i < count; ++i) {
+    inside[i] = i == root || (scene.nodes[i].parent >= 0 && inside[scene.nodes[i].parent]);
+    if (inside[i] && below[i] > 0) nodes.push_back(i);
+  }
+  return nodes;
+}
+
+double extent(const std::vector<Matrix>& world, const std::vector<int>& nodes, int axis) {
+  double low = 1e300, high = -1e300;
+  for (const int n : nodes) {
+    low = std::min(low, world[n](axis, 3));
+    high = std::max(high, world[n](axis, 3));
+  }
+  return high - low;
+}
+
+void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const Options& options, bool skinned, Rig& rig,
+                 nlohmann::json& report) {
+  const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
+  const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
+  const char* how = "option";
+  rig.up = options.up == "x" ? 0 : (options.up == "y" ? 1 : (options.up == "z" ? 2 : scene.up_axis));
+  if (options.up.empty()) how = "file";
+  if (rig.up < 0) {
+    rig.up = extent(world, nodes, 2) > extent(world, nodes, 1) ? 2 : 1;
+    how = "guessed from the first frame";
+  }
+  report["up"] = {{"axis", std::string(1, "xyz"[rig.up])}, {"from", how}};
+  const double raw = extent(world, nodes, rig.up);
+  const double widest = std::max({raw, extent(world, nodes, 0), extent(world, nodes, 1), extent(world, nodes, 2)});
+  if (options.unit > 0) {
+    rig.unit = options.unit;
+    how = "option";
+  } else if (scene.meters_per_unit > 0 && widest * scene.meters_per_unit < 5 && widest * scene.meters_per_unit > 0.05) {
+    rig.unit = scene.meters_per_unit;
+    how = "file";
+  } else {
+    // Metre, centimetre, inch, CMU's own, decimetre, millimetre: the one that makes a person, else just that height.
+    rig.unit = raw > 1e-9 ? 1.7 / raw : 1;
+    for (const double candidate : {1.0, 0.01, 0.0254, 0.056444, 0.1, 0.001})
+      if (raw * candidate > 1.35 && raw * candidate < 2.1) rig.unit = candidate;
+    how = "guessed from the first frame's height";
+  }
+  rig.height = raw * rig.unit;
+  report["unit"] = {{"meters_per_unit", rig.unit}, {"from", how}};
+  report["height_m"] = rig.height;
+}
+
+void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world, const Matrix& to_model,
+               const std::map<int, int>& joint_of_node, nlohmann::json& report, Rig& rig) {
+  Mesh mesh;
+  mesh.name = in.name;
+  mesh.material = in.material;
+  mesh.indices = in.indices;
+  for (const auto& uv : in.uvs) mesh.uvs.insert(mesh.uvs.end(), {uv[0], uv[1]});
+  const std::size_t vertices = in.positions.size();
+  std::vector<std::vector<std::pair<float, int>>> influences(vertices);  // weight, index into in.bones
+  for (std::size_t b = 0; b < in.bones.size(); ++b)
+    for (const auto& [v, w] : in.bones[b].weights)
+      if (w > 0 && joint_of_node.count(in.bones[b].node)) influences[v].push_back({w, static_cast<int>(b)});
+  // What carries vertices without weights: the nearest joint above the mesh's node.
+  int carrier = in.node;
+  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
+  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
+  int repaired = 0, unweighted = 0, reduced = 0;
+  const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
+  for (std::size_t v = 0; v < vertices; ++v) {
+    auto& list = influences[v];
+    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first > b.first || (a.first == b.first && a.second < b.second); });
+    if (list.size() > 4) {
+      list.resize(4);
+      ++reduced;
+    }
+    float sum = 0;
+    for (const auto& [w, b] : list) sum += w;
+    if (list.empty() && !in.bones.empty()) ++unweighted;
+    if (!list.empty() && std::abs(sum - 1) > 0.01f) ++repaired;
+    Matrix blend = Matrix::Zero();
+    for (auto& [w, b] : list) {
+      w /= sum;
+      blend += double(w) * world[in.bones[b].node] * in.bones[b].inverse_bind;
+    }
+    if (list.empty()) blend = mesh_world;
+    blend = to_model * blend;
+    const Eigen::Vector3d p(in.positions[v][0], in.positions[v][1], in.positions[v][2]);
+    const Eigen::Vector3d at = blend.block<3, 3>(0, 0) * p + blend.block<3, 1>(0, 3);
+    Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
+    if (!in.normals.empty()) {
+      const Eigen::Vector3d source(in.normals[v][0], in.normals[v][1], in.normals[v][2]);
+      const Eigen::Matrix3d a = blend.block<3, 3>(0, 0);
+      // Normals turn with the cofactor matrix, which also exists where the matrix cannot be inverted.
+      Eigen::Matrix3d cofactor;
+      cofactor << a.col(1).cross(a.col(2)), a.col(2).cross(a.col(0)), a.col(0).cross(a.col(1));
+      n = cofactor * source;
+      n = n.norm() > 1e-12 ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+    }
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(at[k]));
+    for (int k = 0; k < 3; ++k) mesh.normals.push_back(n.allFinite() ? static_cast<float>(n[k]) : float(k == 2));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool used = k < list.size();
+      const int joint = used ? joint_of_node.at(in.bones[list[k].second].node) : carrier_joint;
+      const float w = used ? list[k].first : (k == 0 && list.empty() ? 1.f : 0.f);
+      mesh.joints.push_back(static_cast<std::uint16_t>(joint));
+      mesh.weights.push_back(w);
+      rig.joints[joint].skin_weight += double(w);
+    }
+  }
+  const auto note = [&](int count, const char* what) {
+    if (count > 0) report["notes"].push_back("mesh '" + in.name + "': " + std::to_string(count) + " vertices " + what);
+  };
+  note(repaired, "had weights that do not sum to 1; renormalised");
+  note(unweighted, "had no weights; they follow the mesh's node");
+  note(reduced, "had more than four influences; the four largest stay");
+  if (mesh_world.block<3, 3>(0, 0).determinant() < 0 && in.bones.empty())
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
+  rig.meshes.push_back(std::move(mesh));
+}
+
+/// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at rest).
+Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes, const Matrix& to_model,
+                   const Rig& rig, nlohmann::json& report) {
+  Rig::Motion motion;
+  motion.name = clip.name;
+  motion.sample_rate = std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+  const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
+  if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
+  bool scaled = false;
+  for (const SourceChannel& c : clip.channels)
+    for (const Eigen::Vector3d& s : c.scales) scaled = scaled || (s - c.scales.front()).norm() > 1e-3;
+  if (scaled) report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
+  for (int f = 0; f < frames; ++f) {
+    const std::vector<Matrix> world = globals(scene, &clip, f / motion.sample_rate);
+    std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
+    for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+      const int parent = rig.joints[j].parent;
+      const Transform<double> rest_local = parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
+      model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]]) : (parent < 0 ? rest_local : model[parent] * rest_local);
+      local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
+      local[j].rotation.normalize();
+    }
+    motion.samples.push_back(std::move(local));
+  }
+  // A loop comes back to its first pose, the root's place aside.
+  double turned = 0;
+  for (std::size_t j = 0; j < rig.joints.size(); ++j)
+    turned = std::max(turned, motion.samples.back()[j].rotation.angularDistance(motion.samples.front()[j].rotation));
+  motion.loops = frames > 8 && turned < 0.01;
+  return motion;
+}
+
+}  // namespace
+
+Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, Rig& out, nlohmann::json& report) {
+  report["notes"] = nlohmann::json::array();
+  std::size_t main = scenes.size();
+  for (std::size_t s = 0; s < scenes.size() && main == scenes.size(); ++s)
+    if (!scenes[s].meshes.empty()) main = s;
+  if (main == scenes.size()) main = 0;
+  const SourceScene& scene = scenes[main];
+  const std::vector<int> nodes = joint_nodes(scene);
+  if (nodes.empty()) return {"it has no joints: no skin, and no clip that moves a node"};
+
+  Rig rig;
+  const bool skinned = !scene.meshes.empty();
+  choose_unit(scene, nodes, options, skinned, rig, report);
+  const Matrix to_model = basis(rig.up, rig.unit);
+  const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
+  const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
+  std::map<int, int> joint_of_node;
+  for (const int n : nodes) {
+    Rig::Joint joint;
+    joint.name = scene.nodes[n].name;
+    joint.node = n;
+    joint.parent = joint_of_node.count(scene.nodes[n].parent) ? joint_of_node.at(scene.nodes[n].parent) : -1;
+    joint.rest = rigid(to_model * world[n]);
+    joint.control = is_control_name(joint.name);
+    joint_of_node[n] = static_cast<int>(rig.joints.size());
+    rig.joints.push_back(joint);
+  }
+  for (const import::SourceMaterial& m : scene.materials) {
+    Material material;
+    material.name = m.name;
+    std::copy(m.base_color.begin(), m.base_color.end(), material.base_color);
+    material.texture = m.texture;
+    rig.materials.push_back(std::move(material));
+  }
+  for (const import::SourceMesh& mesh : scene.meshes) bake_mesh(mesh, scene, world, to_model, joint_of_node, report, rig);
+
+  std::set<std::string> taken;
+  for (const SourceScene& from : scenes) {
+    for (const std::string& note : from.notes) report["notes"].push_back(note);
+    Matrix to = to_model;
+    std::vector<int> of_joint(rig.joints.size(), -1);
+    if (&from == &scene) {
+      for (std::size_t j = 0; j < rig.joints.size(); ++j) of_joint[j] = rig.joints[j].node;
+    } else {
+      Rig other;
+      nlohmann::json ignored;
+      const std::vector<int> other_nodes = joint_nodes(from);
+      if (other_nodes.empty()) continue;
+      choose_unit(from, other_nodes, options, !from.meshes.empty(), other, ignored);
+      to = basis(other.up, other.unit);
+      std::map<std::string, int> by_name;
+      for (const int n : other_nodes) by_name.emplace(plain_name(from.nodes[n].original_name), n);
+      int matched = 0;
+      for (std::size_t j = 0; j < rig.joints.size(); ++j)
+        if (const auto found = by_name.find(plain_name(rig.joints[j].name)); found != by_name.end()) {
+          of_joint[j] = found->second;
+          ++matched;
+        }
+      if (matched == 0) return {"'" + from.name + "' shares no joint name with '" + scene.name + "'"};
+      report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " + std::to_string(rig.joints.size()) + " joints matched by name");
+    }
+    for (const SourceClip& clip : from.clips) {
+      if (!options.clips.empty() && std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end()) continue;
+      Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
+      if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
+      while (!taken.insert(motion.name).second) motion.name += "_2";
+      rig.motions.push_back(std::move(motion));
+    }
+  }
+  for (const std::string& wanted : options.clips)
+    if (!taken.count(wanted)) return {"it has no clip '" + wanted + "'"};
+  out = std::move(rig);
+  return {};
+}
+
+}  // namespace sinew::convert

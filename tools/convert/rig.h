@@ -1,0 +1,42 @@
+// Clean-up of a source scene: which nodes are joints, where they are in metres and Z up, rigid, at rest and over each clip.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "convert/convert.h"
+#include "convert/options.h"
+#include "import/source_scene.h"
+
+namespace sinew::convert {
+
+/// Joints of a character with rigid transforms. Parents come first; index 0 is the root.
+struct Rig {
+  struct Joint {
+    std::string name;
+    int parent = -1;
+    int node = -1;                     ///< in the source scene
+    Transform<double> rest;            ///< model space, m
+    double skin_weight = 0;            ///< sum over vertices
+    bool control = false;              ///< steers others, is no body part
+  };
+  struct Motion {
+    std::string name;
+    double sample_rate = 30;
+    bool loops = false;
+    std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
+  };
+  std::vector<Joint> joints;
+  std::vector<Mesh> meshes;            ///< model space at rest; Mesh::joints index `joints`
+  std::vector<Material> materials;
+  std::vector<Motion> motions;
+  double unit = 1;
+  int up = 1;
+  double height = 0;                   ///< m, at rest or in the first frame
+};
+
+/// Builds the rig from the scene that carries the character; more scenes add clips (joints matched by name, prefixes
+/// up to ':' or '|' ignored). `report` gains "unit", "up", "height" and "notes".
+Error build_rig(const std::vector<import::SourceScene>& scenes, const Options& options, Rig& out, nlohmann::json& report);
+
+}  // namespace sinew::convert
