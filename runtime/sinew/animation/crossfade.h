@@ -1,0 +1,44 @@
+// Blend of two poses with exact velocities and accelerations.
+#pragma once
+
+#include <span>
+
+#include "sinew/animation/clip.h"
+
+namespace sinew {
+
+/// A weight and its first two time derivatives. A weight that is not C² injects torque.
+template <class T>
+struct EaseWeight {
+  T value = T(0), rate = T(0), acceleration = T(0);
+
+  /// Quintic ease from 0 at `elapsed` = 0 to 1 at `duration` (s), flat and uncurved at both ends.
+  static EaseWeight at(T elapsed, T duration) {
+    if (duration <= T(0) || elapsed >= duration) return {T(1), T(0), T(0)};
+    if (elapsed <= T(0)) return {};
+    const T u = elapsed / duration, u2 = u * u;
+    return {u2 * u * (T(10) - T(15) * u + T(6) * u2), T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
+            T(60) * u * (T(1) - u) * (T(1) - T(2) * u) / (duration * duration)};
+  }
+};
+
+/// out = (1 − w)·a + w·b per joint, on quaternions in R⁴ (the nearer of ±b), normalised:
+/// P = Σ wᵢpᵢ, P' = Σ (wᵢpᵢ' + wᵢ'pᵢ), P'' = Σ (wᵢpᵢ'' + 2wᵢ'pᵢ' + wᵢ''pᵢ). `out` may be `a` or `b`. Spans of equal length.
+template <class T>
+void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w, std::span<JointJet<T>> out);
+
+extern template void crossfade<float>(std::span<const JointJet<float>>, std::span<const JointJet<float>>,
+                                      const EaseWeight<float>&, std::span<JointJet<float>>);
+extern template void crossfade<double>(std::span<const JointJet<double>>, std::span<const JointJet<double>>,
+                                       const EaseWeight<double>&, std::span<JointJet<double>>);
+
+/// Moves a pose in the world: the root's transform and motion are turned and shifted by `place`.
+template <class T>
+void place_root(const Transform<T>& place, JointJet<T>& root) {
+  root.translation = place * root.translation;
+  root.rotation = (place.rotation * root.rotation).normalized();
+  root.velocity = place.rotation * root.velocity;
+  root.acceleration = place.rotation * root.acceleration;
+}
+
+}  // namespace sinew

@@ -1,0 +1,427 @@
+#include "convert/body.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "convert/roles.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/effects/support.h"
+#include "sinew/skeleton/rotation.h"
+
+namespace sinew::convert {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Muscle limits for average adults, N·m per kg of body mass at 1.75 m, the stronger direction of each joint: `limit_average_adult`
+/// values compiled from isokinetic tables and muscle models (Anderson et al. 2007; Šarabon et al. 2021; Delp 1996; Vasavada 2001;
+/// sources in tools/convert/README.md). Swing range from rest and twist range in degrees (Soucie 2011; Namdari 2011), wide
+/// because rest poses differ.
+struct Anatomy {
+  Role role;
+  double torque;
+  double swing_deg, twist_deg;
+  bool hinge;
+};
+constexpr Anatomy kAnatomy[] = {
+    {Role::kPelvis, 4.0, 45, 35, false},   {Role::kSpine, 4.0, 40, 35, false},     {Role::kChest, 4.0, 35, 35, false},
+    {Role::kNeck, 0.7, 50, 60, false},     {Role::kHead, 0.7, 50, 60, false},      {Role::kClavicleL, 1.5, 35, 25, false},
+    {Role::kClavicleR, 1.5, 35, 25, false}, {Role::kUpperArmL, 1.2, 120, 90, false}, {Role::kUpperArmR, 1.2, 120, 90, false},
+    {Role::kForearmL, 1.0, 0, 0, true},    {Role::kForearmR, 1.0, 0, 0, true},     {Role::kHandL, 0.25, 70, 85, false},
+    {Role::kHandR, 0.25, 70, 85, false},   {Role::kThighL, 3.3, 110, 50, false},   {Role::kThighR, 3.3, 110, 50, false},
+    {Role::kShinL, 3.5, 0, 0, true},       {Role::kShinR, 3.5, 0, 0, true},        {Role::kFootL, 3.3, 55, 35, false},
+    {Role::kFootR, 3.3, 55, 35, false},    {Role::kToesL, 0.35, 60, 10, false},    {Role::kToesR, 0.35, 60, 10, false}};
+
+const Anatomy* anatomy(Role role) {
+  const auto* found = std::find_if(std::begin(kAnatomy), std::end(kAnatomy), [&](const Anatomy& a) { return a.role == role; });
+  return found == std::end(kAnatomy) ? nullptr : found;
+}
+
+bool is_hand(Role r) { return r == Role::kHandL || r == Role::kHandR; }
+bool is_foot(Role r) { return r == Role::kFootL || r == Role::kFootR; }
+
+/// Radius of a limb of unknown girth, as a share of its length (de Leva's segment volumes read as cylinders: 0.10–0.17).
+constexpr double kSlenderness = 0.14;
+
+struct Part {
+  std::vector<Vec3<double>> vertices;  ///< mainly this joint's, joint axes
+  Vec3<double> direction = Vec3<double>::UnitZ();
+  double length = 0;
+  Collider shape;
+  double volume = 0;
+  bool simulated = false;
+};
+
+class BodyBuilder {
+ public:
+  BodyBuilder(const Rig& rig, const Options& options, nlohmann::json& report) : rig_(rig), options_(options), report_(report) {}
+
+  Skeleton build(std::vector<int>& joint_of_rig) {
+    const std::size_t count = rig_.joints.size();
+    children_.resize(count);
+    for (std::size_t j = 0; j < count; ++j)
+      if (rig_.joints[j].parent >= 0) children_[rig_.joints[j].parent].push_back(static_cast<int>(j));
+    parts_.resize(count);
+    find_roles();
+    choose_simulated();
+    gather_vertices();
+    for (std::size_t j = 0; j < count; ++j)
+      if (parts_[j].simulated) fit_shape(static_cast<int>(j));
+    return assemble(joint_of_rig);
+  }
+
+ private:
+  void find_roles() {
+    roles_.assign(rig_.joints.size(), Role::kNone);
+    for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+      const Role role = role_of_name(rig_.joints[j].name);
+      // The first joint of a chain of equals keeps a limb's role; spines and necks may repeat.
+      bool repeated = false;
+      const bool trunk = role == Role::kSpine || role == Role::kNeck || role == Role::kChest;
+      for (std::size_t k = 0; k < j && !trunk; ++k) repeated = repeated || roles_[k] == role;
+      roles_[j] = repeated ? Role::kNone : role;
+    }
+    report_["roles"] = nlohmann::json::object();
+    for (std::size_t j = 0; j < roles_.size(); ++j)
+      if (roles_[j] != Role::kNone) report_["roles"][rig_.joints[j].name] = role_name(roles_[j]);
+  }
+
+  bool below(int joint, bool (*test)(Role)) const {
+    for (int p = rig_.joints[joint].parent; p >= 0; p = rig_.joints[p].parent)
+      if (test(roles_[p])) return true;
+    return false;
+  }
+
+  double bone_length(int j) const {
+    double longest = 0;
+    for (const int c : children_[j])
+      if (!rig_.joints[c].control)
+        longest = std::max(longest, (rig_.joints[c].rest.translation - rig_.joints[j].rest.translation).norm());
+    return longest;
+  }
+
+  void choose_simulated() {
+    const bool skinned = !rig_.meshes.empty();
+    const double small = 0.012 * std::max(rig_.height, 0.1);
+    const auto under_head = [](Role r) { return r == Role::kHead; };
+    std::vector<std::string> controls, passengers;
+    for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+      const Rig::Joint& joint = rig_.joints[j];
+      const int index = static_cast<int>(j);
+      const bool matters = skinned ? joint.skin_weight > 0 || bone_length(index) > small : bone_length(index) > small;
+      const bool finger = !options_.simulate_fingers && below(index, is_hand);
+      parts_[j].simulated = matters && !joint.control && !finger && !below(index, under_head);
+      if (joint.control) controls.push_back(joint.name);
+      else if (!parts_[j].simulated) passengers.push_back(joint.name);
+    }
+    // A simulated joint needs simulated ancestors; a leaf without skin or length needs no body.
+    for (std::size_t j = rig_.joints.size(); j-- > 0;)
+      if (parts_[j].simulated && rig_.joints[j].parent >= 0) parts_[rig_.joints[j].parent].simulated = true;
+    parts_[0].simulated = true;
+    report_["control_joints"] = controls;
+    report_["ride_along_joints"] = passengers;
+  }
+
+  int owner(int j) const {
+    while (!parts_[j].simulated) j = rig_.joints[j].parent;
+    return j;
+  }
+
+  void gather_vertices() {
+    for (const Mesh& mesh : rig_.meshes)
+      for (std::size_t v = 0; v < mesh.positions.size() / 3; ++v) {
+        std::size_t main = 0;
+        for (std::size_t k = 1; k < 4; ++k)
+          if (mesh.weights[4 * v + k] > mesh.weights[4 * v + main]) main = k;
+        const int j = owner(mesh.joints[4 * v + main]);
+        const Vec3<double> p(mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]);
+        parts_[j].vertices.push_back(rig_.joints[j].rest.inverse() * p);
+      }
+  }
+
+  /// Towards the simulated children's mean, or along the vertices, or on from the parent.
+  void bone(int j) {
+    Part& part = parts_[j];
+    Vec3<double> end = Vec3<double>::Zero();
+    int ends = 0;
+    const Transform<double> to_joint = rig_.joints[j].rest.inverse();
+    for (const int c : children_[j]) {
+      if (rig_.joints[c].control || (!parts_[c].simulated && parts_[j].vertices.size() > 20)) continue;
+      const Vec3<double> at = to_joint * rig_.joints[c].rest.translation;
+      if (at.norm() < 1e-4) continue;
+      end += at;
+      ++ends;
+    }
+    if (ends > 0) end /= ends;
+    if (end.norm() < 1e-3 && !part.vertices.empty()) {
+      end.setZero();
+      for (const Vec3<double>& v : part.vertices) end += v;
+      end *= 2.0 / double(part.vertices.size());
+    }
+    if (end.norm() < 1e-3 && rig_.joints[j].parent >= 0)
+      end = 0.5 * (to_joint.rotation * (rig_.joints[j].rest.translation - rig_.joints[rig_.joints[j].parent].rest.translation));
+    if (end.norm() < 1e-3) end = to_joint.rotation * Vec3<double>(0, 0, 0.03 * std::max(rig_.height, 0.1));
+    part.length = end.norm();
+    part.direction = end / part.length;
+  }
+
+  void fit_shape(int j) {
+    bone(j);
+    Part& part = parts_[j];
+    Collider& c = part.shape;
+    const bool role_foot = is_foot(roles_[j]);
+    if (part.vertices.size() >= 12 && role_foot) {
+      fit_box(j);
+    } else if (part.vertices.size() >= 12) {
+      fit_capsule(part);
+    } else {
+      const double radius = std::max(kSlenderness * part.length, 0.01 * std::max(rig_.height, 0.1));
+      c.shape = Shape::kCapsule;
+      c.size = {radius, radius, std::max(0.0, part.length / 2 - radius)};
+      c.local.translation = part.direction * (part.length / 2);
+      c.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), part.direction);
+    }
+    const Vec3<double>& s = c.size;
+    part.volume = c.shape == Shape::kBox ? 8 * s.x() * s.y() * s.z()
+                                         : kPi * s.x() * s.x() * (2 * s.z() + 4.0 / 3.0 * s.x());
+    // A chain link without skin of its own and without length carries nothing.
+    if (part.length < 0.005 * rig_.height && part.vertices.empty()) part.volume = 0;
+  }
+
+  static double percentile(std::vector<double>& values, double p) {
+    const auto at = static_cast<std::ptrdiff_t>(p * double(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    return values[static_cast<std::size_t>(at)];
+  }
+
+  void fit_capsule(Part& part) {
+    Vec3<double> middle = Vec3<double>::Zero();
+    for (const Vec3<double>& v : part.vertices) middle += v;
+    middle /= double(part.vertices.size());
+    std::vector<double> along, away;
+    const Vec3<double> d = part.direction;
+    const Vec3<double> offset = middle - d * d.dot(middle);
+    for (const Vec3<double>& v : part.vertices) {
+      along.push_back(d.dot(v));
+      away.push_back((v - offset - d * d.dot(v)).norm());
+    }
+    const double low = percentile(along, 0.04), high = percentile(along, 0.96);
+    const double radius = std::clamp(percentile(away, 0.55), 0.005 * rig_.height, 0.2 * rig_.height);
+    part.shape.shape = Shape::kCapsule;
+    part.shape.size = {radius, radius, std::max(0.0, (high - low) / 2 - radius)};
+    part.shape.local.translation = offset + d * ((low + high) / 2);
+    part.shape.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), d);
+  }
+
+  /// Feet: a box with level faces at rest that reaches the sole.
+  void fit_box(int j) {
+    Part& part = parts_[j];
+    const Quat<double> level = rig_.joints[j].rest.rotation;  // joint → model
+    const Vec3<double> forward = level * part.direction;
+    const double heading = std::atan2(forward.y(), forward.x());
+    const Quat<double> box(Eigen::AngleAxisd(heading, Vec3<double>::UnitZ()));
+    Vec3<double> low = Vec3<double>::Constant(1e9), high = -low;
+    for (const Vec3<double>& v : part.vertices) {
+      const Vec3<double> p = box.conjugate() * (level * v);
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    high.z() = std::min(high.z(), 0.02 * rig_.height);  // not up the shin: the ankle is the joint's origin
+    part.shape.shape = Shape::kBox;
+    part.shape.size = ((high - low) / 2).cwiseMax(0.004 * rig_.height);
+    part.shape.local.rotation = level.conjugate() * box;
+    part.shape.local.translation = part.shape.local.rotation * ((low + high) / 2);
+  }
+
+  /// Axis about which the clips bend this joint; anatomy where they hardly do.
+  Vec3<double> hinge_axis(int j, bool knee) const {
+    const int parent = rig_.joints[j].parent;
+    const Quat<double> rest = rig_.joints[parent].rest.rotation.conjugate() * rig_.joints[j].rest.rotation;
+    Mat3<double> scatter = Mat3<double>::Zero();
+    double widest = 0;
+    for (const Rig::Motion& m : rig_.motions)
+      for (const auto& frame : m.samples) {
+        const Vec3<double> r = rotation_log<double>(rest.conjugate() * frame[j].rotation);
+        scatter += r * r.transpose();
+        widest = std::max(widest, r.norm());
+      }
+    // Bends about the body's left–right axis (knee) or, arms to the side, about the vertical (elbow).
+    const Vec3<double> model_axis = knee ? Vec3<double>::UnitY() : Vec3<double>::UnitZ();
+    Vec3<double> axis = rig_.joints[j].rest.rotation.conjugate() * model_axis;
+    if (widest > 0.35) {
+      const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(scatter);
+      const Vec3<double> main = eigen.eigenvectors().col(2);
+      axis = main.dot(axis) < 0 ? Vec3<double>(-main) : main;
+    }
+    axis -= parts_[j].direction * parts_[j].direction.dot(axis) * 0.5;
+    return axis.normalized();
+  }
+
+  void set_limits(int j, Joint& joint, double mass, double stature) const {
+    const Anatomy* a = anatomy(roles_[j]);
+    // Published strengths scale with mass and stature; other joints hold their own subtree many times over.
+    const double torque = options_.strength * (a ? a->torque * mass * stature / 1.75 : 1.5 * mass * 9.81 * 0.12 * stature);
+    const int count = dof_count(joint.type);
+    for (int k = 0; k < count; ++k) joint.dofs[k].torque_minus = joint.dofs[k].torque_plus = torque;
+    for (int k = 0; k < count; ++k) joint.dofs[k].damping = 0.002 * torque;
+    if (joint.type == JointType::kBall) {
+      joint.swing_axis = parts_[j].direction;
+      double swing = (a ? a->swing_deg : 75) * kPi / 180, twist = (a ? a->twist_deg : 45) * kPi / 180;
+      double twist_low = -twist, twist_high = twist;
+      each_pose(j, joint.rest.rotation, [&](const Quat<double>& q) {
+        const Vec3<double> b = q * joint.swing_axis;
+        swing = std::max(swing, std::acos(std::clamp(b.dot(joint.swing_axis), -1.0, 1.0)) + 0.15);
+        const double t = twist_angle<double>(q, joint.swing_axis);
+        twist_low = std::min(twist_low, t - 0.15);
+        twist_high = std::max(twist_high, t + 0.15);
+      });
+      joint.swing_limit = std::min(swing, kPi);
+      joint.twist_lower = twist_low;
+      joint.twist_upper = twist_high;
+    } else if (joint.type == JointType::kRevolute) {
+      double low = 0, high = 0;
+      each_pose(j, joint.rest.rotation, [&](const Quat<double>& q) {
+        const double t = twist_angle<double>(q, joint.axis);
+        low = std::min(low, t);
+        high = std::max(high, t);
+      });
+      // The side that the clips bend to is flexion, 150° at most; 5° beyond the other.
+      const bool positive = high >= -low;
+      joint.dofs[0].lower = positive ? std::min(low - 0.05, -0.09) : std::min(low - 0.1, -150 * kPi / 180);
+      joint.dofs[0].upper = positive ? std::max(high + 0.1, 150 * kPi / 180) : std::max(high + 0.05, 0.09);
+    }
+  }
+
+  template <class Use>
+  void each_pose(int j, const Quat<double>& rest, Use use) const {
+    for (const Rig::Motion& m : rig_.motions)
+      for (const auto& frame : m.samples) use(Quat<double>(rest.conjugate() * frame[j].rotation));
+  }
+
+  Skeleton assemble(std::vector<int>& joint_of_rig) {
+    Skeleton s;
+    const std::size_t count = rig_.joints.size();
+    joint_of_rig.assign(count, -1);
+    double volume = 0;
+    for (const Part& part : parts_)
+      if (part.simulated) volume += part.volume;
+    const double stature = std::max(rig_.height, 0.05);
+    const double mass = options_.total_mass > 0 ? options_.total_mass : 22.5 * stature * stature;
+    for (const bool simulated : {true, false})
+      for (std::size_t j = 0; j < count; ++j) {
+        if (parts_[j].simulated != simulated) continue;
+        const int index = static_cast<int>(j);
+        const Rig::Joint& source = rig_.joints[j];
+        joint_of_rig[j] = static_cast<int>(s.joints.size());
+        Joint joint;
+        joint.name = source.name;
+        joint.parent = source.parent < 0 ? -1 : joint_of_rig[source.parent];
+        joint.rest = source.parent < 0 ? source.rest : rig_.joints[source.parent].rest.inverse() * source.rest;
+        joint.rest.rotation.normalize();
+        joint.role = roles_[j];
+        if (simulated) {
+          const Part& part = parts_[j];
+          joint.mass = volume > 0 ? mass * part.volume / volume : 0;
+          if (joint.mass > 0) {
+            joint.center_of_mass = part.shape.local.translation;
+            const Mat3<double> r = part.shape.local.rotation.toRotationMatrix();
+            joint.inertia = r * solid_inertia(part.shape, joint.mass) * r.transpose();
+            joint.inertia = 0.5 * (joint.inertia + joint.inertia.transpose()).eval();
+          }
+          const Anatomy* a = anatomy(roles_[j]);
+          joint.type = source.parent < 0 ? JointType::kFree
+                       : part.volume <= 0 ? JointType::kFixed
+                       : a && a->hinge    ? JointType::kRevolute
+                                          : JointType::kBall;
+          if (joint.type == JointType::kRevolute)
+            joint.axis = hinge_axis(index, roles_[j] == Role::kShinL || roles_[j] == Role::kShinR);
+          set_limits(index, joint, mass, stature);
+          if (part.volume > 0) {
+            Collider c = part.shape;
+            c.joint = joint_of_rig[j];
+            s.colliders.push_back(c);
+          }
+        }
+        s.joints.push_back(joint);
+        if (simulated) ++s.body_count;
+      }
+    report_["total_mass_kg"] = s.total_mass();
+    report_["bodies"] = nlohmann::json::array();
+    static const char* names[] = {"fixed", "revolute", "prismatic", "universal", "ball", "planar", "free"};
+    for (int i = 0; i < s.body_count; ++i)
+      report_["bodies"].push_back({{"joint", s.joints[i].name}, {"type", names[static_cast<int>(s.joints[i].type)]}, {"mass_kg", s.joints[i].mass}});
+    return s;
+  }
+
+  const Rig& rig_;
+  const Options& options_;
+  nlohmann::json& report_;
+  std::vector<std::vector<int>> children_;
+  std::vector<Role> roles_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+Mat3<double> solid_inertia(const Collider& c, double mass) {
+  const Vec3<double>& s = c.size;
+  if (c.shape == Shape::kBox) {
+    const Vec3<double> q = s.cwiseProduct(s) * (mass / 3);
+    return Vec3<double>(q.y() + q.z(), q.x() + q.z(), q.x() + q.y()).asDiagonal();
+  }
+  const double r = s.x(), l = c.shape == Shape::kCapsule ? 2 * s.z() : 0;
+  const double cylinder = mass * l / (l + 4.0 / 3.0 * r), caps = mass - cylinder;
+  const double along = cylinder * r * r / 2 + caps * 0.4 * r * r;
+  const double across = cylinder * (r * r / 4 + l * l / 12) + caps * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
+  return Vec3<double>(across, across, along).asDiagonal();
+}
+
+Skeleton build_body(const Rig& rig, const Options& options, std::vector<int>& joint_of_rig, nlohmann::json& report) {
+  return BodyBuilder(rig, options, report).build(joint_of_rig);
+}
+
+void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report) {
+  const Tree<double> tree(skeleton);
+  Kinematics<double> kinematics(tree);
+  Motion<double> motion(tree);
+  std::vector<Vec3<double>> force(tree.bodies), moment(tree.bodies);
+  std::vector<double> torque(tree.dofs), peak(tree.dofs, 0.0);
+  std::vector<JointJet<double>> jets(skeleton.joints.size());
+  std::vector<ContactPoint<double>> points;
+  for (const Collider& c : skeleton.colliders)
+    if (c.joint < skeleton.body_count) append_contact_points<double>(c, points);
+  for (const Clip& clip : clips) {
+    double lowest = 1e9;  // the clip's own floor
+    const int frames = std::max(1, static_cast<int>(clip.duration * 60));
+    for (int pass = 0; pass < 2; ++pass)
+      for (int f = 0; f < frames; ++f) {
+        if (!SamplingJob<double>{&clip, f / 60.0, 1, jets}.Run()) continue;
+        inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force, moment);
+        if (pass == 0) {
+          for (const ContactPoint<double>& p : points)
+            lowest = std::min(lowest, (kinematics.origin[p.body] + kinematics.rotation[p.body] * p.local).z() - p.radius);
+          continue;
+        }
+        share_support<double>(tree, kinematics, points, lowest, {}, force, moment);
+        project_wrenches<double>(tree, kinematics, force, moment, torque);
+        for (int d = 0; d < tree.dofs; ++d) peak[d] = std::max(peak[d], std::abs(torque[d]));
+      }
+  }
+  report["muscles"] = nlohmann::json::array();
+  for (int i = 0; i < tree.bodies; ++i) {
+    Joint& joint = skeleton.joints[i];
+    if (joint.type == JointType::kFree || dof_count(joint.type) == 0) continue;
+    double most = 0, limit = 0;
+    for (int k = 0; k < dof_count(joint.type); ++k) {
+      const double needed = peak[tree.first_dof[i] + k];
+      most = std::max(most, needed);
+      joint.dofs[k].torque_minus = std::max(joint.dofs[k].torque_minus, margin * needed);
+      joint.dofs[k].torque_plus = std::max(joint.dofs[k].torque_plus, margin * needed);
+      limit = std::max(limit, joint.dofs[k].torque_plus);
+    }
+    report["muscles"].push_back({{"joint", joint.name}, {"clips_peak_Nm", most}, {"limit_Nm", limit}});
+  }
+}
+
+}  // namespace sinew::convert

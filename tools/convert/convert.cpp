@@ -1,0 +1,142 @@
+#include "convert/convert.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "convert/body.h"
+#include "convert/fit/clip_fit.h"
+#include "convert/options.h"
+#include "convert/rig.h"
+#include "convert/urdf_body.h"
+
+namespace sinew::convert {
+namespace {
+
+Error in_file(const std::string& path, const std::string& what) { return {path + ": " + what}; }
+
+Error describe(const std::string& path, const Status& status, const Skeleton& skeleton) {
+  std::string where;
+  if (status.index >= 0 && status.index < static_cast<int>(skeleton.joints.size()))
+    where = " (joint '" + skeleton.joints[status.index].name + "')";
+  return in_file(path, status.reason + where);
+}
+
+/// Rig joints in skeleton order.
+void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Options& options, Asset& asset, nlohmann::json& report) {
+  report["clips"] = nlohmann::json::array();
+  for (const Rig::Motion& motion : rig.motions) {
+    FitInput input{motion.name, motion.loops, motion.sample_rate, {}};
+    for (const auto& frame : motion.samples) {
+      std::vector<Transform<double>> ordered(frame.size());
+      for (std::size_t j = 0; j < frame.size(); ++j) ordered[joint_of_rig[j]] = frame[j];
+      input.samples.push_back(std::move(ordered));
+    }
+    FitOptions fit;
+    fit.max_error_mm = options.fit_error_mm;
+    fit.degree = options.fit_degree;
+    FitReport fitted;
+    asset.clips.push_back(fit_clip(input, fit, fitted));
+    report["clips"].push_back({{"name", motion.name}, {"duration_s", asset.clips.back().duration}, {"loops", asset.clips.back().loops},
+                               {"keys_per_s", motion.sample_rate}, {"max_error_mm", fitted.max_mm}, {"rms_error_mm", fitted.rms_mm}});
+  }
+}
+
+Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes, const Options& options,
+                     Asset& out, nlohmann::json& report) {
+  Asset asset;
+  if (scenes[0].format == "urdf") {
+    if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
+    if (Error error = build_urdf(scenes[0], options, asset.skeleton, report)) return in_file(inputs[0], error.message);
+  } else {
+    Rig rig;
+    if (Error error = build_rig(scenes, options, rig, report)) return in_file(inputs[0], error.message);
+    std::vector<int> joint_of_rig;
+    asset.skeleton = build_body(rig, options, joint_of_rig, report);
+    asset.skeleton.name = scenes[0].name;
+    fit_clips(rig, joint_of_rig, options, asset, report);
+    if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
+    strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
+    asset.meshes = std::move(rig.meshes);
+    for (Mesh& mesh : asset.meshes)
+      for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
+    asset.materials = std::move(rig.materials);
+    asset.inverse_bind.resize(rig.joints.size());
+    for (std::size_t j = 0; j < rig.joints.size(); ++j) asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
+  }
+  if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
+  for (const Clip& clip : asset.clips)
+    if (Status status = validate(clip); !status) return in_file(inputs[0], "clip '" + clip.name + "': " + status.reason);
+  report["format"] = scenes[0].format;
+  report["name"] = asset.skeleton.name;
+  report["joints"] = asset.skeleton.joints.size();
+  report["simulated_joints"] = asset.skeleton.body_count;
+  report["dofs"] = asset.skeleton.dof_total();
+  asset.report_json = report.dump();
+  out = std::move(asset);
+  return {};
+}
+
+}  // namespace
+
+Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& json, Asset& out, nlohmann::json& report) {
+  if (inputs.empty()) return {"no input file"};
+  Options options;
+  if (Error error = Options::parse(json, options)) return in_file(inputs[0], error.message);
+  std::vector<import::SourceScene> scenes(inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::string error;
+    if (!import::read_source(inputs[i], {}, scenes[i], error)) return in_file(inputs[i], error);
+  }
+  report = nlohmann::json::object();
+  return convert_scenes(inputs, scenes, options, out, report);
+}
+
+Error open_any(const std::string& path, const nlohmann::json& options, Asset& out, nlohmann::json& report) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return in_file(path, "file cannot be opened");
+  char head[8] = {};
+  file.read(head, 8);
+  if (std::string(head + 4, 4) != "SNEW") return convert_files({path}, options, out, report);
+  Asset asset;
+  if (Status status = load_asset(path.c_str(), asset); !status) return describe(path, status, asset.skeleton);
+  report = nlohmann::json::parse(asset.report_json, nullptr, false);
+  if (report.is_discarded()) report = nlohmann::json::object();
+  out = std::move(asset);
+  return {};
+}
+
+std::string report_text(const nlohmann::json& r) {
+  std::string text;
+  char line[256];
+  std::snprintf(line, sizeof line, "%s (%s): %d joints, %d simulated, %d degrees of freedom, %.1f kg\n",
+                r.value("name", "").c_str(), r.value("format", "").c_str(), r.value("joints", 0), r.value("simulated_joints", 0),
+                r.value("dofs", 0), r.value("total_mass_kg", 0.0));
+  text += line;
+  if (r.contains("unit")) {
+    std::snprintf(line, sizeof line, "unit %g m (%s), up %s (%s), height %.2f m\n", r["unit"].value("meters_per_unit", 0.0),
+                  r["unit"].value("from", "").c_str(), r["up"].value("axis", "").c_str(), r["up"].value("from", "").c_str(),
+                  r.value("height_m", 0.0));
+    text += line;
+  }
+  const auto list = [&](const char* key, const char* title) {
+    if (!r.contains(key) || r[key].empty()) return;
+    text += title;
+    for (const auto& item : r[key]) text += " " + item.get<std::string>();
+    text += "\n";
+  };
+  list("control_joints", "control joints, no body:");
+  list("ride_along_joints", "ride along:");
+  if (r.contains("clips"))
+    for (const auto& c : r["clips"]) {
+      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, curve error max %.3f mm, rms %.3f mm\n", c.value("name", "").c_str(),
+                    c.value("duration_s", 0.0), c.value("loops", false) ? " loop" : "     ", c.value("max_error_mm", 0.0),
+                    c.value("rms_error_mm", 0.0));
+      text += line;
+    }
+  if (r.contains("notes"))
+    for (const auto& n : r["notes"]) text += "note: " + n.get<std::string>() + "\n";
+  return text;
+}
+
+}  // namespace sinew::convert
