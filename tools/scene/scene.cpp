@@ -1,0 +1,338 @@
+#include "scene/scene.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "convert/roles.h"
+
+namespace sinew::scene {
+namespace {
+
+using nlohmann::json;
+
+[[noreturn]] void fail(const std::string& where, const std::string& what) { throw std::runtime_error(what + " (" + where + ")"); }
+
+/// An object whose keys must all be known; remembers where it stands for messages.
+class Reader {
+ public:
+  Reader(const json& value, std::string where, std::initializer_list<const char*> keys) : value_(value), where_(std::move(where)) {
+    if (!value.is_object()) fail(where_, "expected an object");
+    const std::set<std::string> known(keys.begin(), keys.end());
+    for (const auto& [key, v] : value.items())
+      if (!known.count(key)) fail(where_, "unknown key '" + key + "'");
+  }
+  bool has(const char* key) const { return value_.contains(key); }
+  const json& at(const char* key) const {
+    if (!has(key)) fail(where_, std::string("'") + key + "' is missing");
+    return value_[key];
+  }
+  double number(const char* key, double otherwise) const { return has(key) ? number_of(value_[key], inside(key)) : otherwise; }
+  double positive(const char* key, double otherwise) const {
+    const double v = number(key, otherwise);
+    if (!(v > 0)) fail(inside(key), "must be positive");
+    return v;
+  }
+  double time(const char* key, double otherwise) const {
+    const double v = number(key, otherwise);
+    if (v < 0) fail(inside(key), "must not be negative");
+    return v;
+  }
+  std::string text(const char* key, const std::string& otherwise) const {
+    if (!has(key)) return otherwise;
+    if (!value_[key].is_string()) fail(inside(key), "expected a text");
+    return value_[key].get<std::string>();
+  }
+  bool flag(const char* key, bool otherwise) const {
+    if (!has(key)) return otherwise;
+    if (!value_[key].is_boolean()) fail(inside(key), "expected true or false");
+    return value_[key].get<bool>();
+  }
+  Vec3<double> vector(const char* key, const Vec3<double>& otherwise) const { return has(key) ? vector_of(value_[key], inside(key)) : otherwise; }
+  const json& list(const char* key) const {
+    static const json none = json::array();
+    if (!has(key)) return none;
+    if (!value_[key].is_array()) fail(inside(key), "expected a list");
+    return value_[key];
+  }
+  std::string inside(const char* key) const { return where_.empty() ? key : where_ + "." + key; }
+  std::string item(const char* key, std::size_t i) const { return inside(key) + "[" + std::to_string(i) + "]"; }
+
+  static double number_of(const json& v, const std::string& where) {
+    if (!v.is_number()) fail(where, "expected a number");
+    const double x = v.get<double>();
+    if (!std::isfinite(x)) fail(where, "is not finite");
+    return x;
+  }
+  static Vec3<double> vector_of(const json& v, const std::string& where) {
+    if (!v.is_array() || v.size() != 3) fail(where, "expected three numbers");
+    return {number_of(v[0], where), number_of(v[1], where), number_of(v[2], where)};
+  }
+
+ private:
+  const json& value_;
+  std::string where_;
+};
+
+int joint_of(const Asset& asset, const std::string& name, const std::string& where) {
+  int joint = asset.skeleton.find(name.c_str());
+  if (joint < 0)
+    if (const Role role = convert::role_from_name(name); role != Role::kNone) joint = asset.skeleton.find(role);
+  if (joint < 0) fail(where, "unknown joint '" + name + "'");
+  return joint;
+}
+
+RootDrive drive_of(const json& v, const std::string& where) {
+  const std::string text = v.is_string() ? v.get<std::string>() : "";
+  if (text == "kinematic") return RootDrive::kKinematic;
+  if (text == "assisted") return RootDrive::kAssisted;
+  if (text == "free") return RootDrive::kFree;
+  fail(where, "root drive is kinematic, assisted or free");
+}
+
+template <class Value, class Convert>
+Timeline<Value> timeline(const Reader& in, const char* key, Timeline<Value> otherwise, Convert convert) {
+  if (!in.has(key)) return otherwise;
+  Timeline<Value> out;
+  const json& list = in.list(key);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string where = in.item(key, i);
+    if (!list[i].is_array() || list[i].size() != 2) fail(where, "expected [time, value]");
+    const double t = Reader::number_of(list[i][0], where);
+    if (t < 0 || (!out.empty() && t < out.back().first)) fail(where, "times must rise from 0");
+    out.emplace_back(t, convert(list[i][1], where));
+  }
+  if (out.empty()) fail(in.inside(key), "is empty");
+  return out;
+}
+
+Shape shape_of(const Reader& in) {
+  const std::string shape = in.text("shape", "sphere");
+  if (shape == "sphere") return Shape::kSphere;
+  if (shape == "capsule") return Shape::kCapsule;
+  if (shape == "box") return Shape::kBox;
+  fail(in.inside("shape"), "unknown shape '" + shape + "'");
+}
+
+void check_effects(const Reader& in) {
+  static const std::set<std::string> known{"gravity", "muscles", "joint_limits", "joint_damping", "ground", "friction", "contact", "impulses", "support"};
+  const json& list = in.list("effects");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (!list[i].is_string() || !known.count(list[i].get<std::string>()))
+      fail(in.item("effects", i), "unknown effect " + list[i].dump());
+}
+
+SceneCharacter read_character(const json& value, const std::string& where, const std::filesystem::path& base) {
+  const Reader in(value, where, {"asset", "name", "position", "yaw_deg", "clips", "strength", "root", "root_force", "root_torque", "ground_contact", "options"});
+  SceneCharacter c;
+  if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
+  std::filesystem::path path = in.at("asset").get<std::string>();
+  if (path.is_relative()) path = base / path;
+  auto asset = std::make_shared<Asset>();
+  json report;
+  if (convert::Error error = convert::open_any(path.string(), in.has("options") ? in.at("options") : json(), *asset, report)) fail(in.inside("asset"), error.message);
+  c.name = in.text("name", asset->skeleton.name);
+  c.position = in.vector("position", c.position);
+  c.yaw = in.number("yaw_deg", 0) * 3.14159265358979323846 / 180;
+  const json& clips = in.list("clips");
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const Reader use(clips[i], in.item("clips", i), {"clip", "start", "blend", "rate", "align"});
+    ClipUse made;
+    if (!use.at("clip").is_string()) fail(use.inside("clip"), "expected a clip name");
+    const std::string name = use.at("clip").get<std::string>();
+    made.clip = asset->find_clip(name);
+    if (made.clip < 0) fail(use.inside("clip"), "unknown clip '" + name + "'");
+    made.start = use.time("start", 0);
+    made.blend = use.time("blend", 0.3);
+    made.rate = use.number("rate", 1);
+    made.align = use.flag("align", false);
+    if (!c.clips.empty() && made.start < c.clips.back().start) fail(use.inside("start"), "clips must be in order of time");
+    c.clips.push_back(made);
+  }
+  c.strength = timeline<double>(in, "strength", c.strength, [](const json& v, const std::string& w) {
+    const double s = Reader::number_of(v, w);
+    if (s < 0) fail(w, "strength must not be negative");
+    return s;
+  });
+  c.root = timeline<RootDrive>(in, "root", c.root, drive_of);
+  c.settings.root_force = in.time("root_force", c.settings.root_force);
+  c.settings.root_torque = in.time("root_torque", c.settings.root_torque);
+  c.settings.ground_contact = in.flag("ground_contact", true);
+  c.asset = asset;
+  return c;
+}
+
+int character_of(const Scene& scene, const Reader& in, const char* key) {
+  if (!in.has(key)) return 0;
+  const json& v = in.at(key);
+  if (v.is_number_integer() && v.get<int>() >= 0 && v.get<int>() < static_cast<int>(scene.characters.size())) return v.get<int>();
+  if (v.is_string())
+    for (std::size_t i = 0; i < scene.characters.size(); ++i)
+      if (scene.characters[i].name == v.get<std::string>()) return static_cast<int>(i);
+  fail(in.inside(key), "unknown character " + v.dump());
+}
+
+SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
+  const Reader in(value, where, {"name", "shape", "size", "mass", "friction", "position", "velocity", "launch_time", "throw_at"});
+  SceneProp p;
+  p.name = in.text("name", "ball");
+  p.settings.shape = shape_of(in);
+  p.settings.size = in.has("size") && in.at("size").is_number() ? Vec3<double>(Vec3<double>::Constant(in.positive("size", 0.1))) : in.vector("size", p.settings.size);
+  p.settings.mass = in.positive("mass", 1);
+  p.settings.friction = in.time("friction", p.settings.friction);
+  p.settings.pose.translation = in.vector("position", {0, 0, 1});
+  p.settings.velocity = in.vector("velocity", p.settings.velocity);
+  p.launch_time = in.time("launch_time", 0);
+  if (in.has("throw_at")) {
+    const Reader at(in.at("throw_at"), in.inside("throw_at"), {"character", "joint", "time", "speed", "from"});
+    p.target_character = character_of(scene, at, "character");
+    p.target_joint = joint_of(*scene.characters[p.target_character].asset, at.text("joint", "chest"), at.inside("joint"));
+    p.speed = at.positive("speed", 8);
+    p.from = at.vector("from", p.from);
+    p.launch_time = at.time("time", 0);
+  }
+  return p;
+}
+
+Scene parse(const json& root, const std::filesystem::path& base) {
+  const Reader in(root, "", {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props", "obstacles", "pushes", "effects", "camera", "captions", "plot"});
+  Scene s;
+  s.title = in.text("title", "");
+  s.duration = in.positive("duration", s.duration);
+  s.frame_rate = in.positive("frame_rate", s.frame_rate);
+  if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
+  if (s.duration > 3600) fail("duration", "is longer than an hour");
+  if (in.has("accuracy")) {
+    const Reader a(in.at("accuracy"), "accuracy", {"scheme", "tolerance", "max_iterations", "sink_depth", "stick_speed", "return_time", "precision"});
+    const std::string scheme = a.text("scheme", "bdf2");
+    if (scheme != "bdf1" && scheme != "bdf2") fail("accuracy.scheme", "unknown scheme '" + scheme + "'");
+    s.world.accuracy.scheme = scheme == "bdf1" ? Scheme::kBdf1 : Scheme::kBdf2;
+    s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
+    s.world.accuracy.max_iterations = static_cast<int>(a.positive("max_iterations", s.world.accuracy.max_iterations));
+    s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
+    s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
+    s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
+    const std::string precision = a.text("precision", "float");
+    if (precision != "float" && precision != "double") fail("accuracy.precision", "is float or double");
+    s.double_precision = precision == "double";
+  }
+  s.world.gravity = in.vector("gravity", s.world.gravity);
+  s.world.ground = in.flag("ground", true);
+  check_effects(in);
+  const json& characters = in.list("characters");
+  for (std::size_t i = 0; i < characters.size(); ++i) s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
+  if (s.characters.empty()) fail("characters", "the scene has no character");
+  const json& props = in.list("props");
+  for (std::size_t i = 0; i < props.size(); ++i) s.props.push_back(read_prop(props[i], in.item("props", i), s));
+  const json& obstacles = in.list("obstacles");
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const Reader o(obstacles[i], in.item("obstacles", i), {"shape", "size", "position", "friction"});
+    Collider c;
+    c.shape = shape_of(o);
+    c.size = o.vector("size", c.size);
+    c.local.translation = o.vector("position", Vec3<double>::Zero());
+    c.friction = o.time("friction", 0.8);
+    s.obstacles.push_back(c);
+  }
+  const json& pushes = in.list("pushes");
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    const Reader p(pushes[i], in.item("pushes", i), {"time", "character", "joint", "impulse"});
+    Push push;
+    push.time = p.time("time", 0);
+    push.character = character_of(s, p, "character");
+    push.joint = joint_of(*s.characters[push.character].asset, p.text("joint", "chest"), p.inside("joint"));
+    push.impulse = p.vector("impulse", push.impulse);
+    s.pushes.push_back(push);
+  }
+  s.captions = timeline<std::string>(in, "captions", {}, [](const json& v, const std::string& w) {
+    if (!v.is_string()) fail(w, "expected a text");
+    return v.get<std::string>();
+  });
+  if (in.has("camera")) {
+    const Reader c(in.at("camera"), "camera", {"eye", "target", "fov_deg", "follow", "frame_automatically"});
+    s.camera.eye = c.vector("eye", s.camera.eye.cast<double>()).cast<float>();
+    s.camera.target = c.vector("target", s.camera.target.cast<double>()).cast<float>();
+    s.camera.vertical_fov_deg = static_cast<float>(c.positive("fov_deg", 32));
+    s.camera.frame_automatically = c.flag("frame_automatically", !c.has("eye"));
+    s.camera.follow_character = c.flag("follow", false) ? 0 : -1;
+  }
+  if (in.has("plot")) s.plotted_joint = joint_of(*s.characters[0].asset, in.text("plot", ""), "plot");
+  return s;
+}
+
+}  // namespace
+
+convert::Error load_scene(const std::string& path, Scene& out) {
+  std::ifstream file(path);
+  if (!file) return {path + ": file cannot be opened"};
+  try {
+    out = parse(json::parse(file, nullptr, true, true), std::filesystem::path(path).parent_path());
+  } catch (const json::exception& e) {
+    return {path + ": not JSON: " + e.what()};
+  } catch (const std::exception& e) {
+    return {path + ": " + e.what()};
+  }
+  return {};
+}
+
+Scene demo_scene(std::shared_ptr<const Asset> asset) {
+  Scene s;
+  const Skeleton& body = asset->skeleton;
+  const auto first_of = [&](std::initializer_list<const char*> names, int otherwise) {
+    for (const char* n : names)
+      for (std::size_t i = 0; i < asset->clips.size(); ++i)
+        if (asset->clips[i].name.find(n) != std::string::npos && asset->clips[i].duration > 0.3f) return static_cast<int>(i);
+    return otherwise;
+  };
+  int longest = -1;
+  for (std::size_t i = 0; i < asset->clips.size(); ++i)
+    if (longest < 0 || asset->clips[i].duration > asset->clips[longest].duration) longest = static_cast<int>(i);
+  const auto body_at = [&](std::initializer_list<Role> roles) {
+    for (const Role r : roles)
+      if (const int j = body.find(r); j >= 0 && j < body.body_count) return j;
+    return body.body_count / 2;
+  };
+  s.title = body.name;
+  s.duration = 12;
+  SceneCharacter c;
+  c.asset = asset;
+  c.name = body.name;
+  const int walk = first_of({"walk", "Walk"}, longest), stand = first_of({"stand", "idle", "Idle"}, walk);
+  if (walk >= 0) {
+    c.clips.push_back({walk, 0, 0, 1, false});
+    c.clips.push_back({stand, 8.2, 0.5, 1, true});
+  }
+  const double height = std::max(0.3, body.joints[0].rest.translation.z() * 1.8), mass = body.total_mass();
+  c.strength = {{0, 1}, {5.0, 0.03}, {7.8, 0.03}, {8.6, 1}};
+  c.root = {{0, RootDrive::kKinematic}, {5.0, RootDrive::kFree}, {7.8, RootDrive::kAssisted}};
+  c.settings.root_force = 30 * mass;
+  c.settings.root_torque = 8 * mass * height;
+  s.characters.push_back(c);
+  SceneProp ball;
+  ball.name = "ball";
+  ball.settings.size = Vec3<double>::Constant(0.07 * height);
+  ball.settings.mass = 0.035 * mass;
+  ball.target_character = 0;
+  ball.target_joint = body_at({Role::kUpperArmL, Role::kChest});
+  ball.speed = 7;
+  ball.from = {0.6, 2.6, 1.0};
+  ball.launch_time = 2.2;
+  s.props.push_back(ball);
+  ball.name = "heavy ball";
+  ball.settings.size = Vec3<double>::Constant(0.1 * height);
+  ball.settings.mass = 0.12 * mass;
+  ball.target_joint = body_at({Role::kChest, Role::kSpine, Role::kPelvis});
+  ball.speed = 9;
+  ball.from = {2.4, -1.6, 1.0};
+  ball.launch_time = 4.75;
+  s.props.push_back(ball);
+  s.captions = {{0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"}, {3.8, "back on the animation"},
+                {5.0, "a harder hit: the strength is gone"}, {7.8, "strength returns"}, {9.6, "playback again"}};
+  s.camera.follow_character = 0;
+  s.plotted_joint = body_at({Role::kUpperArmL, Role::kChest});
+  return s;
+}
+
+}  // namespace sinew::scene

@@ -1,0 +1,72 @@
+// Scene files: who is there, what they play, what happens to them. Schema: tools/scene/README.md.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert/convert.h"
+#include "scene/recording.h"
+#include "sinew/character/world.h"
+
+namespace sinew::scene {
+
+template <class Value>
+using Timeline = std::vector<std::pair<double, Value>>;  ///< (time, value), times rising
+
+struct ClipUse {
+  int clip = 0;
+  double start = 0, blend = 0.3, rate = 1;
+  bool align = false;  ///< begins where the character's root stands and faces then
+};
+
+struct SceneCharacter {
+  std::shared_ptr<const Asset> asset;
+  std::string name;
+  Vec3<double> position = Vec3<double>::Zero();
+  double yaw = 0;  ///< rad
+  std::vector<ClipUse> clips;
+  Timeline<double> strength{{0, 1}};
+  Timeline<RootDrive> root{{0, RootDrive::kKinematic}};
+  CharacterSettings settings;
+};
+
+struct SceneProp {
+  PropSettings settings;
+  std::string name;
+  double launch_time = 0;  ///< hidden far away until then
+  // A throw is aimed when it starts, so that gravity brings the prop to the joint in `flight` seconds.
+  int target_character = -1, target_joint = -1;
+  double speed = 8;        ///< m/s
+  Vec3<double> from{2, 0, 1.5};  ///< relative to the character's root position at launch, its heading as X
+};
+
+struct Push {
+  double time = 0;
+  int character = 0, joint = 0;
+  Vec3<double> impulse = Vec3<double>::Zero();  ///< N·s, world
+};
+
+struct Scene {
+  std::string title;
+  double duration = 5;
+  double frame_rate = 60;
+  bool double_precision = false;
+  WorldSettings world;
+  std::vector<SceneCharacter> characters;
+  std::vector<SceneProp> props;
+  std::vector<Collider> obstacles;
+  std::vector<Push> pushes;
+  Timeline<std::string> captions;
+  Camera camera;
+  int plotted_joint = -1;
+};
+
+/// Reads and checks a scene file; assets are looked up relative to it. One line names the file and the fault.
+convert::Error load_scene(const std::string& path, Scene& out);
+
+/// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength returns.
+Scene demo_scene(std::shared_ptr<const Asset> asset);
+
+}  // namespace sinew::scene
