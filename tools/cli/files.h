@@ -1,0 +1,20 @@
+// Small file helpers of the command: whole files in, atomic files out.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "convert/convert.h"
+
+namespace sinew::cli {
+
+/// Writes to a temporary file in the same directory and renames: readers see the old file or the new one, never half.
+convert::Error write_atomically(const std::string& path, const void* data, std::size_t size);
+convert::Error write_atomically(const std::string& path, const std::string& text);
+
+convert::Error read_json(const std::string& path, nlohmann::json& out);
+
+/// Progress bar on a terminal once a job runs over a second; silent otherwise.
+std::function<void(int, int)> progress_bar(const std::string& what);
+
+}  // namespace sinew::cli
