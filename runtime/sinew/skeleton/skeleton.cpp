@@ -80,6 +80,12 @@ Status check_joint(const Skeleton& skeleton, int i) {
     return Status::error(Code::kInvalidArgument, "inertia is not symmetric", i);
   if (!can_exist(joint.inertia))
     return Status::error(Code::kInvalidArgument, "inertia breaks the triangle inequality", i);
+  if (joint.type == JointType::kUniversal && std::abs(joint.axis.dot(joint.axis2)) > 1e-6)
+    return Status::error(Code::kInvalidArgument, "axes of a universal joint are not square to each other", i);
+  if (std::isnan(joint.swing_limit) || std::isnan(joint.twist_lower) || std::isnan(joint.twist_upper))
+    return Status::error(Code::kNotFinite, "swing or twist limit is NaN", i);
+  if (joint.twist_lower > joint.twist_upper)
+    return Status::error(Code::kInvalidArgument, "lower twist limit above upper", i);
   for (int k = 0; k < dof_count(joint.type); ++k)
     if (Status status = check_dof(joint.dofs[k], i); !status) return status;
   return {};

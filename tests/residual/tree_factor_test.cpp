@@ -1,0 +1,88 @@
+// The branch-sparse factor against dense Eigen on random trees.
+#include "sinew/residual/tree_factor.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "residual/random_tree.h"
+
+namespace sinew {
+namespace {
+
+using fixtures::Random;
+
+/// Positive definite matrix with the pattern of a tree: LᵀL of a random L with that pattern.
+Eigen::MatrixXd random_matrix(const TreePattern& pattern, Random& random) {
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(pattern.size, pattern.size);
+  for (int k = 0; k < pattern.size; ++k) {
+    for (int l = pattern.parent[k]; l >= 0; l = pattern.parent[l]) factor(k, l) = random.normal();
+    factor(k, k) = 1 + std::abs(random.normal());
+  }
+  return factor.transpose() * factor;
+}
+
+TreePattern random_pattern(int size, Random& random) {
+  TreePattern pattern;
+  for (int k = 0; k < size; ++k) pattern.add(k % 11 == 0 ? -1 : (k % 4 == 0 ? random.below(k) : k - 1));
+  return pattern;
+}
+
+void fill(const TreePattern& pattern, const Eigen::MatrixXd& dense, TreeMatrix<double>& out) {
+  out.set_zero();
+  for (int k = 0; k < pattern.size; ++k)
+    for (int l = k; l >= 0; l = pattern.parent[l]) out.row(k)[pattern.depth[l]] = dense(k, l);
+}
+
+class TreeFactor : public testing::TestWithParam<unsigned> {};
+
+TEST_P(TreeFactor, MultipliesAndSolvesAsDense) {
+  Random random(GetParam());
+  const TreePattern pattern = random_pattern(37, random);
+  const Eigen::MatrixXd dense = random_matrix(pattern, random);
+  TreeMatrix<double> matrix(pattern);
+  fill(pattern, dense, matrix);
+  const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(37, [&] { return random.normal(); });
+
+  std::vector<double> product(37);
+  matrix.multiply({x.data(), 37}, product);
+  const Eigen::VectorXd expected = dense * x;
+  for (int k = 0; k < 37; ++k) EXPECT_NEAR(product[k], expected[k], 1e-12 * expected.norm());
+
+  ASSERT_TRUE(matrix.factorise());
+  matrix.solve(product);
+  // Rounding of a solve: machine precision times the condition number.
+  const double condition = dense.norm() * dense.inverse().norm();
+  for (int k = 0; k < 37; ++k) EXPECT_NEAR(product[k], x[k], 1e-15 * condition * x.norm());
+}
+
+TEST_P(TreeFactor, FactorHasNoFillInAndReproducesTheMatrix) {
+  Random random(GetParam() + 50);
+  const TreePattern pattern = random_pattern(24, random);
+  const Eigen::MatrixXd dense = random_matrix(pattern, random);
+  TreeMatrix<double> matrix(pattern);
+  fill(pattern, dense, matrix);
+  ASSERT_TRUE(matrix.factorise());
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(24, 24);
+  for (int k = 0; k < 24; ++k)
+    for (int l = k; l >= 0; l = pattern.parent[l]) factor(k, l) = matrix.row(k)[pattern.depth[l]];
+  EXPECT_LT((factor.transpose() * factor - dense).norm(), 1e-12 * dense.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, TreeFactor, testing::Values(1u, 2u, 3u, 4u));
+
+TEST(TreeFactor, RefusesIndefiniteAndNan) {
+  TreePattern pattern;
+  pattern.add(-1);
+  pattern.add(0);
+  TreeMatrix<double> matrix(pattern);
+  matrix.values() = {1, 2, 1};  // eigenvalues 3 and −1
+  EXPECT_FALSE(matrix.factorise());
+  matrix.values() = {1, std::nan(""), 1};
+  EXPECT_FALSE(matrix.factorise());
+  matrix.values() = {1, 0.5, 1};
+  EXPECT_TRUE(matrix.factorise());
+}
+
+}  // namespace
+}  // namespace sinew
