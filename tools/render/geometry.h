@@ -1,0 +1,41 @@
+// Triangles of one frame: skinned meshes, shapes, muscle spindles, coloured by load.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/recording.h"
+
+namespace sinew::render {
+
+struct Vertex {
+  float position[3], normal[3], uv[2], color[3];
+  float glow = 0;  ///< 0 … 1: how much of `color` is stress, shown brighter
+};
+
+/// A stretch of triangles with one material.
+struct Draw {
+  int first = 0, count = 0;
+  const Material* material = nullptr;  ///< textured when it has one
+  float alpha = 1;
+};
+
+struct Geometry {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<Draw> draws;
+
+  void clear();
+};
+
+/// Slate → teal → amber → red over load 0 … 1, brightness rising with it so that it reads without colour vision. Linear RGB.
+Vec3<float> stress_color(float load);
+
+enum class Look { kSkin, kXray, kShapes };
+
+/// Appends a character as it stands in `frame`.
+void append_character(const Asset& asset, const scene::CharacterFrame& frame, Look look, Geometry& out);
+/// Appends a sphere, capsule or box placed in the world.
+void append_shape(Shape shape, const Vec3<float>& size, const Transform<float>& world, const Vec3<float>& color, Geometry& out);
+
+}  // namespace sinew::render
