@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  ///< m; beyond this float has no millimetres left
 constexpr double kFastest = 1e5;   ///< m/s and rad/s
+constexpr double kSharpest = 1e8;  ///< m/s² and rad/s²; far beyond, a residual's square leaves float
 
 template <class T>
 Status check(const JointJet<T>& jet, int joint) {
@@ -16,7 +17,8 @@ Status check(const JointJet<T>& jet, int joint) {
   if (std::abs(jet.rotation.norm() - T(1)) > T(1e-2))
     return Status::error(Code::kInvalidArgument, "target rotation is not a unit quaternion", joint);
   if (jet.translation.norm() > T(kFarthest) || jet.velocity.norm() > T(kFastest) ||
-      jet.omega.norm() > T(kFastest))
+      jet.omega.norm() > T(kFastest) || jet.acceleration.norm() > T(kSharpest) ||
+      jet.alpha.norm() > T(kSharpest))
     return Status::error(Code::kOutOfRange, "target is absurdly far or fast", joint);
   return {};
 }

@@ -1,0 +1,91 @@
+// A step takes no memory from the heap. This executable replaces operator new by one that counts.
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "character/scenes.h"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+  ++allocations;
+  // aligned_alloc wants a multiple of the alignment.
+  void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (!memory) std::abort();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return counted(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return counted(bytes, std::size_t(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace sinew {
+namespace {
+
+TEST(Allocation, CounterCounts) {
+  const long before = allocations;
+  std::vector<int> memory(100);
+  EXPECT_EQ(allocations - before, 1);
+}
+
+TEST(Allocation, PlaybackPushAndReturnAllocateNothing) {
+  fixtures::Playing<float> scene;
+  const int hand = scene.skeleton.find("hand_r");
+  std::vector<std::vector<JointJet<float>>> frames;
+  for (int n = 0; n < 120; ++n) frames.push_back(fixtures::idle<float>(scene.skeleton, n / 60.0));
+  Character<float> c = scene.character();
+  const long before = allocations;
+  bool pushed = false;
+  for (int n = 0; n < 120; ++n) {
+    (void)c.set_target(frames[n]);
+    if (n % 30 == 3) (void)c.apply_impulse(hand, c.model()[hand].translation, {15, 0, 0});
+    (void)scene.world.step(1 / 60.f);
+    pushed = pushed || c.report().unknown_dofs > 0;
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(pushed);
+}
+
+TEST(Allocation, LimpFallOnPropsAndObstaclesAllocatesNothing) {
+  fixtures::Limp<float> fall({}, 0.3, 3, 5);
+  Status status;
+  PropSettings box;
+  box.shape = Shape::kBox;
+  box.pose.translation = {0.2, 0.1, 0.15};
+  ASSERT_EQ(fall.world.add_prop(box, status), 0) << status.reason;
+  Collider step;
+  step.shape = Shape::kBox;
+  step.size = {0.5, 0.5, 0.1};
+  step.local.translation = {0.5, 0, 0.1};
+  ASSERT_TRUE(fall.world.add_obstacle(step).ok());
+  const long before = allocations;
+  int contacts = 0;
+  for (int n = 0; n < 120; ++n) {
+    (void)fall.world.step(1 / 60.f);
+    contacts = std::max(contacts, fall.world.character(0).report().contacts);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(contacts, 2);
+}
+
+}  // namespace
+}  // namespace sinew
