@@ -109,16 +109,19 @@ class BodyBuilder {
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
       const Rig::Joint& joint = rig_.joints[j];
       const int index = static_cast<int>(j);
-      const bool matters = skinned ? joint.skin_weight > 0 || bone_length(index) > small : bone_length(index) > small;
+      const bool end_part = roles_[j] == Role::kHead || is_hand(roles_[j]) || is_foot(roles_[j]);
+      const bool matters = bone_length(index) > small || (skinned ? joint.skin_weight > 0 : end_part);
       const bool finger = !options_.simulate_fingers && below(index, is_hand);
       parts_[j].simulated = matters && !joint.control && !finger && !below(index, under_head);
-      if (joint.control) controls.push_back(joint.name);
-      else if (!parts_[j].simulated) passengers.push_back(joint.name);
     }
-    // A simulated joint needs simulated ancestors; a leaf without skin or length needs no body.
+    // A simulated joint needs simulated ancestors.
     for (std::size_t j = rig_.joints.size(); j-- > 0;)
       if (parts_[j].simulated && rig_.joints[j].parent >= 0) parts_[rig_.joints[j].parent].simulated = true;
     parts_[0].simulated = true;
+    for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+      if (rig_.joints[j].control) controls.push_back(rig_.joints[j].name);
+      else if (!parts_[j].simulated) passengers.push_back(rig_.joints[j].name);
+    }
     report_["control_joints"] = controls;
     report_["ride_along_joints"] = passengers;
   }
@@ -176,7 +179,11 @@ class BodyBuilder {
     } else if (part.vertices.size() >= 12) {
       fit_capsule(part);
     } else {
-      const double radius = std::max(kSlenderness * part.length, 0.01 * std::max(rig_.height, 0.1));
+      // Heads, hands and feet of bare skeletons: lengths as shares of stature (Drillis & Contini).
+      const bool head = roles_[j] == Role::kHead;
+      if (head) part.length = 0.13 * rig_.height;
+      else if (is_hand(roles_[j])) part.length = std::max(part.length, 0.10 * rig_.height);
+      const double radius = head ? 0.055 * rig_.height : std::max(kSlenderness * part.length, 0.01 * std::max(rig_.height, 0.1));
       c.shape = Shape::kCapsule;
       c.size = {radius, radius, std::max(0.0, part.length / 2 - radius)};
       c.local.translation = part.direction * (part.length / 2);

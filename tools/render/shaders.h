@@ -57,7 +57,7 @@ void main() {
   float fresnel = pow(1.0 - max(dot(m, v), 0.0), 3.5);
   float back = max(dot(m, normalize(vec3(-light_direction.xy, 0.35))), 0.0);
   vec3 rim = vec3(0.55, 0.68, 0.85) * fresnel * (0.25 + 0.75 * back);
-  vec3 light = albedo * (key_color * lit + ambient) + key_color * gloss * lit + rim * 0.55 + c.rgb * c.a * 0.35;
+  vec3 light = albedo * (key_color * lit + ambient) + key_color * gloss * lit + rim * 0.32 + c.rgb * c.a * 0.30;
   float opacity = alpha < 1.0 ? mix(alpha * 0.6, 0.75, fresnel) : 1.0;
   result = vec4(tone(light), opacity);
 }

@@ -183,14 +183,14 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
     gl.UniformMatrix4fv(gl.GetUniformLocation(program, "light_matrix"), 1, GL_FALSE, light_matrix.data());
     vec("eye", view.eye.x(), view.eye.y(), view.eye.z());
     vec("light_direction", light.x(), light.y(), light.z());
-    vec("key_color", dark_ ? 2.5f : 2.7f, dark_ ? 2.25f : 2.55f, dark_ ? 1.95f : 2.3f);
+    vec("key_color", dark_ ? 1.75f : 1.7f, dark_ ? 1.6f : 1.6f, dark_ ? 1.4f : 1.45f);
     if (dark_) {
-      vec("sky_color", 0.42f, 0.50f, 0.62f);
-      vec("ground_color", 0.105f, 0.115f, 0.135f);
+      vec("sky_color", 0.25f, 0.30f, 0.38f);
+      vec("ground_color", 0.085f, 0.092f, 0.105f);
       vec("fog_color", 0.235f, 0.255f, 0.29f);
       vec("zenith", 0.105f, 0.12f, 0.15f);
     } else {
-      vec("sky_color", 0.72f, 0.78f, 0.86f);
+      vec("sky_color", 0.50f, 0.55f, 0.62f);
       vec("ground_color", 0.42f, 0.43f, 0.45f);
       vec("fog_color", 0.86f, 0.875f, 0.90f);
       vec("zenith", 0.66f, 0.74f, 0.85f);

@@ -1,10 +1,13 @@
 #include "scene/run.h"
 
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 
 #include "sinew/animation/crossfade.h"
@@ -211,15 +214,18 @@ class Runner {
       for (const Transform<T>& x : c.model()) made.model.push_back(x.template cast<float>());
       made.load.assign(skeleton.joints.size(), 0);
       made.torque = made.limit = made.load;
-      for (int i = 0; i < skeleton.body_count; ++i)
-        for (int k = 0; k < dof_count(skeleton.joints[i].type); ++k) {
-          if (skeleton.joints[i].type == JointType::kFree) continue;
-          const int dof = c.first_dof(i) + k;
-          if (float(c.load()[dof]) < made.load[i]) continue;
-          made.load[i] = float(c.load()[dof]);
-          made.torque[i] = float(c.torque()[dof]);
-          made.limit[i] = float(c.limit()[dof]);
+      for (int i = 0; i < skeleton.body_count; ++i) {
+        if (skeleton.joints[i].type == JointType::kFree) continue;
+        const int dofs = dof_count(skeleton.joints[i].type);
+        double square = 0;  // hinges show their sign, ball joints the magnitude of their torque
+        for (int k = 0; k < dofs; ++k) {
+          const auto dof = static_cast<std::size_t>(c.first_dof(i) + k);
+          made.load[i] = std::max(made.load[i], float(c.load()[dof]));
+          made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
+          square += double(c.torque()[dof]) * double(c.torque()[dof]);
         }
+        made.torque[i] = dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))]) : float(std::sqrt(square));
+      }
       for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i) made.load[i] = made.load[skeleton.joints[i].parent];
       made.most_loaded_joint = static_cast<int>(std::max_element(made.load.begin(), made.load.begin() + skeleton.body_count) - made.load.begin());
       made.unknown_dofs = c.report().unknown_dofs;
@@ -305,7 +311,6 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
 }
 
 convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry, const std::string& png_path) {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return {"gnuplot is not installed; no plot"};
   const std::string script_path = png_path + ".gp";
   FILE* script = std::fopen(script_path.c_str(), "w");
   if (!script) return {script_path + ": cannot be written"};
@@ -319,9 +324,14 @@ convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& tele
                "'#888888' title 'limit', '' using 1:(-$19) every ::1 with lines dt 2 lc rgb '#888888' notitle\n",
                png_path.c_str(), csv_path.c_str(), csv_path.c_str(), csv_path.c_str(), telemetry.plotted_name.c_str());
   std::fclose(script);
-  const int code = std::system(("gnuplot '" + script_path + "' >/dev/null 2>&1").c_str());
+  const char* arguments[] = {"gnuplot", script_path.c_str(), nullptr};
+  pid_t pid = 0;
+  int status = -1;
+  const bool started = posix_spawnp(&pid, "gnuplot", nullptr, nullptr, const_cast<char**>(arguments), environ) == 0;
+  if (started) waitpid(pid, &status, 0);
   std::remove(script_path.c_str());
-  if (code != 0) return {"gnuplot could not draw " + png_path};
+  if (!started) return {"gnuplot is not installed; no plot"};
+  if (status != 0) return {"gnuplot could not draw " + png_path};
   return {};
 }
 

@@ -305,7 +305,7 @@ Scene demo_scene(std::shared_ptr<const Asset> asset) {
     c.clips.push_back({stand, 8.2, 0.5, 1, true});
   }
   const double height = std::max(0.3, body.joints[0].rest.translation.z() * 1.8), mass = body.total_mass();
-  c.strength = {{0, 1}, {5.0, 0.03}, {7.8, 0.03}, {8.6, 1}};
+  c.strength = {{0, 1}, {4.9, 1}, {5.0, 0.01}, {7.8, 0.01}, {8.8, 1}};
   c.root = {{0, RootDrive::kKinematic}, {5.0, RootDrive::kFree}, {7.8, RootDrive::kAssisted}};
   c.settings.root_force = 30 * mass;
   c.settings.root_torque = 8 * mass * height;

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs, builds and tests. Quiet; ends with one line (and, with CI set, ctest's own summary last).
+# Usage: tests/run.sh [--all]     --all adds the address and undefined-behaviour sanitizers and the format check.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tools/setup.sh --tests
+jobs=$(nproc)
+
+build() {  # build DIRECTORY CMAKE-OPTIONS…
+  local directory=$1 log
+  shift
+  mkdir -p "$directory"
+  log=$directory/build.log
+  echo "building $directory …" >&2
+  if ! { cmake -G Ninja -S . -B "$directory" "$@" && ninja -C "$directory" -j "$jobs"; } >"$log" 2>&1; then
+    grep -E -A3 'error|FAILED|Error' "$log" | head -n 40 >&2
+    echo "tests: the build failed (whole log: $log)" >&2
+    exit 1
+  fi
+}
+
+run() {  # run DIRECTORY
+  ctest --test-dir "$1" -j "$jobs" --output-on-failure --no-tests=error >"$1/test.log" 2>&1 || {
+    tail -n 80 "$1/test.log" >&2
+    echo "tests: failed (whole log: $1/test.log)" >&2
+    exit 1
+  }
+}
+
+if [ "${1:-}" = --all ]; then
+  git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+  build build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo
+  run build-asan
+fi
+build build
+run build
+tail -n 8 build/test.log
+echo "tests: $(grep -c 'Passed' build/test.log) passed, build/test.log holds the details"
+if [ -n "${CI:-}" ]; then grep -E 'tests passed|Total Test time' build/test.log; fi
