@@ -242,6 +242,7 @@ class SceneBuilder {
   void collect_mesh(const aiMesh& in, unsigned index) {
     SourceMesh mesh;
     mesh.name = in.mName.C_Str();
+    mesh.material = static_cast<int>(in.mMaterialIndex);
     const auto node = mesh_node_.find(index);
     mesh.node = node == mesh_node_.end() ? -1 : node->second;
     for (unsigned v = 0; v < in.mNumVertices; ++v) {

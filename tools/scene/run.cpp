@@ -195,11 +195,12 @@ class Runner {
   void aim(const SceneProp& prop, Vec3<double>& from, Vec3<double>& velocity) {
     const Character<T> c = world_.character(prop.target_character);
     const Transform<double> root = c.model()[0].template cast<double>();
-    const Vec3<double> joint = c.model()[prop.target_joint].translation.template cast<double>();
-    const double yaw = heading(root.rotation, s_.characters[prop.target_character].asset->skeleton.joints[0].rest.rotation);
+    const Skeleton& skeleton = s_.characters[prop.target_character].asset->skeleton;
+    const Vec3<double> joint = c.model()[prop.target_joint].template cast<double>() * Vec3<double>(0.5 * skeleton.joints[prop.target_joint].center_of_mass);
+    const double yaw = heading(root.rotation, skeleton.joints[0].rest.rotation);
     from = upright({root.translation.x(), root.translation.y(), 0}, yaw) * prop.from;
     const double flight = (joint - from).norm() / prop.speed;
-    const Vec3<double> drift = root_velocity_;
+    const Vec3<double> drift(root_velocity_.x(), root_velocity_.y(), 0);
     velocity = (joint + drift * flight - from) / flight - s_.world.gravity * (flight / 2);
   }
 
