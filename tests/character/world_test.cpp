@@ -24,7 +24,8 @@ std::vector<JointJet<T>> rest_jets(const Skeleton& s) {
 template <class T>
 struct LimpFall {
   World<T> world;
-  LimpFall(Accuracy accuracy, double height, double speed, unsigned seed, bool gravity = true) : world(settings(accuracy, gravity)) {
+  LimpFall(Accuracy accuracy, double height, double speed, unsigned seed, bool gravity = true)
+      : world(settings(accuracy, gravity)) {
     Skeleton body = fixtures::humanoid();
     for (Joint& j : body.joints)
       for (DofLimits& d : j.dofs) d.dry_friction = 0;
@@ -39,8 +40,10 @@ struct LimpFall {
     std::normal_distribution<double> normal(0, speed);
     jets[0].translation.z() += T(height);
     for (int i = 0; i < body.body_count; ++i) {
-      if (body.joints[i].type == JointType::kRevolute) jets[i].omega = (body.joints[i].axis * normal(random)).cast<T>();
-      else for (int a = 0; a < 3; ++a) jets[i].omega[a] = T(normal(random));
+      if (body.joints[i].type == JointType::kRevolute)
+        jets[i].omega = (body.joints[i].axis * normal(random)).cast<T>();
+      else
+        for (int a = 0; a < 3; ++a) jets[i].omega[a] = T(normal(random));
     }
     EXPECT_TRUE(world.character(0).set_target(jets).ok());
     world.character(0).reset();
@@ -75,9 +78,9 @@ void print_fall(double h, Scheme scheme) {
     deepest = std::max(deepest, r.penetration);
   }
   const CharacterReport& r = fall.world.character(0).report();
-  printf("h 1/%.0f %s: passes %.2f max %d unconverged %d rise %.3g J ke %.3g pen %.2g contacts %d z %.3f\n", 1 / h,
-         sizeof(T) == 4 ? "float" : "double", passes / steps, most, bad, worst, r.kinetic_energy, deepest, r.contacts,
-         double(fall.world.character(0).model()[0].translation.z()));
+  printf("h 1/%.0f %s: passes %.2f max %d unconverged %d rise %.3g J ke %.3g pen %.2g contacts %d z %.3f\n",
+         1 / h, sizeof(T) == 4 ? "float" : "double", passes / steps, most, bad, worst, r.kinetic_energy,
+         deepest, r.contacts, double(fall.world.character(0).model()[0].translation.z()));
 }
 
 TEST(World, PrintsFalls) {

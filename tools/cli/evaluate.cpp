@@ -10,7 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what);
+}
 
 double number(const json& v, const std::string& where) {
   if (!v.is_number() || !std::isfinite(v.get<double>())) fail("expected a finite number (" + where + ")");
@@ -18,7 +20,8 @@ double number(const json& v, const std::string& where) {
 }
 
 void numbers(const json& v, std::size_t count, double* out, const std::string& where) {
-  if (!v.is_array() || v.size() != count) fail("expected " + std::to_string(count) + " numbers (" + where + ")");
+  if (!v.is_array() || v.size() != count)
+    fail("expected " + std::to_string(count) + " numbers (" + where + ")");
   for (std::size_t i = 0; i < count; ++i) out[i] = number(v[i], where);
 }
 
@@ -36,13 +39,18 @@ void read_joint(const Joint& joint, const json& v, const std::string& where, Joi
   for (const auto& [key, value] : v.items()) {
     const std::string at = where + "." + key;
     if (key == "q") {
-      if (joint.type == JointType::kBall) s.rotation = quaternion(value, at);
-      else if (dofs == 1) s.q[0] = number(value, at);
-      else numbers(value, static_cast<std::size_t>(std::min(dofs, 3)), s.q, at);
+      if (joint.type == JointType::kBall)
+        s.rotation = quaternion(value, at);
+      else if (dofs == 1)
+        s.q[0] = number(value, at);
+      else
+        numbers(value, static_cast<std::size_t>(std::min(dofs, 3)), s.q, at);
     } else if (key == "v" || key == "a") {
       double* to = key == "v" ? s.v : s.a;
-      if (dofs == 1) to[0] = number(value, at);
-      else numbers(value, static_cast<std::size_t>(dofs), to, at);
+      if (dofs == 1)
+        to[0] = number(value, at);
+      else
+        numbers(value, static_cast<std::size_t>(dofs), to, at);
     } else {
       fail("unknown key '" + key + "' (" + where + ")");
     }
@@ -53,13 +61,20 @@ void read_root(const json& v, JointState& s) {
   if (!v.is_object()) fail("expected an object (root)");
   for (const auto& [key, value] : v.items()) {
     const std::string where = "root." + key;
-    if (key == "position") numbers(value, 3, s.position.data(), where);
-    else if (key == "orientation") s.rotation = quaternion(value, where);
-    else if (key == "linear_velocity") numbers(value, 3, s.v, where);
-    else if (key == "angular_velocity") numbers(value, 3, s.v + 3, where);
-    else if (key == "linear_acceleration") numbers(value, 3, s.a, where);
-    else if (key == "angular_acceleration") numbers(value, 3, s.a + 3, where);
-    else fail("unknown key '" + key + "' (root)");
+    if (key == "position")
+      numbers(value, 3, s.position.data(), where);
+    else if (key == "orientation")
+      s.rotation = quaternion(value, where);
+    else if (key == "linear_velocity")
+      numbers(value, 3, s.v, where);
+    else if (key == "angular_velocity")
+      numbers(value, 3, s.v + 3, where);
+    else if (key == "linear_acceleration")
+      numbers(value, 3, s.a, where);
+    else if (key == "angular_acceleration")
+      numbers(value, 3, s.a + 3, where);
+    else
+      fail("unknown key '" + key + "' (root)");
   }
 }
 
@@ -71,8 +86,12 @@ int find_joint(const Skeleton& s, const std::string& name) {
   return i < s.body_count ? i : -1;
 }
 
-json list(const Eigen::VectorXd& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
-json list(const Vec3<double>& v) { return json::array({v.x(), v.y(), v.z()}); }
+json list(const Eigen::VectorXd& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
+json list(const Vec3<double>& v) {
+  return json::array({v.x(), v.y(), v.z()});
+}
 
 std::vector<std::string> dof_names(const Skeleton& s) {
   static const char* const kFree[] = {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"};
@@ -83,8 +102,10 @@ std::vector<std::string> dof_names(const Skeleton& s) {
     const std::string name = joint.source_joint.empty() ? joint.name : joint.source_joint;
     const int dofs = dof_count(joint.type);
     for (int k = 0; k < dofs; ++k) {
-      if (joint.type == JointType::kFree) names.push_back((joint.parent < 0 ? "root" : name) + "." + kFree[k]);
-      else names.push_back(dofs == 1 ? name : name + "." + kAxes[k]);
+      if (joint.type == JointType::kFree)
+        names.push_back((joint.parent < 0 ? "root" : name) + "." + kFree[k]);
+      else
+        names.push_back(dofs == 1 ? name : name + "." + kAxes[k]);
     }
   }
   return names;
@@ -125,11 +146,13 @@ convert::Error evaluate(const Skeleton& source, const json& state, bool fixed_ba
   }
   const DynamicsResult r = evaluate_dynamics(skeleton, states, gravity);
   json matrix = json::array();
-  for (Eigen::Index i = 0; i < r.mass_matrix.rows(); ++i) matrix.push_back(list(Eigen::VectorXd(r.mass_matrix.row(i))));
+  for (Eigen::Index i = 0; i < r.mass_matrix.rows(); ++i)
+    matrix.push_back(list(Eigen::VectorXd(r.mass_matrix.row(i))));
   json frames = json::object();
   for (std::size_t i = 0; i < r.frames.size(); ++i) {
     const Quat<double>& q = r.frames[i].rotation;
-    frames[skeleton.joints[i].name] = {{"position", list(r.frames[i].translation)}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
+    frames[skeleton.joints[i].name] = {{"position", list(r.frames[i].translation)},
+                                       {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
   }
   out = {{"dof_names", dof_names(skeleton)},
          {"total_mass", r.total_mass},

@@ -14,7 +14,8 @@ convert::Error write_atomically(const std::string& path, const void* data, std::
   const std::string temporary = path + ".tmp" + std::to_string(getpid());
   std::error_code code;
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (!parent.empty() && !std::filesystem::is_directory(parent, code)) return {path + ": its directory does not exist"};
+  if (!parent.empty() && !std::filesystem::is_directory(parent, code))
+    return {path + ": its directory does not exist"};
   {
     std::ofstream file(temporary, std::ios::binary);
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
@@ -33,7 +34,9 @@ convert::Error write_atomically(const std::string& path, const void* data, std::
   return {};
 }
 
-convert::Error write_atomically(const std::string& path, const std::string& text) { return write_atomically(path, text.data(), text.size()); }
+convert::Error write_atomically(const std::string& path, const std::string& text) {
+  return write_atomically(path, text.data(), text.size());
+}
 
 convert::Error read_json(const std::string& path, nlohmann::json& out) {
   std::ifstream file(path);
@@ -55,7 +58,9 @@ std::function<void(int, int)> progress_bar(const std::string& what) {
     const int percent = 100 * done / total;
     if (percent == *shown) return;
     *shown = percent;
-    std::fprintf(stderr, "\r%s [%-40s] %3d %%%s", what.c_str(), std::string(static_cast<std::size_t>(percent * 2 / 5), '#').c_str(), percent, done >= total ? "\n" : "");
+    std::fprintf(stderr, "\r%s [%-40s] %3d %%%s", what.c_str(),
+                 std::string(static_cast<std::size_t>(percent * 2 / 5), '#').c_str(), percent,
+                 done >= total ? "\n" : "");
   };
 }
 

@@ -8,7 +8,8 @@
 
 namespace sinew::cli {
 
-/// Writes to a temporary file in the same directory and renames: readers see the old file or the new one, never half.
+/// Writes to a temporary file in the same directory and renames: readers see the old file or the new one,
+/// never half.
 convert::Error write_atomically(const std::string& path, const void* data, std::size_t size);
 convert::Error write_atomically(const std::string& path, const std::string& text);
 

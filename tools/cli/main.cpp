@@ -1,4 +1,5 @@
-// The `sinew` command: parses arguments and hands them to the libraries. Exit codes: 0 done, 1 bad input, 2 usage.
+// The `sinew` command: parses arguments and hands them to the libraries. Exit codes: 0 done, 1 bad input, 2
+// usage.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -58,8 +59,11 @@ struct ConvertCommand {
       if (Error error = cli::write_atomically(report_file, report.dump(2) + "\n")) return error;
     report["output"] = output;
     report["bytes"] = bytes.size();
-    if (json_output) std::puts(report.dump().c_str());
-    else std::printf("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(), bytes.size());
+    if (json_output)
+      std::puts(report.dump().c_str());
+    else
+      std::printf("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
+                  bytes.size());
     return {};
   }
 };
@@ -78,10 +82,14 @@ struct InfoCommand {
     report["colliders"] = colliders;
     report["meshes"] = asset.meshes.size();
     json clips = json::array();
-    for (const sinew::Clip& c : asset.clips) clips.push_back({{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}});
+    for (const sinew::Clip& c : asset.clips)
+      clips.push_back({{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}});
     if (!report.contains("clips")) report["clips"] = clips;
-    if (json_output) std::puts(report.dump().c_str());
-    else std::printf("%scolliders %zu, meshes %zu\n", sinew::convert::report_text(report).c_str(), asset.skeleton.colliders.size(), asset.meshes.size());
+    if (json_output)
+      std::puts(report.dump().c_str());
+    else
+      std::printf("%scolliders %zu, meshes %zu\n", sinew::convert::report_text(report).c_str(),
+                  asset.skeleton.colliders.size(), asset.meshes.size());
     return {};
   }
 };
@@ -98,7 +106,8 @@ struct EvaluateCommand {
     if (Error error = sinew::convert::open_any(model, options, asset, report)) return error;
     if (!state_file.empty())
       if (Error error = cli::read_json(state_file, state)) return error;
-    if (Error error = cli::evaluate(asset.skeleton, state, fixed_base, out)) return {(state_file.empty() ? model : state_file) + ": " + error.message};
+    if (Error error = cli::evaluate(asset.skeleton, state, fixed_base, out))
+      return {(state_file.empty() ? model : state_file) + ": " + error.message};
     std::puts(out.dump().c_str());
     return {};
   }
@@ -113,18 +122,25 @@ struct SimulateCommand {
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
-    if (Error error = sinew::scene::run_scene(scene, recording, telemetry, cli::progress_bar("simulate"))) return {scene_file + ": " + error.message};
+    if (Error error = sinew::scene::run_scene(scene, recording, telemetry, cli::progress_bar("simulate")))
+      return {scene_file + ": " + error.message};
     const json summary = sinew::scene::telemetry_summary(scene, telemetry);
     const bool as_json = std::filesystem::path(output).extension() == ".json";
-    if (Error error = cli::write_atomically(output, as_json ? summary.dump(2) + "\n" : sinew::scene::telemetry_csv(scene, telemetry))) return error;
+    if (Error error = cli::write_atomically(
+            output, as_json ? summary.dump(2) + "\n" : sinew::scene::telemetry_csv(scene, telemetry)))
+      return error;
     if (plot) {
       const std::string png = std::filesystem::path(output).replace_extension(".png").string();
-      if (Error error = sinew::scene::plot_telemetry(output, telemetry, png)) std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+      if (Error error = sinew::scene::plot_telemetry(output, telemetry, png))
+        std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
     }
-    if (json_output) std::puts(summary.dump().c_str());
-    else std::printf("%s: %d frames of playback (median %.1f us), %d solved (median %.1f us), %d unconverged\n", output.c_str(),
-                     summary["frames_playback"].get<int>(), summary["median_us_playback"].get<double>(), summary["frames_solved"].get<int>(),
-                     summary["median_us_solved"].get<double>(), summary["unconverged_steps"].get<int>());
+    if (json_output)
+      std::puts(summary.dump().c_str());
+    else
+      std::printf("%s: %d frames of playback (median %.1f us), %d solved (median %.1f us), %d unconverged\n",
+                  output.c_str(), summary["frames_playback"].get<int>(),
+                  summary["median_us_playback"].get<double>(), summary["frames_solved"].get<int>(),
+                  summary["median_us_solved"].get<double>(), summary["unconverged_steps"].get<int>());
     return {};
   }
 };
@@ -137,7 +153,8 @@ struct RenderCommand {
   std::string size;
 
   Error run() {
-    if (!size.empty() && std::sscanf(size.c_str(), "%dx%d", &options.width, &options.height) != 2) return {"--size is not WIDTHxHEIGHT"};
+    if (!size.empty() && std::sscanf(size.c_str(), "%dx%d", &options.width, &options.height) != 2)
+      return {"--size is not WIDTHxHEIGHT"};
     options.overlay = !no_overlay;
     if (std::filesystem::path(input).extension() == ".json") {
       sinew::scene::Scene scene;
@@ -149,7 +166,8 @@ struct RenderCommand {
     if (Error error = source.read(conversion)) return error;
     if (Error error = sinew::convert::open_any(input, conversion, *asset, report)) return error;
     if (demo) return render_scene(sinew::scene::demo_scene(asset));
-    if (Error error = sinew::render::render_asset(asset, options, output, cli::progress_bar("render"))) return error;
+    if (Error error = sinew::render::render_asset(asset, options, output, cli::progress_bar("render")))
+      return error;
     return done();
   }
 
@@ -157,18 +175,25 @@ struct RenderCommand {
   Error render_scene(const sinew::scene::Scene& scene) {
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
-    if (Error error = sinew::scene::run_scene(scene, recording, telemetry, {})) return {input + ": " + error.message};
+    if (Error error = sinew::scene::run_scene(scene, recording, telemetry, {}))
+      return {input + ": " + error.message};
     if (!telemetry_file.empty()) {
-      if (Error error = cli::write_atomically(telemetry_file, sinew::scene::telemetry_csv(scene, telemetry))) return error;
+      if (Error error = cli::write_atomically(telemetry_file, sinew::scene::telemetry_csv(scene, telemetry)))
+        return error;
       const std::string png = std::filesystem::path(telemetry_file).replace_extension(".png").string();
-      if (Error error = sinew::scene::plot_telemetry(telemetry_file, telemetry, png)) std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+      if (Error error = sinew::scene::plot_telemetry(telemetry_file, telemetry, png))
+        std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
     }
-    if (Error error = sinew::render::render_recording(recording, options, output, cli::progress_bar("render"))) return error;
+    if (Error error =
+            sinew::render::render_recording(recording, options, output, cli::progress_bar("render")))
+      return error;
     return done();
   }
   Error done() const {
-    if (json_output) std::puts(json{{"output", output}}.dump().c_str());
-    else std::printf("%s: %dx%d\n", output.c_str(), options.width, options.height);
+    if (json_output)
+      std::puts(json{{"output", output}}.dump().c_str());
+    else
+      std::printf("%s: %dx%d\n", output.c_str(), options.width, options.height);
     return {};
   }
 };
@@ -176,12 +201,15 @@ struct RenderCommand {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
-               "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
+  CLI::App app{
+      "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
+      "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
   app.require_subcommand(1);
   ConvertCommand convert;
-  auto* c = app.add_subcommand("convert", "source files to a runtime asset\nExample: sinew convert hero.glb walk.fbx -o hero.sinew");
-  auto* inputs = c->add_option("inputs", convert.inputs, "glTF/GLB, FBX, BVH, COLLADA or URDF; mesh and clips may come from several");
+  auto* c = app.add_subcommand(
+      "convert", "source files to a runtime asset\nExample: sinew convert hero.glb walk.fbx -o hero.sinew");
+  auto* inputs = c->add_option("inputs", convert.inputs,
+                               "glTF/GLB, FBX, BVH, COLLADA or URDF; mesh and clips may come from several");
   auto* out = c->add_option("-o,--output", convert.output, "asset to write");
   c->add_option("--report", convert.report_file, "write the report as JSON");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
@@ -189,30 +217,37 @@ int main(int argc, char** argv) {
   convert.source.add(*c);
 
   InfoCommand info;
-  auto* i = app.add_subcommand("info", "what is in a source file or asset\nExample: sinew info hero.sinew --json");
+  auto* i =
+      app.add_subcommand("info", "what is in a source file or asset\nExample: sinew info hero.sinew --json");
   i->add_option("file", info.file)->required();
   i->add_flag("--json", info.json_output);
   info.source.add(*i);
 
   EvaluateCommand evaluate;
-  auto* e = app.add_subcommand("evaluate", "kinematics and dynamics at a state, as JSON\nExample: sinew evaluate robot.urdf --state s.json");
+  auto* e = app.add_subcommand(
+      "evaluate",
+      "kinematics and dynamics at a state, as JSON\nExample: sinew evaluate robot.urdf --state s.json");
   e->add_option("model", evaluate.model)->required();
   e->add_option("--state", evaluate.state_file, "state, JSON (see tools/README.md)");
   e->add_flag("--fixed-base", evaluate.fixed_base, "bolt the root to the world");
-  e->add_flag_callback("--json", [] {}, "output is always JSON");
+  e->add_flag_callback(
+      "--json", [] {}, "output is always JSON");
   evaluate.source.add(*e);
 
   SimulateCommand simulate;
-  auto* s = app.add_subcommand("simulate", "run a scene\nExample: sinew simulate push.json -o push.csv --plot");
+  auto* s =
+      app.add_subcommand("simulate", "run a scene\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
 
   RenderCommand render;
-  auto* r = app.add_subcommand("render", "turntable or scene video, headless\nExample: sinew render push.json -o push.mp4");
+  auto* r = app.add_subcommand(
+      "render", "turntable or scene video, headless\nExample: sinew render push.json -o push.mp4");
   r->add_option("input", render.input, "scene (.json), asset or source file")->required();
-  r->add_option("-o,--output", render.output, ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence)")->required();
+  r->add_option("-o,--output", render.output, ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence)")
+      ->required();
   r->add_option("--size", render.size, "WIDTHxHEIGHT, even (1280x720)");
   r->add_option("--fps", render.options.fps)->check(CLI::Range(1.0, 240.0));
   r->add_option("--samples", render.options.samples, "multisampling, 1 or 4")->check(CLI::IsMember({1, 4}));
@@ -220,7 +255,8 @@ int main(int argc, char** argv) {
   r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes"}));
   r->add_option("--quality", render.options.quality)->check(CLI::IsMember({"quality", "fast"}));
   r->add_flag("--turntable", render.options.turntable);
-  r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")->check(CLI::Range(1, 100000));
+  r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")
+      ->check(CLI::Range(1, 100000));
   r->add_option("--clip", render.options.clip, "clip to play (assets)");
   r->add_flag("--demo", render.demo, "assets: the demo's story instead of a turntable");
   r->add_option("--telemetry", render.telemetry_file, "scenes: also write the telemetry CSV and its plot");
@@ -230,17 +266,23 @@ int main(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-    if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0)) throw CLI::RequiredError("inputs and --output");
+    if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0))
+      throw CLI::RequiredError("inputs and --output");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   Error error;
   try {
-    if (c->parsed()) error = convert.run();
-    else if (i->parsed()) error = info.run();
-    else if (e->parsed()) error = evaluate.run();
-    else if (s->parsed()) error = simulate.run();
-    else error = render.run();
+    if (c->parsed())
+      error = convert.run();
+    else if (i->parsed())
+      error = info.run();
+    else if (e->parsed())
+      error = evaluate.run();
+    else if (s->parsed())
+      error = simulate.run();
+    else
+      error = render.run();
   } catch (const std::exception& unexpected) {
     error = {unexpected.what()};
   }

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Muscle limits for average adults, N·m per kg of body mass at 1.75 m, the stronger direction of each joint: `limit_average_adult`
-/// values compiled from isokinetic tables and muscle models (Anderson et al. 2007; Šarabon et al. 2021; Delp 1996; Vasavada 2001;
-/// sources in tools/convert/README.md). Swing range from rest and twist range in degrees (Soucie 2011; Namdari 2011), wide
-/// because rest poses differ.
+/// Muscle limits for average adults, N·m per kg of body mass at 1.75 m, the stronger direction of each joint:
+/// `limit_average_adult` values compiled from isokinetic tables and muscle models (Anderson et al. 2007;
+/// Šarabon et al. 2021; Delp 1996; Vasavada 2001; sources in tools/convert/README.md). Swing range from rest
+/// and twist range in degrees (Soucie 2011; Namdari 2011), wide because rest poses differ.
 struct Anatomy {
   Role role;
   double torque;
@@ -25,23 +25,33 @@ struct Anatomy {
   bool hinge;
 };
 constexpr Anatomy kAnatomy[] = {
-    {Role::kPelvis, 4.0, 45, 35, false},   {Role::kSpine, 4.0, 40, 35, false},     {Role::kChest, 4.0, 35, 35, false},
-    {Role::kNeck, 0.7, 50, 60, false},     {Role::kHead, 0.7, 50, 60, false},      {Role::kClavicleL, 1.5, 35, 25, false},
-    {Role::kClavicleR, 1.5, 35, 25, false}, {Role::kUpperArmL, 1.2, 120, 90, false}, {Role::kUpperArmR, 1.2, 120, 90, false},
-    {Role::kForearmL, 1.0, 0, 0, true},    {Role::kForearmR, 1.0, 0, 0, true},     {Role::kHandL, 0.25, 70, 85, false},
-    {Role::kHandR, 0.25, 70, 85, false},   {Role::kThighL, 3.3, 110, 50, false},   {Role::kThighR, 3.3, 110, 50, false},
-    {Role::kShinL, 3.5, 0, 0, true},       {Role::kShinR, 3.5, 0, 0, true},        {Role::kFootL, 3.3, 55, 35, false},
-    {Role::kFootR, 3.3, 55, 35, false},    {Role::kToesL, 0.35, 60, 10, false},    {Role::kToesR, 0.35, 60, 10, false}};
+    {Role::kPelvis, 4.0, 45, 35, false},     {Role::kSpine, 4.0, 40, 35, false},
+    {Role::kChest, 4.0, 35, 35, false},      {Role::kNeck, 0.7, 50, 60, false},
+    {Role::kHead, 0.7, 50, 60, false},       {Role::kClavicleL, 1.5, 35, 25, false},
+    {Role::kClavicleR, 1.5, 35, 25, false},  {Role::kUpperArmL, 1.2, 120, 90, false},
+    {Role::kUpperArmR, 1.2, 120, 90, false}, {Role::kForearmL, 1.0, 0, 0, true},
+    {Role::kForearmR, 1.0, 0, 0, true},      {Role::kHandL, 0.25, 70, 85, false},
+    {Role::kHandR, 0.25, 70, 85, false},     {Role::kThighL, 3.3, 110, 50, false},
+    {Role::kThighR, 3.3, 110, 50, false},    {Role::kShinL, 3.5, 0, 0, true},
+    {Role::kShinR, 3.5, 0, 0, true},         {Role::kFootL, 3.3, 55, 35, false},
+    {Role::kFootR, 3.3, 55, 35, false},      {Role::kToesL, 0.35, 60, 10, false},
+    {Role::kToesR, 0.35, 60, 10, false}};
 
 const Anatomy* anatomy(Role role) {
-  const auto* found = std::find_if(std::begin(kAnatomy), std::end(kAnatomy), [&](const Anatomy& a) { return a.role == role; });
+  const auto* found = std::find_if(std::begin(kAnatomy), std::end(kAnatomy),
+                                   [&](const Anatomy& a) { return a.role == role; });
   return found == std::end(kAnatomy) ? nullptr : found;
 }
 
-bool is_hand(Role r) { return r == Role::kHandL || r == Role::kHandR; }
-bool is_foot(Role r) { return r == Role::kFootL || r == Role::kFootR; }
+bool is_hand(Role r) {
+  return r == Role::kHandL || r == Role::kHandR;
+}
+bool is_foot(Role r) {
+  return r == Role::kFootL || r == Role::kFootR;
+}
 
-/// Radius of a limb of unknown girth, as a share of its length (de Leva's segment volumes read as cylinders: 0.10–0.17).
+/// Radius of a limb of unknown girth, as a share of its length (de Leva's segment volumes read as cylinders:
+/// 0.10–0.17).
 constexpr double kSlenderness = 0.14;
 
 struct Part {
@@ -55,7 +65,8 @@ struct Part {
 
 class BodyBuilder {
  public:
-  BodyBuilder(const Rig& rig, const Options& options, nlohmann::json& report) : rig_(rig), options_(options), report_(report) {}
+  BodyBuilder(const Rig& rig, const Options& options, nlohmann::json& report)
+      : rig_(rig), options_(options), report_(report) {}
 
   Skeleton build(std::vector<int>& joint_of_rig) {
     const std::size_t count = rig_.joints.size();
@@ -97,7 +108,8 @@ class BodyBuilder {
     double longest = 0;
     for (const int c : children_[j])
       if (!rig_.joints[c].control)
-        longest = std::max(longest, (rig_.joints[c].rest.translation - rig_.joints[j].rest.translation).norm());
+        longest =
+            std::max(longest, (rig_.joints[c].rest.translation - rig_.joints[j].rest.translation).norm());
     return longest;
   }
 
@@ -119,8 +131,10 @@ class BodyBuilder {
       if (parts_[j].simulated && rig_.joints[j].parent >= 0) parts_[rig_.joints[j].parent].simulated = true;
     parts_[0].simulated = true;
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
-      if (rig_.joints[j].control) controls.push_back(rig_.joints[j].name);
-      else if (!parts_[j].simulated) passengers.push_back(rig_.joints[j].name);
+      if (rig_.joints[j].control)
+        controls.push_back(rig_.joints[j].name);
+      else if (!parts_[j].simulated)
+        passengers.push_back(rig_.joints[j].name);
     }
     report_["control_joints"] = controls;
     report_["ride_along_joints"] = passengers;
@@ -163,7 +177,8 @@ class BodyBuilder {
       end *= 2.0 / double(part.vertices.size());
     }
     if (end.norm() < 1e-3 && rig_.joints[j].parent >= 0)
-      end = 0.5 * (to_joint.rotation * (rig_.joints[j].rest.translation - rig_.joints[rig_.joints[j].parent].rest.translation));
+      end = 0.5 * (to_joint.rotation *
+                   (rig_.joints[j].rest.translation - rig_.joints[rig_.joints[j].parent].rest.translation));
     if (end.norm() < 1e-3) end = to_joint.rotation * Vec3<double>(0, 0, 0.03 * std::max(rig_.height, 0.1));
     part.length = end.norm();
     part.direction = end / part.length;
@@ -181,9 +196,12 @@ class BodyBuilder {
     } else {
       // Heads, hands and feet of bare skeletons: lengths as shares of stature (Drillis & Contini).
       const bool head = roles_[j] == Role::kHead;
-      if (head) part.length = 0.13 * rig_.height;
-      else if (is_hand(roles_[j])) part.length = std::max(part.length, 0.10 * rig_.height);
-      const double radius = head ? 0.055 * rig_.height : std::max(kSlenderness * part.length, 0.01 * std::max(rig_.height, 0.1));
+      if (head)
+        part.length = 0.13 * rig_.height;
+      else if (is_hand(roles_[j]))
+        part.length = std::max(part.length, 0.10 * rig_.height);
+      const double radius = head ? 0.055 * rig_.height
+                                 : std::max(kSlenderness * part.length, 0.01 * std::max(rig_.height, 0.1));
       c.shape = Shape::kCapsule;
       c.size = {radius, radius, std::max(0.0, part.length / 2 - radius)};
       c.local.translation = part.direction * (part.length / 2);
@@ -268,7 +286,8 @@ class BodyBuilder {
   void set_limits(int j, Joint& joint, double mass, double stature) const {
     const Anatomy* a = anatomy(roles_[j]);
     // Published strengths scale with mass and stature; other joints hold their own subtree many times over.
-    const double torque = options_.strength * (a ? a->torque * mass * stature / 1.75 : 1.5 * mass * 9.81 * 0.12 * stature);
+    const double torque =
+        options_.strength * (a ? a->torque * mass * stature / 1.75 : 1.5 * mass * 9.81 * 0.12 * stature);
     const int count = dof_count(joint.type);
     for (int k = 0; k < count; ++k) joint.dofs[k].torque_minus = joint.dofs[k].torque_plus = torque;
     for (int k = 0; k < count; ++k) joint.dofs[k].damping = 0.002 * torque;
@@ -324,7 +343,8 @@ class BodyBuilder {
         Joint joint;
         joint.name = source.name;
         joint.parent = source.parent < 0 ? -1 : joint_of_rig[source.parent];
-        joint.rest = source.parent < 0 ? source.rest : rig_.joints[source.parent].rest.inverse() * source.rest;
+        joint.rest =
+            source.parent < 0 ? source.rest : rig_.joints[source.parent].rest.inverse() * source.rest;
         joint.rest.rotation.normalize();
         joint.role = roles_[j];
         if (simulated) {
@@ -337,7 +357,7 @@ class BodyBuilder {
             joint.inertia = 0.5 * (joint.inertia + joint.inertia.transpose()).eval();
           }
           const Anatomy* a = anatomy(roles_[j]);
-          joint.type = source.parent < 0 ? JointType::kFree
+          joint.type = source.parent < 0  ? JointType::kFree
                        : part.volume <= 0 ? JointType::kFixed
                        : a && a->hinge    ? JointType::kRevolute
                                           : JointType::kBall;
@@ -357,7 +377,9 @@ class BodyBuilder {
     report_["bodies"] = nlohmann::json::array();
     static const char* names[] = {"fixed", "revolute", "prismatic", "universal", "ball", "planar", "free"};
     for (int i = 0; i < s.body_count; ++i)
-      report_["bodies"].push_back({{"joint", s.joints[i].name}, {"type", names[static_cast<int>(s.joints[i].type)]}, {"mass_kg", s.joints[i].mass}});
+      report_["bodies"].push_back({{"joint", s.joints[i].name},
+                                   {"type", names[static_cast<int>(s.joints[i].type)]},
+                                   {"mass_kg", s.joints[i].mass}});
     return s;
   }
 
@@ -380,11 +402,13 @@ Mat3<double> solid_inertia(const Collider& c, double mass) {
   const double r = s.x(), l = c.shape == Shape::kCapsule ? 2 * s.z() : 0;
   const double cylinder = mass * l / (l + 4.0 / 3.0 * r), caps = mass - cylinder;
   const double along = cylinder * r * r / 2 + caps * 0.4 * r * r;
-  const double across = cylinder * (r * r / 4 + l * l / 12) + caps * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
+  const double across =
+      cylinder * (r * r / 4 + l * l / 12) + caps * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
   return Vec3<double>(across, across, along).asDiagonal();
 }
 
-Skeleton build_body(const Rig& rig, const Options& options, std::vector<int>& joint_of_rig, nlohmann::json& report) {
+Skeleton build_body(const Rig& rig, const Options& options, std::vector<int>& joint_of_rig,
+                    nlohmann::json& report) {
   return BodyBuilder(rig, options, report).build(joint_of_rig);
 }
 
@@ -404,10 +428,12 @@ void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleto
     for (int pass = 0; pass < 2; ++pass)
       for (int f = 0; f < frames; ++f) {
         if (!SamplingJob<double>{&clip, f / 60.0, 1, jets}.Run()) continue;
-        inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force, moment);
+        inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
+                                  moment);
         if (pass == 0) {
           for (const ContactPoint<double>& p : points)
-            lowest = std::min(lowest, (kinematics.origin[p.body] + kinematics.rotation[p.body] * p.local).z() - p.radius);
+            lowest = std::min(
+                lowest, (kinematics.origin[p.body] + kinematics.rotation[p.body] * p.local).z() - p.radius);
           continue;
         }
         share_support<double>(tree, kinematics, points, lowest, {}, force, moment);

@@ -13,7 +13,9 @@
 namespace sinew::convert {
 namespace {
 
-Error in_file(const std::string& path, const std::string& what) { return {path + ": " + what}; }
+Error in_file(const std::string& path, const std::string& what) {
+  return {path + ": " + what};
+}
 
 Error describe(const std::string& path, const Status& status, const Skeleton& skeleton) {
   std::string where;
@@ -23,7 +25,8 @@ Error describe(const std::string& path, const Status& status, const Skeleton& sk
 }
 
 /// Rig joints in skeleton order.
-void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Options& options, Asset& asset, nlohmann::json& report) {
+void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Options& options, Asset& asset,
+               nlohmann::json& report) {
   report["clips"] = nlohmann::json::array();
   for (const Rig::Motion& motion : rig.motions) {
     FitInput input{motion.name, motion.loops, motion.sample_rate, {}};
@@ -37,17 +40,22 @@ void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Optio
     fit.degree = options.fit_degree;
     FitReport fitted;
     asset.clips.push_back(fit_clip(input, fit, fitted));
-    report["clips"].push_back({{"name", motion.name}, {"duration_s", asset.clips.back().duration}, {"loops", asset.clips.back().loops},
-                               {"keys_per_s", motion.sample_rate}, {"max_error_mm", fitted.max_mm}, {"rms_error_mm", fitted.rms_mm}});
+    report["clips"].push_back({{"name", motion.name},
+                               {"duration_s", asset.clips.back().duration},
+                               {"loops", asset.clips.back().loops},
+                               {"keys_per_s", motion.sample_rate},
+                               {"max_error_mm", fitted.max_mm},
+                               {"rms_error_mm", fitted.rms_mm}});
   }
 }
 
-Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes, const Options& options,
-                     Asset& out, nlohmann::json& report) {
+Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
+                     const Options& options, Asset& out, nlohmann::json& report) {
   Asset asset;
   if (scenes[0].format == "urdf") {
     if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
-    if (Error error = build_urdf(scenes[0], options, asset.skeleton, report)) return in_file(inputs[0], error.message);
+    if (Error error = build_urdf(scenes[0], options, asset.skeleton, report))
+      return in_file(inputs[0], error.message);
   } else {
     Rig rig;
     if (Error error = build_rig(scenes, options, rig, report)) return in_file(inputs[0], error.message);
@@ -62,11 +70,13 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
       for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
     asset.materials = std::move(rig.materials);
     asset.inverse_bind.resize(rig.joints.size());
-    for (std::size_t j = 0; j < rig.joints.size(); ++j) asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
+    for (std::size_t j = 0; j < rig.joints.size(); ++j)
+      asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
   }
   if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
   for (const Clip& clip : asset.clips)
-    if (Status status = validate(clip); !status) return in_file(inputs[0], "clip '" + clip.name + "': " + status.reason);
+    if (Status status = validate(clip); !status)
+      return in_file(inputs[0], "clip '" + clip.name + "': " + status.reason);
   report["format"] = scenes[0].format;
   report["name"] = asset.skeleton.name;
   report["joints"] = asset.skeleton.joints.size();
@@ -79,7 +89,8 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
 
 }  // namespace
 
-Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& json, Asset& out, nlohmann::json& report) {
+Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& json, Asset& out,
+                    nlohmann::json& report) {
   if (inputs.empty()) return {"no input file"};
   Options options;
   if (Error error = Options::parse(json, options)) return in_file(inputs[0], error.message);
@@ -110,12 +121,13 @@ std::string report_text(const nlohmann::json& r) {
   std::string text;
   char line[256];
   std::snprintf(line, sizeof line, "%s (%s): %d joints, %d simulated, %d degrees of freedom, %.1f kg\n",
-                r.value("name", "").c_str(), r.value("format", "").c_str(), r.value("joints", 0), r.value("simulated_joints", 0),
-                r.value("dofs", 0), r.value("total_mass_kg", 0.0));
+                r.value("name", "").c_str(), r.value("format", "").c_str(), r.value("joints", 0),
+                r.value("simulated_joints", 0), r.value("dofs", 0), r.value("total_mass_kg", 0.0));
   text += line;
   if (r.contains("unit")) {
-    std::snprintf(line, sizeof line, "unit %g m (%s), up %s (%s), height %.2f m\n", r["unit"].value("meters_per_unit", 0.0),
-                  r["unit"].value("from", "").c_str(), r["up"].value("axis", "").c_str(), r["up"].value("from", "").c_str(),
+    std::snprintf(line, sizeof line, "unit %g m (%s), up %s (%s), height %.2f m\n",
+                  r["unit"].value("meters_per_unit", 0.0), r["unit"].value("from", "").c_str(),
+                  r["up"].value("axis", "").c_str(), r["up"].value("from", "").c_str(),
                   r.value("height_m", 0.0));
     text += line;
   }
@@ -129,8 +141,9 @@ std::string report_text(const nlohmann::json& r) {
   list("ride_along_joints", "ride along:");
   if (r.contains("clips"))
     for (const auto& c : r["clips"]) {
-      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, curve error max %.3f mm, rms %.3f mm\n", c.value("name", "").c_str(),
-                    c.value("duration_s", 0.0), c.value("loops", false) ? " loop" : "     ", c.value("max_error_mm", 0.0),
+      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, curve error max %.3f mm, rms %.3f mm\n",
+                    c.value("name", "").c_str(), c.value("duration_s", 0.0),
+                    c.value("loops", false) ? " loop" : "     ", c.value("max_error_mm", 0.0),
                     c.value("rms_error_mm", 0.0));
       text += line;
     }

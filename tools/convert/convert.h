@@ -1,17 +1,17 @@
 // Source files → runtime asset: clean-up, units, physical body, clip fitting, report.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "import/source_scene.h"
 #include "sinew/io/asset.h"
 
 namespace sinew::convert {
 
-/// Outcome of a tools-side call: empty message means it worked; otherwise one line "FILE: what is wrong (where)".
+/// Outcome of a tools-side call: empty message means it worked; otherwise one line "FILE: what is wrong
+/// (where)".
 struct Error {
   std::string message;
   explicit operator bool() const { return !message.empty(); }
@@ -23,13 +23,15 @@ struct Error {
 Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& options, Asset& out,
                     nlohmann::json& report);
 
-/// All options with defaults and comments, as JSON with // comments (nlohmann parses it with ignore_comments).
+/// All options with defaults and comments, as JSON with // comments (nlohmann parses it with
+/// ignore_comments).
 std::string reference_options();
 
 /// The report as text for a person.
 std::string report_text(const nlohmann::json& report);
 
-/// Loads a .sinew asset or converts a source file on the fly, by magic bytes. Used by info, evaluate and render.
+/// Loads a .sinew asset or converts a source file on the fly, by magic bytes. Used by info, evaluate and
+/// render.
 Error open_any(const std::string& path, const nlohmann::json& options, Asset& out, nlohmann::json& report);
 
 }  // namespace sinew::convert

@@ -38,18 +38,30 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
   Options o;
   try {
     for (const auto& [key, value] : json.items()) {
-      if (key == "unit") o.unit = value.get<double>();
-      else if (key == "up") o.up = value.get<std::string>();
-      else if (key == "total_mass") o.total_mass = value.get<double>();
-      else if (key == "strength") o.strength = value.get<double>();
-      else if (key == "strength_margin") o.strength_margin = value.get<double>();
-      else if (key == "simulate_fingers") o.simulate_fingers = value.get<bool>();
-      else if (key == "free_base") o.free_base = value.get<bool>();
-      else if (key == "strict") o.strict = value.get<bool>();
-      else if (key == "fit_error_mm") o.fit_error_mm = value.get<double>();
-      else if (key == "fit_degree") o.fit_degree = value.get<int>();
-      else if (key == "clips") o.clips = value.get<std::vector<std::string>>();
-      else return {"unknown option '" + key + "'"};
+      if (key == "unit")
+        o.unit = value.get<double>();
+      else if (key == "up")
+        o.up = value.get<std::string>();
+      else if (key == "total_mass")
+        o.total_mass = value.get<double>();
+      else if (key == "strength")
+        o.strength = value.get<double>();
+      else if (key == "strength_margin")
+        o.strength_margin = value.get<double>();
+      else if (key == "simulate_fingers")
+        o.simulate_fingers = value.get<bool>();
+      else if (key == "free_base")
+        o.free_base = value.get<bool>();
+      else if (key == "strict")
+        o.strict = value.get<bool>();
+      else if (key == "fit_error_mm")
+        o.fit_error_mm = value.get<double>();
+      else if (key == "fit_degree")
+        o.fit_degree = value.get<int>();
+      else if (key == "clips")
+        o.clips = value.get<std::vector<std::string>>();
+      else
+        return {"unknown option '" + key + "'"};
       const bool negative = value.is_number() && value.get<double>() < 0;
       if (negative) return {"option '" + key + "' is negative"};
     }

@@ -15,8 +15,8 @@ struct Options {
   double strength = 1;           ///< scales all muscle limits
   double strength_margin = 1.5;  ///< muscles are at least this much stronger than the clips ask
   bool simulate_fingers = false;
-  bool free_base = true;         ///< URDF: the root link may move
-  bool strict = false;           ///< refuse instead of repairing
+  bool free_base = true;  ///< URDF: the root link may move
+  bool strict = false;    ///< refuse instead of repairing
   double fit_error_mm = 1;
   int fit_degree = 5;
   std::vector<std::string> clips;  ///< names to keep; empty: all

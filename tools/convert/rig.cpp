@@ -73,8 +73,10 @@ Transform<double> rigid(const Matrix& m) {
   Eigen::Matrix3d a = m.block<3, 3>(0, 0);
   if (a.determinant() < 0) a.col(0) = -a.col(0);
   for (int k = 0; k < 3; ++k)
-    if (const double length = a.col(k).norm(); length > 1e-12) a.col(k) /= length;
-    else a = Eigen::Matrix3d::Identity(), k = 3;
+    if (const double length = a.col(k).norm(); length > 1e-12)
+      a.col(k) /= length;
+    else
+      a = Eigen::Matrix3d::Identity(), k = 3;
   a.col(1) = (a.col(1) - a.col(0).dot(a.col(1)) * a.col(0)).normalized();
   a.col(2) = a.col(0).cross(a.col(1));
   return {Eigen::Quaterniond(a).normalized(), m.block<3, 1>(0, 3)};
@@ -100,7 +102,8 @@ std::vector<int> joint_nodes(const SourceScene& scene) {
   if (bones == 0) return {};
   int root = 0;
   for (int i = 0; i < count; ++i)
-    if (below[i] == bones) root = i;  // nodes come parents first: the last one that holds all bones is the lowest
+    if (below[i] == bones)
+      root = i;  // nodes come parents first: the last one that holds all bones is the lowest
   for (int i = root; i >= 0; i = scene.nodes[i].parent)
     if (scene.nodes[i].is_bone) root = i;
   std::vector<int> nodes;
@@ -121,8 +124,8 @@ double extent(const std::vector<Matrix>& world, const std::vector<int>& nodes, i
   return high - low;
 }
 
-void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const Options& options, bool skinned, Rig& rig,
-                 nlohmann::json& report) {
+void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const Options& options,
+                 bool skinned, Rig& rig, nlohmann::json& report) {
   const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
   const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
   const char* how = "option";
@@ -134,15 +137,18 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const 
   }
   report["up"] = {{"axis", std::string(1, "xyz"[rig.up])}, {"from", how}};
   const double raw = extent(world, nodes, rig.up);
-  const double widest = std::max({raw, extent(world, nodes, 0), extent(world, nodes, 1), extent(world, nodes, 2)});
+  const double widest =
+      std::max({raw, extent(world, nodes, 0), extent(world, nodes, 1), extent(world, nodes, 2)});
   if (options.unit > 0) {
     rig.unit = options.unit;
     how = "option";
-  } else if (scene.meters_per_unit > 0 && widest * scene.meters_per_unit < 5 && widest * scene.meters_per_unit > 0.05) {
+  } else if (scene.meters_per_unit > 0 && widest * scene.meters_per_unit < 5 &&
+             widest * scene.meters_per_unit > 0.05) {
     rig.unit = scene.meters_per_unit;
     how = "file";
   } else {
-    // Metre, centimetre, inch, CMU's own, decimetre, millimetre: the one that makes a person, else just that height.
+    // Metre, centimetre, inch, CMU's own, decimetre, millimetre: the one that makes a person, else just that
+    // height.
     rig.unit = raw > 1e-9 ? 1.7 / raw : 1;
     for (const double candidate : {1.0, 0.01, 0.0254, 0.056444, 0.1, 0.001})
       if (raw * candidate > 1.35 && raw * candidate < 2.1) rig.unit = candidate;
@@ -153,8 +159,9 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const 
   report["height_m"] = rig.height;
 }
 
-void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world, const Matrix& to_model,
-               const std::map<int, int>& joint_of_node, nlohmann::json& report, Rig& rig) {
+void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world,
+               const Matrix& to_model, const std::map<int, int>& joint_of_node, nlohmann::json& report,
+               Rig& rig) {
   Mesh mesh;
   mesh.name = in.name;
   mesh.material = in.material;
@@ -173,7 +180,9 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
   const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
   for (std::size_t v = 0; v < vertices; ++v) {
     auto& list = influences[v];
-    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first > b.first || (a.first == b.first && a.second < b.second); });
+    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
+      return a.first > b.first || (a.first == b.first && a.second < b.second);
+    });
     if (list.size() > 4) {
       list.resize(4);
       ++reduced;
@@ -202,7 +211,8 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
       n = n.norm() > 1e-12 ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
     }
     for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(at[k]));
-    for (int k = 0; k < 3; ++k) mesh.normals.push_back(n.allFinite() ? static_cast<float>(n[k]) : float(k == 2));
+    for (int k = 0; k < 3; ++k)
+      mesh.normals.push_back(n.allFinite() ? static_cast<float>(n[k]) : float(k == 2));
     for (std::size_t k = 0; k < 4; ++k) {
       const bool used = k < list.size();
       const int joint = used ? joint_of_node.at(in.bones[list[k].second].node) : carrier_joint;
@@ -213,19 +223,22 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
     }
   }
   const auto note = [&](int count, const char* what) {
-    if (count > 0) report["notes"].push_back("mesh '" + in.name + "': " + std::to_string(count) + " vertices " + what);
+    if (count > 0)
+      report["notes"].push_back("mesh '" + in.name + "': " + std::to_string(count) + " vertices " + what);
   };
   note(repaired, "had weights that do not sum to 1; renormalised");
   note(unweighted, "had no weights; they follow the mesh's node");
   note(reduced, "had more than four influences; the four largest stay");
   if (mesh_world.block<3, 3>(0, 0).determinant() < 0 && in.bones.empty())
-    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
+      std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
   rig.meshes.push_back(std::move(mesh));
 }
 
-/// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at rest).
-Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes, const Matrix& to_model,
-                   const Rig& rig, nlohmann::json& report) {
+/// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
+/// rest).
+Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
+                   const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
   motion.sample_rate = std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
@@ -234,14 +247,17 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
   bool scaled = false;
   for (const SourceChannel& c : clip.channels)
     for (const Eigen::Vector3d& s : c.scales) scaled = scaled || (s - c.scales.front()).norm() > 1e-3;
-  if (scaled) report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
+  if (scaled)
+    report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
   for (int f = 0; f < frames; ++f) {
     const std::vector<Matrix> world = globals(scene, &clip, f / motion.sample_rate);
     std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
     for (std::size_t j = 0; j < rig.joints.size(); ++j) {
       const int parent = rig.joints[j].parent;
-      const Transform<double> rest_local = parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
-      model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]]) : (parent < 0 ? rest_local : model[parent] * rest_local);
+      const Transform<double> rest_local =
+          parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
+      model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]])
+                               : (parent < 0 ? rest_local : model[parent] * rest_local);
       local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
       local[j].rotation.normalize();
     }
@@ -250,14 +266,16 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
   // A loop comes back to its first pose, the root's place aside.
   double turned = 0;
   for (std::size_t j = 0; j < rig.joints.size(); ++j)
-    turned = std::max(turned, motion.samples.back()[j].rotation.angularDistance(motion.samples.front()[j].rotation));
+    turned = std::max(turned,
+                      motion.samples.back()[j].rotation.angularDistance(motion.samples.front()[j].rotation));
   motion.loops = frames > 8 && turned < 0.01;
   return motion;
 }
 
 }  // namespace
 
-Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, Rig& out, nlohmann::json& report) {
+Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, Rig& out,
+                nlohmann::json& report) {
   report["notes"] = nlohmann::json::array();
   std::size_t main = scenes.size();
   for (std::size_t s = 0; s < scenes.size() && main == scenes.size(); ++s)
@@ -291,7 +309,8 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     material.texture = m.texture;
     rig.materials.push_back(std::move(material));
   }
-  for (const import::SourceMesh& mesh : scene.meshes) bake_mesh(mesh, scene, world, to_model, joint_of_node, report, rig);
+  for (const import::SourceMesh& mesh : scene.meshes)
+    bake_mesh(mesh, scene, world, to_model, joint_of_node, report, rig);
 
   std::set<std::string> taken;
   for (const SourceScene& from : scenes) {
@@ -316,10 +335,13 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
           ++matched;
         }
       if (matched == 0) return {"'" + from.name + "' shares no joint name with '" + scene.name + "'"};
-      report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " + std::to_string(rig.joints.size()) + " joints matched by name");
+      report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " +
+                                std::to_string(rig.joints.size()) + " joints matched by name");
     }
     for (const SourceClip& clip : from.clips) {
-      if (!options.clips.empty() && std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end()) continue;
+      if (!options.clips.empty() &&
+          std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end())
+        continue;
       Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";

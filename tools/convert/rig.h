@@ -1,4 +1,5 @@
-// Clean-up of a source scene: which nodes are joints, where they are in metres and Z up, rigid, at rest and over each clip.
+// Clean-up of a source scene: which nodes are joints, where they are in metres and Z up, rigid, at rest and
+// over each clip.
 #pragma once
 
 #include <string>
@@ -15,10 +16,10 @@ struct Rig {
   struct Joint {
     std::string name;
     int parent = -1;
-    int node = -1;                     ///< in the source scene
-    Transform<double> rest;            ///< model space, m
-    double skin_weight = 0;            ///< sum over vertices
-    bool control = false;              ///< steers others, is no body part
+    int node = -1;           ///< in the source scene
+    Transform<double> rest;  ///< model space, m
+    double skin_weight = 0;  ///< sum over vertices
+    bool control = false;    ///< steers others, is no body part
   };
   struct Motion {
     std::string name;
@@ -27,16 +28,17 @@ struct Rig {
     std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
   };
   std::vector<Joint> joints;
-  std::vector<Mesh> meshes;            ///< model space at rest; Mesh::joints index `joints`
+  std::vector<Mesh> meshes;  ///< model space at rest; Mesh::joints index `joints`
   std::vector<Material> materials;
   std::vector<Motion> motions;
   double unit = 1;
   int up = 1;
-  double height = 0;                   ///< m, at rest or in the first frame
+  double height = 0;  ///< m, at rest or in the first frame
 };
 
-/// Builds the rig from the scene that carries the character; more scenes add clips (joints matched by name, prefixes
-/// up to ':' or '|' ignored). `report` gains "unit", "up", "height" and "notes".
-Error build_rig(const std::vector<import::SourceScene>& scenes, const Options& options, Rig& out, nlohmann::json& report);
+/// Builds the rig from the scene that carries the character; more scenes add clips (joints matched by name,
+/// prefixes up to ':' or '|' ignored). `report` gains "unit", "up", "height" and "notes".
+Error build_rig(const std::vector<import::SourceScene>& scenes, const Options& options, Rig& out,
+                nlohmann::json& report);
 
 }  // namespace sinew::convert

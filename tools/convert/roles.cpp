@@ -10,7 +10,8 @@ namespace {
 
 enum class Side { kNone, kLeft, kRight };
 
-/// Lower case words of a name: "mixamorig:LeftForeArm" → {mixamorig, left, fore, arm}; prefixes up to ':' and '|' go.
+/// Lower case words of a name: "mixamorig:LeftForeArm" → {mixamorig, left, fore, arm}; prefixes up to ':' and
+/// '|' go.
 std::vector<std::string> words(const std::string& full) {
   const auto cut = full.find_last_of(":|");
   const std::string name = cut == std::string::npos ? full : full.substr(cut + 1);
@@ -33,7 +34,9 @@ std::vector<std::string> words(const std::string& full) {
   return out;
 }
 
-bool has(const std::vector<std::string>& list, const char* word) { return std::find(list.begin(), list.end(), word) != list.end(); }
+bool has(const std::vector<std::string>& list, const char* word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
 
 Side side_of(const std::vector<std::string>& w, const std::string& joined) {
   if (has(w, "left") || has(w, "l") || joined.rfind("left", 0) == 0) return Side::kLeft;
@@ -42,16 +45,31 @@ Side side_of(const std::vector<std::string>& w, const std::string& joined) {
 }
 
 bool contains(const std::string& text, std::initializer_list<const char*> parts) {
-  return std::any_of(parts.begin(), parts.end(), [&](const char* p) { return text.find(p) != std::string::npos; });
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const char* p) { return text.find(p) != std::string::npos; });
 }
 
-constexpr std::array<std::pair<Role, const char*>, 21> kNames{{
-    {Role::kPelvis, "pelvis"}, {Role::kSpine, "spine"}, {Role::kChest, "chest"}, {Role::kNeck, "neck"},
-    {Role::kHead, "head"}, {Role::kClavicleL, "clavicle_l"}, {Role::kClavicleR, "clavicle_r"},
-    {Role::kUpperArmL, "upperarm_l"}, {Role::kUpperArmR, "upperarm_r"}, {Role::kForearmL, "forearm_l"},
-    {Role::kForearmR, "forearm_r"}, {Role::kHandL, "hand_l"}, {Role::kHandR, "hand_r"}, {Role::kThighL, "thigh_l"},
-    {Role::kThighR, "thigh_r"}, {Role::kShinL, "shin_l"}, {Role::kShinR, "shin_r"}, {Role::kFootL, "foot_l"},
-    {Role::kFootR, "foot_r"}, {Role::kToesL, "toes_l"}, {Role::kToesR, "toes_r"}}};
+constexpr std::array<std::pair<Role, const char*>, 21> kNames{{{Role::kPelvis, "pelvis"},
+                                                               {Role::kSpine, "spine"},
+                                                               {Role::kChest, "chest"},
+                                                               {Role::kNeck, "neck"},
+                                                               {Role::kHead, "head"},
+                                                               {Role::kClavicleL, "clavicle_l"},
+                                                               {Role::kClavicleR, "clavicle_r"},
+                                                               {Role::kUpperArmL, "upperarm_l"},
+                                                               {Role::kUpperArmR, "upperarm_r"},
+                                                               {Role::kForearmL, "forearm_l"},
+                                                               {Role::kForearmR, "forearm_r"},
+                                                               {Role::kHandL, "hand_l"},
+                                                               {Role::kHandR, "hand_r"},
+                                                               {Role::kThighL, "thigh_l"},
+                                                               {Role::kThighR, "thigh_r"},
+                                                               {Role::kShinL, "shin_l"},
+                                                               {Role::kShinR, "shin_r"},
+                                                               {Role::kFootL, "foot_l"},
+                                                               {Role::kFootR, "foot_r"},
+                                                               {Role::kToesL, "toes_l"},
+                                                               {Role::kToesR, "toes_r"}}};
 
 }  // namespace
 
@@ -64,15 +82,19 @@ Role role_of_name(const std::string& name) {
   const auto sided = [&](Role left, Role right) {
     return side == Side::kLeft ? left : (side == Side::kRight ? right : Role::kNone);
   };
-  if (contains(joined, {"thumb", "index", "middle", "ring", "pinky", "finger", "twist", "end", "nub", "eye", "jaw", "hair"}))
+  if (contains(joined, {"thumb", "index", "middle", "ring", "pinky", "finger", "twist", "end", "nub", "eye",
+                        "jaw", "hair"}))
     return Role::kNone;
   if (contains(joined, {"toe", "ball"})) return sided(Role::kToesL, Role::kToesR);
   if (contains(joined, {"foot", "ankle"})) return sided(Role::kFootL, Role::kFootR);
   if (contains(joined, {"upleg", "thigh", "upperleg", "hipjoint"}) && !contains(joined, {"hipjoint"}))
     return sided(Role::kThighL, Role::kThighR);
-  if (contains(joined, {"lowerleg", "calf", "shin", "knee", "loleg"})) return sided(Role::kShinL, Role::kShinR);
-  if (side != Side::kNone && contains(joined, {"leg"})) return sided(Role::kShinL, Role::kShinR);  // Mixamo, CMU: LeftLeg
-  if (contains(joined, {"forearm", "lowerarm", "elbow", "loarm"})) return sided(Role::kForearmL, Role::kForearmR);
+  if (contains(joined, {"lowerleg", "calf", "shin", "knee", "loleg"}))
+    return sided(Role::kShinL, Role::kShinR);
+  if (side != Side::kNone && contains(joined, {"leg"}))
+    return sided(Role::kShinL, Role::kShinR);  // Mixamo, CMU: LeftLeg
+  if (contains(joined, {"forearm", "lowerarm", "elbow", "loarm"}))
+    return sided(Role::kForearmL, Role::kForearmR);
   if (contains(joined, {"hand", "wrist"})) return sided(Role::kHandL, Role::kHandR);
   if (contains(joined, {"clavicle", "collar", "shoulder"})) return sided(Role::kClavicleL, Role::kClavicleR);
   if (side != Side::kNone && contains(joined, {"arm"})) return sided(Role::kUpperArmL, Role::kUpperArmR);
@@ -88,7 +110,9 @@ bool is_control_name(const std::string& name) {
   const std::vector<std::string> w = words(name);
   std::string joined;
   for (const std::string& word : w) joined += word;
-  return has(w, "ik") || has(w, "ctrl") || has(w, "pole") || contains(joined, {"target", "control", "handslot", "slot", "heelik", "kneeik", "elbowik", "handik", "footik"});
+  return has(w, "ik") || has(w, "ctrl") || has(w, "pole") ||
+         contains(joined, {"target", "control", "handslot", "slot", "heelik", "kneeik", "elbowik", "handik",
+                           "footik"});
 }
 
 std::string role_name(Role role) {

@@ -25,7 +25,8 @@ bool repair_inertia(Mat3<double>& inertia) {
   return true;
 }
 
-void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceUrdfLink>& links, Skeleton& out) {
+void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceUrdfLink>& links,
+                Skeleton& out) {
   bool collision = false;
   for (const auto& g : link.shapes) collision = collision || g.collision;
   for (const auto& g : link.shapes)
@@ -47,7 +48,8 @@ void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceU
 
 }  // namespace
 
-Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out, nlohmann::json& report) {
+Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out,
+                 nlohmann::json& report) {
   Skeleton s;
   s.name = scene.name;
   report["notes"] = scene.notes;
@@ -70,11 +72,14 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
     joint.type = i == 0 ? (bolted ? JointType::kFixed : JointType::kFree) : link.type;
     if (link.axis.norm() > 1e-9) joint.axis = link.axis.normalized();
     if (link.type != JointType::kFixed && i > 0 && std::abs(link.axis.norm() - 1) > 1e-6)
-      note("joint '" + link.joint_name + "': axis of length " + std::to_string(link.axis.norm()) + " normalised");
+      note("joint '" + link.joint_name + "': axis of length " + std::to_string(link.axis.norm()) +
+           " normalised");
     joint.mass = link.mass;
     joint.center_of_mass = link.inertial_origin.translation;
     const Mat3<double> r = link.inertial_origin.rotation.toRotationMatrix();
-    joint.inertia = link.inertial_origin.rotation.isApprox(Quat<double>::Identity(), 0) ? link.inertia : Mat3<double>(r * link.inertia * r.transpose());
+    joint.inertia = link.inertial_origin.rotation.isApprox(Quat<double>::Identity(), 0)
+                        ? link.inertia
+                        : Mat3<double>(r * link.inertia * r.transpose());
     joint.inertia = 0.5 * (joint.inertia + joint.inertia.transpose()).eval();
     if (link.mass > 0 && repair_inertia(joint.inertia)) {
       if (options.strict) return {"link '" + link.name + "' has an inertia that no body can have"};
@@ -92,7 +97,9 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
     }
     if (link.has_limits && joint.type != JointType::kFixed && (link.lower > 0 || link.upper < 0))
       note("joint '" + link.joint_name + "': zero is outside its limits");
-    if (!link.mimic_joint.empty()) note("joint '" + link.joint_name + "' mimics '" + link.mimic_joint + "'; simulated as a joint of its own");
+    if (!link.mimic_joint.empty())
+      note("joint '" + link.joint_name + "' mimics '" + link.mimic_joint +
+           "'; simulated as a joint of its own");
     for (int k = 0; k < dof_count(joint.type); ++k) {
       DofLimits& dof = joint.dofs[k];
       dof.dry_friction = link.friction;
@@ -103,7 +110,8 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
       }
       dof.torque_minus = dof.torque_plus = link.effort > 0 ? link.effort : 20 * subtree[i] * 9.81 * 0.05;
     }
-    if (i > 0 && dof_count(joint.type) > 0 && link.effort <= 0) note("joint '" + link.joint_name + "': no effort limit; taken from the mass it moves");
+    if (i > 0 && dof_count(joint.type) > 0 && link.effort <= 0)
+      note("joint '" + link.joint_name + "': no effort limit; taken from the mass it moves");
     add_shapes(link, i, scene.links, s);
     s.joints.push_back(joint);
   }

@@ -7,6 +7,7 @@
 namespace sinew::convert {
 
 /// Joint names are link names, `Joint::source_joint` the URDF joint. Inertials are kept to the last bit.
-Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out, nlohmann::json& report);
+Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out,
+                 nlohmann::json& report);
 
 }  // namespace sinew::convert

@@ -87,8 +87,12 @@ Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
   return out;
 }
 
-Eigen::Quaterniond quaternion_of(const aiQuaternion& q) { return {double(q.w), double(q.x), double(q.y), double(q.z)}; }
-Eigen::Vector3d vector_of(const aiVector3D& v) { return {double(v.x), double(v.y), double(v.z)}; }
+Eigen::Quaterniond quaternion_of(const aiQuaternion& q) {
+  return {double(q.w), double(q.x), double(q.y), double(q.z)};
+}
+Eigen::Vector3d vector_of(const aiVector3D& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
 
 /// Value of a keyed curve at t: linear (positions, scales) or the shorter way round (rotations).
 template <class V>
@@ -124,7 +128,8 @@ Eigen::Matrix4d compose(const Eigen::Vector3d& t, const Eigen::Quaterniond& r, c
 
 class SceneBuilder {
  public:
-  SceneBuilder(const aiScene& in, const std::string& format, const ClosedWorld& files, const ReadLimits& limits)
+  SceneBuilder(const aiScene& in, const std::string& format, const ClosedWorld& files,
+               const ReadLimits& limits)
       : in_(in), format_(format), files_(files), limits_(limits) {}
 
   SourceScene build() {
@@ -173,7 +178,8 @@ class SceneBuilder {
       source_.push_back(open.node);
       by_name_[node.original_name].push_back(index);
       for (unsigned m = 0; m < open.node->mNumMeshes; ++m) mesh_node_[open.node->mMeshes[m]] = index;
-      for (unsigned c = open.node->mNumChildren; c-- > 0;) stack.push_back({open.node->mChildren[c], index, open.depth + 1});
+      for (unsigned c = open.node->mNumChildren; c-- > 0;)
+        stack.push_back({open.node->mChildren[c], index, open.depth + 1});
     }
     if (repeated_) out_.notes.push_back(std::to_string(repeated_) + " nodes shared a name; renamed");
   }
@@ -184,7 +190,8 @@ class SceneBuilder {
     if (found == by_name_.end()) return -1;
     int best = found->second.front();
     for (const int i : found->second)
-      if (source_[i]->mNumMeshes == 0 && (source_[best]->mNumMeshes > 0 || source_[i]->mNumChildren > source_[best]->mNumChildren))
+      if (source_[i]->mNumMeshes == 0 &&
+          (source_[best]->mNumMeshes > 0 || source_[i]->mNumChildren > source_[best]->mNumChildren))
         best = i;
     return best;
   }
@@ -199,8 +206,10 @@ class SceneBuilder {
     } else if (out_.format == "fbx" && in_.mMetaData) {
       double unit = 0;
       float unit_float = 0;
-      if (in_.mMetaData->Get("UnitScaleFactor", unit)) out_.meters_per_unit = unit / 100;
-      else if (in_.mMetaData->Get("UnitScaleFactor", unit_float)) out_.meters_per_unit = double(unit_float) / 100;
+      if (in_.mMetaData->Get("UnitScaleFactor", unit))
+        out_.meters_per_unit = unit / 100;
+      else if (in_.mMetaData->Get("UnitScaleFactor", unit_float))
+        out_.meters_per_unit = double(unit_float) / 100;
       std::int32_t up = -1;
       if (in_.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) out_.up_axis = up;
     }
@@ -227,13 +236,15 @@ class SceneBuilder {
       aiString name;
       if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = name.C_Str();
       aiColor4D color;
-      if (m.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS || m.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)
+      if (m.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
+          m.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)
         material.base_color = {color.r, color.g, color.b, color.a};
       aiString path;
       if (m.GetTexture(aiTextureType_BASE_COLOR, 0, &path) == aiReturn_SUCCESS ||
           m.GetTexture(aiTextureType_DIFFUSE, 0, &path) == aiReturn_SUCCESS) {
         material.texture = texture_bytes(path.C_Str());
-        if (material.texture.empty()) out_.notes.push_back(std::string("texture '") + path.C_Str() + "' not found; left out");
+        if (material.texture.empty())
+          out_.notes.push_back(std::string("texture '") + path.C_Str() + "' not found; left out");
       }
       out_.materials.push_back(std::move(material));
     }
@@ -248,7 +259,8 @@ class SceneBuilder {
     for (unsigned v = 0; v < in.mNumVertices; ++v) {
       mesh.positions.push_back({in.mVertices[v].x, in.mVertices[v].y, in.mVertices[v].z});
       if (in.mNormals) mesh.normals.push_back({in.mNormals[v].x, in.mNormals[v].y, in.mNormals[v].z});
-      if (in.mTextureCoords[0]) mesh.uvs.push_back({in.mTextureCoords[0][v].x, 1 - in.mTextureCoords[0][v].y});
+      if (in.mTextureCoords[0])
+        mesh.uvs.push_back({in.mTextureCoords[0][v].x, 1 - in.mTextureCoords[0][v].y});
     }
     for (unsigned f = 0; f < in.mNumFaces; ++f)
       if (in.mFaces[f].mNumIndices == 3)
@@ -257,7 +269,9 @@ class SceneBuilder {
       const aiBone& bone = *in.mBones[b];
       SourceMesh::Bone made;
       made.node = node_named(bone.mName);
-      if (made.node < 0) throw std::runtime_error(std::string("skin names a bone '") + bone.mName.C_Str() + "' that is no node");
+      if (made.node < 0)
+        throw std::runtime_error(std::string("skin names a bone '") + bone.mName.C_Str() +
+                                 "' that is no node");
       made.inverse_bind = matrix_of(bone.mOffsetMatrix);
       for (unsigned w = 0; w < bone.mNumWeights; ++w)
         made.weights.emplace_back(bone.mWeights[w].mVertexId, bone.mWeights[w].mWeight);
@@ -278,10 +292,12 @@ class SceneBuilder {
       SourceChannel channel;
       channel.node = node_named(source.mNodeName);
       if (channel.node < 0) {
-        out_.notes.push_back("clip '" + clip.name + "' moves '" + source.mNodeName.C_Str() + "', which does not exist; left out");
+        out_.notes.push_back("clip '" + clip.name + "' moves '" + source.mNodeName.C_Str() +
+                             "', which does not exist; left out");
         continue;
       }
-      const auto keys = [&](auto* from, unsigned count, std::vector<double>& times, auto& values, auto convert) {
+      const auto keys = [&](auto* from, unsigned count, std::vector<double>& times, auto& values,
+                            auto convert) {
         for (unsigned k = 0; k < count; ++k) {
           const double t = from[k].mTime / ticks;
           if (!times.empty() && t <= times.back()) continue;  // times must rise; the first of equals stays
@@ -292,8 +308,10 @@ class SceneBuilder {
           if (times.size() > 1) intervals.push_back(times.back() - times[times.size() - 2]);
         }
       };
-      keys(source.mPositionKeys, source.mNumPositionKeys, channel.position_times, channel.positions, vector_of);
-      keys(source.mRotationKeys, source.mNumRotationKeys, channel.rotation_times, channel.rotations, quaternion_of);
+      keys(source.mPositionKeys, source.mNumPositionKeys, channel.position_times, channel.positions,
+           vector_of);
+      keys(source.mRotationKeys, source.mNumRotationKeys, channel.rotation_times, channel.rotations,
+           quaternion_of);
       keys(source.mScalingKeys, source.mNumScalingKeys, channel.scale_times, channel.scales, vector_of);
       clip.channels.push_back(std::move(channel));
     }
@@ -301,10 +319,13 @@ class SceneBuilder {
     for (SourceChannel& c : clip.channels)  // a first key that comes late is a gap, not a pose
       for (auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
         for (double& t : *times) t -= first;
-    if (first > 1e-6) out_.notes.push_back("clip '" + clip.name + "' begins at " + std::to_string(first) + " s; moved to 0");
+    if (first > 1e-6)
+      out_.notes.push_back("clip '" + clip.name + "' begins at " + std::to_string(first) + " s; moved to 0");
     clip.duration = last - first;
     if (!intervals.empty()) {
-      std::nth_element(intervals.begin(), intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2), intervals.end());
+      std::nth_element(intervals.begin(),
+                       intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2),
+                       intervals.end());
       const double median = intervals[intervals.size() / 2];
       if (median > 0) clip.key_rate = 1 / median;
     }
@@ -313,7 +334,8 @@ class SceneBuilder {
 
   static bool is_pivot(const SourceNode& n) { return n.original_name.find(kPivot) != std::string::npos; }
 
-  /// FBX pivots come as helper nodes above their joint. They are multiplied into it, animated ones key by key.
+  /// FBX pivots come as helper nodes above their joint. They are multiplied into it, animated ones key by
+  /// key.
   void fold_pivots() {
     const int count = static_cast<int>(out_.nodes.size());
     std::vector<std::vector<int>> chain(count);  // of a real node: its pivots from the top, then itself
@@ -322,7 +344,8 @@ class SceneBuilder {
       if (is_pivot(out_.nodes[i])) continue;
       std::vector<int>& c = chain[i];
       c.push_back(i);
-      for (int p = out_.nodes[i].parent; p >= 0 && is_pivot(out_.nodes[p]); p = out_.nodes[p].parent) c.insert(c.begin(), p);
+      for (int p = out_.nodes[i].parent; p >= 0 && is_pivot(out_.nodes[p]); p = out_.nodes[p].parent)
+        c.insert(c.begin(), p);
       folded += static_cast<int>(c.size()) - 1;
     }
     if (folded == 0) return;
@@ -334,7 +357,8 @@ class SceneBuilder {
         std::set<double> times;
         for (const int n : chain[i])
           if (const SourceChannel* c = of_node[n])
-            for (const auto* t : {&c->position_times, &c->rotation_times, &c->scale_times}) times.insert(t->begin(), t->end());
+            for (const auto* t : {&c->position_times, &c->rotation_times, &c->scale_times})
+              times.insert(t->begin(), t->end());
         if (times.empty()) continue;
         SourceChannel channel;
         channel.node = i;
@@ -391,10 +415,12 @@ class SceneBuilder {
   /// Without a skin, what moves is a joint; in BVH every node but the end sites is one.
   void mark_bones() {
     if (out_.format == "bvh") {
-      for (SourceNode& n : out_.nodes) n.is_bone = n.original_name.find("EndSite") == std::string::npos && n.parent >= -1;
+      for (SourceNode& n : out_.nodes)
+        n.is_bone = n.original_name.find("EndSite") == std::string::npos && n.parent >= -1;
       return;
     }
-    const bool skinned = std::any_of(out_.nodes.begin(), out_.nodes.end(), [](const SourceNode& n) { return n.is_bone; });
+    const bool skinned =
+        std::any_of(out_.nodes.begin(), out_.nodes.end(), [](const SourceNode& n) { return n.is_bone; });
     if (skinned) return;
     for (const SourceClip& clip : out_.clips)
       for (const SourceChannel& c : clip.channels) out_.nodes[c.node].is_bone = true;
@@ -418,9 +444,9 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
     const aiImporterDesc* info = importer.GetImporterInfo(i);
     const std::string name = info ? info->mName : "";
     const bool wanted = (extension == "gltf" || extension == "glb") ? name.rfind("glTF2", 0) == 0
-                        : extension == "fbx"                       ? name.find("FBX") != std::string::npos
-                        : extension == "bvh"                       ? name.rfind("BVH", 0) == 0
-                                                                   : name.rfind("Collada", 0) == 0;
+                        : extension == "fbx"                        ? name.find("FBX") != std::string::npos
+                        : extension == "bvh"                        ? name.rfind("BVH", 0) == 0
+                                                                    : name.rfind("Collada", 0) == 0;
     if (!wanted) others.push_back(importer.GetImporter(i));
   }
   for (Assimp::BaseImporter* other : others) importer.UnregisterLoader(other);
@@ -428,21 +454,23 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
 
 }  // namespace
 
-SourceScene read_with_assimp(const std::string& content, const std::string& format, const SideFiles& side_files,
-                             const ReadLimits& limits) {
+SourceScene read_with_assimp(const std::string& content, const std::string& format,
+                             const SideFiles& side_files, const ReadLimits& limits) {
   const std::string name = "source." + format;
   Assimp::Importer importer;
   keep_only(importer, format);
   auto files = std::make_unique<ClosedWorld>(name, content, side_files, limits.max_file_bytes);
   const ClosedWorld& world = *files;
   importer.SetIOHandler(files.release());
-  // Stick figures only for BVH, whose scenes would not pass validation without a mesh; they are dropped again.
+  // Stick figures only for BVH, whose scenes would not pass validation without a mesh; they are dropped
+  // again.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, format != "bvh");
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   unsigned steps = aiProcess_ValidateDataStructure;
   const aiScene* scene = importer.ReadFile(name, steps);
-  if (scene && scene->mNumMeshes > 0) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+  if (scene && scene->mNumMeshes > 0)
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
   if (!scene) throw std::runtime_error(importer.GetErrorString());
   if (!scene->mRootNode) throw std::runtime_error("it has no nodes");
   return SceneBuilder(*scene, format, world, limits).build();

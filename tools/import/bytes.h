@@ -1,4 +1,5 @@
-// Flat byte stream between the sandboxed reader and its parent. The child is not trusted: reading checks every length.
+// Flat byte stream between the sandboxed reader and its parent. The child is not trusted: reading checks
+// every length.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +62,9 @@ class ByteReader {
     return true;
   }
   /// A count of elements of at least `smallest` bytes each.
-  bool count(std::uint64_t& n, std::size_t smallest) { return pod(n) && n <= (data_.size() - at_) / smallest; }
+  bool count(std::uint64_t& n, std::size_t smallest) {
+    return pod(n) && n <= (data_.size() - at_) / smallest;
+  }
   bool done() const { return at_ == data_.size(); }
 
  private:

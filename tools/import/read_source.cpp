@@ -27,7 +27,8 @@ SideFiles open_side_files(const std::filesystem::path& source, std::uint64_t mos
   SideFiles files;
   std::error_code ignored;
   const auto directory = source.has_parent_path() ? source.parent_path() : std::filesystem::path(".");
-  for (std::filesystem::recursive_directory_iterator it(directory, ignored), end; it != end; it.increment(ignored)) {
+  for (std::filesystem::recursive_directory_iterator it(directory, ignored), end; it != end;
+       it.increment(ignored)) {
     if (ignored || static_cast<int>(files.size()) >= kMaxSideFiles) break;
     if (it.depth() >= 1) it.disable_recursion_pending();
     std::string extension = it->path().extension().string();
@@ -44,11 +45,13 @@ SideFiles open_side_files(const std::filesystem::path& source, std::uint64_t mos
 
 std::string read_descriptor(int descriptor, std::uint64_t most) {
   struct stat info {};
-  if (fstat(descriptor, &info) != 0 || std::uint64_t(info.st_size) > most) throw std::runtime_error("a file it needs is too large");
+  if (fstat(descriptor, &info) != 0 || std::uint64_t(info.st_size) > most)
+    throw std::runtime_error("a file it needs is too large");
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t have = 0;
   while (have < content.size()) {
-    const ssize_t n = pread(descriptor, content.data() + have, content.size() - have, static_cast<off_t>(have));
+    const ssize_t n =
+        pread(descriptor, content.data() + have, content.size() - have, static_cast<off_t>(have));
     if (n <= 0) throw std::runtime_error("a file it needs cannot be read");
     have += static_cast<std::size_t>(n);
   }
@@ -73,17 +76,21 @@ void check_shape(const std::string& content, const std::string& format, const Re
   if (format == "bvh") {
     int depth = 0, joints = 0;
     for (std::size_t at = 0; at < content.size(); ++at) {
-      if (content[at] == '{' && ++depth > limits.max_depth) throw std::runtime_error("joints are nested more than " + std::to_string(limits.max_depth) + " deep");
+      if (content[at] == '{' && ++depth > limits.max_depth)
+        throw std::runtime_error("joints are nested more than " + std::to_string(limits.max_depth) + " deep");
       if (content[at] == '}') --depth;
-      if (content.compare(at, 5, "JOINT") == 0 && ++joints > limits.max_nodes) throw std::runtime_error("too many joints");
+      if (content.compare(at, 5, "JOINT") == 0 && ++joints > limits.max_nodes)
+        throw std::runtime_error("too many joints");
       if (content.compare(at, 6, "MOTION") == 0) break;
     }
     const std::size_t frames = content.find("Frames:");
     if (frames == std::string::npos) throw std::runtime_error("it has no MOTION section with frames");
     const double count = std::strtod(content.c_str() + frames + 7, nullptr);
-    if (!(count >= 1) || count > double(content.size())) throw std::runtime_error("its number of frames is impossible");
+    if (!(count >= 1) || count > double(content.size()))
+      throw std::runtime_error("its number of frames is impossible");
     const std::size_t time = content.find("Frame Time:");
-    if (time == std::string::npos || !(std::strtod(content.c_str() + time + 11, nullptr) > 0)) throw std::runtime_error("its frame time is not positive");
+    if (time == std::string::npos || !(std::strtod(content.c_str() + time + 11, nullptr) > 0))
+      throw std::runtime_error("its frame time is not positive");
   } else if (format == "gltf") {
     int depth = 0;
     bool quoted = false;
@@ -109,7 +116,8 @@ void check_shape(const std::string& content, const std::string& format, const Re
       } else if (content[at + 1] != '!' && content[at + 1] != '?') {
         const std::size_t end = content.find('>', at);
         if (end == std::string::npos) break;
-        if (content[end - 1] != '/' && ++depth > kMaxTextNesting) throw std::runtime_error("its XML is nested too deeply");
+        if (content[end - 1] != '/' && ++depth > kMaxTextNesting)
+          throw std::runtime_error("its XML is nested too deeply");
       }
     }
   }
@@ -125,7 +133,8 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
   std::string content;
   try {
     if (fstat(file, &info) != 0 || !S_ISREG(info.st_mode)) throw std::runtime_error("not a regular file");
-    if (std::uint64_t(info.st_size) > limits.max_file_bytes) throw std::runtime_error("larger than " + std::to_string(limits.max_file_bytes >> 20) + " MiB");
+    if (std::uint64_t(info.st_size) > limits.max_file_bytes)
+      throw std::runtime_error("larger than " + std::to_string(limits.max_file_bytes >> 20) + " MiB");
     content = read_descriptor(file, limits.max_file_bytes);
   } catch (const std::exception& e) {
     error = e.what();
@@ -138,13 +147,15 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
     return false;
   }
   SideFiles side;
-  if (format == "gltf" || format == "fbx" || format == "dae") side = open_side_files(path, limits.max_file_bytes);
+  if (format == "gltf" || format == "fbx" || format == "dae")
+    side = open_side_files(path, limits.max_file_bytes);
   std::string answer;
   const bool ran = run_sandboxed(
       limits,
       [&] {
         check_shape(content, format, limits);
-        return to_bytes(format == "urdf" ? read_urdf(content, limits) : read_with_assimp(content, format, side, limits));
+        return to_bytes(format == "urdf" ? read_urdf(content, limits)
+                                         : read_with_assimp(content, format, side, limits));
       },
       answer, error);
   for (const auto& [name, descriptor] : side) ::close(descriptor);

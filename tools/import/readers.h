@@ -17,8 +17,8 @@ std::string detect_format(const std::string& content);
 /// Cheap first look: nesting, sizes. Throws when the content would only waste the reader's time.
 void check_shape(const std::string& content, const std::string& format, const ReadLimits& limits);
 
-SourceScene read_with_assimp(const std::string& content, const std::string& format, const SideFiles& side_files,
-                             const ReadLimits& limits);
+SourceScene read_with_assimp(const std::string& content, const std::string& format,
+                             const SideFiles& side_files, const ReadLimits& limits);
 SourceScene read_urdf(const std::string& content, const ReadLimits& limits);
 
 /// Whole content of an open file, from its beginning.

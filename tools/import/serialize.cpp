@@ -77,25 +77,28 @@ bool quaternions(Io& io, V& list) {
 }
 
 const auto node_io = [](auto& io, auto& n) {
-  return io.text(n.name) && io.text(n.original_name) && io.pod(n.parent) && matrix(io, n.local) && io.pod(n.is_bone);
+  return io.text(n.name) && io.text(n.original_name) && io.pod(n.parent) && matrix(io, n.local) &&
+         io.pod(n.is_bone);
 };
 
 const auto bone_io = [](auto& io, auto& b) {
-  return io.pod(b.node) && matrix(io, b.inverse_bind) && io.list(b.weights, [](auto& i, auto& w) {
-    return i.pod(w.first) && i.pod(w.second);
-  });
+  return io.pod(b.node) && matrix(io, b.inverse_bind) &&
+         io.list(b.weights, [](auto& i, auto& w) { return i.pod(w.first) && i.pod(w.second); });
 };
 
 const auto mesh_io = [](auto& io, auto& m) {
-  return io.text(m.name) && io.pod(m.node) && io.array(m.positions) && io.array(m.normals) && io.array(m.uvs) &&
-         io.array(m.indices) && io.list(m.bones, bone_io) && io.pod(m.material);
+  return io.text(m.name) && io.pod(m.node) && io.array(m.positions) && io.array(m.normals) &&
+         io.array(m.uvs) && io.array(m.indices) && io.list(m.bones, bone_io) && io.pod(m.material);
 };
 
-const auto material_io = [](auto& io, auto& m) { return io.text(m.name) && io.pod(m.base_color) && io.array(m.texture); };
+const auto material_io = [](auto& io, auto& m) {
+  return io.text(m.name) && io.pod(m.base_color) && io.array(m.texture);
+};
 
 const auto channel_io = [](auto& io, auto& c) {
-  return io.pod(c.node) && io.array(c.position_times) && io.array(c.rotation_times) && io.array(c.scale_times) &&
-         vectors(io, c.positions) && quaternions(io, c.rotations) && vectors(io, c.scales);
+  return io.pod(c.node) && io.array(c.position_times) && io.array(c.rotation_times) &&
+         io.array(c.scale_times) && vectors(io, c.positions) && quaternions(io, c.rotations) &&
+         vectors(io, c.scales);
 };
 
 const auto clip_io = [](auto& io, auto& c) {
@@ -103,12 +106,12 @@ const auto clip_io = [](auto& io, auto& c) {
 };
 
 const auto link_io = [](auto& io, auto& l) {
-  return io.text(l.name) && io.text(l.joint_name) && io.pod(l.parent) && io.pod(l.type) && transform(io, l.origin) &&
-         matrix(io, l.axis) && io.pod(l.has_inertial) && io.pod(l.mass) && transform(io, l.inertial_origin) &&
-         matrix(io, l.inertia) && io.pod(l.has_limits) && io.pod(l.lower) && io.pod(l.upper) && io.pod(l.effort) &&
-         io.pod(l.velocity) && io.pod(l.damping) && io.pod(l.friction) && io.text(l.mimic_joint) &&
-         io.pod(l.mimic_multiplier) && io.pod(l.mimic_offset) && io.pod(l.mesh_count) &&
-         io.list(l.shapes, [](auto& i, auto& g) {
+  return io.text(l.name) && io.text(l.joint_name) && io.pod(l.parent) && io.pod(l.type) &&
+         transform(io, l.origin) && matrix(io, l.axis) && io.pod(l.has_inertial) && io.pod(l.mass) &&
+         transform(io, l.inertial_origin) && matrix(io, l.inertia) && io.pod(l.has_limits) &&
+         io.pod(l.lower) && io.pod(l.upper) && io.pod(l.effort) && io.pod(l.velocity) && io.pod(l.damping) &&
+         io.pod(l.friction) && io.text(l.mimic_joint) && io.pod(l.mimic_multiplier) &&
+         io.pod(l.mimic_offset) && io.pod(l.mesh_count) && io.list(l.shapes, [](auto& i, auto& g) {
            return i.pod(g.shape) && transform(i, g.origin) && matrix(i, g.size) && i.pod(g.collision);
          });
 };
@@ -137,18 +140,22 @@ std::string fault(const SourceScene& s) {
     if (m.indices.size() % 3 != 0) return "mesh '" + m.name + "' is not made of triangles";
     for (const std::uint32_t i : m.indices)
       if (i >= m.positions.size()) return "mesh '" + m.name + "' has an index out of range";
-    if ((!m.normals.empty() && m.normals.size() != m.positions.size()) || (!m.uvs.empty() && m.uvs.size() != m.positions.size()))
+    if ((!m.normals.empty() && m.normals.size() != m.positions.size()) ||
+        (!m.uvs.empty() && m.uvs.size() != m.positions.size()))
       return "mesh '" + m.name + "' has arrays of different length";
     for (const auto& b : m.bones) {
       if (b.node < 0 || b.node >= nodes) return "mesh '" + m.name + "' has a bone that is no node";
       if (!b.inverse_bind.allFinite()) return "mesh '" + m.name + "' has a bind matrix that is not finite";
       for (const auto& [vertex, weight] : b.weights)
-        if (vertex >= m.positions.size() || !std::isfinite(weight)) return "mesh '" + m.name + "' has a bad weight";
+        if (vertex >= m.positions.size() || !std::isfinite(weight))
+          return "mesh '" + m.name + "' has a bad weight";
     }
-    if (m.material < -1 || m.material >= static_cast<int>(s.materials.size())) return "mesh '" + m.name + "' has no such material";
+    if (m.material < -1 || m.material >= static_cast<int>(s.materials.size()))
+      return "mesh '" + m.name + "' has no such material";
   }
   for (const SourceClip& clip : s.clips) {
-    if (!std::isfinite(clip.duration) || clip.duration < 0) return "clip '" + clip.name + "' has no meaningful duration";
+    if (!std::isfinite(clip.duration) || clip.duration < 0)
+      return "clip '" + clip.name + "' has no meaningful duration";
     for (const SourceChannel& c : clip.channels) {
       if (c.node < 0 || c.node >= nodes) return "clip '" + clip.name + "' moves a node that does not exist";
       const std::string where = "clip '" + clip.name + "', node '" + s.nodes[c.node].name + "': ";

@@ -1,5 +1,6 @@
-// What a reader found in a source file, before anything is decided about it: nodes, meshes, clips as they stand in the
-// file, in the file's own unit and axes. Produced by the sandboxed child (read_source), consumed by tools/convert.
+// What a reader found in a source file, before anything is decided about it: nodes, meshes, clips as they
+// stand in the file, in the file's own unit and axes. Produced by the sandboxed child (read_source), consumed
+// by tools/convert.
 #pragma once
 
 #include <array>
@@ -13,19 +14,20 @@
 namespace sinew::import {
 
 struct SourceNode {
-  std::string name;                       ///< unique within the scene (made so; see `original_name`)
-  std::string original_name;              ///< as in the file, perhaps empty or repeated
-  int parent = -1;                        ///< parents first
-  Eigen::Matrix4d local = Eigen::Matrix4d::Identity();  ///< child → parent, column vectors; may hold scale or mirror
-  bool is_bone = false;                   ///< named by a skin, or a joint of the format itself
+  std::string name;           ///< unique within the scene (made so; see `original_name`)
+  std::string original_name;  ///< as in the file, perhaps empty or repeated
+  int parent = -1;            ///< parents first
+  Eigen::Matrix4d local =
+      Eigen::Matrix4d::Identity();  ///< child → parent, column vectors; may hold scale or mirror
+  bool is_bone = false;             ///< named by a skin, or a joint of the format itself
 };
 
 struct SourceMesh {
   std::string name;
-  int node = -1;                                      ///< node that carries it
+  int node = -1;  ///< node that carries it
   std::vector<std::array<float, 3>> positions, normals;
   std::vector<std::array<float, 2>> uvs;
-  std::vector<std::uint32_t> indices;                 ///< triangles
+  std::vector<std::uint32_t> indices;  ///< triangles
   struct Bone {
     int node = -1;
     Eigen::Matrix4d inverse_bind = Eigen::Matrix4d::Identity();  ///< mesh space → bone space
@@ -60,8 +62,8 @@ struct SourceClip {
 struct SourceUrdfLink {
   std::string name, joint_name;
   int parent = -1;
-  JointType type = JointType::kFixed;   ///< "floating" → kFree, "continuous" → kRevolute without limits
-  Transform<double> origin;             ///< joint frame → parent link
+  JointType type = JointType::kFixed;  ///< "floating" → kFree, "continuous" → kRevolute without limits
+  Transform<double> origin;            ///< joint frame → parent link
   Vec3<double> axis = Vec3<double>::UnitX();
   bool has_inertial = false;
   double mass = 0;
@@ -82,8 +84,8 @@ struct SourceUrdfLink {
 };
 
 struct SourceScene {
-  std::string format;  ///< "gltf", "fbx", "bvh", "collada", "urdf"
-  std::string name;    ///< from the file, or its stem
+  std::string format;          ///< "gltf", "fbx", "bvh", "collada", "urdf"
+  std::string name;            ///< from the file, or its stem
   double meters_per_unit = 0;  ///< 0: the file does not say
   int up_axis = -1;            ///< 0 X, 1 Y, 2 Z; -1: the file does not say
   std::vector<SourceNode> nodes;
@@ -103,9 +105,9 @@ struct ReadLimits {
   int max_depth = 1000;
 };
 
-/// Reads one file in a child process (fork, rlimits, no_new_privs, seccomp allow-list). Whatever happens there comes
-/// back as one line in `error` without the file name ("not a glTF, FBX, BVH, COLLADA or URDF file"). Returns false
-/// then and leaves `out` as it was.
+/// Reads one file in a child process (fork, rlimits, no_new_privs, seccomp allow-list). Whatever happens
+/// there comes back as one line in `error` without the file name ("not a glTF, FBX, BVH, COLLADA or URDF
+/// file"). Returns false then and leaves `out` as it was.
 bool read_source(const std::string& path, const ReadLimits& limits, SourceScene& out, std::string& error);
 
 }  // namespace sinew::import

@@ -46,7 +46,8 @@ JointType type_of(const urdf::Joint& joint) {
   }
 }
 
-void add_shape(const urdf::GeometrySharedPtr& geometry, const urdf::Pose& origin, bool collision, SourceUrdfLink& link) {
+void add_shape(const urdf::GeometrySharedPtr& geometry, const urdf::Pose& origin, bool collision,
+               SourceUrdfLink& link) {
   if (!geometry) return;
   SourceUrdfLink::Geometry shape;
   shape.origin = transform_of(origin);
@@ -65,7 +66,8 @@ void add_shape(const urdf::GeometrySharedPtr& geometry, const urdf::Pose& origin
     case urdf::Geometry::CYLINDER: {
       const auto cylinder = std::dynamic_pointer_cast<urdf::Cylinder>(geometry);
       shape.shape = Shape::kCapsule;
-      shape.size = {cylinder->radius, cylinder->radius, std::max(0.0, cylinder->length / 2 - cylinder->radius)};
+      shape.size = {cylinder->radius, cylinder->radius,
+                    std::max(0.0, cylinder->length / 2 - cylinder->radius)};
       break;
     }
     case urdf::Geometry::MESH:
@@ -86,7 +88,8 @@ void read_joint(const urdf::Joint& joint, SourceUrdfLink& link) {
     link.upper = joint.limits->upper;
     link.effort = joint.limits->effort;
     link.velocity = joint.limits->velocity;
-    if (link.has_limits && link.lower > link.upper) throw std::runtime_error("joint '" + joint.name + "' has its lower limit above its upper");
+    if (link.has_limits && link.lower > link.upper)
+      throw std::runtime_error("joint '" + joint.name + "' has its lower limit above its upper");
   }
   if (joint.dynamics) {
     link.damping = joint.dynamics->damping;
@@ -107,19 +110,22 @@ void read_inertial(const urdf::Inertial& inertial, SourceUrdfLink& link) {
   link.mass = inertial.mass;
   if (!(link.mass >= 0)) throw std::runtime_error("link '" + link.name + "' has a negative mass");
   link.inertial_origin = transform_of(inertial.origin);
-  link.inertia << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz, inertial.ixz,
-      inertial.iyz, inertial.izz;
+  link.inertia << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
+      inertial.ixz, inertial.iyz, inertial.izz;
 }
 
 }  // namespace
 
 SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
-  if (content.find("xacro:") != std::string::npos) throw std::runtime_error("it still holds xacro macros; expand them first");
+  if (content.find("xacro:") != std::string::npos)
+    throw std::runtime_error("it still holds xacro macros; expand them first");
   Collector collector;
   console_bridge::useOutputHandler(&collector);
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(content);
   console_bridge::restorePreviousOutputHandler();
-  if (!model) throw std::runtime_error(collector.messages.empty() ? "urdfdom cannot read it" : collector.messages.front());
+  if (!model)
+    throw std::runtime_error(collector.messages.empty() ? "urdfdom cannot read it"
+                                                        : collector.messages.front());
   SourceScene scene;
   scene.format = "urdf";
   scene.name = model->getName();
@@ -139,8 +145,10 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
   while (!stack.empty()) {
     const Open open = stack.back();
     stack.pop_back();
-    if (!seen.insert(open.link->name).second) throw std::runtime_error("link '" + open.link->name + "' is its own ancestor, or has two parents");
-    if (open.depth > limits.max_depth || static_cast<int>(scene.links.size()) > limits.max_nodes) throw std::runtime_error("too many links");
+    if (!seen.insert(open.link->name).second)
+      throw std::runtime_error("link '" + open.link->name + "' is its own ancestor, or has two parents");
+    if (open.depth > limits.max_depth || static_cast<int>(scene.links.size()) > limits.max_nodes)
+      throw std::runtime_error("too many links");
     SourceUrdfLink link;
     link.name = open.link->name;
     link.parent = open.parent;
@@ -153,10 +161,12 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
     for (auto child = open.link->child_links.rbegin(); child != open.link->child_links.rend(); ++child)
       stack.push_back({*child, index, open.depth + 1});
   }
-  if (scene.links.size() != model->links_.size()) throw std::runtime_error("some links hang in a loop and not on the root");
+  if (scene.links.size() != model->links_.size())
+    throw std::runtime_error("some links hang in a loop and not on the root");
   for (const SourceUrdfLink& l : scene.links)
     if (!l.mimic_joint.empty() && !model->getJoint(l.mimic_joint))
-      throw std::runtime_error("joint '" + l.joint_name + "' mimics '" + l.mimic_joint + "', which does not exist");
+      throw std::runtime_error("joint '" + l.joint_name + "' mimics '" + l.mimic_joint +
+                               "', which does not exist");
   return scene;
 }
 

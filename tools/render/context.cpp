@@ -6,19 +6,29 @@
 namespace sinew::render {
 
 std::unique_ptr<Context> Context::create(std::string& error) {
-  const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                            OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+  const int attributes[] = {OSMESA_FORMAT,
+                            OSMESA_RGBA,
+                            OSMESA_DEPTH_BITS,
+                            24,
+                            OSMESA_PROFILE,
+                            OSMESA_CORE_PROFILE,
+                            OSMESA_CONTEXT_MAJOR_VERSION,
+                            3,
+                            OSMESA_CONTEXT_MINOR_VERSION,
+                            3,
+                            0};
   std::unique_ptr<Context> made(new Context);
   made->handle_ = OSMesaCreateContextAttribs(attributes, nullptr);
-  if (!made->handle_ || !OSMesaMakeCurrent(static_cast<OSMesaContext>(made->handle_), made->dummy_, GL_UNSIGNED_BYTE, 16, 16)) {
+  if (!made->handle_ ||
+      !OSMesaMakeCurrent(static_cast<OSMesaContext>(made->handle_), made->dummy_, GL_UNSIGNED_BYTE, 16, 16)) {
     error = "no off-screen OpenGL 3.3 context (OSMesa)";
     return nullptr;
   }
-#define SINEW_GL_LOAD(type, name)                                                 \
-  made->gl_.name = reinterpret_cast<type>(OSMesaGetProcAddress("gl" #name));      \
-  if (!made->gl_.name) {                                                          \
-    error = "OpenGL function gl" #name " is missing";                             \
-    return nullptr;                                                               \
+#define SINEW_GL_LOAD(type, name)                                            \
+  made->gl_.name = reinterpret_cast<type>(OSMesaGetProcAddress("gl" #name)); \
+  if (!made->gl_.name) {                                                     \
+    error = "OpenGL function gl" #name " is missing";                        \
+    return nullptr;                                                          \
   }
   SINEW_GL_FUNCTIONS(SINEW_GL_LOAD)
 #undef SINEW_GL_LOAD

@@ -28,7 +28,8 @@ struct Geometry {
   void clear();
 };
 
-/// Slate → teal → amber → red over load 0 … 1, brightness rising with it so that it reads without colour vision. Linear RGB.
+/// Slate → teal → amber → red over load 0 … 1, brightness rising with it so that it reads without colour
+/// vision. Linear RGB.
 Vec3<float> stress_color(float load);
 
 enum class Look { kSkin, kXray, kShapes };
@@ -36,6 +37,7 @@ enum class Look { kSkin, kXray, kShapes };
 /// Appends a character as it stands in `frame`.
 void append_character(const Asset& asset, const scene::CharacterFrame& frame, Look look, Geometry& out);
 /// Appends a sphere, capsule or box placed in the world.
-void append_shape(Shape shape, const Vec3<float>& size, const Transform<float>& world, const Vec3<float>& color, Geometry& out);
+void append_shape(Shape shape, const Vec3<float>& size, const Transform<float>& world,
+                  const Vec3<float>& color, Geometry& out);
 
 }  // namespace sinew::render

@@ -15,11 +15,14 @@ struct JpegError {
   std::jmp_buf escape;
 };
 
-bool decode_jpeg(const std::vector<std::uint8_t>& bytes, int& width, int& height, std::vector<std::uint8_t>& rgba) {
+bool decode_jpeg(const std::vector<std::uint8_t>& bytes, int& width, int& height,
+                 std::vector<std::uint8_t>& rgba) {
   jpeg_decompress_struct jpeg{};
   JpegError error{};
   jpeg.err = jpeg_std_error(&error.base);
-  error.base.error_exit = [](j_common_ptr info) { std::longjmp(reinterpret_cast<JpegError*>(info->err)->escape, 1); };
+  error.base.error_exit = [](j_common_ptr info) {
+    std::longjmp(reinterpret_cast<JpegError*>(info->err)->escape, 1);
+  };
   error.base.output_message = [](j_common_ptr) {};
   std::vector<std::uint8_t> row;
   if (setjmp(error.escape) != 0) {
@@ -53,8 +56,10 @@ bool decode_jpeg(const std::vector<std::uint8_t>& bytes, int& width, int& height
 
 }  // namespace
 
-bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height, std::vector<std::uint8_t>& rgba) {
-  if (bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8) return decode_jpeg(bytes, width, height, rgba);
+bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height,
+                  std::vector<std::uint8_t>& rgba) {
+  if (bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8)
+    return decode_jpeg(bytes, width, height, rgba);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) return false;
@@ -83,8 +88,8 @@ convert::Error write_png(const Image& image, const std::string& path) {
     return {path + ": cannot be written"};
   }
   png_init_io(png, file);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_compression_level(png, 3);
   png_set_filter(png, 0, PNG_FILTER_SUB);

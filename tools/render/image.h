@@ -18,6 +18,7 @@ struct Image {
 convert::Error write_png(const Image& image, const std::string& path);
 
 /// PNG or JPEG file bytes to RGBA rows from the top. False when it is neither, or damaged.
-bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height, std::vector<std::uint8_t>& rgba);
+bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height,
+                  std::vector<std::uint8_t>& rgba);
 
 }  // namespace sinew::render

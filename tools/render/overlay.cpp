@@ -21,8 +21,10 @@ struct Pen {
   Color text, dim, panel;
 
   void set(const Color& c) const { cairo_set_source_rgba(cr, c.r, c.g, c.b, c.a); }
-  double write(double x, double y, double size, const std::string& s, const Color& c, bool bold = false) const {
-    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  double write(double x, double y, double size, const std::string& s, const Color& c,
+               bool bold = false) const {
+    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL,
+                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr, size * unit);
     set(c);
     cairo_move_to(cr, x * unit, y * unit);
@@ -32,7 +34,8 @@ struct Pen {
     return e.x_advance / unit;
   }
   double width(double size, const std::string& s, bool bold = false) const {
-    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL,
+                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr, size * unit);
     cairo_text_extents_t e;
     cairo_text_extents(cr, s.c_str(), &e);
@@ -61,7 +64,8 @@ struct Pen {
 
 Color stress(float load) {
   const Vec3<float> c = stress_color(load);
-  return {std::pow(double(c.x()), 0.4545), std::pow(double(c.y()), 0.4545), std::pow(double(c.z()), 0.4545), 1};
+  return {std::pow(double(c.x()), 0.4545), std::pow(double(c.y()), 0.4545), std::pow(double(c.z()), 0.4545),
+          1};
 }
 
 std::string text(const char* format, double a, double b = 0) {
@@ -79,7 +83,8 @@ void state_panel(const Pen& pen, const scene::Recording& rec, std::size_t index)
   pen.write(284, 58, 15, text("%.2f s", frame.time), pen.dim);
   double us = 0;
   int counted = 0;
-  for (std::size_t i = index >= 8 ? index - 8 : 0; i <= index; ++i, ++counted) us += double(rec.frames[i].characters[0].microseconds);
+  for (std::size_t i = index >= 8 ? index - 8 : 0; i <= index; ++i, ++counted)
+    us += double(rec.frames[i].characters[0].microseconds);
   const bool playback = c.unknown_dofs == 0;
   const Color state = playback ? Color{0.36, 0.78, 0.66} : stress(0.8f);
   double x = 42 + pen.write(42, 90, 26, text("%.0f", c.unknown_dofs), state, true);
@@ -92,7 +97,8 @@ void state_panel(const Pen& pen, const scene::Recording& rec, std::size_t index)
   const float load = j >= 0 ? c.load[static_cast<std::size_t>(j)] : 0;
   pen.write(42, 142, 15, joint.substr(0, 22) + text("  %.0f %% of its limit", 100.0 * double(load)), pen.dim);
   for (int k = 0; k < 60; ++k)  // load bar in the ramp's own colours
-    pen.line(42 + 4.9 * k, 157, 42 + 4.9 * (k + 1), 157, 4, double(k) / 60 < double(load) ? stress(float(k) / 60) : Color{0.5, 0.5, 0.55, 0.25});
+    pen.line(42 + 4.9 * k, 157, 42 + 4.9 * (k + 1), 157, 4,
+             double(k) / 60 < double(load) ? stress(float(k) / 60) : Color{0.5, 0.5, 0.55, 0.25});
 }
 
 void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index, double right) {
@@ -112,7 +118,8 @@ void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index,
   pen.write(x0 + w - 96, y0 + 28, 14, text("%.0f N·m", double(now.torque[at])), stress(now.load[at]));
   const double span = 5, end = std::max(span, rec.frames[index].time), begin = end - span;
   double top = 1;
-  for (const scene::Frame& f : rec.frames) top = std::max({top, std::abs(double(f.characters[0].torque[at])) * 1.1});
+  for (const scene::Frame& f : rec.frames)
+    top = std::max({top, std::abs(double(f.characters[0].torque[at])) * 1.1});
   double limit_now = 0;
   for (const scene::Frame& f : rec.frames) limit_now = std::max(limit_now, double(f.characters[0].limit[at]));
   if (std::isfinite(limit_now) && limit_now < 3 * top) top = std::max(top, 1.15 * limit_now);
@@ -130,8 +137,10 @@ void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index,
     const scene::CharacterFrame &ca = a.characters[0], &cb = b.characters[0];
     if (i % 4 < 2 && std::isfinite(cb.limit[at]) && cb.limit[at] < 3 * top)
       for (const double side : {1.0, -1.0})
-        pen.line(px(a.time), py(side * double(ca.limit[at])), px(b.time), py(side * double(cb.limit[at])), 1.2, {0.85, 0.8, 0.7, 0.55});
-    pen.line(px(a.time), py(double(ca.torque[at])), px(b.time), py(double(cb.torque[at])), 2.2, stress(std::max(0.45f, cb.load[at])));
+        pen.line(px(a.time), py(side * double(ca.limit[at])), px(b.time), py(side * double(cb.limit[at])),
+                 1.2, {0.85, 0.8, 0.7, 0.55});
+    pen.line(px(a.time), py(double(ca.torque[at])), px(b.time), py(double(cb.torque[at])), 2.2,
+             stress(std::max(0.45f, cb.load[at])));
   }
   // Unknown degrees of freedom over the same span.
   const double base = y0 + h - 16;
@@ -140,7 +149,8 @@ void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index,
     const scene::CharacterFrame& c = rec.frames[i].characters[0];
     if (rec.frames[i].time < begin) continue;
     const double x = px(rec.frames[i].time), share = c.total_dofs ? double(c.unknown_dofs) / c.total_dofs : 0;
-    pen.line(x, base, x, base - 1 - 26 * share, plot_w / (span * rec.frame_rate) + 0.4, share > 0 ? stress(0.8f) : Color{0.36, 0.78, 0.66, 0.8});
+    pen.line(x, base, x, base - 1 - 26 * share, plot_w / (span * rec.frame_rate) + 0.4,
+             share > 0 ? stress(0.8f) : Color{0.36, 0.78, 0.66, 0.8});
   }
 }
 
@@ -148,7 +158,8 @@ void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index,
 
 void draw_overlay(const scene::Recording& rec, std::size_t index, bool dark, Image& image) {
   if (rec.frames.empty() || rec.frames[index].characters.empty()) return;
-  cairo_surface_t* surface = cairo_image_surface_create_for_data(image.pixels.data(), CAIRO_FORMAT_RGB24, image.width, image.height, image.width * 4);
+  cairo_surface_t* surface = cairo_image_surface_create_for_data(image.pixels.data(), CAIRO_FORMAT_RGB24,
+                                                                 image.width, image.height, image.width * 4);
   cairo_t* cr = cairo_create(surface);
   Pen pen{cr, image.height / 720.0, {}, {}, {}};
   pen.text = dark ? Color{0.95, 0.96, 0.97} : Color{0.12, 0.14, 0.17};

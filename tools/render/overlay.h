@@ -6,7 +6,8 @@
 
 namespace sinew::render {
 
-/// Draws the panels for frame `index` of the recording: state, unknown DOFs over time, torque against its limit, caption.
+/// Draws the panels for frame `index` of the recording: state, unknown DOFs over time, torque against its
+/// limit, caption.
 void draw_overlay(const scene::Recording& recording, std::size_t index, bool dark, Image& image);
 
 }  // namespace sinew::render

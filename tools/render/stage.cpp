@@ -52,7 +52,8 @@ std::unique_ptr<Stage> Stage::create(int width, int height, int samples, bool da
 GLuint Stage::program(const char* vertex, const char* fragment, std::string& error) {
   const Gl& gl = context_->gl();
   const GLuint made = gl.CreateProgram();
-  for (const auto& [kind, source] : {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
+  for (const auto& [kind, source] :
+       {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
     const GLuint shader = gl.CreateShader(kind);
     const char* parts[] = {kCommon, source};
     gl.ShaderSource(shader, 2, parts, nullptr);
@@ -85,10 +86,14 @@ bool Stage::set_up(std::string& error) {
 
   gl.GenTextures(1, &shadow_map_);
   gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
-  for (const auto& [name, value] : {std::pair<GLenum, GLint>{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER},
-                                    {GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE}, {GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL}})
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, 0, GL_DEPTH_COMPONENT,
+                GL_UNSIGNED_INT, nullptr);
+  for (const auto& [name, value] : {std::pair<GLenum, GLint>{GL_TEXTURE_MIN_FILTER, GL_LINEAR},
+                                    {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
+                                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER},
+                                    {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER},
+                                    {GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE},
+                                    {GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL}})
     gl.TexParameteri(GL_TEXTURE_2D, name, value);
   const float lit[4] = {1, 1, 1, 1};
   gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
@@ -106,9 +111,12 @@ bool Stage::set_up(std::string& error) {
     for (int k = 0; k < 2; ++k) {
       gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[k]);
       const GLenum format = k == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT24;
-      if (samples > 1) gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width_, height_);
-      else gl.RenderbufferStorage(GL_RENDERBUFFER, format, width_, height_);
-      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers[k]);
+      if (samples > 1)
+        gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width_, height_);
+      else
+        gl.RenderbufferStorage(GL_RENDERBUFFER, format, width_, height_);
+      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
+                                 GL_RENDERBUFFER, buffers[k]);
     }
     return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   };
@@ -125,7 +133,8 @@ bool Stage::set_up(std::string& error) {
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
   const auto attribute = [&](GLuint index, GLint size, std::size_t offset) {
     gl.EnableVertexAttribArray(index);
-    gl.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+    gl.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                           reinterpret_cast<const void*>(offset));
   };
   attribute(0, 3, offsetof(Vertex, position));
   attribute(1, 3, offsetof(Vertex, normal));
@@ -163,8 +172,10 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   const Gl& gl = context_->gl();
   gl.BindVertexArray(array_);
   gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
-  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.vertices.size() * sizeof(Vertex)), geometry.vertices.data(), GL_STREAM_DRAW);
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.indices.size() * 4), geometry.indices.data(), GL_STREAM_DRAW);
+  gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.vertices.size() * sizeof(Vertex)),
+                geometry.vertices.data(), GL_STREAM_DRAW);
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.indices.size() * 4),
+                geometry.indices.data(), GL_STREAM_DRAW);
 
   const Vec3<float> light = Vec3<float>(0.42f, -0.55f, 0.95f).normalized();
   const Mat4 light_view = look_at(view.target + light * 20, view.target);
@@ -174,12 +185,17 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   light_projection(2, 3) = -1;
   const Mat4 light_matrix = light_projection * light_view;
   const float distance = (view.eye - view.target).norm();
-  const Mat4 view_projection = perspective(view.vertical_fov, float(width_) / float(height_), 0.02f * distance, 60 * distance + 60) * look_at(view.eye, view.target);
+  const Mat4 view_projection =
+      perspective(view.vertical_fov, float(width_) / float(height_), 0.02f * distance, 60 * distance + 60) *
+      look_at(view.eye, view.target);
 
   const auto use = [&](GLuint program) {
     gl.UseProgram(program);
-    const auto vec = [&](const char* name, float x, float y, float z) { gl.Uniform3f(gl.GetUniformLocation(program, name), x, y, z); };
-    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "view_projection"), 1, GL_FALSE, view_projection.data());
+    const auto vec = [&](const char* name, float x, float y, float z) {
+      gl.Uniform3f(gl.GetUniformLocation(program, name), x, y, z);
+    };
+    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "view_projection"), 1, GL_FALSE,
+                        view_projection.data());
     gl.UniformMatrix4fv(gl.GetUniformLocation(program, "light_matrix"), 1, GL_FALSE, light_matrix.data());
     vec("eye", view.eye.x(), view.eye.y(), view.eye.z());
     vec("light_direction", light.x(), light.y(), light.z());
@@ -208,7 +224,9 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   use(shadow_);
   for (const Draw& d : geometry.draws)
-    if (d.alpha >= 1) gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT, reinterpret_cast<const void*>(std::size_t(d.first) * 4));
+    if (d.alpha >= 1)
+      gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT,
+                      reinterpret_cast<const void*>(std::size_t(d.first) * 4));
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, multi_target_);
   gl.Viewport(0, 0, width_, height_);
@@ -220,7 +238,8 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
 
   use(sky_);
   const float pitch = std::asin((view.target - view.eye).normalized().z());
-  gl.Uniform3f(gl.GetUniformLocation(sky_, "view_up"), std::sin(pitch - view.vertical_fov / 2), std::sin(pitch + view.vertical_fov / 2), 0);
+  gl.Uniform3f(gl.GetUniformLocation(sky_, "view_up"), std::sin(pitch - view.vertical_fov / 2),
+               std::sin(pitch + view.vertical_fov / 2), 0);
   gl.Disable(GL_DEPTH_TEST);
   gl.BindVertexArray(empty_array_);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);

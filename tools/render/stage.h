@@ -1,4 +1,5 @@
-// Draws one frame of geometry: sky, ground grid, soft shadow, lit figure; 4x multisampled, tone-mapped, read back.
+// Draws one frame of geometry: sky, ground grid, soft shadow, lit figure; 4x multisampled, tone-mapped, read
+// back.
 #pragma once
 
 #include <map>

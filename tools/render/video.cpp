@@ -50,7 +50,8 @@ struct VideoWriter::Impl {
 VideoWriter::VideoWriter() : impl_(std::make_unique<Impl>()) {}
 VideoWriter::~VideoWriter() = default;
 
-std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int width, int height, double fps, int threads, convert::Error& error) {
+std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int width, int height, double fps,
+                                                 int threads, convert::Error& error) {
   av_log_set_level(AV_LOG_QUIET);
   std::unique_ptr<VideoWriter> writer(new VideoWriter);
   Impl& v = *writer->impl_;
@@ -58,13 +59,16 @@ std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int wi
   const std::string extension = std::filesystem::path(path).extension().string();
   v.temporary = path + ".tmp" + extension;
   const bool gif = extension == ".gif", webm = extension == ".webm";
-  const AVCodec* codec = gif ? avcodec_find_encoder(AV_CODEC_ID_GIF) : avcodec_find_encoder_by_name(webm ? "libvpx-vp9" : "libx264");
+  const AVCodec* codec = gif ? avcodec_find_encoder(AV_CODEC_ID_GIF)
+                             : avcodec_find_encoder_by_name(webm ? "libvpx-vp9" : "libx264");
   error = {path + ": cannot be written"};
   if (!codec) {
     error = {path + ": this libav has no encoder for it"};
     return nullptr;
   }
-  if (avformat_alloc_output_context2(&v.format, nullptr, gif ? "gif" : (webm ? "webm" : "mp4"), v.temporary.c_str()) < 0) return nullptr;
+  if (avformat_alloc_output_context2(&v.format, nullptr, gif ? "gif" : (webm ? "webm" : "mp4"),
+                                     v.temporary.c_str()) < 0)
+    return nullptr;
   v.format->flags |= AVFMT_FLAG_BITEXACT;
   v.stream = avformat_new_stream(v.format, nullptr);
   v.codec = avcodec_alloc_context3(codec);
@@ -100,15 +104,18 @@ std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int wi
   }
   v.stream->time_base = v.codec->time_base;
   v.stream->avg_frame_rate = v.codec->framerate;
-  if (avio_open(&v.format->pb, v.temporary.c_str(), AVIO_FLAG_WRITE) < 0 || avformat_write_header(v.format, nullptr) < 0) return nullptr;
+  if (avio_open(&v.format->pb, v.temporary.c_str(), AVIO_FLAG_WRITE) < 0 ||
+      avformat_write_header(v.format, nullptr) < 0)
+    return nullptr;
   v.frame = av_frame_alloc();
   v.packet = av_packet_alloc();
   v.frame->format = v.codec->pix_fmt;
   v.frame->width = width;
   v.frame->height = height;
   if (av_frame_get_buffer(v.frame, 0) < 0) return nullptr;
-  v.scale = sws_getContext(width, height, AV_PIX_FMT_BGR0, width, height, v.codec->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT | SWS_FULL_CHR_H_INT,
-                           nullptr, nullptr, nullptr);
+  v.scale = sws_getContext(width, height, AV_PIX_FMT_BGR0, width, height, v.codec->pix_fmt,
+                           SWS_BICUBIC | SWS_ACCURATE_RND | SWS_BITEXACT | SWS_FULL_CHR_H_INT, nullptr,
+                           nullptr, nullptr);
   if (!v.scale) return nullptr;
   const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
   if (!gif) sws_setColorspaceDetails(v.scale, bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
@@ -129,7 +136,8 @@ convert::Error VideoWriter::add(const Image& image) {
 
 convert::Error VideoWriter::finish() {
   Impl& v = *impl_;
-  const bool ok = avcodec_send_frame(v.codec, nullptr) >= 0 && v.drain() && av_write_trailer(v.format) >= 0 && avio_closep(&v.format->pb) >= 0;
+  const bool ok = avcodec_send_frame(v.codec, nullptr) >= 0 && v.drain() && av_write_trailer(v.format) >= 0 &&
+                  avio_closep(&v.format->pb) >= 0;
   if (!ok || std::rename(v.temporary.c_str(), v.path.c_str()) != 0) return {v.path + ": cannot be written"};
   v.finished = true;
   return {};

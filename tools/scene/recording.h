@@ -12,12 +12,12 @@ namespace sinew::scene {
 /// One character in one frame.
 struct CharacterFrame {
   std::vector<Transform<float>> model;  ///< [joint] joint → world
-  std::vector<float> load;              ///< [joint] largest |residual| / limit over the joint's DOFs; 1 = saturated
-  std::vector<float> torque;            ///< [joint] of the most loaded DOF, N·m
-  std::vector<float> limit;             ///< [joint] of that DOF and direction, N·m
-  int unknown_dofs = 0;                 ///< DOFs handed to the optimizer in this frame (0 = playback)
+  std::vector<float> load;    ///< [joint] largest |residual| / limit over the joint's DOFs; 1 = saturated
+  std::vector<float> torque;  ///< [joint] of the most loaded DOF, N·m
+  std::vector<float> limit;   ///< [joint] of that DOF and direction, N·m
+  int unknown_dofs = 0;       ///< DOFs handed to the optimizer in this frame (0 = playback)
   int total_dofs = 0;
-  float microseconds = 0;               ///< of the step
+  float microseconds = 0;  ///< of the step
   int most_loaded_joint = -1;
   float strength = 1;
   bool root_free = false;

@@ -43,11 +43,13 @@ double heading(const Quat<double>& rotation, const Quat<double>& rest) {
   return std::atan2(forward.y(), forward.x());
 }
 
-/// What one character's animation wants at a time: its clips one after the other, crossfaded, each placed in the world.
+/// What one character's animation wants at a time: its clips one after the other, crossfaded, each placed in
+/// the world.
 template <class T>
 class Player {
  public:
-  explicit Player(const SceneCharacter& c) : c_(c), places_(c.clips.size()), a_(c.asset->skeleton.joints.size()), b_(a_.size()) {
+  explicit Player(const SceneCharacter& c)
+      : c_(c), places_(c.clips.size()), a_(c.asset->skeleton.joints.size()), b_(a_.size()) {
     for (auto& place : places_) place = upright(c.position, c.yaw);
   }
 
@@ -63,9 +65,12 @@ class Player {
       const SamplingJob<T> job{&c_.asset->clips[use.clip], (t - use.start) * use.rate, use.rate, b_};
       job.Run();
       place_root<T>(places_[i].template cast<T>(), b_[0]);
-      const EaseWeight<T> w = any ? EaseWeight<T>::at(T(t - use.start), T(use.blend)) : EaseWeight<T>{T(1), T(0), T(0)};
-      if (any) crossfade<T>(a_, b_, w, a_);
-      else a_.swap(b_);
+      const EaseWeight<T> w =
+          any ? EaseWeight<T>::at(T(t - use.start), T(use.blend)) : EaseWeight<T>{T(1), T(0), T(0)};
+      if (any)
+        crossfade<T>(a_, b_, w, a_);
+      else
+        a_.swap(b_);
       any = true;
     }
     return a_;
@@ -81,7 +86,8 @@ class Player {
     place_root<T>(upright(c_.position, c_.yaw).template cast<T>(), jets[0]);
   }
 
-  /// The clip's first root pose comes to stand where the character's root is, facing the same way; heights stay.
+  /// The clip's first root pose comes to stand where the character's root is, facing the same way; heights
+  /// stay.
   void align(std::size_t i, const Transform<T>& root_now) {
     SamplingJob<T>{&c_.asset->clips[c_.clips[i].clip], 0, 1, b_}.Run();
     const Quat<double> rest = c_.asset->skeleton.joints[0].rest.rotation;
@@ -104,7 +110,8 @@ class Player {
 template <class T>
 class Runner {
  public:
-  Runner(const Scene& scene, Recording& recording, Telemetry& telemetry) : s_(scene), recording_(recording), telemetry_(telemetry), world_(scene.world) {}
+  Runner(const Scene& scene, Recording& recording, Telemetry& telemetry)
+      : s_(scene), recording_(recording), telemetry_(telemetry), world_(scene.world) {}
 
   convert::Error run(const std::function<void(int, int)>& progress) {
     if (convert::Error error = set_up()) return error;
@@ -119,7 +126,8 @@ class Runner {
         launch_and_push(t - 1 / s_.frame_rate);
         const auto begin = std::chrono::steady_clock::now();
         const Status status = world_.step(h);
-        microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+        microseconds =
+            std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
         if (!status) return {std::string("step at ") + std::to_string(t) + " s: " + status.reason};
       }
       record(t, microseconds);
@@ -139,7 +147,8 @@ class Runner {
       CharacterSettings settings = c.settings;
       settings.strength = ramp_at(c.strength, 0);
       settings.root = value_at(c.root, 0, RootDrive::kKinematic);
-      if (world_.add_character(c.asset->skeleton, settings, status) < 0) return {"character '" + c.name + "': " + status.reason};
+      if (world_.add_character(c.asset->skeleton, settings, status) < 0)
+        return {"character '" + c.name + "': " + status.reason};
       recording_.characters.push_back(c.asset);
       players_.emplace_back(c);
     }
@@ -149,11 +158,13 @@ class Runner {
       PropSettings settings = p.settings;
       if (p.launch_time > 0) settings.pose.translation = {0, 0, -1000};
       if (world_.add_prop(settings, status) < 0) return {"prop '" + p.name + "': " + status.reason};
-      recording_.props.push_back({p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
+      recording_.props.push_back(
+          {p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
       launched_.push_back(p.launch_time <= 0);
     }
     telemetry_.plotted_joint = recording_.plotted_joint = s_.plotted_joint;
-    if (s_.plotted_joint >= 0) telemetry_.plotted_name = s_.characters[0].asset->skeleton.joints[s_.plotted_joint].name;
+    if (s_.plotted_joint >= 0)
+      telemetry_.plotted_name = s_.characters[0].asset->skeleton.joints[s_.plotted_joint].name;
     return {};
   }
 
@@ -175,14 +186,16 @@ class Runner {
     for (std::size_t p = 0; p < s_.props.size(); ++p) {
       const SceneProp& prop = s_.props[p];
       if (!launched_[p] && t < prop.launch_time) {
-        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), {T(0), T(0), T(-1000)}}, Vec3<T>::Zero(), Vec3<T>::Zero());
+        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), {T(0), T(0), T(-1000)}}, Vec3<T>::Zero(),
+                        Vec3<T>::Zero());
         continue;
       }
       if (launched_[p]) continue;
       launched_[p] = true;
       Vec3<double> from = prop.settings.pose.translation, velocity = prop.settings.velocity;
       if (prop.target_character >= 0) aim(prop, from, velocity);
-      world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(), Vec3<T>::Zero());
+      world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
+                      Vec3<T>::Zero());
     }
     for (const Push& push : s_.pushes)
       if (push.time >= t - 1e-9 && push.time < t + 1 / s_.frame_rate - 1e-9) {
@@ -196,7 +209,8 @@ class Runner {
     const Character<T> c = world_.character(prop.target_character);
     const Transform<double> root = c.model()[0].template cast<double>();
     const Skeleton& skeleton = s_.characters[prop.target_character].asset->skeleton;
-    const Vec3<double> joint = c.model()[prop.target_joint].template cast<double>() * Vec3<double>(0.5 * skeleton.joints[prop.target_joint].center_of_mass);
+    const Vec3<double> joint = c.model()[prop.target_joint].template cast<double>() *
+                               Vec3<double>(0.5 * skeleton.joints[prop.target_joint].center_of_mass);
     const double yaw = heading(root.rotation, skeleton.joints[0].rest.rotation);
     from = upright({root.translation.x(), root.translation.y(), 0}, yaw) * prop.from;
     const double flight = (joint - from).norm() / prop.speed;
@@ -225,10 +239,13 @@ class Runner {
           made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
           square += double(c.torque()[dof]) * double(c.torque()[dof]);
         }
-        made.torque[i] = dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))]) : float(std::sqrt(square));
+        made.torque[i] = dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))])
+                                   : float(std::sqrt(square));
       }
-      for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i) made.load[i] = made.load[skeleton.joints[i].parent];
-      made.most_loaded_joint = static_cast<int>(std::max_element(made.load.begin(), made.load.begin() + skeleton.body_count) - made.load.begin());
+      for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i)
+        made.load[i] = made.load[skeleton.joints[i].parent];
+      made.most_loaded_joint = static_cast<int>(
+          std::max_element(made.load.begin(), made.load.begin() + skeleton.body_count) - made.load.begin());
       made.unknown_dofs = c.report().unknown_dofs;
       made.total_dofs = c.report().dofs;
       made.microseconds = static_cast<float>(microseconds);
@@ -236,7 +253,10 @@ class Runner {
       made.root_free = value_at(s_.characters[n].root, t, RootDrive::kKinematic) == RootDrive::kFree;
       if (n == 0) {
         const Vec3<double> root = made.model[0].translation.cast<double>();
-        if (!recording_.frames.empty()) root_velocity_ = (root - recording_.frames.back().characters[0].model[0].translation.template cast<double>()) * s_.frame_rate;
+        if (!recording_.frames.empty())
+          root_velocity_ =
+              (root - recording_.frames.back().characters[0].model[0].translation.template cast<double>()) *
+              s_.frame_rate;
       }
       TelemetryRow row;
       row.time = t;
@@ -253,7 +273,8 @@ class Runner {
       telemetry_.rows.push_back(row);
       frame.characters.push_back(std::move(made));
     }
-    for (int p = 0; p < world_.prop_count(); ++p) frame.props.push_back({world_.prop_pose(p).template cast<float>()});
+    for (int p = 0; p < world_.prop_count(); ++p)
+      frame.props.push_back({world_.prop_pose(p).template cast<float>()});
     recording_.frames.push_back(std::move(frame));
   }
 
@@ -268,28 +289,35 @@ class Runner {
 
 }  // namespace
 
-convert::Error run_scene(const Scene& scene, Recording& recording, Telemetry& telemetry, const std::function<void(int, int)>& progress) {
+convert::Error run_scene(const Scene& scene, Recording& recording, Telemetry& telemetry,
+                         const std::function<void(int, int)>& progress) {
   if (scene.double_precision) return Runner<double>(scene, recording, telemetry).run(progress);
   return Runner<float>(scene, recording, telemetry).run(progress);
 }
 
 std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
-  std::string csv = "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,penetration_m,"
-                    "kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,plotted_limit_Nm\n";
+  std::string csv =
+      "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,"
+      "penetration_m,"
+      "kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,plotted_limit_Nm\n";
   char line[512];
   for (const TelemetryRow& r : telemetry.rows) {
-    std::snprintf(line, sizeof line, "%.6f,%s,%d,%d,%.2f,%d,%d,%d,%d,%d,%.6f,%.6f,%.6f,%s,%.4f,%.3f,%.3f,%.3f,%.3f\n", r.time,
-                  scene.characters[r.character].name.c_str(), r.report.dofs, r.report.unknown_dofs, r.microseconds, r.report.outer_passes,
-                  r.report.factorisations, r.report.converged, r.report.used_bdf2, r.report.contacts, r.report.penetration, r.report.kinetic_energy,
-                  r.report.potential_energy, scene.characters[r.character].asset->skeleton.joints[r.loaded_joint].name.c_str(), r.load, r.torque,
-                  r.limit, r.plotted_torque, r.plotted_limit);
+    std::snprintf(line, sizeof line,
+                  "%.6f,%s,%d,%d,%.2f,%d,%d,%d,%d,%d,%.6f,%.6f,%.6f,%s,%.4f,%.3f,%.3f,%.3f,%.3f\n", r.time,
+                  scene.characters[r.character].name.c_str(), r.report.dofs, r.report.unknown_dofs,
+                  r.microseconds, r.report.outer_passes, r.report.factorisations, r.report.converged,
+                  r.report.used_bdf2, r.report.contacts, r.report.penetration, r.report.kinetic_energy,
+                  r.report.potential_energy,
+                  scene.characters[r.character].asset->skeleton.joints[r.loaded_joint].name.c_str(), r.load,
+                  r.torque, r.limit, r.plotted_torque, r.plotted_limit);
     csv += line;
   }
   return csv;
 }
 
 nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry) {
-  nlohmann::json out{{"title", scene.title}, {"duration_s", scene.duration}, {"frame_rate", scene.frame_rate}};
+  nlohmann::json out{
+      {"title", scene.title}, {"duration_s", scene.duration}, {"frame_rate", scene.frame_rate}};
   std::vector<double> playback, solved;
   int unconverged = 0, most = 0;
   for (const TelemetryRow& r : telemetry.rows) {
@@ -311,24 +339,32 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
   return out;
 }
 
-convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry, const std::string& png_path) {
+convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry,
+                              const std::string& png_path) {
   const std::string script_path = png_path + ".gp";
   FILE* script = std::fopen(script_path.c_str(), "w");
   if (!script) return {script_path + ": cannot be written"};
-  std::fprintf(script,
-               "set terminal pngcairo size 1200,900 font ',11'\nset output '%s'\nset datafile separator ','\nset grid lc rgb '#dddddd'\n"
-               "set lmargin 10\nset rmargin 4\nset multiplot layout 3,1\nset key top right\nset ylabel 'unknown DOFs'\n"
-               "plot '%s' using 1:4 every ::1 with filledcurves y1=0 lc rgb '#3d9a8b' title 'handed to the optimizer'\n"
-               "set ylabel 'µs per step'\nset logscale y\nplot '%s' using 1:5 every ::2 with lines lc rgb '#34556e' title 'world step'\n"
-               "unset logscale y\nset ylabel 'N·m'\nset xlabel 'time, s'\n"
-               "plot '%s' using 1:18 every ::1 with lines lw 2 lc rgb '#c8553d' title 'torque of %s', '' using 1:19 every ::1 with lines dt 2 lc rgb "
-               "'#888888' title 'limit', '' using 1:(-$19) every ::1 with lines dt 2 lc rgb '#888888' notitle\n",
-               png_path.c_str(), csv_path.c_str(), csv_path.c_str(), csv_path.c_str(), telemetry.plotted_name.c_str());
+  std::fprintf(
+      script,
+      "set terminal pngcairo size 1200,900 font ',11'\nset output '%s'\nset datafile separator ','\nset grid "
+      "lc rgb '#dddddd'\n"
+      "set lmargin 10\nset rmargin 4\nset multiplot layout 3,1\nset key top right\nset ylabel 'unknown "
+      "DOFs'\n"
+      "plot '%s' using 1:4 every ::1 with filledcurves y1=0 lc rgb '#3d9a8b' title 'handed to the "
+      "optimizer'\n"
+      "set ylabel 'µs per step'\nset logscale y\nplot '%s' using 1:5 every ::2 with lines lc rgb '#34556e' "
+      "title 'world step'\n"
+      "unset logscale y\nset ylabel 'N·m'\nset xlabel 'time, s'\n"
+      "plot '%s' using 1:18 every ::1 with lines lw 2 lc rgb '#c8553d' title 'torque of %s', '' using 1:19 "
+      "every ::1 with lines dt 2 lc rgb "
+      "'#888888' title 'limit', '' using 1:(-$19) every ::1 with lines dt 2 lc rgb '#888888' notitle\n",
+      png_path.c_str(), csv_path.c_str(), csv_path.c_str(), csv_path.c_str(), telemetry.plotted_name.c_str());
   std::fclose(script);
   const char* arguments[] = {"gnuplot", script_path.c_str(), nullptr};
   pid_t pid = 0;
   int status = -1;
-  const bool started = posix_spawnp(&pid, "gnuplot", nullptr, nullptr, const_cast<char**>(arguments), environ) == 0;
+  const bool started =
+      posix_spawnp(&pid, "gnuplot", nullptr, nullptr, const_cast<char**>(arguments), environ) == 0;
   if (started) waitpid(pid, &status, 0);
   std::remove(script_path.c_str());
   if (!started) return {"gnuplot is not installed; no plot"};

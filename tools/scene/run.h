@@ -34,6 +34,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry);
 nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry);
 
 /// Draws the telemetry with gnuplot to a PNG. Returns an error when gnuplot is missing.
-convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry, const std::string& png_path);
+convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry,
+                              const std::string& png_path);
 
 }  // namespace sinew::scene

@@ -13,12 +13,15 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail(const std::string& where, const std::string& what) { throw std::runtime_error(what + " (" + where + ")"); }
+[[noreturn]] void fail(const std::string& where, const std::string& what) {
+  throw std::runtime_error(what + " (" + where + ")");
+}
 
 /// An object whose keys must all be known; remembers where it stands for messages.
 class Reader {
  public:
-  Reader(const json& value, std::string where, std::initializer_list<const char*> keys) : value_(value), where_(std::move(where)) {
+  Reader(const json& value, std::string where, std::initializer_list<const char*> keys)
+      : value_(value), where_(std::move(where)) {
     if (!value.is_object()) fail(where_, "expected an object");
     const std::set<std::string> known(keys.begin(), keys.end());
     for (const auto& [key, v] : value.items())
@@ -29,7 +32,9 @@ class Reader {
     if (!has(key)) fail(where_, std::string("'") + key + "' is missing");
     return value_[key];
   }
-  double number(const char* key, double otherwise) const { return has(key) ? number_of(value_[key], inside(key)) : otherwise; }
+  double number(const char* key, double otherwise) const {
+    return has(key) ? number_of(value_[key], inside(key)) : otherwise;
+  }
   double positive(const char* key, double otherwise) const {
     const double v = number(key, otherwise);
     if (!(v > 0)) fail(inside(key), "must be positive");
@@ -50,7 +55,9 @@ class Reader {
     if (!value_[key].is_boolean()) fail(inside(key), "expected true or false");
     return value_[key].get<bool>();
   }
-  Vec3<double> vector(const char* key, const Vec3<double>& otherwise) const { return has(key) ? vector_of(value_[key], inside(key)) : otherwise; }
+  Vec3<double> vector(const char* key, const Vec3<double>& otherwise) const {
+    return has(key) ? vector_of(value_[key], inside(key)) : otherwise;
+  }
   const json& list(const char* key) const {
     static const json none = json::array();
     if (!has(key)) return none;
@@ -58,7 +65,9 @@ class Reader {
     return value_[key];
   }
   std::string inside(const char* key) const { return where_.empty() ? key : where_ + "." + key; }
-  std::string item(const char* key, std::size_t i) const { return inside(key) + "[" + std::to_string(i) + "]"; }
+  std::string item(const char* key, std::size_t i) const {
+    return inside(key) + "[" + std::to_string(i) + "]";
+  }
 
   static double number_of(const json& v, const std::string& where) {
     if (!v.is_number()) fail(where, "expected a number");
@@ -79,7 +88,8 @@ class Reader {
 int joint_of(const Asset& asset, const std::string& name, const std::string& where) {
   int joint = asset.skeleton.find(name.c_str());
   if (joint < 0)
-    if (const Role role = convert::role_from_name(name); role != Role::kNone) joint = asset.skeleton.find(role);
+    if (const Role role = convert::role_from_name(name); role != Role::kNone)
+      joint = asset.skeleton.find(role);
   if (joint < 0) fail(where, "unknown joint '" + name + "'");
   return joint;
 }
@@ -117,22 +127,28 @@ Shape shape_of(const Reader& in) {
 }
 
 void check_effects(const Reader& in) {
-  static const std::set<std::string> known{"gravity", "muscles", "joint_limits", "joint_damping", "ground", "friction", "contact", "impulses", "support"};
+  static const std::set<std::string> known{"gravity",  "muscles", "joint_limits", "joint_damping", "ground",
+                                           "friction", "contact", "impulses",     "support"};
   const json& list = in.list("effects");
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!list[i].is_string() || !known.count(list[i].get<std::string>()))
       fail(in.item("effects", i), "unknown effect " + list[i].dump());
 }
 
-SceneCharacter read_character(const json& value, const std::string& where, const std::filesystem::path& base) {
-  const Reader in(value, where, {"asset", "name", "position", "yaw_deg", "clips", "strength", "root", "root_force", "root_torque", "ground_contact", "options"});
+SceneCharacter read_character(const json& value, const std::string& where,
+                              const std::filesystem::path& base) {
+  const Reader in(value, where,
+                  {"asset", "name", "position", "yaw_deg", "clips", "strength", "root", "root_force",
+                   "root_torque", "ground_contact", "options"});
   SceneCharacter c;
   if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
   std::filesystem::path path = in.at("asset").get<std::string>();
   if (path.is_relative()) path = base / path;
   auto asset = std::make_shared<Asset>();
   json report;
-  if (convert::Error error = convert::open_any(path.string(), in.has("options") ? in.at("options") : json(), *asset, report)) fail(in.inside("asset"), error.message);
+  if (convert::Error error =
+          convert::open_any(path.string(), in.has("options") ? in.at("options") : json(), *asset, report))
+    fail(in.inside("asset"), error.message);
   c.name = in.text("name", asset->skeleton.name);
   c.position = in.vector("position", c.position);
   c.yaw = in.number("yaw_deg", 0) * 3.14159265358979323846 / 180;
@@ -148,7 +164,8 @@ SceneCharacter read_character(const json& value, const std::string& where, const
     made.blend = use.time("blend", 0.3);
     made.rate = use.number("rate", 1);
     made.align = use.flag("align", false);
-    if (!c.clips.empty() && made.start < c.clips.back().start) fail(use.inside("start"), "clips must be in order of time");
+    if (!c.clips.empty() && made.start < c.clips.back().start)
+      fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);
   }
   c.strength = timeline<double>(in, "strength", c.strength, [](const json& v, const std::string& w) {
@@ -167,7 +184,8 @@ SceneCharacter read_character(const json& value, const std::string& where, const
 int character_of(const Scene& scene, const Reader& in, const char* key) {
   if (!in.has(key)) return 0;
   const json& v = in.at(key);
-  if (v.is_number_integer() && v.get<int>() >= 0 && v.get<int>() < static_cast<int>(scene.characters.size())) return v.get<int>();
+  if (v.is_number_integer() && v.get<int>() >= 0 && v.get<int>() < static_cast<int>(scene.characters.size()))
+    return v.get<int>();
   if (v.is_string())
     for (std::size_t i = 0; i < scene.characters.size(); ++i)
       if (scene.characters[i].name == v.get<std::string>()) return static_cast<int>(i);
@@ -175,20 +193,26 @@ int character_of(const Scene& scene, const Reader& in, const char* key) {
 }
 
 SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
-  const Reader in(value, where, {"name", "shape", "size", "mass", "friction", "position", "velocity", "launch_time", "throw_at"});
+  const Reader in(
+      value, where,
+      {"name", "shape", "size", "mass", "friction", "position", "velocity", "launch_time", "throw_at"});
   SceneProp p;
   p.name = in.text("name", "ball");
   p.settings.shape = shape_of(in);
-  p.settings.size = in.has("size") && in.at("size").is_number() ? Vec3<double>(Vec3<double>::Constant(in.positive("size", 0.1))) : in.vector("size", p.settings.size);
+  p.settings.size = in.has("size") && in.at("size").is_number()
+                        ? Vec3<double>(Vec3<double>::Constant(in.positive("size", 0.1)))
+                        : in.vector("size", p.settings.size);
   p.settings.mass = in.positive("mass", 1);
   p.settings.friction = in.time("friction", p.settings.friction);
   p.settings.pose.translation = in.vector("position", {0, 0, 1});
   p.settings.velocity = in.vector("velocity", p.settings.velocity);
   p.launch_time = in.time("launch_time", 0);
   if (in.has("throw_at")) {
-    const Reader at(in.at("throw_at"), in.inside("throw_at"), {"character", "joint", "time", "speed", "from"});
+    const Reader at(in.at("throw_at"), in.inside("throw_at"),
+                    {"character", "joint", "time", "speed", "from"});
     p.target_character = character_of(scene, at, "character");
-    p.target_joint = joint_of(*scene.characters[p.target_character].asset, at.text("joint", "chest"), at.inside("joint"));
+    p.target_joint =
+        joint_of(*scene.characters[p.target_character].asset, at.text("joint", "chest"), at.inside("joint"));
     p.speed = at.positive("speed", 8);
     p.from = at.vector("from", p.from);
     p.launch_time = at.time("time", 0);
@@ -197,7 +221,9 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
 }
 
 Scene parse(const json& root, const std::filesystem::path& base) {
-  const Reader in(root, "", {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props", "obstacles", "pushes", "effects", "camera", "captions", "plot"});
+  const Reader in(root, "",
+                  {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props",
+                   "obstacles", "pushes", "effects", "camera", "captions", "plot"});
   Scene s;
   s.title = in.text("title", "");
   s.duration = in.positive("duration", s.duration);
@@ -205,12 +231,15 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
   if (in.has("accuracy")) {
-    const Reader a(in.at("accuracy"), "accuracy", {"scheme", "tolerance", "max_iterations", "sink_depth", "stick_speed", "return_time", "precision"});
+    const Reader a(
+        in.at("accuracy"), "accuracy",
+        {"scheme", "tolerance", "max_iterations", "sink_depth", "stick_speed", "return_time", "precision"});
     const std::string scheme = a.text("scheme", "bdf2");
     if (scheme != "bdf1" && scheme != "bdf2") fail("accuracy.scheme", "unknown scheme '" + scheme + "'");
     s.world.accuracy.scheme = scheme == "bdf1" ? Scheme::kBdf1 : Scheme::kBdf2;
     s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
-    s.world.accuracy.max_iterations = static_cast<int>(a.positive("max_iterations", s.world.accuracy.max_iterations));
+    s.world.accuracy.max_iterations =
+        static_cast<int>(a.positive("max_iterations", s.world.accuracy.max_iterations));
     s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
     s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
     s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
@@ -222,10 +251,12 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   s.world.ground = in.flag("ground", true);
   check_effects(in);
   const json& characters = in.list("characters");
-  for (std::size_t i = 0; i < characters.size(); ++i) s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
+  for (std::size_t i = 0; i < characters.size(); ++i)
+    s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
   if (s.characters.empty()) fail("characters", "the scene has no character");
   const json& props = in.list("props");
-  for (std::size_t i = 0; i < props.size(); ++i) s.props.push_back(read_prop(props[i], in.item("props", i), s));
+  for (std::size_t i = 0; i < props.size(); ++i)
+    s.props.push_back(read_prop(props[i], in.item("props", i), s));
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Reader o(obstacles[i], in.item("obstacles", i), {"shape", "size", "position", "friction"});
@@ -283,12 +314,14 @@ Scene demo_scene(std::shared_ptr<const Asset> asset) {
   const auto first_of = [&](std::initializer_list<const char*> names, int otherwise) {
     for (const char* n : names)
       for (std::size_t i = 0; i < asset->clips.size(); ++i)
-        if (asset->clips[i].name.find(n) != std::string::npos && asset->clips[i].duration > 0.3f) return static_cast<int>(i);
+        if (asset->clips[i].name.find(n) != std::string::npos && asset->clips[i].duration > 0.3f)
+          return static_cast<int>(i);
     return otherwise;
   };
   int longest = -1;
   for (std::size_t i = 0; i < asset->clips.size(); ++i)
-    if (longest < 0 || asset->clips[i].duration > asset->clips[longest].duration) longest = static_cast<int>(i);
+    if (longest < 0 || asset->clips[i].duration > asset->clips[longest].duration)
+      longest = static_cast<int>(i);
   const auto body_at = [&](std::initializer_list<Role> roles) {
     for (const Role r : roles)
       if (const int j = body.find(r); j >= 0 && j < body.body_count) return j;
@@ -328,8 +361,10 @@ Scene demo_scene(std::shared_ptr<const Asset> asset) {
   ball.from = {2.4, -1.6, 1.0};
   ball.launch_time = 4.75;
   s.props.push_back(ball);
-  s.captions = {{0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"}, {3.8, "back on the animation"},
-                {5.0, "a harder hit: the strength is gone"}, {7.8, "strength returns"}, {9.6, "playback again"}};
+  s.captions = {
+      {0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"},
+      {3.8, "back on the animation"},    {5.0, "a harder hit: the strength is gone"},
+      {7.8, "strength returns"},         {9.6, "playback again"}};
   s.camera.follow_character = 0;
   s.plotted_joint = body_at({Role::kUpperArmL, Role::kChest});
   return s;

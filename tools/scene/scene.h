@@ -38,7 +38,7 @@ struct SceneProp {
   double launch_time = 0;  ///< hidden far away until then
   // A throw is aimed when it starts, so that gravity brings the prop to the joint in `flight` seconds.
   int target_character = -1, target_joint = -1;
-  double speed = 8;        ///< m/s
+  double speed = 8;              ///< m/s
   Vec3<double> from{2, 0, 1.5};  ///< relative to the character's root position at launch, its heading as X
 };
 
@@ -66,7 +66,8 @@ struct Scene {
 /// Reads and checks a scene file; assets are looked up relative to it. One line names the file and the fault.
 convert::Error load_scene(const std::string& path, Scene& out);
 
-/// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength returns.
+/// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength
+/// returns.
 Scene demo_scene(std::shared_ptr<const Asset> asset);
 
 }  // namespace sinew::scene

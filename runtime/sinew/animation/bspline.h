@@ -26,11 +26,14 @@ struct BsplineBasis {
         now[j] = (left + right) / T(d);
       }
     }
-    const auto entry = [](const std::array<T, 6>& w, int j, int count) { return j >= 0 && j < count ? w[j] : T(0); };
+    const auto entry = [](const std::array<T, 6>& w, int j, int count) {
+      return j >= 0 && j < count ? w[j] : T(0);
+    };
     for (int j = 0; j <= degree; ++j) {
       basis.value[j] = now[j];
       basis.first[j] = entry(lower, j - 1, degree) - entry(lower, j, degree);
-      basis.second[j] = entry(below, j - 2, degree - 1) - 2 * entry(below, j - 1, degree - 1) + entry(below, j, degree - 1);
+      basis.second[j] =
+          entry(below, j - 2, degree - 1) - 2 * entry(below, j - 1, degree - 1) + entry(below, j, degree - 1);
     }
     return basis;
   }

@@ -6,7 +6,8 @@ namespace sinew {
 namespace {
 
 bool is_finite(const Transform<float>& x) {
-  return x.rotation.coeffs().allFinite() && x.translation.allFinite() && std::abs(x.rotation.norm() - 1.f) < 1e-3f;
+  return x.rotation.coeffs().allFinite() && x.translation.allFinite() &&
+         std::abs(x.rotation.norm() - 1.f) < 1e-3f;
 }
 
 Status check_group(const Clip& clip, const Clip::Group& group, int index) {
@@ -18,7 +19,8 @@ Status check_group(const Clip& clip, const Clip::Group& group, int index) {
   if (group.control_count < (clip.loops ? 1 : group.degree + 1))
     return Status::error(Code::kInvalidArgument, "too few control points", index);
   const double covered = group.knot_interval * double(group.control_count - (clip.loops ? 0 : group.degree));
-  if (covered < clip.duration * (1 - 1e-4)) return Status::error(Code::kInvalidArgument, "knots end before the clip", index);
+  if (covered < clip.duration * (1 - 1e-4))
+    return Status::error(Code::kInvalidArgument, "knots end before the clip", index);
   if (group.controls.size() != components * group.tracks.size() * std::size_t(group.control_count))
     return Status::error(Code::kInvalidArgument, "number of controls does not match tracks and knots", index);
   for (const Clip::Track& track : group.tracks)
@@ -37,7 +39,8 @@ Status validate(const Clip& clip) {
   if (clip.joint_count < 0 || clip.constants.size() != std::size_t(clip.joint_count))
     return Status::error(Code::kInvalidArgument, "one constant transform per joint is needed");
   for (const Transform<float>& constant : clip.constants)
-    if (!is_finite(constant)) return Status::error(Code::kNotFinite, "constant transform is not a finite rotation");
+    if (!is_finite(constant))
+      return Status::error(Code::kNotFinite, "constant transform is not a finite rotation");
   if (!clip.root_step.allFinite()) return Status::error(Code::kNotFinite, "root step is not finite");
   for (const ContactWindow& window : clip.contacts)
     if (window.joint < 0 || window.joint >= clip.joint_count || !(window.begin <= window.end))

@@ -15,11 +15,11 @@ namespace sinew {
 template <class T>
 struct JointJet {
   Quat<T> rotation = Quat<T>::Identity();
-  Vec3<T> omega = Vec3<T>::Zero();          ///< rad/s, child axes
-  Vec3<T> alpha = Vec3<T>::Zero();          ///< rad/s², child axes
-  Vec3<T> translation = Vec3<T>::Zero();    ///< m
-  Vec3<T> velocity = Vec3<T>::Zero();       ///< m/s
-  Vec3<T> acceleration = Vec3<T>::Zero();   ///< m/s²
+  Vec3<T> omega = Vec3<T>::Zero();         ///< rad/s, child axes
+  Vec3<T> alpha = Vec3<T>::Zero();         ///< rad/s², child axes
+  Vec3<T> translation = Vec3<T>::Zero();   ///< m
+  Vec3<T> velocity = Vec3<T>::Zero();      ///< m/s
+  Vec3<T> acceleration = Vec3<T>::Zero();  ///< m/s²
 };
 
 /// A span of time in which a joint is meant to rest on the ground (seconds, clip time).
@@ -31,18 +31,18 @@ struct ContactWindow {
 /// Uniform B-spline curves for all joints of one skeleton.
 ///
 /// Each animated joint has a rotation track: control points are sign-aligned quaternions in R⁴ (x, y, z, w),
-/// normalised after evaluation; and, where the joint moves relative to its parent, a translation track. Tracks are
-/// grouped by (degree, knot spacing) so that basis weights are evaluated once per group. Joints without a track
-/// keep the constant given here. Random access is O(1).
+/// normalised after evaluation; and, where the joint moves relative to its parent, a translation track.
+/// Tracks are grouped by (degree, knot spacing) so that basis weights are evaluated once per group. Joints
+/// without a track keep the constant given here. Random access is O(1).
 struct Clip {
   struct Track {
     int joint = 0;
   };
   struct Group {
-    bool rotation = true;      ///< quaternion tracks (4 floats) or translation tracks (3 floats)
-    int degree = 3;            ///< 3 (C²) or 5 (C⁴)
-    float knot_interval = 0;   ///< s
-    int control_count = 0;     ///< per track; periodic clips wrap, others hold `degree` extra at the ends
+    bool rotation = true;     ///< quaternion tracks (4 floats) or translation tracks (3 floats)
+    int degree = 3;           ///< 3 (C²) or 5 (C⁴)
+    float knot_interval = 0;  ///< s
+    int control_count = 0;    ///< per track; periodic clips wrap, others hold `degree` extra at the ends
     std::vector<Track> tracks;
     std::vector<float> controls;  ///< [knot][track][component]
   };
@@ -56,7 +56,8 @@ struct Clip {
   Vec3<float> root_step = Vec3<float>::Zero();  ///< what one loop adds to the root's translation (m), Z up
 };
 
-/// What is at fault, if anything: sizes, NaN, zero knot intervals, joints out of range. `Status::index`: group.
+/// What is at fault, if anything: sizes, NaN, zero knot intervals, joints out of range. `Status::index`:
+/// group.
 Status validate(const Clip& clip);
 
 }  // namespace sinew

@@ -23,9 +23,11 @@ struct EaseWeight {
 };
 
 /// out = (1 − w)·a + w·b per joint, on quaternions in R⁴ (the nearer of ±b), normalised:
-/// P = Σ wᵢpᵢ, P' = Σ (wᵢpᵢ' + wᵢ'pᵢ), P'' = Σ (wᵢpᵢ'' + 2wᵢ'pᵢ' + wᵢ''pᵢ). `out` may be `a` or `b`. Spans of equal length.
+/// P = Σ wᵢpᵢ, P' = Σ (wᵢpᵢ' + wᵢ'pᵢ), P'' = Σ (wᵢpᵢ'' + 2wᵢ'pᵢ' + wᵢ''pᵢ). `out` may be `a` or `b`. Spans of
+/// equal length.
 template <class T>
-void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w, std::span<JointJet<T>> out);
+void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
+               std::span<JointJet<T>> out);
 
 extern template void crossfade<float>(std::span<const JointJet<float>>, std::span<const JointJet<float>>,
                                       const EaseWeight<float>&, std::span<JointJet<float>>);

@@ -22,7 +22,8 @@ Place wrapped(const Clip& clip, double time) {
 
 /// Weighted sums of one group's control points: p, p', p'' of every track, `Components` floats each.
 template <int Components, class T, class Use>
-void sample_group(const Clip& clip, const Clip::Group& group, double time, double rate, std::size_t joints, Use use) {
+void sample_group(const Clip& clip, const Clip::Group& group, double time, double rate, std::size_t joints,
+                  Use use) {
   using Controls = Eigen::Map<const Eigen::Matrix<float, Components, 1>>;
   using Sum = Eigen::Matrix<T, Components, 1>;
   const double knots = time / group.knot_interval;
@@ -36,7 +37,8 @@ void sample_group(const Clip& clip, const Clip::Group& group, double time, doubl
   }
   const std::size_t stride = Components * group.tracks.size();
   const float* rows[6] = {};
-  for (int j = 0; j <= group.degree; ++j) rows[j] = group.controls.data() + stride * ((span + j) % group.control_count);
+  for (int j = 0; j <= group.degree; ++j)
+    rows[j] = group.controls.data() + stride * ((span + j) % group.control_count);
   for (std::size_t k = 0; k < group.tracks.size(); ++k) {
     const std::size_t joint = group.tracks[k].joint;
     if (joint >= joints) continue;
@@ -56,8 +58,10 @@ void sample_group(const Clip& clip, const Clip::Group& group, double time, doubl
 template <class T>
 Status SamplingJob<T>::Validate() const {
   if (!clip) return Status::error(Code::kInvalidArgument, "no clip");
-  if (!std::isfinite(time) || !std::isfinite(rate)) return Status::error(Code::kNotFinite, "time or rate is not finite");
-  if (std::abs(time) > 1e9 || std::abs(rate) > 1e4) return Status::error(Code::kOutOfRange, "time or rate is absurd");
+  if (!std::isfinite(time) || !std::isfinite(rate))
+    return Status::error(Code::kNotFinite, "time or rate is not finite");
+  if (std::abs(time) > 1e9 || std::abs(rate) > 1e4)
+    return Status::error(Code::kOutOfRange, "time or rate is absurd");
   return {};
 }
 

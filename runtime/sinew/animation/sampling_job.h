@@ -7,17 +7,18 @@
 
 namespace sinew {
 
-/// Samples a clip at a time. Stateless: cost does not depend on the time or on previous calls; allocates nothing.
+/// Samples a clip at a time. Stateless: cost does not depend on the time or on previous calls; allocates
+/// nothing.
 ///
 ///     ω = 2·Im(p̄ p')/n,  α = 2·Im(p̄ p'')/n − ω·2(p·p')/n,  n = p·p      (no trigonometry)
 ///
-/// `Run` returns an error and leaves `jets` unspecified when `Validate` fails. Output longer than the skeleton is left
-/// untouched, shorter means fewer joints: that is level of detail.
+/// `Run` returns an error and leaves `jets` unspecified when `Validate` fails. Output longer than the
+/// skeleton is left untouched, shorter means fewer joints: that is level of detail.
 template <class T>
 struct SamplingJob {
   const Clip* clip = nullptr;
-  double time = 0;       ///< s; looping clips wrap (root motion accumulates by root_step), others clamp
-  double rate = 1;       ///< playback rate s: velocities scale by s, accelerations by s²
+  double time = 0;  ///< s; looping clips wrap (root motion accumulates by root_step), others clamp
+  double rate = 1;  ///< playback rate s: velocities scale by s, accelerations by s²
   std::span<JointJet<T>> jets;
 
   Status Validate() const;

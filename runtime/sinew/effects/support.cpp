@@ -51,7 +51,8 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   // Hardly standing (about to land, or just off): hardly borne, so that forces fade in.
   const T scale = total.z() / carried * (sum / (sum + T(0.05)));
   // No more friction than the floor could give.
-  const Eigen::Matrix<T, 2, 1> level = total.template head<2>() / std::max(total.z(), total.template head<2>().norm());
+  const Eigen::Matrix<T, 2, 1> level =
+      total.template head<2>() / std::max(total.z(), total.template head<2>().norm());
   for (const ContactPoint<T>& p : points) {
     const T w = bearing(k, p, ground, reach, x);
     const T up = scale * std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));

@@ -1,7 +1,8 @@
 // The runtime asset file (.sinew): one skeleton, its clips and meshes.
 //
-// FlatBuffers (schema: sinew/io/sinew.fbs), little-endian on every machine, verified before anything is read, then checked semantically
-// (see validate(Skeleton), validate(Clip)). A broken file gives an error, never a crash.
+// FlatBuffers (schema: sinew/io/sinew.fbs), little-endian on every machine, verified before anything is read,
+// then checked semantically (see validate(Skeleton), validate(Clip)). A broken file gives an error, never a
+// crash.
 #pragma once
 
 #include <cstdint>

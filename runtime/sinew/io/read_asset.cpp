@@ -13,13 +13,17 @@
 namespace sinew {
 namespace {
 
-constexpr int kMaxDepth = 64;            ///< of nested tables; the schema needs 4
+constexpr int kMaxDepth = 64;  ///< of nested tables; the schema needs 4
 constexpr int kMaxTables = 1'000'000;
 constexpr std::size_t kMaxJoints = 100'000;
 
-Status bad(const char* reason, int index = -1) { return Status::error(Code::kBadFile, reason, index); }
+Status bad(const char* reason, int index = -1) {
+  return Status::error(Code::kBadFile, reason, index);
+}
 
-Vec3<double> unpack(const fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Vec3<double> unpack(const fb::Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 Transform<double> unpack(const fb::Transform& x) {
   const fb::Quat& q = x.rotation();
@@ -43,7 +47,8 @@ std::size_t size_of(const flatbuffers::Vector<Value>* v) {
 Status unpack(const fb::Joint& in, int index, Joint& out) {
   if (in.type() > static_cast<int>(JointType::kFree)) return bad("unknown joint type", index);
   if (in.role() > static_cast<int>(Role::kToesR)) return bad("unknown joint role", index);
-  if (in.inertia()->size() != 9 || in.dofs()->size() != 6) return bad("inertia or limits have the wrong size", index);
+  if (in.inertia()->size() != 9 || in.dofs()->size() != 6)
+    return bad("inertia or limits have the wrong size", index);
   out.name = in.name()->str();
   if (in.source_joint()) out.source_joint = in.source_joint()->str();
   out.parent = in.parent();
@@ -73,11 +78,13 @@ Status unpack(const fb::Skeleton& in, Skeleton& out) {
   out.name = in.name()->str();
   out.body_count = in.body_count();
   for (unsigned i = 0; i < in.joints()->size(); ++i)
-    if (Status status = unpack(*in.joints()->Get(i), static_cast<int>(i), out.joints.emplace_back()); !status) return status;
+    if (Status status = unpack(*in.joints()->Get(i), static_cast<int>(i), out.joints.emplace_back()); !status)
+      return status;
   for (unsigned i = 0; i < size_of(in.colliders()); ++i) {
     const fb::Collider& c = *in.colliders()->Get(i);
     if (c.shape() > static_cast<int>(Shape::kBox)) return bad("unknown collider shape", c.joint());
-    out.colliders.push_back({c.joint(), static_cast<Shape>(c.shape()), unpack(c.local()), unpack(c.size()), c.friction()});
+    out.colliders.push_back(
+        {c.joint(), static_cast<Shape>(c.shape()), unpack(c.local()), unpack(c.size()), c.friction()});
   }
   return validate(out);
 }
@@ -130,7 +137,8 @@ Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& ou
   for (const std::vector<float>* values : {&out.positions, &out.normals, &out.uvs, &out.weights})
     for (const float v : *values)
       if (!std::isfinite(v)) return bad("mesh has a number that is not finite", index);
-  if (out.material < -1 || out.material >= materials) return bad("mesh names a material that does not exist", index);
+  if (out.material < -1 || out.material >= materials)
+    return bad("mesh names a material that does not exist", index);
   return {};
 }
 
@@ -149,14 +157,16 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
   flatbuffers::Verifier verifier(bytes.data(), bytes.size(), kMaxDepth, kMaxTables);
   if (!fb::VerifyAssetBuffer(verifier)) return bad("truncated or damaged");
   const fb::Asset& in = *fb::GetAsset(bytes.data());
-  if (in.schema_major() > kSchemaMajor) return Status::error(Code::kBadVersion, "written by a newer version of Sinew");
+  if (in.schema_major() > kSchemaMajor)
+    return Status::error(Code::kBadVersion, "written by a newer version of Sinew");
   if (in.schema_major() < 1) return bad("has no version");
 
   Asset asset;
   if (Status status = unpack(*in.skeleton(), asset.skeleton); !status) return status;
   const int joints = static_cast<int>(asset.skeleton.joints.size());
   for (unsigned i = 0; i < size_of(in.clips()); ++i)
-    if (Status status = unpack(*in.clips()->Get(i), joints, asset.clips.emplace_back()); !status) return status;
+    if (Status status = unpack(*in.clips()->Get(i), joints, asset.clips.emplace_back()); !status)
+      return status;
   for (unsigned i = 0; i < size_of(in.materials()); ++i) {
     const fb::Material& m = *in.materials()->Get(i);
     Material& material = asset.materials.emplace_back();
@@ -164,19 +174,22 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
     if (m.base_color()->size() != 4) return bad("material colour needs four numbers", static_cast<int>(i));
     for (unsigned k = 0; k < 4; ++k) {
       material.base_color[k] = m.base_color()->Get(k);
-      if (!std::isfinite(material.base_color[k])) return bad("material colour is not finite", static_cast<int>(i));
+      if (!std::isfinite(material.base_color[k]))
+        return bad("material colour is not finite", static_cast<int>(i));
     }
     material.texture = copied(m.texture());
   }
   const int materials = static_cast<int>(asset.materials.size());
   for (unsigned i = 0; i < size_of(in.meshes()); ++i)
-    if (Status status = unpack(*in.meshes()->Get(i), joints, materials, static_cast<int>(i), asset.meshes.emplace_back());
+    if (Status status =
+            unpack(*in.meshes()->Get(i), joints, materials, static_cast<int>(i), asset.meshes.emplace_back());
         !status)
       return status;
   for (unsigned i = 0; i < size_of(in.inverse_bind()); ++i) {
     asset.inverse_bind.push_back(unpack(*in.inverse_bind()->Get(i)));
     const Transform<float>& x = asset.inverse_bind.back();
-    if (!x.rotation.coeffs().allFinite() || !x.translation.allFinite()) return bad("bind pose is not finite", static_cast<int>(i));
+    if (!x.rotation.coeffs().allFinite() || !x.translation.allFinite())
+      return bad("bind pose is not finite", static_cast<int>(i));
   }
   if (!asset.inverse_bind.empty() && asset.inverse_bind.size() != asset.skeleton.joints.size())
     return bad("bind pose has another number of joints than the skeleton");

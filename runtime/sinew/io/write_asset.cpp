@@ -8,7 +8,9 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-fb::Vec3 pack(const Vec3<double>& v) { return {v.x(), v.y(), v.z()}; }
+fb::Vec3 pack(const Vec3<double>& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 fb::Transform pack(const Transform<double>& x) {
   const Quat<double>& q = x.rotation;
@@ -35,8 +37,9 @@ Offset<fb::Joint> pack(FlatBufferBuilder& b, const Joint& joint) {
   const fb::Vec3 axis = pack(joint.axis), axis2 = pack(joint.axis2), center = pack(joint.center_of_mass),
                  swing = pack(joint.swing_axis);
   return fb::CreateJoint(b, name, source, joint.parent, static_cast<std::uint8_t>(joint.type),
-                         static_cast<std::uint8_t>(joint.role), &rest, &axis, &axis2, joint.mass, &center, inertia_offset,
-                         dofs_offset, joint.swing_limit, &swing, joint.twist_lower, joint.twist_upper);
+                         static_cast<std::uint8_t>(joint.role), &rest, &axis, &axis2, joint.mass, &center,
+                         inertia_offset, dofs_offset, joint.swing_limit, &swing, joint.twist_lower,
+                         joint.twist_upper);
 }
 
 Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
@@ -44,7 +47,8 @@ Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
   for (const Joint& joint : skeleton.joints) joints.push_back(pack(b, joint));
   std::vector<fb::Collider> colliders;
   for (const Collider& c : skeleton.colliders)
-    colliders.emplace_back(c.joint, static_cast<std::uint8_t>(c.shape), c.friction, pack(c.local), pack(c.size));
+    colliders.emplace_back(c.joint, static_cast<std::uint8_t>(c.shape), c.friction, pack(c.local),
+                           pack(c.size));
   const auto name = b.CreateString(skeleton.name);
   const auto joints_offset = b.CreateVector(joints);
   const auto colliders_offset = b.CreateVectorOfStructs(colliders);
@@ -60,8 +64,8 @@ Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip) {
     for (const Clip::Track& track : group.tracks) joints.push_back(track.joint);
     const auto joints_offset = b.CreateVector(joints);
     const auto controls = b.CreateVector(group.controls);
-    groups.push_back(fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval, group.control_count,
-                                     joints_offset, controls));
+    groups.push_back(fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval,
+                                     group.control_count, joints_offset, controls));
   }
   std::vector<fb::Contact> contacts;
   for (const ContactWindow& c : clip.contacts) contacts.emplace_back(c.joint, c.begin, c.end);
@@ -70,7 +74,8 @@ Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip) {
   const auto groups_offset = b.CreateVector(groups);
   const auto contacts_offset = b.CreateVectorOfStructs(contacts);
   const auto step = b.CreateVector(clip.root_step.data(), 3);
-  return fb::CreateClip(b, name, clip.duration, clip.loops, constants_offset, groups_offset, contacts_offset, step);
+  return fb::CreateClip(b, name, clip.duration, clip.loops, constants_offset, groups_offset, contacts_offset,
+                        step);
 }
 
 Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
@@ -107,8 +112,8 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
   const auto materials_offset = b.CreateVector(materials);
   const auto bind_offset = b.CreateVectorOfStructs(bind);
   const auto report = b.CreateString(asset.report_json);
-  b.Finish(fb::CreateAsset(b, kSchemaMajor, kSchemaMinor, skeleton, clips_offset, meshes_offset, materials_offset,
-                           bind_offset, report),
+  b.Finish(fb::CreateAsset(b, kSchemaMajor, kSchemaMinor, skeleton, clips_offset, meshes_offset,
+                           materials_offset, bind_offset, report),
            fb::AssetIdentifier());
   return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
 }

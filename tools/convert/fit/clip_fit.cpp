@@ -161,7 +161,9 @@ Clip fit_clip(const FitInput& input, const FitOptions& options, FitReport& repor
             return 1000 * kVirtualVertex * angle_between(a.transpose(), b.transpose());
           }));
     if (1000 * shifts > options.still_mm || (j == 0 && shifts > 1e-6))
-      add(false, fit(shifted, [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) { return 1000 * (a - b).norm(); }));
+      add(false, fit(shifted, [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
+            return 1000 * (a - b).norm();
+          }));
     report.max_mm = std::max(report.max_mm, r.max_mm);
   }
   report.rms_mm = count > 0 ? std::sqrt(sum / count) : 0;
@@ -176,7 +178,8 @@ Clip fit_clip(const FitInput& input, const FitOptions& options, FitReport& repor
     for (const auto& [joint, controls] : tracks) group.tracks.push_back({joint});
     for (int c = 0; c < knots.controls(); ++c)
       for (const auto& [joint, controls] : tracks)
-        for (int a = 0; a < controls.cols(); ++a) group.controls.push_back(static_cast<float>(controls(c, a)));
+        for (int a = 0; a < controls.cols(); ++a)
+          group.controls.push_back(static_cast<float>(controls(c, a)));
     clip.groups.push_back(std::move(group));
   }
   return clip;
