@@ -6,6 +6,7 @@
 
 namespace sinew::render {
 
+// clang-format off
 #define SINEW_GL_FUNCTIONS(X)                                                                                \
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                                   \
   X(PFNGLATTACHSHADERPROC, AttachShader) X(PFNGLBINDBUFFERPROC, BindBuffer) X(                               \
@@ -57,6 +58,7 @@ namespace sinew::render {
                                                                       X(PFNGLVERTEXATTRIBPOINTERPROC,        \
                                                                         VertexAttribPointer)                 \
                                                                           X(PFNGLVIEWPORTPROC, Viewport)
+// clang-format on
 
 struct Gl {
 #define SINEW_GL_MEMBER(type, name) type name = nullptr;

@@ -1,0 +1,39 @@
+// Pushes a playing character at its chest after one second. Usage: hit_reaction ASSET.sinew [IMPULSE in N·s]
+#include <sinew/animation/sampling_job.h>
+#include <sinew/character/world.h>
+#include <sinew/io/asset.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+int main(int argc, char** argv) {
+  sinew::Asset asset;
+  const sinew::Status loaded = sinew::load_asset(argc > 1 ? argv[1] : "", asset);
+  if (!loaded || asset.clips.empty()) {
+    std::fprintf(stderr, "hit_reaction: %s\n", loaded ? "the asset has no clip" : loaded.reason);
+    return 1;
+  }
+  const float impulse = argc > 2 ? static_cast<float>(std::atof(argv[2])) : 40.f;
+  sinew::Status status;
+  sinew::World<float> world({});
+  sinew::Character<float> hero = world.character(world.add_character(asset.skeleton, {}, status));
+  int chest = asset.skeleton.find(sinew::Role::kChest);
+  if (chest < 0) chest = asset.skeleton.body_count / 2;
+  std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
+  int most = 0;
+  for (int frame = 0; frame <= 180; ++frame) {
+    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, 1, jets}.Run();
+    hero.set_target(jets);
+    if (frame == 0) hero.reset();
+    if (frame == 60)
+      hero.apply_impulse(chest, hero.model()[static_cast<std::size_t>(chest)].translation, {0, impulse, 0});
+    world.step(1 / 60.f);
+    most = std::max(most, hero.report().unknown_dofs);
+    if (frame >= 58 && frame < 80)
+      std::printf("%5.2f s  %2d of %d degrees of freedom unknown\n", frame / 60.0, hero.report().unknown_dofs,
+                  hero.report().dofs);
+  }
+  std::printf("at most %d unknown; %s\n", most,
+              hero.on_animation() ? "back on the animation" : "still off the animation");
+  return 0;
+}
