@@ -25,7 +25,7 @@ class ByteWriter {
   template <class T>
   void array(const std::vector<T>& v) {
     pod(std::uint64_t(v.size()));
-    data_.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T));
+    if (!v.empty()) data_.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T));
   }
   const std::string& data() const { return data_; }
 
@@ -57,7 +57,7 @@ class ByteReader {
     std::uint64_t count = 0;
     if (!pod(count) || count > (data_.size() - at_) / sizeof(T)) return false;
     v.resize(count);
-    std::memcpy(static_cast<void*>(v.data()), data_.data() + at_, count * sizeof(T));
+    if (count > 0) std::memcpy(static_cast<void*>(v.data()), data_.data() + at_, count * sizeof(T));
     at_ += count * sizeof(T);
     return true;
   }
