@@ -30,6 +30,7 @@ run() {  # run DIRECTORY
 
 if [ "${1:-}" = --all ]; then
   git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+  export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   build build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo
   run build-asan
 fi

@@ -49,7 +49,7 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   }
   if (carried <= T(0)) return;
   // Hardly standing (about to land, or just off): hardly borne, so that forces fade in.
-  const T scale = total.z() / carried * (sum / (sum + T(0.05)));
+  const T scale = total.z() / carried * std::min(T(1), sum / T(0.2));
   // No more friction than the floor could give.
   const Eigen::Matrix<T, 2, 1> level =
       total.template head<2>() / std::max(total.z(), total.template head<2>().norm());

@@ -25,7 +25,8 @@ void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts) {
   index_.reserve(contacts * 48);
   jacobian_.reserve(contacts * 48);
   joint_rows_.reserve(dofs * 8);
-  for (auto* v : {&smooth_gradient_, &inner_gradient_, &step_, &correction_, &product_, &correction_product_})
+  for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &correction_, &product_,
+                  &correction_product_, &plain_})
     v->reserve(dofs);
   base_.reserve(bodies);
 }
@@ -123,8 +124,8 @@ void NewtonSolver<T>::collect_rows() {
   }
   for (TreeProblem<T>* p : trees_)
     for (std::size_t r = 0; r < p->rows.size(); ++r)
-      joint_rows_.push_back({p, static_cast<int>(r), unknowns_.of_dof[p->first_unknown_map + p->rows[r].dof],
-                             p->rows[r].value, T(0)});
+      joint_rows_.push_back(
+          {p->rows[r], unknowns_.of_dof[p->first_unknown_map + p->rows[r].dof], p->rows[r].value, T(0)});
 }
 
 template <class T>
@@ -194,7 +195,7 @@ void NewtonSolver<T>::add_row_curvature() {
     }
   }
   for (const JointRows& rows : joint_rows_) {
-    const JointRow<T>& row = rows.tree->rows[rows.row];
+    const JointRow<T>& row = rows.row;
     const T curvature = row.curvature(rows.value);
     if (curvature <= T(0)) continue;
     for (int i = 0; i < row.count; ++i)
@@ -215,7 +216,7 @@ void NewtonSolver<T>::directional_rows(std::span<const T> direction) {
     }
   }
   for (JointRows& rows : joint_rows_) {
-    const JointRow<T>& row = rows.tree->rows[rows.row];
+    const JointRow<T>& row = rows.row;
     rows.d_value = T(0);
     for (int a = 0; a < row.count; ++a) rows.d_value += row.gradient[a] * direction[rows.unknown + a];
   }
@@ -234,7 +235,7 @@ T NewtonSolver<T>::row_slope(T t) const {
     }
   }
   for (const JointRows& rows : joint_rows_)
-    slope += rows.tree->rows[rows.row].slope(rows.value + t * rows.d_value) * rows.d_value;
+    slope += rows.row.slope(rows.value + t * rows.d_value) * rows.d_value;
   return slope;
 }
 
@@ -253,7 +254,7 @@ void NewtonSolver<T>::add_row_gradient(std::span<T> gradient) const {
                              scale * (rows.slip[0] * jacobian_[e][1] + rows.slip[1] * jacobian_[e][2]);
   }
   for (const JointRows& rows : joint_rows_) {
-    const JointRow<T>& row = rows.tree->rows[rows.row];
+    const JointRow<T>& row = rows.row;
     const T slope = row.slope(rows.value);
     for (int a = 0; a < row.count; ++a) gradient[rows.unknown + a] += slope * row.gradient[a];
   }
@@ -325,24 +326,31 @@ T NewtonSolver<T>::gradient_dot(std::span<const T> direction) const {
   return sum;
 }
 
+/// Splits the gradient at the chart centres into its smooth part and the rows', which are added back wherever
+/// they move.
+template <class T>
+void NewtonSolver<T>::begin_inner() {
+  pattern_ = coupled_ ? &chain_ : &unknowns_.pattern;
+  base_gradient_.assign(unknowns_.pattern.size, T(0));
+  for (const TreeProblem<T>* p : trees_)
+    for (int dof = 0; dof < p->tree->dofs; ++dof)
+      if (const int k = unknowns_.of_dof[p->first_unknown_map + dof]; k >= 0)
+        base_gradient_[k] = p->gradient[dof];
+  smooth_gradient_.assign(unknowns_.pattern.size, T(0));
+  add_row_gradient(smooth_gradient_);
+  for (int k = 0; k < unknowns_.pattern.size; ++k)
+    smooth_gradient_[k] = base_gradient_[k] - smooth_gradient_[k];
+}
+
+/// Minimises the convex model from the chart centres, with the rows as they stand.
 template <class T>
 bool NewtonSolver<T>::inner_solve(T tolerance, T& first_length) {
   const int n = unknowns_.pattern.size;
   const TreeMatrix<T>& smooth = coupled_ ? smooth_dense_ : smooth_;
   TreeMatrix<T>& full = coupled_ ? full_dense_ : full_;
-  pattern_ = coupled_ ? &chain_ : &unknowns_.pattern;
-  for (auto* v : {&smooth_gradient_, &inner_gradient_, &step_, &correction_, &product_, &correction_product_})
-    v->assign(n, T(0));
-  for (const TreeProblem<T>* p : trees_)
-    for (int dof = 0; dof < p->tree->dofs; ++dof)
-      if (const int k = unknowns_.of_dof[p->first_unknown_map + dof]; k >= 0)
-        smooth_gradient_[k] = p->gradient[dof];
-  // What is left when the rows are taken out; they are added back wherever they move.
+  for (auto* v : {&step_, &correction_, &product_, &correction_product_}) v->assign(n, T(0));
+  inner_gradient_.assign(smooth_gradient_.begin(), smooth_gradient_.end());
   add_row_gradient(inner_gradient_);
-  for (int k = 0; k < n; ++k) {
-    smooth_gradient_[k] -= inner_gradient_[k];
-    inner_gradient_[k] += smooth_gradient_[k];
-  }
   for (int iteration = 0; iteration < kInnerCap; ++iteration) {
     full.values() = smooth.values();
     add_row_curvature();
@@ -400,19 +408,55 @@ void NewtonSolver<T>::try_step(T t) {
   }
 }
 
-/// Accepts a step that lowers the energy, judged by the directional derivative where differences of energies
-/// drown in rounding (near the solution in float: always).
+/// A step is accepted when it lowers the energy, judged by the directional derivative where differences of
+/// energies drown in rounding (near the solution in float: always).
 template <class T>
-bool NewtonSolver<T>::line_search(T slope, double energy, double& new_energy) {
+bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy) const {
+  if (!std::isfinite(new_energy)) return false;
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
+  return new_energy <= energy + 1e-4 * double(t * slope) ||
+         (new_energy <= energy + noise && std::abs(gradient_dot(correction_)) <= T(0.9) * std::abs(slope));
+}
+
+/// Second-order correction after a full step that failed: gaps and slips are re-measured where it led, the
+/// convex model is solved once more with them and the old Jacobian, and that step is tried. Undone when it
+/// fails too.
+template <class T>
+bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energy) {
+  plain_.assign(correction_.begin(), correction_.end());
+  directional_rows(correction_);
+  for (ContactRows& rows : contact_rows_) {
+    const Contact<T>& c = contacts_[rows.contact];
+    rows.gap = c.gap - rows.d_gap;
+    rows.slip[0] = c.slip[0] - rows.d_slip[0];
+    rows.slip[1] = c.slip[1] - rows.d_slip[1];
+  }
+  for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
+  T first_length = T(0);
+  if (inner_solve(tolerance, first_length)) {
+    T slope = T(0);
+    for (std::size_t k = 0; k < correction_.size(); ++k) slope += base_gradient_[k] * correction_[k];
+    if (slope < T(0)) {
+      try_step(T(1));
+      new_energy = evaluate();
+      if (accepted(T(1), slope, energy, new_energy)) return true;
+    }
+  }
+  correction_.assign(plain_.begin(), plain_.end());
+  return false;
+}
+
+template <class T>
+bool NewtonSolver<T>::line_search(T tolerance, double energy, double& new_energy) {
+  T slope = T(0);
+  for (std::size_t k = 0; k < correction_.size(); ++k) slope += base_gradient_[k] * correction_[k];
   T t = T(1);
   for (int attempt = 0; attempt < 14; ++attempt) {
     try_step(t);
     new_energy = evaluate();
+    if (accepted(t, slope, energy, new_energy)) return true;
     const T new_slope = gradient_dot(correction_);
-    const bool lower = new_energy <= energy + 1e-4 * double(t * slope);
-    const bool level = new_energy <= energy + noise && std::abs(new_slope) <= T(0.9) * std::abs(slope);
-    if (std::isfinite(new_energy) && (lower || level)) return true;
+    if (attempt == 0 && !contact_rows_.empty() && correct_step(tolerance, energy, new_energy)) return true;
     const T secant = new_slope > T(0) ? -slope / (new_slope - slope) : T(0.5);
     t *= std::clamp(secant, T(0.1), T(0.6));
   }
@@ -447,6 +491,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     for (const bool geometric : {true, false}) {
       collect_rows();
       assemble(geometric);
+      begin_inner();
       solved = inner_solve(tolerance, first_length);
       if (solved) break;
     }
@@ -459,11 +504,10 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     const T length = displacement(correction_);
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && first_length < 2 * tolerance;
-    const T slope = gradient_dot(correction_);
     base_.clear();
     for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
     double new_energy = energy;
-    const bool moved = line_search(slope, energy, new_energy);
+    const bool moved = line_search(tolerance, energy, new_energy);
     energy = new_energy;
     report_.converged = small;
     if (!moved) break;

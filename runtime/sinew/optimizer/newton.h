@@ -45,8 +45,7 @@ class NewtonSolver {
     T d_gap = T(0), d_slip[2]{};  ///< along the search direction
   };
   struct JointRows {
-    TreeProblem<T>* tree = nullptr;
-    int row = 0;
+    JointRow<T> row;
     int unknown = 0;  ///< of the row's first degree of freedom
     T value = T(0), d_value = T(0);
   };
@@ -56,7 +55,9 @@ class NewtonSolver {
   void add_path(const Contact<T>& contact, int tree, int body, const Vec3<T>& material, T sign,
                 ContactRows& rows);
   void assemble(bool geometric);
+  void begin_inner();
   bool inner_solve(T tolerance, T& first_length);
+  bool correct_step(T tolerance, double energy, double& new_energy);
   void add_row_curvature();
   void directional_rows(std::span<const T> direction);
   T row_slope(T t) const;
@@ -65,7 +66,8 @@ class NewtonSolver {
   T displacement(std::span<const T> direction) const;
   T gradient_dot(std::span<const T> direction) const;
   void try_step(T t);
-  bool line_search(T slope, double energy, double& new_energy);
+  bool accepted(T t, T slope, double energy, double new_energy) const;
+  bool line_search(T tolerance, double energy, double& new_energy);
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
@@ -85,7 +87,8 @@ class NewtonSolver {
   std::vector<int> index_;
   std::vector<std::array<T, 3>> jacobian_;  ///< gap, slip 1, slip 2 per unknown
   std::vector<JointRows> joint_rows_;
-  std::vector<T> smooth_gradient_, inner_gradient_, step_, correction_, product_, correction_product_;
+  std::vector<T> base_gradient_;  ///< of the true energy at the chart centres, per unknown
+  std::vector<T> smooth_gradient_, inner_gradient_, step_, correction_, product_, correction_product_, plain_;
   std::vector<Transform<T>> base_;  ///< charts during the line search, all trees
 };
 
