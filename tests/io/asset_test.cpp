@@ -1,0 +1,113 @@
+#include "sinew/io/asset.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <random>
+
+#include "fixtures/humanoid.h"
+#include "sinew/animation/sampling_job.h"
+
+namespace sinew {
+namespace {
+
+/// The fixture humanoid with a moving clip, a skinned triangle and a material.
+Asset sample_asset() {
+  Asset asset;
+  asset.skeleton = fixtures::humanoid();
+  const int joints = static_cast<int>(asset.skeleton.joints.size());
+  Clip clip;
+  clip.name = "nod";
+  clip.duration = 1;
+  clip.joint_count = joints;
+  for (const Joint& j : asset.skeleton.joints) clip.constants.push_back(j.rest.cast<float>());
+  Clip::Group group;
+  group.degree = 3;
+  group.knot_interval = 0.25f;
+  group.control_count = 7;
+  group.tracks = {{1}, {3}};
+  for (int k = 0; k < 7 * 2; ++k) group.controls.insert(group.controls.end(), {0.1f * float(k % 3), 0, 0, 1});
+  clip.groups.push_back(group);
+  clip.contacts.push_back({4, 0.1f, 0.5f});
+  asset.clips.push_back(clip);
+  Mesh mesh;
+  mesh.name = "triangle";
+  mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+  mesh.indices = {0, 1, 2};
+  mesh.joints.assign(12, 2);
+  mesh.weights = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  mesh.material = 0;
+  asset.meshes.push_back(mesh);
+  asset.materials.push_back({"clay", {0.5f, 0.4f, 0.3f, 1}, {1, 2, 3}});
+  asset.inverse_bind.resize(std::size_t(joints));
+  asset.report_json = "{}";
+  return asset;
+}
+
+TEST(Asset, ComesBackAsItWasWritten) {
+  const std::vector<std::uint8_t> bytes = write_asset(sample_asset());
+  Asset back;
+  const Status status = read_asset(bytes, back);
+  ASSERT_TRUE(status.ok()) << status.reason;
+  EXPECT_EQ(write_asset(back), bytes);
+  EXPECT_EQ(back.find_clip("nod"), 0);
+  EXPECT_EQ(back.skeleton.joints[3].mass, fixtures::humanoid().joints[3].mass);
+}
+
+TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {
+  const std::vector<std::uint8_t> good = write_asset(sample_asset());
+  constexpr unsigned kSeed = 20261121;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  int refused = 0;
+  for (int n = 0; n < 2000; ++n) {
+    std::vector<std::uint8_t> bad = good;
+    switch (n % 3) {
+      case 0:
+        bad.resize(random() % good.size());
+        break;
+      case 1:
+        for (unsigned k = 0, flips = 1 + random() % 16; k < flips; ++k)
+          bad[random() % bad.size()] ^= std::uint8_t(1u << (random() % 8));
+        break;
+      default:
+        for (unsigned k = 0, words = 1 + random() % 4; k < words; ++k) {
+          const std::size_t at = 4 * (random() % (bad.size() / 4));
+          const std::uint32_t value = random() % 2 ? 0xFFFFFFFFu : std::uint32_t(random());
+          for (int b = 0; b < 4; ++b) bad[at + std::size_t(b)] = std::uint8_t(value >> (8 * b));
+        }
+        bad.insert(bad.end(), random() % 64, 0xAB);
+    }
+    Asset out;
+    out.report_json = "untouched";
+    const Status status = read_asset(bad, out);
+    if (!status) {
+      ++refused;
+      ASSERT_NE(std::string(status.reason), "");
+      ASSERT_EQ(out.report_json, "untouched") << "mutation " << n;
+      continue;
+    }
+    ASSERT_TRUE(validate(out.skeleton).ok()) << "mutation " << n;
+    for (const Clip& clip : out.clips) {
+      std::vector<JointJet<float>> jets(out.skeleton.joints.size());
+      ASSERT_TRUE((SamplingJob<float>{&clip, 0.3, 1, jets}.Run().ok()));
+    }
+  }
+  EXPECT_GT(refused, 600);  // every truncation at least
+}
+
+TEST(Asset, PathsThatAreNoAssetAreRefused) {
+  Asset out;
+  EXPECT_EQ(load_asset("/no/such/file.sinew", out).code, Code::kIo);
+  EXPECT_EQ(load_asset("/tmp", out).code, Code::kIo);
+  const std::string empty = testing::TempDir() + "empty.sinew";
+  std::ofstream(empty).close();
+  EXPECT_EQ(load_asset(empty.c_str(), out).code, Code::kBadFile);
+  std::ofstream(empty) << "just some text, longer than a header would be";
+  EXPECT_EQ(load_asset(empty.c_str(), out).code, Code::kBadFile);
+}
+
+}  // namespace
+}  // namespace sinew
