@@ -1,0 +1,144 @@
+// The command as a user runs it: exit codes, one-line errors, whole files or none.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+};
+
+Outcome sinew(const std::string& arguments) {
+  Outcome run;
+  FILE* pipe = popen((std::string(SINEW_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  char buffer[4096];
+  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
+  run.code = WEXITSTATUS(pclose(pipe));
+  return run;
+}
+
+const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
+
+std::string written(const std::string& name, const std::string& content) {
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path) << content;
+  return path;
+}
+
+void expect_refused(const std::string& arguments, const std::string& names) {
+  const Outcome run = sinew(arguments);
+  EXPECT_EQ(run.code, 1) << arguments << "\n" << run.out;
+  EXPECT_EQ(run.out.rfind("sinew: ", 0), 0u) << run.out;
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1) << run.out;
+  EXPECT_NE(run.out.find(names), std::string::npos) << run.out;
+}
+
+TEST(Command, UsageErrorsExitWithTwoAndHelpWithZero) {
+  EXPECT_EQ(sinew("").code, 2);
+  EXPECT_EQ(sinew("convert").code, 2);
+  EXPECT_EQ(sinew("render a.sinew -o x.mp4 --theme pink").code, 2);
+  for (const char* command : {"convert", "info", "evaluate", "simulate", "render"}) {
+    const Outcome help = sinew(std::string(command) + " --help");
+    EXPECT_EQ(help.code, 0);
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << command;
+  }
+}
+
+TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
+  const std::string out = testing::TempDir() + "never.sinew";
+  expect_refused("convert /no/such.glb -o " + out, "/no/such.glb");
+  expect_refused("convert " + written("text.glb", "hello") + " -o " + out, "text.glb");
+  expect_refused("info " + written("cut.sinew", std::string("\x10\0\0\0SNEW____________", 20)), "cut.sinew");
+  expect_refused("render " + kAsset + " -o /no/such/directory/x.png", "/no/such/directory");
+  expect_refused("render " + kAsset + " -o " + testing::TempDir() + "x.avi", "x.avi");
+  expect_refused("render " + kAsset + " --size 641x480 -o " + testing::TempDir() + "x.png", "even");
+  expect_refused("render " + kAsset + " --clip nothing -o " + testing::TempDir() + "x.png", "nothing");
+  for (const auto& entry : fs::directory_iterator(testing::TempDir())) {
+    EXPECT_EQ(entry.path().filename().string().find("never.sinew"), std::string::npos);
+    EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
+  }
+}
+
+TEST(Command, ScenesAreCheckedByNameBeforeAnythingRuns) {
+  const auto scene = [](const std::string& extra, const std::string& character) {
+    return "{\"duration\": 0.1, \"characters\": [{\"asset\": \"" + kAsset + "\"" + character + "}]" + extra +
+           "}";
+  };
+  const std::pair<std::string, std::string> cases[] = {
+      {scene("", ", \"clips\": [{\"clip\": \"moonwalk\"}]"), "moonwalk"},
+      {scene(", \"pushes\": [{\"joint\": \"tail\"}]", ""), "tail"},
+      {scene(", \"effects\": [\"magic\"]", ""), "magic"},
+      {scene(", \"surprise\": 1", ""), "surprise"},
+      {scene(", \"frame_rate\": -60", ""), "frame_rate"},
+      {scene(", \"gravity\": [0, 0, 1e999]", ""), "scene.json"},
+      {scene("", ", \"strength\": [[0, -1]]"), "strength"},
+      {"{\"characters\": []}", "characters"},
+      {"not json", "JSON"}};
+  for (const auto& [text, names] : cases) {
+    const std::string path = written("scene.json", text), out = testing::TempDir() + "scene.csv";
+    expect_refused("simulate " + path + " -o " + out, names);
+    EXPECT_FALSE(fs::exists(out)) << names;
+  }
+}
+
+TEST(Command, SimulateWritesTelemetryOfAScene) {
+  const std::string path =
+      written("good.json", "{\"duration\": 1.5, \"characters\": [{\"asset\": \"" + kAsset +
+                               "\", \"clips\": [{\"clip\": \"walk\"}]}], \"pushes\": [{\"time\": 0.5, "
+                               "\"joint\": \"chest\", \"impulse\": [0, 60, 0]}]}");
+  const std::string out = testing::TempDir() + "good.csv";
+  const Outcome run = sinew("simulate " + path + " --json -o " + out);
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json summary = json::parse(run.out);
+  EXPECT_GT(summary["most_unknown_dofs"].get<int>(), 0);
+  EXPECT_GT(summary["frames_playback"].get<int>(), 25);
+  std::ifstream csv(out);
+  std::string header;
+  std::getline(csv, header);
+  EXPECT_EQ(header.rfind("time_s,character", 0), 0u);
+  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 91);
+}
+
+TEST(Command, EvaluatePrintsWhatItPromises) {
+  const std::string urdf =
+      written("pendulum.urdf",
+              "<robot name=\"p\"><link name=\"base\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
+              "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>"
+              "<link name=\"bob\"><inertial><origin xyz=\"0 0 -2\"/><mass value=\"3\"/><inertia ixx=\"0.1\" "
+              "ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"0.1\"/></inertial></link>"
+              "<joint name=\"swing\" type=\"continuous\"><parent link=\"base\"/><child link=\"bob\"/><axis "
+              "xyz=\"0 1 0\"/></joint></robot>");
+  const std::string state =
+      written("state.json", "{\"joints\": {\"swing\": {\"q\": 0.5, \"v\": 1, \"a\": 2}}}");
+  const Outcome run = sinew("evaluate " + urdf + " --fixed-base --state " + state);
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json r = json::parse(run.out);
+  EXPECT_EQ(r["dof_names"], json::array({"swing"}));
+  // 3 kg on 2 m: I = 0.1 + 12; gravity torque m g l sin q.
+  EXPECT_NEAR(r["mass_matrix"][0][0].get<double>(), 12.1, 1e-12);
+  EXPECT_NEAR(r["inverse_dynamics"][0].get<double>(), 12.1 * 2 + 3 * 9.81 * 2 * std::sin(0.5), 1e-12);
+  EXPECT_NEAR(r["forward_dynamics"][0].get<double>(), -3 * 9.81 * 2 * std::sin(0.5) / 12.1, 1e-12);
+  EXPECT_NEAR(r["kinetic_energy"].get<double>(), 0.5 * 12.1, 1e-12);
+  EXPECT_EQ(r["frames"].size(), 2u);
+  EXPECT_EQ(json::parse(sinew("evaluate " + urdf).out)["dof_names"].size(), 7u);
+  expect_refused("evaluate " + urdf + " --state " + written("bad.json", "{\"joints\": {\"wing\": {}}}"),
+                 "wing");
+}
+
+TEST(Command, RendersAPictureOfAnAsset) {
+  const std::string out = testing::TempDir() + "picture.png";
+  const Outcome run = sinew("render " + kAsset + " --size 320x180 -o " + out);
+  ASSERT_EQ(run.code, 0) << run.out;
+  EXPECT_GT(fs::file_size(out), 5000u);  // a blank picture of this size takes well below 2 kB
+}
+
+}  // namespace
