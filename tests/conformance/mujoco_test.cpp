@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <regex>
 #include <sstream>
 
 #include "convert/convert.h"
@@ -22,7 +21,7 @@ std::string for_mujoco(const std::string& path) {
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   std::string urdf = text.str();
-  for (const char* tag : {"visual", "collision", "transmission", "gazebo"})  // whole elements
+  for (const char* tag : {"visual", "collision", "transmission", "gazebo", "mujoco"})  // whole elements
     for (std::size_t at; (at = urdf.find(std::string("<") + tag)) != std::string::npos;) {
       const std::string close = std::string("</") + tag + ">";
       const std::size_t end = urdf.find(close, at), tag_end = urdf.find('>', at);
@@ -31,7 +30,6 @@ std::string for_mujoco(const std::string& path) {
       else
         urdf.erase(at, end + close.size() - at);
     }
-  urdf = std::regex_replace(urdf, std::regex("<mujoco>[^]*?</mujoco>"), "");
   const std::size_t root = urdf.find('>', urdf.find("<robot")) + 1;
   urdf.insert(root,
               "<mujoco><compiler fusestatic=\"false\" balanceinertia=\"false\" boundmass=\"0\" "
