@@ -1,5 +1,6 @@
 // Scenes on the project's own character: what a scene file says is what happens.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -26,8 +27,15 @@ struct Result {
   int joint(const char* name) const { return scene.characters[0].asset->skeleton.find(name); }
 };
 
+/// A directory of this process: ctest runs the cases side by side.
+std::string own_file(const std::string& name) {
+  const std::filesystem::path directory = testing::TempDir() + "sinew_scene_" + std::to_string(getpid());
+  std::filesystem::create_directories(directory);
+  return (directory / name).string();
+}
+
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = testing::TempDir() + name;
+  const std::string path = own_file(name);
   std::ofstream(path) << content;
   return path;
 }
@@ -178,7 +186,7 @@ TEST(Telemetry, PlotIsDrawnAlsoUnderAwkwardNames) {
   Result r = run(R"(, "clips": [{"clip": "walk"}])", R"(, "plot": "chest")", 0.5);
   r.telemetry.plotted_name = "it's \" a _joint";
   const std::string csv = written("it's.csv", telemetry_csv(r.scene, r.telemetry));
-  const std::string png = testing::TempDir() + "it's.png";
+  const std::string png = own_file("it's.png");
   const convert::Error error = plot_telemetry(csv, r.telemetry, png);
   ASSERT_FALSE(error) << error.message;
   EXPECT_GT(std::filesystem::file_size(png), 10000u);

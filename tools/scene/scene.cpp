@@ -253,14 +253,13 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
   if (in.has("accuracy")) {
-    const Reader a(in.at("accuracy"), "accuracy",
-                   {"scheme", "substeps", "tolerance", "max_iterations", "sink_depth", "stick_speed",
-                    "return_time", "precision"});
+    const Reader a(
+        in.at("accuracy"), "accuracy",
+        {"scheme", "tolerance", "max_iterations", "sink_depth", "stick_speed", "return_time", "precision"});
     const std::string scheme = a.text("scheme", "bdf2");
     if (scheme != "bdf1" && scheme != "bdf2") fail("accuracy.scheme", "unknown scheme '" + scheme + "'");
     s.world.accuracy.scheme = scheme == "bdf1" ? Scheme::kBdf1 : Scheme::kBdf2;
     s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
-    s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 64);
     s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1000);
     s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
     s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
