@@ -16,8 +16,10 @@ class Collector : public console_bridge::OutputHandler {
  public:
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_WARN) messages.push_back(text);
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_error.empty()) first_error = text;
   }
   std::vector<std::string> messages;
+  std::string first_error;  ///< the cause; what follows are its consequences
 };
 
 Transform<double> transform_of(const urdf::Pose& pose) {
@@ -117,15 +119,14 @@ void read_inertial(const urdf::Inertial& inertial, SourceUrdfLink& link) {
 }  // namespace
 
 SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
-  if (content.find("xacro:") != std::string::npos)
+  if (content.find("<xacro:") != std::string::npos || content.find("=\"${") != std::string::npos)
     throw std::runtime_error("it still holds xacro macros; expand them first");
   Collector collector;
   console_bridge::useOutputHandler(&collector);
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(content);
   console_bridge::restorePreviousOutputHandler();
   if (!model)
-    throw std::runtime_error(collector.messages.empty() ? "urdfdom cannot read it"
-                                                        : collector.messages.front());
+    throw std::runtime_error(collector.first_error.empty() ? "urdfdom cannot read it" : collector.first_error);
   SourceScene scene;
   scene.format = "urdf";
   scene.name = model->getName();
