@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <regex>
 #include <sstream>
 
 #include "convert/convert.h"
@@ -23,7 +22,7 @@ std::string for_mujoco(const std::string& path, const Skeleton& skeleton) {
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   std::string urdf = text.str();
-  for (const char* tag : {"visual", "collision", "transmission", "gazebo"})  // whole elements
+  for (const char* tag : {"visual", "collision", "transmission", "gazebo", "mujoco"})  // whole elements
     for (std::size_t at; (at = urdf.find(std::string("<") + tag)) != std::string::npos;) {
       const std::string close = std::string("</") + tag + ">";
       const std::size_t end = urdf.find(close, at), tag_end = urdf.find('>', at);
@@ -32,7 +31,6 @@ std::string for_mujoco(const std::string& path, const Skeleton& skeleton) {
       else
         urdf.erase(at, end + close.size() - at);
     }
-  urdf = std::regex_replace(urdf, std::regex("<mujoco>[^]*?</mujoco>"), "");
   for (const Joint& joint : skeleton.joints) {
     const std::size_t at = urdf.find("<joint name=\"" + joint.source_joint + "\"");
     if (joint.type != JointType::kFixed || joint.source_joint.empty() || at == std::string::npos) continue;

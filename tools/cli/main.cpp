@@ -253,7 +253,6 @@ int main(int argc, char** argv) {
   r->add_option("--samples", render.options.samples, "multisampling, 1 or 4")->check(CLI::IsMember({1, 4}));
   r->add_option("--theme", render.options.theme)->check(CLI::IsMember({"dark", "light"}));
   r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes"}));
-  r->add_option("--quality", render.options.quality)->check(CLI::IsMember({"quality", "fast"}));
   r->add_flag("--turntable", render.options.turntable);
   r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")
       ->check(CLI::Range(1, 100000));

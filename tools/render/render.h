@@ -16,7 +16,6 @@ struct Options {
   std::string theme = "dark";  ///< dark | light
   std::string mode =
       "skin";  ///< skin | xray (muscle spindles coloured by load, translucent mesh beside) | shapes
-  std::string quality = "quality";  ///< quality (SSAO, soft shadow) | fast
   bool overlay = true;
   bool turntable = false;
   int frames_per_revolution = 120;

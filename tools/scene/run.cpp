@@ -232,15 +232,15 @@ class Runner {
       for (int i = 0; i < skeleton.body_count; ++i) {
         if (skeleton.joints[i].type == JointType::kFree) continue;
         const int dofs = dof_count(skeleton.joints[i].type);
-        double square = 0;  // hinges show their sign, ball joints the magnitude of their torque
+        double most = 0;  // hinges show their sign, ball joints the size of their largest component
         for (int k = 0; k < dofs; ++k) {
           const auto dof = static_cast<std::size_t>(c.first_dof(i) + k);
           made.load[i] = std::max(made.load[i], float(c.load()[dof]));
           made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
-          square += double(c.torque()[dof]) * double(c.torque()[dof]);
+          most = std::max(most, std::abs(double(c.torque()[dof])));
         }
-        made.torque[i] = dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))])
-                                   : float(std::sqrt(square));
+        made.torque[i] =
+            dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))]) : float(most);
       }
       for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i)
         made.load[i] = made.load[skeleton.joints[i].parent];

@@ -14,7 +14,6 @@ enum class Scheme : std::uint8_t {
 /// Lengths in metres, angles in radians, speeds in m/s.
 struct Accuracy {
   Scheme scheme = Scheme::kBdf2;
-  int substeps = 1;               ///< fixed subdivision of every step, 1 … 64
   double tolerance = 3e-5;        ///< stop when the last correction moves no body by more (m)
   int max_iterations = 60;        ///< outer passes; the mean is 3.5, hard impacts at 1/30 s need the tail
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)
