@@ -27,8 +27,7 @@ std::string gltf_chain(int length) {
 
 std::string bvh_chain(int length) {
   std::string text = "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\nCHANNELS 0\n";
-  for (int i = 1; i < length; ++i)
-    text += "JOINT j" + std::to_string(i) + "\n{\nOFFSET 0 1 0\nCHANNELS 0\n";
+  for (int i = 1; i < length; ++i) text += "JOINT j" + std::to_string(i) + "\n{\nOFFSET 0 1 0\nCHANNELS 0\n";
   return text + repeated("}\n", length) + "MOTION\nFrames: 1\nFrame Time: 0.1\n\n";
 }
 
@@ -44,7 +43,8 @@ std::string collada(const std::string& nodes) {
          "version=\"1.4.1\"><asset><unit meter=\"1\"/><up_axis>Y_UP</up_axis></asset><library_visual_scenes>"
          "<visual_scene id=\"s\">" +
          nodes +
-         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene "
+         "url=\"#s\"/></scene></COLLADA>";
 }
 
 void add_gltf(std::vector<Malformed>& all) {
@@ -54,16 +54,17 @@ void add_gltf(std::vector<Malformed>& all) {
   add("Chain20000", gltf_chain(20000), "nested too deeply");
   add("Chain200000", gltf_chain(200000), "too many nodes");
   add("Brackets200000", R"({"asset":)" + repeated("[", 200000), "nested too deeply");
-  add("NanRotation",
-      gltf([](Json& g) {
+  add("NanRotation", gltf([](Json& g) {
         set_buffer(g, {0, 0.5f, 1, 0, 0, 0, 1, kNan, kNan, kNan, kNan, 0, 0, 0, 1});
       }),
       "clip 'kick' node 'leg': a rotation key");
-  add("NanTime",
-      gltf([](Json& g) { set_buffer(g, {0, kNan, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}); }),
+  add("NanTime", gltf([](Json& g) {
+        set_buffer(g, {0, kNan, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+      }),
       "clip 'kick', node 'leg': a key time is not finite");
-  add("ZeroRotation",
-      gltf([](Json& g) { set_buffer(g, {0, 0.5f, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}); }),
+  add("ZeroRotation", gltf([](Json& g) {
+        set_buffer(g, {0, 0.5f, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+      }),
       "a rotation key is not a rotation");
   add("CountsDiffer", gltf([](Json& g) { g["accessors"][1]["count"] = 2; }), "differ in number");
   add("SamplerNowhere", gltf([](Json& g) { g["animations"][0]["channels"][0]["sampler"] = 7; }),
@@ -78,7 +79,10 @@ void add_gltf(std::vector<Malformed>& all) {
         g["nodes"].push_back({{"children", {2}}});
       }),
       "nodes form a loop");
-  add("TwoParents", gltf([](Json& g) { g["nodes"].push_back({{"children", {1}}}); }), "node 1 has two parents");
+  add("TwoParents", gltf([](Json& g) {
+        g["nodes"].push_back({{"children", {1}}});
+      }),
+      "node 1 has two parents");
   add("ChildNowhere", gltf([](Json& g) { g["nodes"][1]["children"] = {12}; }), "a child points nowhere");
   add("ChildNegative", gltf([](Json& g) { g["nodes"][1]["children"] = {-1}; }), "a child points nowhere");
   add("ViewBeyondBuffer", gltf([](Json& g) { g["bufferViews"][1]["byteOffset"] = 4000; }), "assimp: ");
@@ -100,8 +104,9 @@ void add_gltf(std::vector<Malformed>& all) {
   add_glb("CutOff", whole.substr(0, whole.size() / 2), "cut off");
   add_glb("ChunkTooLong", whole.substr(0, 12) + "\xff\xff\xff\x7f" + whole.substr(16), "whole JSON chunk");
   add_glb("VersionOne", whole.substr(0, 4) + std::string("\1\0\0\0", 4) + whole.substr(8), "version 1");
-  add_glb("Brackets200000", "glTF" + std::string("\2\0\0\0", 4) + std::string("\x54\x0d\x03\0", 4) +
-                                std::string("\x40\x0d\x03\0", 4) + "JSON" + repeated("[", 200000),
+  add_glb("Brackets200000",
+          "glTF" + std::string("\2\0\0\0", 4) + std::string("\x54\x0d\x03\0", 4) +
+              std::string("\x40\x0d\x03\0", 4) + "JSON" + repeated("[", 200000),
           "nested too deeply");
   add_glb("Junk78", "glTF" + repeated("\x7f", 74), "GLB version");
   // What another importer of assimp would claim, and then crash on (ecosystem, section 3.2).
@@ -129,7 +134,8 @@ void add_bvh(std::vector<Malformed>& all) {
   add("NoMotion", "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 0\n}\n", "no MOTION");
   add("Unclosed", "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nMOTION\nFrames: 1\nFrame Time: 0.1\n", "assimp: ");
   add("TwoJointsOfOneName",
-      "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nJOINT k\n{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n"
+      "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nJOINT k\n{\nOFFSET 0 1 0\nCHANNELS 1 "
+      "Xrotation\n"
       "}\nJOINT k\n{\nOFFSET 1 1 0\nCHANNELS 1 Xrotation\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n0 0 0\n",
       "assimp: .*k");
   add("HugeChannelCount",
@@ -155,7 +161,8 @@ void add_xml_and_fbx(std::vector<Malformed>& all) {
       "assimp: |nested too deeply");
   add("FbxTextCutOff", "a.fbx", "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 7400\n",
       "assimp: ");
-  add("NoFormat", "a.fbx", "Once upon a time there was a file.", "not a glTF, FBX, BVH, COLLADA or URDF file");
+  add("NoFormat", "a.fbx", "Once upon a time there was a file.",
+      "not a glTF, FBX, BVH, COLLADA or URDF file");
   add("OnlyNulls", "a.glb", std::string(4096, '\0'), "not a glTF, FBX, BVH, COLLADA or URDF file");
   add("Empty", "a.bvh", "", "file is empty");
 }
@@ -180,17 +187,19 @@ void add_urdf(std::vector<Malformed>& all) {
       "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>"
       "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint></robot>",
       "link 'c' is its own ancestor, or has two parents");
-  add("Nested200000", "<robot name=\"r\">" + repeated("<link name=\"a\">", 200000), "XML is nested too deeply");
+  add("Nested200000", "<robot name=\"r\">" + repeated("<link name=\"a\">", 200000),
+      "XML is nested too deeply");
   add("Spherical", short_urdf(knee(limit, "spherical")), "knee.*spherical");
-  add("ZeroAxis", short_urdf(knee("<axis xyz=\"0 0 0\"/>" + limit)), "joint 'knee' has an axis of length zero");
+  add("ZeroAxis", short_urdf(knee("<axis xyz=\"0 0 0\"/>" + limit)),
+      "joint 'knee' has an axis of length zero");
   add("NanAxis", short_urdf(knee("<axis xyz=\"nan 0 0\"/>" + limit)), "knee");
   add("NanOrigin", short_urdf(knee("<origin xyz=\"0 nan 0\"/>" + limit)), "knee");
   add("NegativeMass",
-      short_urdf(knee(limit), "<inertial><mass value=\"-1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
-                              "iyz=\"0\" izz=\"1\"/></inertial>"),
+      short_urdf(knee(limit),
+                 "<inertial><mass value=\"-1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
+                 "iyz=\"0\" izz=\"1\"/></inertial>"),
       "link 'a' has a negative mass");
-  add("InvertedLimits",
-      short_urdf(knee("<limit lower=\"1\" upper=\"-1\" effort=\"10\" velocity=\"5\"/>")),
+  add("InvertedLimits", short_urdf(knee("<limit lower=\"1\" upper=\"-1\" effort=\"10\" velocity=\"5\"/>")),
       "joint 'knee' has its lower limit above its upper");
   add("NoLimits", short_urdf(knee()), "knee.*limit");
   add("MimicOfItself", short_urdf(knee(limit + "<mimic joint=\"knee\"/>")), "joint 'knee' mimics itself");
@@ -200,7 +209,8 @@ void add_urdf(std::vector<Malformed>& all) {
       "<robot name=\"r\" xmlns:xacro=\"http://ros.org/wiki/xacro\"><xacro:include filename=\"x\"/><link "
       "name=\"a\"/></robot>",
       "xacro");
-  add("MissingParent", "<robot name=\"r\"><link name=\"b\"/>" + knee(limit) + "</robot>", "knee|link \\[a\\]|'a'");
+  add("MissingParent", "<robot name=\"r\"><link name=\"b\"/>" + knee(limit) + "</robot>",
+      "knee|link \\[a\\]|'a'");
   add("TwoLinksOfOneName", "<robot name=\"r\"><link name=\"a\"/><link name=\"a\"/></robot>", "a.*unique");
   add("TwoRoots", "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/></robot>", "[Tt]wo root");
   add("NoLinks", "<robot name=\"r\"></robot>", "link");

@@ -8,9 +8,9 @@ namespace sinew::import::test {
 
 struct Malformed {
   std::string name;
-  std::string file;     ///< name it is written under
+  std::string file;  ///< name it is written under
   std::string content;
-  std::string cause;    ///< regular expression that the message must match
+  std::string cause;  ///< regular expression that the message must match
 };
 
 /// All must be refused.

@@ -60,8 +60,8 @@ TEST_P(Mutation, GivesASoundSceneOrOneLine) {
     }
   }
   EXPECT_LT(read_well, kMutations);  // else nothing was damaged
-  std::printf("%s: %d read, %d refused, slowest %.0f ms\n", GetParam().name, read_well, kMutations - read_well,
-              1e3 * slowest);
+  std::printf("%s: %d read, %d refused, slowest %.0f ms\n", GetParam().name, read_well,
+              kMutations - read_well, 1e3 * slowest);
 }
 
 std::string model(const char* path) {
@@ -70,19 +70,19 @@ std::string model(const char* path) {
 
 INSTANTIATE_TEST_SUITE_P(
     Formats, Mutation,
-    testing::Values(
-        Seed{"Gltf", "a.gltf", [] { return with_triangle(kicking_leg(), 0).dump(); }},
-        Seed{"Glb", "a.glb", [] { return as_glb(with_triangle(kicking_leg(), 0)); }},
-        Seed{"Bvh", "a.bvh", [] { return walking_bvh(); }},
-        Seed{"Fbx", "a.fbx", [] { return model("FBX/huesitos.fbx"); }},
-        Seed{"Collada", "a.dae", [] { return model("Collada/box_nested_animation.dae"); }},
-        Seed{"Urdf", "a.urdf",
-             [] {
-               return short_urdf(knee(kGoodLimit),
-                                 "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
-                                 "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><visual><geometry><box size=\"1 2 "
-                                 "3\"/></geometry></visual>");
-             }}),
+    testing::Values(Seed{"Gltf", "a.gltf", [] { return with_triangle(kicking_leg(), 0).dump(); }},
+                    Seed{"Glb", "a.glb", [] { return as_glb(with_triangle(kicking_leg(), 0)); }},
+                    Seed{"Bvh", "a.bvh", [] { return walking_bvh(); }},
+                    Seed{"Fbx", "a.fbx", [] { return model("FBX/huesitos.fbx"); }},
+                    Seed{"Collada", "a.dae", [] { return model("Collada/box_nested_animation.dae"); }},
+                    Seed{"Urdf", "a.urdf",
+                         [] {
+                           return short_urdf(
+                               knee(kGoodLimit),
+                               "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+                               "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><visual><geometry><box size=\"1 2 "
+                               "3\"/></geometry></visual>");
+                         }}),
     [](const auto& one) { return one.param.name; });
 
 }  // namespace

@@ -127,8 +127,8 @@ inline nlohmann::json kicking_leg() {
 
 /// The same, with a triangle on the node `carrier`; positions follow the keys in the buffer.
 inline nlohmann::json with_triangle(nlohmann::json gltf, int carrier) {
-  set_buffer(gltf, {0, 0.5f, 1, 0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f, 0, 0, 0.70710678f,
-                    0, 0,    0, 1, 0, 0, 0, 1,           0});
+  set_buffer(gltf, {0, 0.5f, 1,           0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f,
+                    0, 0,    0.70710678f, 0, 0, 0, 1, 0,           0, 0, 1,           0});
   const std::size_t view = gltf["bufferViews"].size(), accessor = gltf["accessors"].size();
   gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 36}});
   gltf["accessors"].push_back({{"bufferView", view},
