@@ -138,7 +138,8 @@ TEST(Sandbox, SaysWhenTheReaderCrashed) {
 }
 
 void work_forever() {
-  for (volatile unsigned i = 0;; i = i + 1) {
+  const volatile bool on = true;
+  while (on) {
   }
 }
 

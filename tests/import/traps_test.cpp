@@ -1,6 +1,9 @@
 // Oddities of sound files (the traps of ../shared/research/real-data.md that belong to reading).
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "reading.h"
 
 namespace sinew::import::test {
@@ -24,7 +27,8 @@ TEST(Gltf, ClipTurnsTheLeg) {
   const SourceChannel& channel = scene.clips[0].channels[0];
   EXPECT_EQ(channel.node, index_of(scene, "leg"));
   // 1e-6: the file's floats
-  EXPECT_NEAR(channel.rotations[1].angularDistance(Eigen::Quaterniond::Identity()), EIGEN_PI / 4, 1e-6);
+  EXPECT_NEAR(channel.rotations[1].angularDistance(Eigen::Quaterniond::Identity()), std::numbers::pi / 4,
+              1e-6);
   EXPECT_EQ(scene.nodes[channel.node].local(1, 3), -0.5);
   EXPECT_EQ(scene.meters_per_unit, 1);
   EXPECT_EQ(scene.up_axis, 1);
@@ -172,8 +176,8 @@ TEST(Bvh, ChannelsTurnInTheOrderOfTheFile) {
   const int leg = index_of(outcome.scene, "leg");
   for (const SourceChannel& channel : outcome.scene.clips[0].channels) {
     if (channel.node != leg) continue;
-    const Eigen::Quaterniond expected = Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()) *
-                                        Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX());
+    const Eigen::Quaterniond expected = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()) *
+                                        Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
     EXPECT_LT(channel.rotations[0].angularDistance(expected), 1e-6);  // assimp's floats
     return;
   }
@@ -194,7 +198,7 @@ TEST(Urdf, JointIsReadWithAllThatItSays) {
   EXPECT_EQ(link.type, JointType::kRevolute);
   EXPECT_EQ(link.axis, Vec3<double>(0, 2, 0));
   EXPECT_EQ(link.origin.translation.z(), -0.5);
-  EXPECT_NEAR(2 * std::acos(link.origin.rotation.w()), EIGEN_PI / 2, 1e-12);
+  EXPECT_NEAR(2 * std::acos(link.origin.rotation.w()), std::numbers::pi / 2, 1e-12);
   EXPECT_TRUE(link.has_limits);
   EXPECT_EQ(link.lower, -1);
   EXPECT_EQ(link.upper, 2);
