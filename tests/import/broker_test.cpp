@@ -79,8 +79,7 @@ TEST_F(OpenBeside, RefusesEmptyNamesAndNamesWithANull) {
 /// Reads kicking_leg() with its buffer in a file called `uri` inside the document.
 Outcome read_with_bin(const Scratch& scratch, const std::string& uri, const std::string& bin_file) {
   nlohmann::json gltf = kicking_leg();
-  const std::vector<float> values{0, 0.5f, 1,           0,           0, 0, 1,          0.38268343f,
-                                  0, 0,    0.92387953f, 0.70710678f, 0, 0, 0.70710678f};
+  const std::vector<float> values = kick_keys();
   gltf["buffers"][0]["uri"] = uri;
   scratch.write(bin_file, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
   return read(scratch.write("models/a.gltf", gltf.dump()));

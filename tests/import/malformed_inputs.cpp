@@ -99,7 +99,7 @@ void add_gltf(std::vector<Malformed>& all) {
   const auto add_glb = [&](const char* name, const std::string& content, const char* cause) {
     all.push_back({std::string("Glb") + name, "a.glb", content, cause});
   };
-  const std::string whole = as_glb(kicking_leg());
+  const std::string whole = as_glb(kicking_leg(), kick_keys());
   add_glb("EndsInHeader", whole.substr(0, 15), "ends within its header");
   add_glb("CutOff", whole.substr(0, whole.size() / 2), "cut off");
   add_glb("ChunkTooLong", whole.substr(0, 12) + "\xff\xff\xff\x7f" + whole.substr(16), "whole JSON chunk");
@@ -199,6 +199,12 @@ void add_urdf(std::vector<Malformed>& all) {
                  "<inertial><mass value=\"-1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
                  "iyz=\"0\" izz=\"1\"/></inertial>"),
       "link 'a' has a negative mass");
+  for (const auto& [name, mass] : {std::pair("MassWithComma", "1,5"), std::pair("NanMass", "nan")})
+    add(name,
+        short_urdf(knee(limit), std::string("<inertial><mass value=\"") + mass +
+                                    "\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+                                    "izz=\"1\"/></inertial>"),
+        "mass.*[Ll]ink .?a");
   add("InvertedLimits", short_urdf(knee("<limit lower=\"1\" upper=\"-1\" effort=\"10\" velocity=\"5\"/>")),
       "joint 'knee' has its lower limit above its upper");
   add("NoLimits", short_urdf(knee()), "knee.*limit");

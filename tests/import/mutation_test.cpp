@@ -71,7 +71,8 @@ std::string model(const char* path) {
 INSTANTIATE_TEST_SUITE_P(
     Formats, Mutation,
     testing::Values(Seed{"Gltf", "a.gltf", [] { return with_triangle(kicking_leg(), 0).dump(); }},
-                    Seed{"Glb", "a.glb", [] { return as_glb(with_triangle(kicking_leg(), 0)); }},
+                    Seed{"Glb", "a.glb",
+                         [] { return as_glb(with_triangle(kicking_leg(), 0), kick_keys_and_corners()); }},
                     Seed{"Bvh", "a.bvh", [] { return walking_bvh(); }},
                     Seed{"Fbx", "a.fbx", [] { return model("FBX/huesitos.fbx"); }},
                     Seed{"Collada", "a.dae", [] { return model("Collada/box_nested_animation.dae"); }},

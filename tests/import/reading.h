@@ -109,6 +109,18 @@ inline void set_buffer(nlohmann::json& gltf, const std::vector<float>& values) {
                         {"uri", "data:application/octet-stream;base64," + base64(values)}};
 }
 
+/// Key times and rotations of kicking_leg().
+inline std::vector<float> kick_keys() {
+  return {0, 0.5f, 1, 0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f, 0, 0, 0.70710678f};
+}
+
+/// The same, then the corners of with_triangle().
+inline std::vector<float> kick_keys_and_corners() {
+  std::vector<float> values = kick_keys();
+  values.insert(values.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  return values;
+}
+
 /// Hip with a leg below, and a clip "kick" that turns the leg by 0°, 45° and 90° about X at 0, 0.5 and 1 s.
 inline nlohmann::json kicking_leg() {
   nlohmann::json gltf = nlohmann::json::parse(R"({
@@ -121,14 +133,13 @@ inline nlohmann::json kicking_leg() {
                   {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC4"}],
     "animations": [{"name": "kick", "samplers": [{"input": 0, "output": 1}],
                     "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}]}]})");
-  set_buffer(gltf, {0, 0.5f, 1, 0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f, 0, 0, 0.70710678f});
+  set_buffer(gltf, kick_keys());
   return gltf;
 }
 
-/// The same, with a triangle on the node `carrier`; positions follow the keys in the buffer.
+/// The same, with a triangle on the node `carrier`.
 inline nlohmann::json with_triangle(nlohmann::json gltf, int carrier) {
-  set_buffer(gltf, {0, 0.5f, 1,           0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f,
-                    0, 0,    0.70710678f, 0, 0, 0, 1, 0,           0, 0, 1,           0});
+  set_buffer(gltf, kick_keys_and_corners());
   const std::size_t view = gltf["bufferViews"].size(), accessor = gltf["accessors"].size();
   gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 36}});
   gltf["accessors"].push_back({{"bufferView", view},
@@ -143,15 +154,18 @@ inline nlohmann::json with_triangle(nlohmann::json gltf, int carrier) {
   return gltf;
 }
 
-/// GLB of a document whose buffer stays in its data URI.
-inline std::string as_glb(const nlohmann::json& gltf) {
+/// GLB of a document and what belongs into its only buffer.
+inline std::string as_glb(nlohmann::json gltf, const std::vector<float>& values) {
+  gltf["buffers"][0] = {{"byteLength", values.size() * sizeof(float)}};
   std::string json = gltf.dump();
   json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string bin(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   const auto word = [](std::size_t value) {
     const auto v = static_cast<std::uint32_t>(value);
     return std::string(reinterpret_cast<const char*>(&v), sizeof v);
   };
-  return "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
+  return "glTF" + word(2) + word(12 + 8 + json.size() + 8 + bin.size()) + word(json.size()) + "JSON" + json +
+         word(bin.size()) + std::string("BIN\0", 4) + bin;
 }
 
 /// Two joints and an end site; `motion` is what follows "MOTION".

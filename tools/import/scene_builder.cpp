@@ -264,12 +264,13 @@ void SceneBuilder::collect_clip(const aiAnimation& in) {
   }
   double first = std::numeric_limits<double>::max(), last = 0;
   for_each_track(clip, [&](const std::vector<double>& times) {
-    first = std::min(first, times.front());
     last = std::max(last, times.back());
+    if (times.size() > 1)
+      first = std::min(first, times.front());  // one key: assimp's, at 0, for a still track
   });
   first = std::min(first, last);
   for_each_track(clip, [&](std::vector<double>& times) {  // a first key that comes late is a gap, not a pose
-    for (double& t : times) t -= first;
+    for (double& t : times) t = std::max(0.0, t - first);
   });
   if (first > 1e-6)
     out_.notes.push_back("clip '" + clip.name + "' begins at " + std::to_string(first) + " s; moved to 0");
