@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/optimizer/joint_terms.h"
+
 namespace sinew {
 namespace {
 
 constexpr double kInnerShrink = 0.3;  ///< tighter stops: fewer outer passes, more factorisations (prototype)
 constexpr int kInnerCap = 8;
+constexpr double kCertainRate = 0.1;
 constexpr double kNear = 0.1;          ///< m; contacts further away are left out of the inner problem
 constexpr double kRotationArm = 0.15;  ///< m; turns a rotation into a displacement for the tolerance
 
@@ -129,6 +132,21 @@ void NewtonSolver<T>::collect_rows() {
 }
 
 template <class T>
+void NewtonSolver<T>::add_joint_curvature(TreeProblem<T>& p) {
+  measure_joint_curvature(p);
+  const Tree<T>& tree = *p.tree;
+  for (int i = 0; i < tree.bodies; ++i) {
+    if (tree.type[i] != JointType::kBall && tree.type[i] != JointType::kFree) continue;
+    const int first = tree.first_dof[i + 1] - 3;
+    const int k = unknowns_.of_dof[p.first_unknown_map + first];
+    if (k < 0) continue;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b <= a; ++b)
+        smooth_.row(k + a)[unknowns_.pattern.depth[k + b]] += p.joint_curvature[i](a, b);
+  }
+}
+
+template <class T>
 void NewtonSolver<T>::assemble(bool geometric) {
   smooth_.set_zero();
   for (TreeProblem<T>* p : trees_) {
@@ -153,6 +171,7 @@ void NewtonSolver<T>::assemble(bool geometric) {
     }
     assemble_tree_matrix<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, geometric,
                             smooth_);
+    if (geometric) add_joint_curvature(*p);
   }
   if (!coupled_) return;
   smooth_dense_.set_zero();
@@ -447,14 +466,17 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
 }
 
 template <class T>
-bool NewtonSolver<T>::line_search(T tolerance, double energy, double& new_energy) {
+bool NewtonSolver<T>::line_search(T tolerance, double energy, double& new_energy, bool& full_step) {
   T slope = T(0);
   for (std::size_t k = 0; k < correction_.size(); ++k) slope += base_gradient_[k] * correction_[k];
   T t = T(1);
   for (int attempt = 0; attempt < 14; ++attempt) {
     try_step(t);
     new_energy = evaluate();
-    if (accepted(t, slope, energy, new_energy)) return true;
+    if (accepted(t, slope, energy, new_energy)) {
+      full_step = attempt == 0;
+      return true;
+    }
     const T new_slope = gradient_dot(correction_);
     if (attempt == 0 && !contact_rows_.empty() && correct_step(tolerance, energy, new_energy)) return true;
     const T secant = new_slope > T(0) ? -slope / (new_slope - slope) : T(0.5);
@@ -484,6 +506,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     return report_;
   }
   const T tolerance = T(accuracy.tolerance);
+  T last_length = T(0);  // of the pass before, when it was a plain full step; 0 else
   for (; report_.outer_passes < accuracy.max_iterations && !report_.converged;) {
     ++report_.outer_passes;
     T first_length = T(0);
@@ -504,12 +527,18 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     const T length = displacement(correction_);
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && first_length < 2 * tolerance;
+    // Full Newton steps shrink at least linearly: what is left after this one is below length·rate.
+    const bool certain = last_length > T(0) && length < T(kCertainRate) * last_length &&
+                         length * (length / last_length) < T(0.3) * tolerance &&
+                         first_length < T(1.5) * length;
     base_.clear();
     for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
     double new_energy = energy;
-    const bool moved = line_search(tolerance, energy, new_energy);
+    bool full_step = false;
+    const bool moved = line_search(tolerance, energy, new_energy, full_step);
     energy = new_energy;
-    report_.converged = small;
+    report_.converged = small || (certain && full_step);
+    last_length = full_step && longest <= T(1) ? length : T(0);
     if (!moved) break;
   }
   report_.energy = energy;

@@ -55,6 +55,7 @@ class NewtonSolver {
   void add_path(const Contact<T>& contact, int tree, int body, const Vec3<T>& material, T sign,
                 ContactRows& rows);
   void assemble(bool geometric);
+  void add_joint_curvature(TreeProblem<T>& problem);
   void begin_inner();
   bool inner_solve(T tolerance, T& first_length);
   bool correct_step(T tolerance, double energy, double& new_energy);
@@ -67,7 +68,7 @@ class NewtonSolver {
   T gradient_dot(std::span<const T> direction) const;
   void try_step(T t);
   bool accepted(T t, T slope, double energy, double new_energy) const;
-  bool line_search(T tolerance, double energy, double& new_energy);
+  bool line_search(T tolerance, double energy, double& new_energy, bool& full_step);
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
