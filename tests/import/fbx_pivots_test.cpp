@@ -52,7 +52,7 @@ SourceScene pivoted_leg() {
   for (const double angle : {0.0, 0.6, -0.9})
     turn.rotations.emplace_back(AngleAxisd(angle, Vector3d(1, 2, 2).normalized()));
   SourceChannel shift;
-  shift.node = 3;
+  shift.node = 1;
   shift.position_times = {0, 0.25, 1};
   shift.positions = {Vector3d(0, -0.5, 0), Vector3d(0, -0.6, 0.1), Vector3d(0, -0.5, 0)};
   clip.channels = {turn, shift};
@@ -75,6 +75,18 @@ TEST(FbxPivots, FoldedJointMovesAsItsChainDid) {
                 1e-12)
           << name << " at " << t << " s";
   }
+}
+
+TEST(FbxPivots, KeysOfTheJointItselfHoldItsWholeChain) {
+  SourceScene scene = pivoted_leg();
+  SourceChannel whole = scene.clips[0].channels[0];
+  whole.node = 3;
+  scene.clips[0].channels = {whole};
+  fold_fbx_pivots(scene);
+  ASSERT_EQ(scene.clips[0].channels.size(), 1u);
+  EXPECT_EQ(scene.clips[0].channels[0].node, index_of(scene, "knee"));
+  for (std::size_t k = 0; k < whole.rotations.size(); ++k)
+    EXPECT_EQ(scene.clips[0].channels[0].rotations[k].coeffs(), whole.rotations[k].coeffs());
 }
 
 TEST(FbxPivots, SceneWithoutThemStaysAsItIs) {
@@ -120,6 +132,25 @@ TEST(FbxPivots, RealRigsRestWhereAssimpPutsThem) {
     }
   }
   if (compared == 0) GTEST_SKIP() << SINEW_SHARED_DIR << "/assets is not there";
+}
+
+// A walker's head is above its hips and one foot well below them, whatever the rig's pivots are.
+TEST(FbxPivots, RealClipsStandUpright) {
+  const auto file = std::filesystem::path(SINEW_SHARED_DIR) / "assets/fbx/pab_locomotions.fbx";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const Outcome outcome = read(file);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  ASSERT_EQ(outcome.scene.clips.size(), 3u);
+  const auto height = [&](const char* node, const SourceClip& clip, double t) {
+    return global(outcome.scene, index_of(outcome.scene, node), &clip, t)(1, 3);
+  };
+  for (const SourceClip& clip : outcome.scene.clips)
+    for (const double t : {0.0, clip.duration / 2, clip.duration}) {
+      const double hips = height("Hips", clip, t);
+      EXPECT_GT(height("Head", clip, t), hips + 40) << clip.name << " at " << t << " s";  // in cm
+      EXPECT_LT(std::min(height("LeftFoot", clip, t), height("RightFoot", clip, t)), hips - 60)
+          << clip.name << " at " << t << " s";
+    }
 }
 
 }  // namespace

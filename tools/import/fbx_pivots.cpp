@@ -42,9 +42,14 @@ void fold_clip(const SourceScene& scene, const std::vector<Chain>& chains, Sourc
   for (const SourceChannel& c : clip.channels) of_node[c.node] = &c;
   std::vector<SourceChannel> folded;
   for (const Chain& chain : chains) {
-    const bool moves = std::any_of(chain.begin(), chain.end(), [&](int n) { return of_node[n] != nullptr; });
-    if (!moves) continue;
-    folded.push_back(chain.size() == 1 ? *of_node[chain[0]] : merged_channel(scene, chain, of_node));
+    if (chain.empty()) continue;
+    if (const SourceChannel* whole = of_node[chain.back()]) {
+      // assimp animates the helpers, or, where rotations before and after the joint's own are the only ones,
+      // the joint: its keys then hold the whole chain, which stands in the scene all the same.
+      folded.push_back(*whole);
+    } else if (std::any_of(chain.begin(), chain.end(), [&](int n) { return of_node[n] != nullptr; })) {
+      folded.push_back(merged_channel(scene, chain, of_node));
+    }
   }
   clip.channels = std::move(folded);
 }

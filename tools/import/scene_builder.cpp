@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -56,16 +57,19 @@ void for_each_track(SourceClip& clip, Visit visit) {
       if (!times->empty()) visit(*times);
 }
 
-/// 1/s, from the median interval; 0 when there is none.
+/// 1/s, of the track with the closest keys by its median interval; 0 when no track has two.
 double key_rate(SourceClip& clip) {
+  double rate = 0;
   std::vector<double> intervals;
   for_each_track(clip, [&](const std::vector<double>& times) {
-    for (std::size_t k = 1; k < times.size(); ++k) intervals.push_back(times[k] - times[k - 1]);
+    if (times.size() < 2) return;
+    intervals.resize(times.size());
+    std::adjacent_difference(times.begin(), times.end(), intervals.begin());  // its first is no interval
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>((intervals.size() + 1) / 2);
+    std::nth_element(intervals.begin() + 1, middle, intervals.end());
+    rate = std::max(rate, 1 / *middle);
   });
-  if (intervals.empty()) return 0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return 1 / *middle;
+  return rate;
 }
 
 }  // namespace
