@@ -23,7 +23,8 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       unknown(tree.dofs, 0),
       problem(tree, skeleton),
       history(tree.bodies),
-      motion(tree) {
+      motion(tree),
+      wanted(tree.bodies) {
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
@@ -107,7 +108,7 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
-  contact_signature = 0;
+  contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
 }

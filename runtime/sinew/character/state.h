@@ -41,7 +41,9 @@ struct CharacterState {
   Motion<T> motion;
   std::vector<ContactPoint<T>> points;
   T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
-  std::uint64_t contact_signature = 0;  ///< of the contacts that were active after the last step
+  std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
+  std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
+  std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
   CharacterReport report;
 

@@ -8,7 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kInnerShrink = 0.3;  ///< tighter stops: fewer outer passes, more factorisations (prototype)
+constexpr double kInnerShrink = 0.1;  ///< tighter stops: fewer outer passes, more factorisations (prototype)
 constexpr int kInnerCap = 8;
 constexpr double kCertainRate = 0.1;
 constexpr double kNear = 0.1;          ///< m; contacts further away are left out of the inner problem
@@ -432,9 +432,10 @@ void NewtonSolver<T>::try_step(T t) {
 template <class T>
 bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy) const {
   if (!std::isfinite(new_energy)) return false;
+  const bool calmer = std::abs(gradient_dot(correction_)) <= T(0.9) * std::abs(slope);
+  if (trees_[0]->prediction.scheme == Scheme::kMomentum) return calmer;
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
-  return new_energy <= energy + 1e-4 * double(t * slope) ||
-         (new_energy <= energy + noise && std::abs(gradient_dot(correction_)) <= T(0.9) * std::abs(slope));
+  return new_energy <= energy + 1e-4 * double(t * slope) || (new_energy <= energy + noise && calmer);
 }
 
 /// Second-order correction after a full step that failed: gaps and slips are re-measured where it led, the

@@ -22,6 +22,15 @@ struct SolveReport {
   int evaluations = 0;
   bool converged = false;
   double energy = 0;  ///< J, of the incremental potential at the result
+
+  /// Counts add up; the outcome is that of the later solve.
+  void add(const SolveReport& later) {
+    outer_passes += later.outer_passes;
+    factorisations += later.factorisations;
+    evaluations += later.evaluations;
+    converged = later.converged;
+    energy = later.energy;
+  }
 };
 
 template <class T>
