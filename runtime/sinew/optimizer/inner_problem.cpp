@@ -30,8 +30,8 @@ void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
   turn_.reserve(bodies);
   slide_.reserve(bodies);
   unknowns_.reserve(dofs);
-  smooth_.reserve(dofs * (dofs + 1) / 2);
-  factor_.reserve(dofs * (dofs + 1) / 2);
+  smooth_.reserve(dofs);
+  factor_.reserve(dofs);
   contact_rows_.reserve(contacts);
   joint_rows_.reserve(dofs * 8);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
