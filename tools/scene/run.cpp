@@ -55,16 +55,26 @@ class Player {
     for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
   }
 
-  const std::vector<JointJet<T>>& at(double t, const Transform<T>& root_now) {
+  /// `now`: local pose of the character, root in the world.
+  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now) {
     rest(a_);
     bool any = false;
     for (std::size_t i = 0; i < c_.clips.size(); ++i) {
       const ClipUse& use = c_.clips[i];
       if (t < use.start - 1e-9) break;
-      if (i >= begun_) begin(i, root_now);
+      if (i >= begun_) begin(i, now);
       const bool over = i + 1 < c_.clips.size() && t >= c_.clips[i + 1].start + c_.clips[i + 1].blend;
       if (over) continue;
-      const SamplingJob<T> job{&c_.asset->clips[chosen_[i]], (t - use.start) * use.rate, use.rate, b_};
+      if (use.from_pose) {
+        for (std::size_t k = 0; k < a_.size(); ++k) {
+          a_[k] = {};
+          a_[k].rotation = held_[k].rotation;
+          a_[k].translation = held_[k].translation;
+        }
+        any = true;
+      }
+      const SamplingJob<T> job{&c_.asset->clips[chosen_[i]], use.offset + (t - use.start) * use.rate,
+                               use.rate, b_};
       job.Run();
       place_root<T>(places_[i].template cast<T>(), b_[0]);
       const EaseWeight<T> w =
@@ -90,15 +100,16 @@ class Player {
 
   /// Chooses the clip by how the character lies and places it: its first root pose comes to stand where the
   /// character's root is, turned the same way; heights stay.
-  void begin(std::size_t i, const Transform<T>& root_now) {
+  void begin(std::size_t i, std::span<const Transform<T>> pose) {
     begun_ = i + 1;
     const ClipUse& use = c_.clips[i];
-    const Transform<double> now = root_now.template cast<double>();
+    if (use.from_pose) held_.assign(pose.begin(), pose.end());
+    const Transform<double> now = pose[0].template cast<double>();
     const Quat<double> from_rest = now.rotation * c_.asset->skeleton.joints[0].rest.rotation.conjugate();
     const bool prone = (from_rest * Vec3<double>::UnitX()).z() < 0;
     if (prone && use.clip_when_prone >= 0) chosen_[i] = use.clip_when_prone;
     if (!use.align) return;
-    SamplingJob<T>{&c_.asset->clips[chosen_[i]], 0, 1, b_}.Run();
+    SamplingJob<T>{&c_.asset->clips[chosen_[i]], use.offset, 1, b_}.Run();
     const double turn = turn_between(b_[0].rotation.template cast<double>(), now.rotation);
     const Transform<double> turned = upright(Vec3<double>::Zero(), turn);
     Vec3<double> shift = now.translation - turned * b_[0].translation.template cast<double>();
@@ -108,8 +119,9 @@ class Player {
 
   const SceneCharacter& c_;
   std::vector<Transform<double>> places_;
-  std::vector<int> chosen_;  ///< [use] clip
-  std::size_t begun_ = 0;    ///< uses that have started
+  std::vector<int> chosen_;         ///< [use] clip
+  std::size_t begun_ = 0;           ///< uses that have started
+  std::vector<Transform<T>> held_;  ///< [joint] pose in which the last use with from_pose began
   std::vector<JointJet<T>> a_, b_;
 };
 
@@ -179,7 +191,7 @@ class Runner {
   convert::Error drive(int c, double t, bool first) {
     const SceneCharacter& source = s_.characters[c];
     Character<T> character = world_.character(c);
-    const Status status = character.set_target(players_[c].at(t, character.model()[0]));
+    const Status status = character.set_target(players_[c].at(t, character.local()));
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     if (first) {
       character.reset();

@@ -167,7 +167,8 @@ SceneCharacter read_character(const json& value, const std::string& where,
   c.yaw = in.number("yaw_deg", 0) * 3.14159265358979323846 / 180;
   const json& clips = in.list("clips");
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    const Reader use(clips[i], in.item("clips", i), {"clip", "start", "blend", "rate", "align"});
+    const Reader use(clips[i], in.item("clips", i),
+                     {"clip", "start", "blend", "rate", "align", "from_pose", "offset"});
     ClipUse made;
     if (!use.at("clip").is_string()) fail(use.inside("clip"), "expected a clip name");
     const std::string name = use.at("clip").get<std::string>();
@@ -180,7 +181,9 @@ SceneCharacter read_character(const json& value, const std::string& where,
     made.start = use.time("start", 0);
     made.blend = use.time("blend", 0.3);
     made.rate = use.number("rate", 1);
+    made.offset = use.time("offset", 0);
     made.align = use.flag("align", false);
+    made.from_pose = use.flag("from_pose", false);
     if (!c.clips.empty() && made.start < c.clips.back().start)
       fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);

@@ -10,6 +10,7 @@ constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its tar
 constexpr double kSnapAngle =
     2e-3;  ///< rad (0.1°) and m: a returning joint this close is on the animation again
 constexpr double kSnapRate = 5e-2;  ///< 1/s
+constexpr double kCut = 0.2;  ///< rad and m: an animation that leaps further than this in one step was cut
 constexpr int kReleaseRounds = 8;
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
@@ -35,6 +36,28 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
   return limit > T(0) ? std::abs(torque) / limit : T(0);
 }
 
+/// Where the animation was one step ago, going by its present velocity.
+template <class T>
+Transform<T> rewound(const JointJet<T>& jet, T h) {
+  return {jet.rotation * rotation_exp<T>(-h * jet.omega), jet.translation - h * jet.velocity};
+}
+
+/// After a cut between clips the way back starts from where the joint is, as seen from the new clip: the
+/// offset from the old one means nothing any more.
+template <class T>
+void start_again_after_cut(CharacterState<T>& s, int i, T h) {
+  const Transform<T> before = rewound(s.target[i], h);
+  const JointJet<T>& last = s.target_before[i];
+  if ((before.translation - last.translation).norm() < T(kCut) &&
+      before.rotation.angularDistance(last.rotation) < T(kCut))
+    return;
+  Deviation<T>& d = s.deviation[i];
+  const Transform<T> wanted{s.target[i].rotation, s.target[i].translation};
+  const std::array<T, 6> moved = joint_offset<T>(s.tree, i, before, wanted).value;
+  d.offset = joint_offset<T>(s.tree, i, before, s.local[i]).value;
+  for (int k = 0; k < s.tree.dof_count(i); ++k) d.rate[k] = s.rate[i][k] - moved[k] / h;
+}
+
 }  // namespace
 
 template <class T>
@@ -57,6 +80,7 @@ void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings&
       s.problem.target[i] = wanted;
       continue;
     }
+    start_again_after_cut(s, i, h);
     std::array<T, 6> offset{};
     for (int k = 0; k < s.tree.dof_count(i); ++k)
       offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
