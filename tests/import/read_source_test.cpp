@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = testing::TempDir() + name;
+  std::string path = testing::TempDir() + name;
   std::ofstream(path, std::ios::binary) << content;
   return path;
 }

@@ -35,7 +35,7 @@ std::string own_file(const std::string& name) {
 }
 
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = own_file(name);
+  std::string path = own_file(name);
   std::ofstream(path) << content;
   return path;
 }

@@ -10,7 +10,7 @@ namespace sinew::scene {
 namespace {
 
 /// The asset itself or, where it has no clip, a copy with one that holds the rest pose.
-std::shared_ptr<const Asset> with_a_clip(std::shared_ptr<const Asset> asset) {
+std::shared_ptr<const Asset> with_a_clip(const std::shared_ptr<const Asset>& asset) {
   if (!asset->clips.empty()) return asset;
   auto copy = std::make_shared<Asset>(*asset);
   Clip& rest = copy->clips.emplace_back();
@@ -71,8 +71,8 @@ double calmest_moment(const Asset& asset, int clip, double stature) {
 
 }  // namespace
 
-Scene demo_scene(std::shared_ptr<const Asset> source) {
-  const std::shared_ptr<const Asset> asset = with_a_clip(std::move(source));
+Scene demo_scene(const std::shared_ptr<const Asset>& source) {
+  const std::shared_ptr<const Asset> asset = with_a_clip(source);
   Scene s;
   const Skeleton& body = asset->skeleton;
   const auto first_of = [&](std::initializer_list<const char*> names, int otherwise) {

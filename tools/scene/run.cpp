@@ -268,7 +268,7 @@ class Runner {
         const int dofs = dof_count(skeleton.joints[i].type);
         double most = 0;  // hinges show their sign, ball joints the size of their largest component
         for (int k = 0; k < dofs; ++k) {
-          const auto dof = static_cast<std::size_t>(c.first_dof(i) + k);
+          const int dof = c.first_dof(i) + k;
           made.load[i] = std::max(made.load[i], float(c.load()[dof]));
           made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
           most = std::max(most, std::abs(double(c.torque()[dof])));

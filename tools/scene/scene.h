@@ -75,6 +75,6 @@ convert::Error load_scene(const std::string& path, Scene& out);
 
 /// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength
 /// returns.
-Scene demo_scene(std::shared_ptr<const Asset> asset);
+Scene demo_scene(const std::shared_ptr<const Asset>& asset);
 
 }  // namespace sinew::scene
