@@ -176,7 +176,8 @@ class Runner {
       if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
     for (const SceneProp& p : s_.props) {
       PropSettings settings = p.settings;
-      if (p.launch_time > 0) settings.pose.translation = {0, 0, -1000};
+      if (p.launch_time > 0)
+        settings.pose.translation = waiting_place(launched_.size()).template cast<double>();
       if (world_.add_prop(settings, status) < 0) return {"prop '" + p.name + "': " + status.reason};
       recording_.props.push_back(
           {p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
@@ -204,11 +205,14 @@ class Runner {
     return {};
   }
 
+  /// Where nothing is near that a prop could touch before its launch.
+  static Vec3<T> waiting_place(std::size_t prop) { return {T(0), T(0), T(1000 * (prop + 1))}; }
+
   void launch(double t) {
     for (std::size_t p = 0; p < s_.props.size(); ++p) {
       const SceneProp& prop = s_.props[p];
       if (!launched_[p] && t < prop.launch_time) {
-        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), {T(0), T(0), T(-1000)}}, Vec3<T>::Zero(),
+        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), waiting_place(p)}, Vec3<T>::Zero(),
                         Vec3<T>::Zero());
         continue;
       }
@@ -305,8 +309,10 @@ class Runner {
       telemetry_.rows.push_back(std::move(row));
       frame.characters.push_back(std::move(made));
     }
-    for (int p = 0; p < world_.prop_count(); ++p)
+    for (int p = 0; p < world_.prop_count(); ++p) {
       frame.props.push_back({world_.prop_pose(p).template cast<float>()});
+      if (!launched_[p]) frame.props.back().world.translation.z() = kHidden;
+    }
     recording_.frames.push_back(std::move(frame));
   }
 
