@@ -204,7 +204,7 @@ struct RenderCommand {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
@@ -276,21 +276,20 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   Error error;
-  try {
-    if (c->parsed())
-      error = convert.run();
-    else if (i->parsed())
-      error = info.run();
-    else if (e->parsed())
-      error = evaluate.run();
-    else if (s->parsed())
-      error = simulate.run();
-    else
-      error = render.run();
-  } catch (const std::exception& unexpected) {
-    error = {unexpected.what()};
-  }
+  if (c->parsed())
+    error = convert.run();
+  else if (i->parsed())
+    error = info.run();
+  else if (e->parsed())
+    error = evaluate.run();
+  else if (s->parsed())
+    error = simulate.run();
+  else
+    error = render.run();
   if (!error) return 0;
   std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+  return 1;
+} catch (const std::exception& unexpected) {
+  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
   return 1;
 }
