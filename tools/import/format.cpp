@@ -37,6 +37,18 @@ void check_bvh(const std::string& content, const ReadLimits& limits) {
   if (!(step > 0 && step < 1e6)) throw std::runtime_error("its frame time is not a positive number");
 }
 
+/// assimp 5.2.5 turns in place for ever, taking memory, where an index is no number.
+void check_index_lists(const std::string& content) {
+  for (std::size_t at = content.find("<p>"); at != std::string::npos; at = content.find("<p>", at)) {
+    at += 3;
+    for (; at < content.size() && content[at] != '<'; ++at) {
+      const auto c = static_cast<unsigned char>(content[at]);
+      if (!std::isdigit(c) && !std::isspace(c))
+        throw std::runtime_error("a list of indices holds something that is no number");
+    }
+  }
+}
+
 void check_xml_nesting(const std::string& content) {
   int depth = 0;
   std::size_t at = content.find('<');
@@ -92,6 +104,7 @@ void check_shape(const std::string& content, const std::string& format, const Re
   if (format == "bvh") check_bvh(content, limits);
   if (format == "gltf") check_json_nesting(content);
   if (format == "urdf" || format == "dae") check_xml_nesting(content);
+  if (format == "dae") check_index_lists(content);
 }
 
 }  // namespace sinew::import
