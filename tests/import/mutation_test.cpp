@@ -17,20 +17,34 @@ struct Seed {
   std::string (*content)();
 };
 
-/// Cut off, or up to 16 bytes changed, or a piece repeated.
+/// Cut off, a piece repeated, bytes replaced, a bit turned, or a digit replaced by another: the last two
+/// reach deepest.
 std::string mutated(std::string content, std::mt19937& random) {
+  const auto place = [&] { return random() % content.size(); };
   switch (random() % 8) {
     case 0:
-      return content.substr(0, random() % content.size());
+      return content.substr(0, place());
     case 1: {
-      const std::size_t from = random() % content.size(), size = std::min<std::size_t>(random() % 200, 199);
-      return content.insert(from, content.substr(random() % content.size(), size));
+      const std::string piece = content.substr(place(), random() % 200);
+      return content.insert(place(), piece);
     }
-    default:
-      for (unsigned n = 1 + random() % 16; n-- > 0;)
-        content[random() % content.size()] = static_cast<char>(random());
+    case 2:
+      for (unsigned n = 1 + random() % 16; n-- > 0;) content[place()] = static_cast<char>(random());
       return content;
+    case 3:
+    case 4:
+      content[place()] ^= static_cast<char>(1u << random() % 8);
+      return content;
+    default: {
+      const std::size_t digit = content.find_first_of("0123456789", place());
+      if (digit != std::string::npos) content[digit] = static_cast<char>('0' + random() % 10);
+      return content;
+    }
   }
+}
+
+void PrintTo(const Seed& seed, std::ostream* out) {
+  *out << seed.name;
 }
 
 class Mutation : public testing::TestWithParam<Seed> {};

@@ -62,6 +62,10 @@ struct Known {
   double length;  ///< of all clips together, s
 };
 
+void PrintTo(const Known& known, std::ostream* out) {
+  *out << known.file;
+}
+
 class KnownFile : public testing::TestWithParam<Known> {};
 
 TEST_P(KnownFile, HoldsWhatWasCountedInIt) {
