@@ -12,16 +12,10 @@ constexpr double kSnapAngle =
 constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
-constexpr int kDistrust = -8;    ///< steps_unchanged after a wrong prediction: a solve was lost
+constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
-
-/// Contact identity that survives from step to step.
-std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
-  return (std::uint64_t(tree_a + 1) << 48) ^ (std::uint64_t(point + 1) << 32) ^
-         (std::uint64_t(tree_b + 1) << 16) ^ std::uint64_t(shape + 1);
-}
 
 /// Order-independent digest of a set of contacts.
 std::uint64_t mixed(std::uint64_t id) {
@@ -41,11 +35,11 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contact_points) {
+void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
   problems_.reserve(trees);
-  contacts_.reserve(contact_points);
-  lagged_.reserve(contact_points);
-  solver_.reserve(dofs, bodies, contact_points);
+  finder_.reserve(contacts, colliders);
+  lagged_.reserve(contacts);
+  solver_.reserve(dofs, bodies, contacts);
 }
 
 /// Muscles pull to the animation, or along a critically damped way back to it:
@@ -127,86 +121,6 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
     std::array<T, 6> moved{};
     for (int k = 0; k < count; ++k) moved[k] = h * s.rate[i][k];
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
-  }
-}
-
-template <class T>
-void IslandStepper<T>::add_contact(Contact<T> c, T reach, std::span<const LaggedForce<T>> lagged) {
-  TreeProblem<T>& a = *problems_[c.tree_a];
-  TreeProblem<T>* b = c.tree_b < 0 ? nullptr : problems_[c.tree_b];
-  begin_step<T>(a.kinematics, b ? &b->kinematics : nullptr, c);
-  if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
-  const auto found = std::lower_bound(lagged.begin(), lagged.end(), c.id,
-                                      [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
-  if (found != lagged.end() && found->id == c.id) c.lagged_normal_force = found->force;
-  contacts_.push_back(c);
-}
-
-/// All pairs that may touch within the step, measured at its start. Points of bodies that no unknown moves
-/// meet only other trees: a driven root bears what its feet would.
-template <class T>
-void IslandStepper<T>::collect_contacts(const WorldSettings& world, std::span<const Collider> obstacles, T h,
-                                        std::span<const int> indices,
-                                        std::span<const LaggedForce<T>> lagged) {
-  contacts_.clear();
-  for (std::size_t n = 0; n < states_.size(); ++n) {
-    CharacterState<T>& s = *states_[n];
-    const T sink_stiffness =
-        T(s.skeleton.total_mass() * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
-    for (std::size_t k = 0; k < s.points.size(); ++k) {
-      const ContactPoint<T>& point = s.points[k];
-      bool moved = false;
-      for (int i = point.body; i >= 0 && !moved; i = s.tree.parent[i])
-        moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
-      const T reach = T(0.1) + T(1) * h * (s.history.velocity[point.body].norm() + T(5) * h);
-      Contact<T> c;
-      c.tree_a = static_cast<int>(n);
-      c.body_a = point.body;
-      c.local_a = point.local;
-      c.radius = point.radius;
-      c.stiffness = sink_stiffness;
-      if (moved && s.settings.ground_contact) {
-        if (world.ground) {
-          c.plane = true;
-          c.plane_height = T(world.ground_height) - settings_.common_origin.z();
-          c.friction = point.friction * T(world.ground_friction);
-          c.id = contact_id(indices[n], static_cast<int>(k), -1, -1);
-          add_contact(c, reach, lagged);
-        }
-        for (std::size_t o = 0; o < obstacles.size(); ++o) {
-          c.plane = false;
-          c.shape = obstacles[o].shape;
-          c.size = obstacles[o].size.template cast<T>();
-          c.shape_pose = obstacles[o].local.template cast<T>();
-          c.shape_pose.translation -= settings_.common_origin;
-          c.friction = std::sqrt(point.friction * T(obstacles[o].friction));
-          c.id = contact_id(indices[n], static_cast<int>(k), -1, static_cast<int>(o));
-          add_contact(c, reach, lagged);
-        }
-      }
-      c.plane = false;
-      for (std::size_t m = 0; m < states_.size(); ++m) {
-        const CharacterState<T>& other = *states_[m];
-        // A ball's centre against a limb says it all; the limb's ends against the ball would say it twice.
-        const bool ball = other.is_prop && other.skeleton.colliders[0].shape == Shape::kSphere;
-        if (m == n || (ball && !(s.is_prop && m < n))) continue;
-        for (std::size_t o = 0; o < other.skeleton.colliders.size(); ++o) {
-          const Collider& shape = other.skeleton.colliders[o];
-          if (shape.joint >= other.skeleton.body_count) continue;
-          c.tree_b = static_cast<int>(m);
-          c.body_b = shape.joint;
-          c.shape = shape.shape;
-          c.size = shape.size.template cast<T>();
-          c.shape_pose = shape.local.template cast<T>();
-          c.stiffness =
-              std::min(sink_stiffness, T(other.skeleton.total_mass() * std::max(1.0, world.gravity.norm()) /
-                                         world.accuracy.sink_depth));
-          c.friction = std::sqrt(point.friction * T(shape.friction));
-          c.id = contact_id(indices[n], static_cast<int>(k), indices[m], static_cast<int>(o));
-          add_contact(c, reach + h * other.history.velocity[shape.joint].norm(), lagged);
-        }
-      }
-    }
   }
 }
 
@@ -379,7 +293,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
       forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
-    collect_contacts(world, obstacles_, h, indices_, lagged_);
+    contacts_ = finder_.find(world, obstacles_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
       second = world.accuracy.scheme == Scheme::kBdf2;
       for (std::size_t n = 0; n < states_.size() && second; ++n)

@@ -4,23 +4,16 @@
 
 #include <vector>
 
-#include "sinew/character/state.h"
+#include "sinew/character/contact_finder.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
-
-/// A contact's normal force, remembered for the friction of the next step.
-template <class T>
-struct LaggedForce {
-  std::uint64_t id = 0;
-  T force = T(0);
-};
 
 /// Working memory of island steps; one per world, sized when characters are added.
 template <class T>
 class IslandStepper {
  public:
-  void reserve(int trees, int dofs, int bodies, int contact_points);
+  void reserve(int trees, int dofs, int bodies, int contacts, int colliders);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
@@ -40,9 +33,6 @@ class IslandStepper {
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
   void first_guess(CharacterState<T>& state, T h);
-  void collect_contacts(const WorldSettings& world, std::span<const Collider> obstacles, T h,
-                        std::span<const int> indices, std::span<const LaggedForce<T>> lagged);
-  void add_contact(Contact<T> contact, T reach, std::span<const LaggedForce<T>> lagged);
   void predict_all(Scheme scheme, T h);
   std::uint64_t touching(int tree) const;
   std::uint64_t bearing(int tree) const;
@@ -62,7 +52,8 @@ class IslandStepper {
   int parts_ = 0, splits_ = 0, held_ = 0;
   StepSettings<T> settings_;
   std::vector<TreeProblem<T>*> problems_;
-  std::vector<Contact<T>> contacts_;
+  ContactFinder<T> finder_;
+  std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
 };
 

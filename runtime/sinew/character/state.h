@@ -1,6 +1,7 @@
 // What one character (or prop) carries from step to step. Internal to the character layer.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -39,7 +40,12 @@ struct CharacterState {
   TreeProblem<T> problem;
   History<T> history;
   Motion<T> motion;
+  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
+  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
+  std::vector<T> bound_radius;
   std::vector<ContactPoint<T>> points;
+  std::vector<int> first_point;         ///< [collider + 1] into points
+  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
   T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
   std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
@@ -49,6 +55,10 @@ struct CharacterState {
 
   CharacterState(const Skeleton& s, const CharacterSettings& c);
 
+  /// N/m of one contact point: the whole weight sinks it by the accuracy's depth.
+  T contact_stiffness(const WorldSettings& world) const {
+    return T(skeleton.total_mass() * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
+  }
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
   /// Model transforms of all joints from the local ones.
@@ -58,6 +68,7 @@ struct CharacterState {
   bool undisturbed() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
+  void choose_self_pairs();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 

@@ -48,7 +48,7 @@ void World<T>::Impl::reserve() {
   // furthest last.
   const int contacts =
       points * (2 + static_cast<int>(obstacles.size())) + std::min(points * shapes, 4 * points + 64);
-  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts);
+  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes);
   lagged.reserve(contacts);
   lagged_new.reserve(contacts);
   group.reserve(states.size());

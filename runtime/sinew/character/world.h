@@ -35,6 +35,7 @@ struct CharacterSettings {
   double root_torque = 600;  ///< N·m, assisted
   double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
+  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
 };
 
 /// What the last step did with one character.
