@@ -1,4 +1,6 @@
 // Traps that show only when a file is converted: units, axes, control bones, mesh and clips in several files.
+#include <gmock/gmock.h>
+
 #include "convert/convert.h"
 #include "reading.h"
 #include "sinew/skeleton/skeleton.h"
@@ -21,6 +23,12 @@ Converted convert(const std::vector<std::string>& inputs, const nlohmann::json& 
   Converted made;
   made.error = convert_files(inputs, options, made.asset, made.report).message;
   return made;
+}
+
+MATCHER_P(NotesSay, text, "") {
+  for (const auto& note : arg.report["notes"])
+    if (note.template get<std::string>().find(text) != std::string::npos) return true;
+  return false;
 }
 
 class SharedAsset : public testing::Test {
@@ -96,6 +104,45 @@ TEST_F(SharedAsset, RigidPartsWithoutSkinMakeACharacter) {  // trap 14
   const Converted character = convert_shared({"gltf/kenney_character.glb"});
   EXPECT_GE(character.asset.skeleton.body_count, 6);
   EXPECT_EQ(character.asset.clips.size(), 4u);
+}
+
+TEST_F(SharedAsset, WeightsAreRepairedAndItIsSaid) {  // traps 27 and 28
+  const Converted geno = convert_shared({"fbx/geno.fbx"});
+  EXPECT_THAT(geno, NotesSay("weights that do not sum to 1"));
+  EXPECT_THAT(geno, NotesSay("more than four influences"));
+  EXPECT_THAT(geno, NotesSay("FBX pivot nodes folded"));
+  for (const auto& mesh : geno.asset.meshes)
+    for (std::size_t v = 0; v < mesh.weights.size(); v += 4) {
+      const float sum = mesh.weights[v] + mesh.weights[v + 1] + mesh.weights[v + 2] + mesh.weights[v + 3];
+      ASSERT_NEAR(sum, 1, 1e-6);  // four floats added
+    }
+}
+
+TEST_F(SharedAsset, WhatIsOddInAUrdfIsSaid) {
+  const Converted romeo = convert_shared({"urdf/romeo.urdf"});
+  EXPECT_THAT(romeo, NotesSay("inertia that no body can have"));  // trap 39
+  EXPECT_THAT(romeo, NotesSay("mimics"));                         // trap 44
+  EXPECT_THAT(romeo, NotesSay("no effort limit"));                // trap 40
+  const Converted panda = convert_shared({"urdf/panda.urdf"});
+  EXPECT_THAT(panda, NotesSay("zero is outside its limits"));  // trap 42
+  const Converted quadruped = convert_shared({"urdf/bullet_quadruped.urdf"});
+  EXPECT_THAT(quadruped, NotesSay("is locked"));  // trap 43
+  const Converted humanoid = convert_shared({"urdf/bullet_humanoid.urdf"});
+  EXPECT_THAT(humanoid, NotesSay("urdfdom: "));  // trap 47: its capsules
+  EXPECT_TRUE(validate(humanoid.asset.skeleton).ok());
+}
+
+TEST(Conversion, FarPropDoesNotChangeTheUnit) {  // trap 34
+  nlohmann::json gltf = import::test::kicking_leg();
+  gltf["nodes"].push_back({{"name", "camera"}, {"translation", {1000, 0, 0}}});
+  gltf["nodes"][0]["children"].push_back(2);
+  gltf["animations"][0]["channels"].push_back(gltf["animations"][0]["channels"][0]);
+  gltf["animations"][0]["channels"][1]["target"]["node"] = 0;
+  const Scratch scratch;
+  const Converted made = convert({scratch.write("a.gltf", gltf.dump()).string()});
+  ASSERT_EQ(made.error, "");
+  EXPECT_EQ(made.unit(), 1);
+  EXPECT_EQ(made.report["unit"]["from"], "file");
 }
 
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {

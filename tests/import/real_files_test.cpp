@@ -104,6 +104,14 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+TEST(RealFiles, FbxSaysItsUnitAndUpAxis) {  // trap 5
+  if (!fs::exists(kModels)) GTEST_SKIP() << "assimp-testmodels are not installed";
+  const Outcome outcome = read(kModels / "FBX/huesitos.fbx");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(outcome.scene.meters_per_unit, 0.01);
+  EXPECT_EQ(outcome.scene.up_axis, 1);
+}
+
 TEST(RealFiles, MassOfRomeoIsTheSumOfItsLinks) {
   const fs::path file = kAssets / "urdf/romeo.urdf";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";

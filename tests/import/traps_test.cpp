@@ -138,6 +138,21 @@ TEST(Gltf, CurvesThatAreReadAsLinesAreNoted) {
   EXPECT_THAT(outcome.scene.notes, testing::Contains("animation 0: 1 stepped curves read as lines"));
 }
 
+TEST(Gltf, RateIsThatOfTheChannelWithTheClosestKeys) {  // trap 20
+  Json gltf = kicking_leg();
+  std::vector<float> values = kick_keys();
+  const std::size_t times = append(gltf, values, {0, 1}, "SCALAR", 2);
+  gltf["accessors"][times].update({{"min", {0}}, {"max", {1}}});
+  const std::size_t places = append(gltf, values, {0, 0, 0, 0, 1, 0}, "VEC3", 2);
+  gltf["animations"][0]["samplers"].push_back({{"input", times}, {"output", places}});
+  gltf["animations"][0]["channels"].push_back(
+      {{"sampler", 1}, {"target", {{"node", 0}, {"path", "translation"}}}});
+  set_buffer(gltf, values);
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_DOUBLE_EQ(outcome.scene.clips[0].key_rate, 2);
+}
+
 TEST(Gltf, RotationKeysAreBroughtToLengthOne) {  // trap 25
   Json gltf = kicking_leg();
   set_buffer(gltf, {0, 0.5f, 1, 0, 0, 0, 2, 0.5f, 0, 0, 0, 0, 0, 0, 1});
@@ -237,6 +252,25 @@ TEST(Bvh, JointsOfLengthZeroStay) {  // trap 9
       "1\nFrame Time: 0.1\n0 0 0 0 0 0\n");
   ASSERT_TRUE(outcome.ok) << outcome.error;
   EXPECT_TRUE(outcome.scene.nodes[index_of(outcome.scene, "LHipJoint")].is_bone);
+}
+
+TEST(Collada, UnitAndUpAxisAreInTheRoot) {  // trap 6
+  const Outcome outcome = read_content(
+      "a.dae",
+      "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+      "version=\"1.4.1\">"
+      "<asset><unit meter=\"0.5\"/><up_axis>Z_UP</up_axis></asset><library_visual_scenes><visual_scene "
+      "id=\"s\">"
+      "<node id=\"n\" name=\"n\"><translate>0 0 4</translate></node></visual_scene></library_visual_scenes>"
+      "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  const SourceScene& scene = outcome.scene;
+  EXPECT_EQ(scene.meters_per_unit, 1);
+  EXPECT_EQ(scene.up_axis, 1);
+  EXPECT_TRUE(scene.meshes.empty());
+  Eigen::Vector4d place(0, 0, 0, 1);
+  for (int n = index_of(scene, "n"); n >= 0; n = scene.nodes[n].parent) place = scene.nodes[n].local * place;
+  EXPECT_TRUE(place.isApprox(Eigen::Vector4d(0, 2, 0, 1), 1e-6)) << place.transpose();  // floats
 }
 
 TEST(Urdf, JointIsReadWithAllThatItSays) {
