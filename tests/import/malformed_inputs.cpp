@@ -165,8 +165,9 @@ void add_xml_and_fbx(std::vector<Malformed>& all) {
   add("ColladaNanMatrix", "a.dae",
       collada("<node id=\"n\" name=\"n\"><matrix>nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix></node>"),
       "node 'n' has a transform that is not finite|assimp: ");
-  add("ColladaIndexIsText", "a.dae", collada("<node id=\"n\"/>") + "<p>0 1 x</p>",
-      "holds something that is no number");
+  for (const auto& [name, list] : {std::pair("ColladaIndexIsText", "<p>0 1 x</p>"),
+                                   std::pair("ColladaIndexIsSigned", "<p\n>0 1 -2</p>")})
+    add(name, "a.dae", collada("<node id=\"n\"/>") + list, "holds something that is no number");
   add("ColladaUtf16", "a.dae", std::string("\xFF\xFE<\0C\0O\0", 8), "UTF-16 text; save it as UTF-8");
   add("FbxOld", "a.fbx",
       "; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 6100\n}\n",
