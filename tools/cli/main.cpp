@@ -7,6 +7,7 @@
 
 #include "cli/evaluate.h"
 #include "cli/files.h"
+#include "cli/study.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -263,6 +264,16 @@ int main(int argc, char** argv) {
   r->add_flag("--json", render.json_output);
   render.source.add(*r);
 
+  cli::StabilityCommand stability;
+  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
+  study->require_subcommand(1);
+  auto* hard = study->add_subcommand(
+      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
+  hard->add_option("--case", stability.only, "run one case");
+  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
+  hard->add_flag("--json", stability.json_output);
+
   try {
     app.parse(argc, argv);
     if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0))
@@ -280,6 +291,8 @@ int main(int argc, char** argv) {
       error = evaluate.run();
     else if (s->parsed())
       error = simulate.run();
+    else if (hard->parsed())
+      error = stability.run();
     else
       error = render.run();
   } catch (const std::exception& unexpected) {
