@@ -1,6 +1,5 @@
 #include "sinew/optimizer/problem.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "sinew/optimizer/joint_terms.h"
@@ -48,6 +47,17 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
   rows.reserve(6 * t.dofs + 3 * t.bodies);
 }
 
+namespace {
+
+/// Of a symmetric matrix, by its leading minors.
+template <class T>
+bool positive_definite(const Mat3<T>& m) {
+  const T second = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
+  return m(0, 0) > T(0) && second > T(0) && m.determinant() > T(0);
+}
+
+}  // namespace
+
 template <class T>
 double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
@@ -61,12 +71,18 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
     const T mass = tree.mass[i];
     const Mat3<T> second = tree.second_moment[i];
     const Mat3<T> turned = r - p.prediction.rotation[i];
-    const Mat3<T> a = (weight * r) * second * p.prediction.rotation[i].transpose();
-    energy +=
-        double(T(0.5) * weight * (mass * off.squaredNorm() + (turned * second).cwiseProduct(turned).sum())) -
-        double(mass * settings.gravity.dot(c));
+    energy += double(T(0.5) * weight * mass * off.squaredNorm()) - double(mass * settings.gravity.dot(c));
     p.body_force[i] = (weight * mass) * off - mass * settings.gravity;
-    p.couple[i] = {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
+    if (p.prediction.scheme == Scheme::kMomentum) {
+      // No energy belongs to this; the solver judges by the directional derivative alone.
+      const Vec3<T> turn = rotation_log<T>(Quat<T>(Mat3<T>(r * p.prediction.start[i].transpose())));
+      const Mat3<T> inertia = r * tree.inertia[i] * r.transpose();
+      p.couple[i] = (inertia * turn / settings.h - p.prediction.momentum[i]) / settings.h;
+    } else {
+      const Mat3<T> a = (weight * r) * second * p.prediction.rotation[i].transpose();
+      energy += double(T(0.5) * weight * (turned * second).cwiseProduct(turned).sum());
+      p.couple[i] = {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
+    }
     p.force[i] = p.body_force[i];
     p.moment[i] = c.cross(p.force[i]) + p.couple[i];
   }
@@ -100,7 +116,7 @@ void begin_composite(TreeProblem<T>& p) {
     Mat3<T> stiffness = a.trace() * Mat3<T>::Identity() - T(0.5) * (a + a.transpose());
     // Far from the prediction the exact block may be indefinite; plain inertia then. Other clamps measured
     // equal.
-    if (Eigen::LLT<Mat3<T>>(stiffness).info() != Eigen::Success)
+    if (p.prediction.scheme == Scheme::kMomentum || !positive_definite(stiffness))
       stiffness = weight * (r * tree.inertia[i] * r.transpose());
     p.composite[i] = {};
     p.composite[i].add_body(weight * tree.mass[i], p.kinematics.center[i], stiffness);
