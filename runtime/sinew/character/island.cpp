@@ -201,20 +201,20 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
-    s.rate[i] = joint_offset<T>(s.tree, i, s.local[i], p.local[i]).value;
+    s.rate[i] = joint_offset_value<T>(s.tree, i, s.local[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
     const Transform<T>& wanted = s.wanted[i];
-    const JointOffset<T> from_animation = joint_offset<T>(s.tree, i, wanted, p.local[i]);
-    const JointOffset<T> from_target = joint_offset<T>(s.tree, i, p.target[i], p.local[i]);
+    const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, wanted, p.local[i]);
+    const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
     Deviation<T>& d = s.deviation[i];
     T offset = T(0), rate = T(0), missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      d.rate[k] = (from_animation.value[k] - d.offset[k]) / h;
-      d.offset[k] = from_animation.value[k];
+      d.rate[k] = (from_animation[k] - d.offset[k]) / h;
+      d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
       rate = std::max(rate, std::abs(d.rate[k]));
-      missed = std::max(missed, std::abs(from_target.value[k]));
+      missed = std::max(missed, std::abs(from_target[k]));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.

@@ -226,7 +226,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Transform<T> before = s.local[i];
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
-    s.rate[i] = joint_offset<T>(s.tree, i, before, s.local[i]).value;
+    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
     for (T& r : s.rate[i]) r /= h;
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace sinew {
 
@@ -41,11 +42,17 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
     x.setZero();
     return true;
   }
-  for (int iteration = 0; iteration < 12; ++iteration) {
+  Mat3<T> inverse = Mat3<T>::Zero();
+  T last = std::numeric_limits<T>::infinity();
+  for (int iteration = 0; iteration < 20; ++iteration) {
     const Vec3<T> carried = rotation_exp<T>(-x) * l;
     const Vec3<T> error = inertia * (k1 * x - k2 * before) / h - carried;
-    const Mat3<T> jacobian = inertia * (k1 / h) - skew(carried) * right_jacobian(x);
-    Vec3<T> step = jacobian.inverse() * error;
+    // The Jacobian of the first iterate serves until it stops to pay.
+    const T size = error.norm();
+    if (iteration == 0 || size > T(0.2) * last)
+      inverse = (inertia * (k1 / h) - skew(carried) * right_jacobian(x)).inverse();
+    last = size;
+    Vec3<T> step = inverse * error;
     if (!step.allFinite()) return false;
     if (const T length = step.norm(); length > T(0.7)) step *= T(0.7) / length;
     x -= step;
