@@ -5,6 +5,7 @@
 #include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
+#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
@@ -201,6 +202,34 @@ Verdict spawned_in_floor(const Trial& t) {
   return v;
 }
 
+/// Limp figures that may touch themselves: neighbours that overlap at rest are no contact.
+template <class T>
+Verdict adjacent_limb_overlap(const Trial& t) {
+  Measurement measured;
+  CharacterSettings touching = limp();
+  touching.self_collision = true;
+  double moved = 0;
+  for (unsigned seed = 0; seed <= (t.quick ? 2u : 10u); ++seed) {
+    Stage<T> stage(seed == 0 ? weightless() : WorldSettings{});
+    Skeleton body = humanoid();
+    make_frictionless(body);
+    std::vector<JointJet<T>> jets = rest_jets<T>(body);
+    if (seed > 0) jets[0].translation.z() += T(0.5), randomise_speeds(body, jets, 3, seed);
+    stage.add(body, touching, jets);
+    const std::vector<Transform<T>> before(stage.character(0).model().begin(),
+                                           stage.character(0).model().end());
+    stage.run(2, t.h);
+    for (std::size_t i = 0; seed == 0 && i < before.size(); ++i)
+      moved =
+          std::max(moved, double((before[i].translation - stage.character(0).model()[i].translation).norm()));
+    measured.merge(stage.measured());
+  }
+  Verdict v(measured);
+  v.general();
+  v.at_most("moved out of the rest pose by itself (m)", moved, 1e-5);
+  return v;
+}
+
 template <class T>
 Verdict contact_on_and_off(const Trial& t) {
   Measurement measured;
@@ -362,10 +391,9 @@ std::vector<HardCase> contact_cases() {
        "42",
        "shock2quest PR #283",
        "filtered; no energy",
-       {},
-       nullptr,
-       nullptr,
-       "not supported: self collision"},
+       {1.0 / 60},
+       adjacent_limb_overlap<float>,
+       adjacent_limb_overlap<double>},
       {"contact_on_and_off",
        "43",
        "NVIDIA PhysX#365",
