@@ -84,6 +84,7 @@ DynamicsResult evaluate_dynamics(const Skeleton& skeleton, const std::vector<Joi
   Kinematics<double> kinematics(tree);
   Motion<double> motion(tree);
   std::vector<JointJet<double>> jets;
+  jets.reserve(tree.bodies);
   for (int i = 0; i < tree.bodies; ++i) jets.push_back(joint_jet(skeleton.joints[i], states[i]));
 
   DynamicsResult result;
