@@ -9,6 +9,7 @@
 #include "cli/files.h"
 #include "cli/mechanism.h"
 #include "cli/study.h"
+#include "cli/tables.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -278,6 +279,11 @@ int main(int argc, char** argv) try {
   hard->add_option("--case", stability.only, "run one case");
   hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
   hard->add_flag("--json", stability.json_output);
+  cli::TablesCommand tables;
+  auto* paper = study->add_subcommand("tables",
+                                      "formulations and integrators of the reference family\nExample: sinew "
+                                      "study tables --quick -o out/study");
+  cli::add_options(*paper, tables);
 
   try {
     app.parse(argc, argv);
@@ -297,6 +303,8 @@ int main(int argc, char** argv) try {
     error = simulate.run();
   else if (hard->parsed())
     error = stability.run();
+  else if (paper->parsed())
+    error = tables.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -12,18 +12,29 @@ namespace sinew::cli {
 
 using convert::Error;
 
+void add_options(CLI::App& app, TablesCommand& command) {
+  app.add_option("-o,--output", command.directory, "directory for text, CSV, JSON and the plot (out/study)");
+  app.add_option("--mechanisms", command.mechanisms, "directory of mechanism files (../shared/mechanisms)");
+  app.add_option("--tolerance", command.tolerance, "relative and absolute (1e-5)")
+      ->check(CLI::Range(1e-12, 1e-1));
+  app.add_flag("--quick", command.quick, "fewer repeats and tolerances");
+  app.add_flag("--json", command.json_output);
+}
+
 Error TablesCommand::run() const {
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) return {directory + ": cannot be made: " + failed.message()};
   study::TablesResult result;
-  if (std::string why = study::run_tables({mechanisms, tolerance, quick}, progress_bar("tables"), result); !why.empty())
+  if (std::string why = study::run_tables({mechanisms, tolerance, quick}, progress_bar("tables"), result);
+      !why.empty())
     return {why};
   const nlohmann::json summary = study::tables_json(result);
   const std::string base = directory + "/tables", chains = directory + "/chains";
-  for (const auto& [path, content] :
-       {std::pair{base + ".md", study::tables_text(result, "**", "**")}, {base + ".csv", study::tables_csv(result)},
-        {base + ".json", summary.dump(2) + "\n"}, {chains + ".csv", study::chains_csv(result.chains)}})
+  for (const auto& [path, content] : {std::pair{base + ".md", study::tables_text(result, "**", "**")},
+                                      {base + ".csv", study::tables_csv(result)},
+                                      {base + ".json", summary.dump(2) + "\n"},
+                                      {chains + ".csv", study::chains_csv(result.chains)}})
     if (Error error = write_atomically(path, content)) return error;
   if (const std::string why = study::plot_chains(chains + ".csv", chains + ".png"); !why.empty())
     std::fprintf(stderr, "sinew: %s\n", why.c_str());

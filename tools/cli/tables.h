@@ -1,6 +1,7 @@
 // `sinew study tables`: the tables of the paper, measured here.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 
 #include "convert/convert.h"
@@ -14,5 +15,7 @@ struct TablesCommand {
 
   convert::Error run() const;
 };
+
+void add_options(CLI::App& app, TablesCommand& command);
 
 }  // namespace sinew::cli

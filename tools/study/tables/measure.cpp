@@ -18,8 +18,8 @@ using multibody::Model;
 using multibody::Tangent;
 using multibody::Vector;
 
-/// A real part below −1000 1/s in what the implicit methods are for: fastest damped joint, by its own inertia alone
-/// would need a model; the study's stiff mechanisms are known by name.
+/// A real part below −1000 1/s in what the implicit methods are for: fastest damped joint, by its own inertia
+/// alone would need a model; the study's stiff mechanisms are known by name.
 bool known_stiff(const std::string& name) {
   return name == "suspension_mfs" || name.find("driver_stiff") == 0;
 }
@@ -86,7 +86,8 @@ std::string load_case(const std::string& directory, const std::string& name, Stu
   out = {};
   out.name = name;
   out.stiff = known_stiff(name);
-  if (std::string why = mechanism::load_mechanism(directory + "/" + name + ".json", out.mechanism); !why.empty())
+  if (std::string why = mechanism::load_mechanism(directory + "/" + name + ".json", out.mechanism);
+      !why.empty())
     return why;
   if (read_reference(directory + "/reference/" + name + ".csv", out.mechanism, out.reference)) return {};
   multibody::SimulationSettings settings;
@@ -126,7 +127,8 @@ Measurement measure(const StudyCase& c, const std::string& formulation, const st
     for (const multibody::Sample& s : run.samples) {
       const multibody::Sample& first = run.samples.front();
       m.closure = std::max(m.closure, s.closure);
-      m.energy_drift = std::max(m.energy_drift, std::abs(s.kinetic + s.potential - first.kinetic - first.potential));
+      m.energy_drift =
+          std::max(m.energy_drift, std::abs(s.kinetic + s.potential - first.kinetic - first.potential));
     }
     if (!run.stopped.empty()) break;
   }
@@ -135,7 +137,8 @@ Measurement measure(const StudyCase& c, const std::string& formulation, const st
 
 double evaluation_time(const StudyCase& c, Formulation formulation, int repeats) {
   const Model model(c.mechanism);
-  Equations equations(model, formulation, Tangent::kAnalytic), derivatives(model, Formulation::kDsr, Tangent::kNumeric);
+  Equations equations(model, formulation, Tangent::kAnalytic),
+      derivatives(model, Formulation::kDsr, Tangent::kNumeric);
   Vector start;
   if (!equations.start(start).empty() || !derivatives.start(start).empty()) return 0;
   std::mt19937 random(1);

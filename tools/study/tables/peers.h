@@ -7,10 +7,12 @@
 
 namespace sinew::study {
 
-/// One program with one of its integrators. `measure` simulates at a tolerance, the quickest of `repeats` counts.
+/// One program with one of its integrators. `measure` simulates at a tolerance, the quickest of `repeats`
+/// counts.
 struct Peer {
   std::string name;
-  bool stiff_too = true;  ///< false: stability limits it on stiff mechanisms; measured there once, not repeated
+  bool stiff_too =
+      true;  ///< false: stability limits it on stiff mechanisms; measured there once, not repeated
   std::function<Measurement(const StudyCase&, double tolerance, int repeats)> measure;
 };
 

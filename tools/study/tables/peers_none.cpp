@@ -2,6 +2,8 @@
 
 namespace sinew::study {
 
-std::vector<Peer> peers() { return {}; }
+std::vector<Peer> peers() {
+  return {};
+}
 
 }  // namespace sinew::study

@@ -15,12 +15,12 @@ struct Pairing {
 };
 
 /// Rows of Tables II and IV.
-const std::vector<Pairing> kOpenRows = {
-    {"DTR", "DE"},       {"DSR", "DE"},     {"DTR", "ode15s"},   {"DSR", "ode15s"}, {"DSR-JF", "ode15s"},
-    {"RR-JN", "ode15sR"}, {"RR-JF", "ode15sR"}, {"RR-JN", "DASSL"}, {"RR-JF", "DASSL"}};
-const std::vector<Pairing> kClosedRows = {{"DSR-Rz", "DE"},        {"DSR-Rz", "ode15s"},  {"DSR-Rz-JF", "ode15s"},
-                                          {"RR-Rz-JN", "ode15sR"}, {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JN", "DASSL"},
-                                          {"RR-Rz-JF", "DASSL"}};
+const std::vector<Pairing> kOpenRows = {{"DTR", "DE"},        {"DSR", "DE"},        {"DTR", "ode15s"},
+                                        {"DSR", "ode15s"},    {"DSR-JF", "ode15s"}, {"RR-JN", "ode15sR"},
+                                        {"RR-JF", "ode15sR"}, {"RR-JN", "DASSL"},   {"RR-JF", "DASSL"}};
+const std::vector<Pairing> kClosedRows = {
+    {"DSR-Rz", "DE"},        {"DSR-Rz", "ode15s"},  {"DSR-Rz-JF", "ode15s"}, {"RR-Rz-JN", "ode15sR"},
+    {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JN", "DASSL"}, {"RR-Rz-JF", "DASSL"}};
 
 /// What of ours stands against the peers: for each its quickest form.
 std::vector<Pairing> contenders(const StudyCase& c) {
@@ -49,8 +49,8 @@ Measurement quickest_within(const StudyCase& c, const std::vector<Measurement>& 
     if (m.error.within(error) && (!best || m.milliseconds < best->milliseconds)) best = &m;
   if (!best) return {};
   const std::size_t cut = best->method.find(" · ");
-  return measure(c, best->method.substr(cut + std::string(" · ").size()), best->method.substr(0, cut), best->tolerance,
-                 repeats);
+  return measure(c, best->method.substr(cut + std::string(" · ").size()), best->method.substr(0, cut),
+                 best->tolerance, repeats);
 }
 
 std::string default_directory() {
@@ -74,13 +74,15 @@ class Study {
     out_ = {};
     out_.tolerance = options.tolerance;
     out_.peers = !peers_.empty();
-    out_.open = present(directory_, {"fivebar_pendulum", "driver_nonstiff", "driver_stiff", "chain", "figure1"});
+    out_.open =
+        present(directory_, {"fivebar_pendulum", "driver_nonstiff", "driver_stiff", "chain", "figure1"});
     out_.closed = present(directory_, {"bricard", "suspension_5ps", "suspension_mfs", "four_bar"});
     compared_closed_ = out_.closed;
     for (const std::string& name : present(directory_, {"driver_nonstiff_hands", "driver_stiff_hands"}))
       compared_closed_.push_back(name);
     const int compared = peers_.empty() ? 0 : static_cast<int>(out_.open.size() + compared_closed_.size());
-    total_ = static_cast<int>(out_.open.size() * (3 + kOpenRows.size()) + out_.closed.size() * (2 + kClosedRows.size())) +
+    total_ = static_cast<int>(out_.open.size() * (3 + kOpenRows.size()) +
+                              out_.closed.size() * (2 + kClosedRows.size())) +
              compared * static_cast<int>(1 + peers_.size()) + (options.quick ? 6 : 8);
   }
 
@@ -108,7 +110,7 @@ class Study {
     StudyCase c;
     if (std::string why = load_case(directory_, name, c); !why.empty()) return why;
     for (const std::string& f : tabled ? formulations : std::vector<std::string>{}) {
-      const auto kind = f == "DTR"            ? multibody::Formulation::kDtr
+      const auto kind = f == "DTR"             ? multibody::Formulation::kDtr
                         : f.starts_with("DSR") ? multibody::Formulation::kDsr
                                                : multibody::Formulation::kRr;
       out_.evaluations.push_back({name, f, evaluation_time(c, kind, 3 * repeats_)});
@@ -126,10 +128,12 @@ class Study {
     const std::vector<Measurement> ours = work_precision(c, options_.quick);
     tick();
     for (const Peer& peer : peers_) {
-      const Measurement theirs = peer.measure(c, options_.tolerance, c.stiff && !peer.stiff_too ? 1 : repeats_);
+      const Measurement theirs =
+          peer.measure(c, options_.tolerance, c.stiff && !peer.stiff_too ? 1 : repeats_);
       tick();
-      out_.comparisons.push_back(
-          {theirs, theirs.stopped.empty() ? quickest_within(c, ours, theirs.error, repeats_) : Measurement{}});
+      out_.comparisons.push_back({theirs, theirs.stopped.empty()
+                                              ? quickest_within(c, ours, theirs.error, repeats_)
+                                              : Measurement{}});
     }
   }
 
@@ -158,7 +162,8 @@ const Measurement* find(const TablesResult& result, const std::string& mechanism
 const Measurement* best_simulation(const TablesResult& result, const std::string& mechanism) {
   const Measurement* best = nullptr;
   for (const Measurement& m : result.simulations)
-    if (m.mechanism == mechanism && m.stopped.empty() && (!best || m.milliseconds < best->milliseconds)) best = &m;
+    if (m.mechanism == mechanism && m.stopped.empty() && (!best || m.milliseconds < best->milliseconds))
+      best = &m;
   return best;
 }
 

@@ -1,4 +1,5 @@
-// `sinew study tables`: Tables I–VI of the paper, measured on this machine, and its conclusions checked against them.
+// `sinew study tables`: Tables I–VI of the paper, measured on this machine, and its conclusions checked
+// against them.
 #pragma once
 
 #include <functional>
@@ -9,7 +10,8 @@
 namespace sinew::study {
 
 struct TablesOptions {
-  std::string mechanisms;   ///< directory of the mechanism files; "": ../shared/mechanisms, else assets/mechanisms
+  std::string
+      mechanisms;  ///< directory of the mechanism files; "": ../shared/mechanisms, else assets/mechanisms
   double tolerance = 1e-5;  ///< the paper's
   bool quick = false;       ///< fewer repeats and tolerances
 };
@@ -28,7 +30,7 @@ struct Comparison {
 };
 
 struct Conclusion {
-  std::string claim;     ///< of the paper
+  std::string claim;  ///< of the paper
   bool holds = false;
   std::string evidence;  ///< in a sentence, with the figures
 };

@@ -50,7 +50,8 @@ struct Grid {
       }
       out += " |\n";
       if (r > 0) continue;
-      for (std::size_t c = 0; c < widths.size(); ++c) out += "|" + std::string(widths[c] + 1, '-') + (c == 0 ? "-" : ":");
+      for (std::size_t c = 0; c < widths.size(); ++c)
+        out += "|" + std::string(widths[c] + 1, '-') + (c == 0 ? "-" : ":");
       out += "|\n";
     }
     return out + "\n";
@@ -66,15 +67,17 @@ Grid evaluations(const TablesResult& r, const std::string& title, const std::vec
     row.push_back({f, false});
     for (const std::string& m : mechanisms) {
       const double here = evaluation(r, m, f);
-      const bool best = std::all_of(formulations.begin(), formulations.end(),
-                                    [&](const std::string& other) { return here <= evaluation(r, m, other); });
+      const bool best = std::all_of(formulations.begin(), formulations.end(), [&](const std::string& other) {
+        return here <= evaluation(r, m, other);
+      });
       row.push_back({number(here), best});
     }
   }
   return grid;
 }
 
-Grid simulations(const TablesResult& r, const std::string& title, const std::vector<std::string>& mechanisms) {
+Grid simulations(const TablesResult& r, const std::string& title,
+                 const std::vector<std::string>& mechanisms) {
   Grid grid{title, {{{"integrator · formulation", false}}}};
   std::vector<std::string> methods;
   for (const Measurement& m : r.simulations)
@@ -141,22 +144,24 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
 }
 
 nlohmann::json as_json(const Measurement& m) {
-  return {{"mechanism", m.mechanism},       {"method", m.method},
-          {"tolerance", m.tolerance},       {"ms", m.milliseconds},
-          {"error_q", m.error.q},           {"error_u", m.error.u},
-          {"steps", m.steps},               {"evaluations", m.evaluations},
-          {"tangents", m.tangents},         {"factorisations", m.factorisations},
-          {"closure_m", m.closure},         {"energy_drift_J", m.energy_drift},
+  return {{"mechanism", m.mechanism}, {"method", m.method},
+          {"tolerance", m.tolerance}, {"ms", m.milliseconds},
+          {"error_q", m.error.q},     {"error_u", m.error.u},
+          {"steps", m.steps},         {"evaluations", m.evaluations},
+          {"tangents", m.tangents},   {"factorisations", m.factorisations},
+          {"closure_m", m.closure},   {"energy_drift_J", m.energy_drift},
           {"stopped", m.stopped}};
 }
 
 }  // namespace
 
 std::string tables_text(const TablesResult& r, const std::string& bold, const std::string& plain) {
-  const std::string at = " at tolerance " + exponent(r.tolerance) + " (ms of CPU time; error max |Δ|/(1+|x|))";
+  const std::string at =
+      " at tolerance " + exponent(r.tolerance) + " (ms of CPU time; error max |Δ|/(1+|x|))";
   std::string out;
   if (!r.open.empty()) {
-    out += evaluations(r, "Table I. Open chains: time of one derivative or residual (µs)", r.open, {"DTR", "DSR", "RR"})
+    out += evaluations(r, "Table I. Open chains: time of one derivative or residual (µs)", r.open,
+                       {"DTR", "DSR", "RR"})
                .text(bold, plain);
     out += simulations(r, "Table II. Open chains: time of the simulation" + at, r.open).text(bold, plain);
   }
@@ -168,7 +173,8 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   }
   if (r.peers) {
     out += comparisons(r, "Table V. Open chains against independent programs" + at, true).text(bold, plain);
-    out += comparisons(r, "Table VI. Closed chains against independent programs" + at, false).text(bold, plain);
+    out +=
+        comparisons(r, "Table VI. Closed chains against independent programs" + at, false).text(bold, plain);
   } else {
     out += "Tables V and VI (against independent programs) need a build with -DSINEW_PEERS=ON.\n\n";
   }
@@ -182,20 +188,22 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   out += chains.text(bold, plain) + "Conclusions of the paper\n\n";
   int index = 0;
   for (const Conclusion& c : r.conclusions)
-    out += std::to_string(++index) + ". " + c.claim + ": " + bold + (c.holds ? "holds" : "does not hold here") + plain +
-           ". " + c.evidence + "\n";
+    out += std::to_string(++index) + ". " + c.claim + ": " + bold +
+           (c.holds ? "holds" : "does not hold here") + plain + ". " + c.evidence + "\n";
   return out;
 }
 
 std::string tables_csv(const TablesResult& r) {
   std::string csv =
-      "table,mechanism,method,tolerance,ms,error_q,error_u,steps,evaluations,tangents,factorisations,closure_m,"
+      "table,mechanism,method,tolerance,ms,error_q,error_u,steps,evaluations,tangents,factorisations,closure_"
+      "m,"
       "energy_drift_J,stopped\n";
   char line[512];
   const auto add = [&](const char* table, const Measurement& m) {
     std::snprintf(line, sizeof line, "%s,%s,%s,%g,%.5g,%.3g,%.3g,%ld,%ld,%ld,%ld,%.3g,%.3g,\"%s\"\n", table,
-                  m.mechanism.c_str(), m.method.c_str(), m.tolerance, m.milliseconds, m.error.q, m.error.u, m.steps,
-                  m.evaluations, m.tangents, m.factorisations, m.closure, m.energy_drift, m.stopped.c_str());
+                  m.mechanism.c_str(), m.method.c_str(), m.tolerance, m.milliseconds, m.error.q, m.error.u,
+                  m.steps, m.evaluations, m.tangents, m.factorisations, m.closure, m.energy_drift,
+                  m.stopped.c_str());
     csv += line;
   };
   const auto is_open = [&](const std::string& name) {
@@ -221,10 +229,12 @@ std::string tables_csv(const TablesResult& r) {
 nlohmann::json tables_json(const TablesResult& r) {
   nlohmann::json out = {{"tolerance", r.tolerance}, {"peers", r.peers}};
   for (const EvaluationTime& e : r.evaluations)
-    out["evaluations"].push_back({{"mechanism", e.mechanism}, {"formulation", e.formulation}, {"us", e.microseconds}});
+    out["evaluations"].push_back(
+        {{"mechanism", e.mechanism}, {"formulation", e.formulation}, {"us", e.microseconds}});
   for (const Measurement& m : r.simulations) out["simulations"].push_back(as_json(m));
   for (const Comparison& c : r.comparisons)
-    out["comparisons"].push_back({{"peer", as_json(c.peer)}, {"sinew", as_json(c.ours)}, {"factor", c.factor()}});
+    out["comparisons"].push_back(
+        {{"peer", as_json(c.peer)}, {"sinew", as_json(c.ours)}, {"factor", c.factor()}});
   for (const ChainPoint& c : r.chains)
     out["chains"].push_back({{"links", c.links}, {"DTR_us", c.dtr}, {"DSR_us", c.dsr}, {"RR_us", c.rr}});
   for (const Conclusion& c : r.conclusions)
