@@ -248,10 +248,14 @@ bool Equations::close(Vector& y) {
   return true;
 }
 
+bool Equations::poorly_chosen() const {
+  return rz_.growth() > kWorstGrowth;
+}
+
 bool Equations::accept(double, Vector& y) {
   if (rz_.trivial() || !close(y)) return false;
   largest_gap_ = std::max(largest_gap_, rz_.gap(motion_).size);
-  return rz_.growth() > kWorstGrowth && rz_.choose(motion_);
+  return poorly_chosen() && rz_.choose(motion_);
 }
 
 }  // namespace sinew::multibody

@@ -47,6 +47,10 @@ class Equations : public System {
   void solve(Vector& r) override;
   bool accept(double t, Vector& y) override;
 
+  /// True when the last evaluation's independent coordinates determine the dependent ones badly: `accept`
+  /// would choose others.
+  bool poorly_chosen() const;
+
   /// State with loops closed to rounding, for output. False when they do not close.
   bool close(Vector& y);
   /// Motion at the last evaluated or closed state.

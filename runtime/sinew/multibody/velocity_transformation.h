@@ -55,7 +55,6 @@ class VelocityTransformation {
   const Model* model_;
   std::vector<int> independent_, dependent_;
   Matrix jacobian_, by_dependent_, by_independent_, rates_;
-  Matrix rz_;  ///< [N×independent]
   Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
   double conditioning_ = 1;  ///< smallest over largest pivot of the factor
   Vector phi_, zero_;

@@ -70,7 +70,7 @@ std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& 
     point.links = links;
     point.dtr = time_of(model, Formulation::kDtr, repeats);
     point.rr = time_of(model, Formulation::kRr, repeats);
-    if (links <= 200) point.dsr = time_of(model, Formulation::kDsr, repeats);
+    point.dsr = time_of(model, Formulation::kDsr, links > 200 ? 2 : repeats);
     if (done_one) done_one();
   }
   return chains;
@@ -106,7 +106,7 @@ std::string plot_chains(const std::string& csv, const std::string& png) {
                "set datafile separator ','\nset logscale xy\nset grid\nset key top left\n"
                "set xlabel 'links'\nset ylabel 'time per evaluation, µs'\n"
                "plot '%s' using 1:2 with linespoints lw 2 title 'DTR (articulated)', "
-               "'' using 1:($3>0?$3:NaN) with linespoints lw 2 title 'DSR (semi-recursive)', "
+               "'' using 1:3 with linespoints lw 2 title 'DSR (semi-recursive)', "
                "'' using 1:4 with linespoints lw 2 title 'RR (residual)', "
                "0.1*x with lines dt 2 lc 'gray' title 'linear'\n",
                png.c_str(), csv.c_str());

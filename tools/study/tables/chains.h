@@ -9,7 +9,7 @@ namespace sinew::study {
 
 struct ChainPoint {
   int links = 0;
-  double dtr = 0, dsr = 0, rr = 0;  ///< µs per evaluation; DSR only up to 200 links
+  double dtr = 0, dsr = 0, rr = 0;  ///< µs per evaluation
 };
 
 /// Chains of 5 … 1000 links (5 … 200 when `quick`).

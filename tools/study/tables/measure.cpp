@@ -18,8 +18,7 @@ using multibody::Model;
 using multibody::Tangent;
 using multibody::Vector;
 
-/// A real part below −1000 1/s in what the implicit methods are for: fastest damped joint, by its own inertia
-/// alone would need a model; the study's stiff mechanisms are known by name.
+/// The study's stiff mechanisms, by their names in the paper's set.
 bool known_stiff(const std::string& name) {
   return name == "suspension_mfs" || name.find("driver_stiff") == 0;
 }

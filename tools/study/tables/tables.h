@@ -22,7 +22,7 @@ struct EvaluationTime {
   double microseconds = 0;
 };
 
-/// Another program's run beside Sinew's quickest run of at most the same true error (Tables V and VI).
+/// A run beside Sinew's quickest run of at most the same true error (Tables V and VI).
 struct Comparison {
   Measurement peer, ours;
   /// How many times quicker; 0 when no run of ours was as accurate.
@@ -30,8 +30,9 @@ struct Comparison {
 };
 
 struct Conclusion {
+  enum class Verdict { kHolds, kDoesNot, kNotMeasured };
   std::string claim;  ///< of the paper
-  bool holds = false;
+  Verdict verdict = Verdict::kNotMeasured;
   std::string evidence;  ///< in a sentence, with the figures
 };
 
@@ -40,6 +41,8 @@ struct TablesResult {
   std::vector<EvaluationTime> evaluations;  ///< I and III
   std::vector<Measurement> simulations;     ///< II and IV
   std::vector<Comparison> comparisons;      ///< V and VI
+  /// DE at `tolerance` on each non-stiff mechanism, and the quickest implicit run within its error.
+  std::vector<Comparison> explicit_or_implicit;
   std::vector<ChainPoint> chains;
   std::vector<Conclusion> conclusions;
   double tolerance = 0;

@@ -24,6 +24,24 @@ std::size_t width(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
 }
 
+/// First line only, short enough for a column.
+std::string brief(const std::string& reason) {
+  const std::string line = reason.substr(0, reason.find('\n'));
+  return line.size() <= 60 ? line : line.substr(0, 57) + "…";
+}
+
+std::string verdict(const Conclusion& c) {
+  switch (c.verdict) {
+    case Conclusion::Verdict::kHolds:
+      return "holds";
+    case Conclusion::Verdict::kDoesNot:
+      return "does not hold here";
+    case Conclusion::Verdict::kNotMeasured:
+      break;
+  }
+  return "not measured";
+}
+
 struct Cell {
   std::string text;
   bool bold = false;
@@ -33,20 +51,22 @@ struct Grid {
   std::string title;
   std::vector<std::vector<Cell>> rows;
 
+  /// `bold` and `plain` around bold cells; they take room where they are not terminal escapes.
   std::string text(const std::string& bold, const std::string& plain) const {
+    const auto marked = [&](const Cell& cell) { return cell.bold ? bold + cell.text + plain : cell.text; };
+    const std::size_t room = bold.starts_with('\033') ? 0 : bold.size() + plain.size();
+    const auto width_of = [&](const Cell& cell) { return width(cell.text) + (cell.bold ? room : 0); };
     std::vector<std::size_t> widths;
     for (const auto& row : rows)
       for (std::size_t c = 0; c < row.size(); ++c) {
         if (widths.size() <= c) widths.push_back(0);
-        widths[c] = std::max(widths[c], width(row[c].text));
+        widths[c] = std::max(widths[c], width_of(row[c]));
       }
     std::string out = title + "\n\n";
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < rows[r].size(); ++c) {
-        const Cell& cell = rows[r][c];
-        const std::string pad(widths[c] - width(cell.text), ' ');
-        out += c == 0 ? "| " : " | ";
-        out += (c == 0 ? "" : pad) + (cell.bold ? bold + cell.text + plain : cell.text) + (c == 0 ? pad : "");
+        const std::string pad(widths[c] - width_of(rows[r][c]), ' ');
+        out += c == 0 ? "| " + marked(rows[r][c]) + pad : " | " + pad + marked(rows[r][c]);
       }
       out += " |\n";
       if (r > 0) continue;
@@ -95,7 +115,7 @@ Grid simulations(const TablesResult& r, const std::string& title,
     for (const std::string& mechanism : mechanisms) {
       const Measurement* m = find(r, mechanism, method);
       if (!m || !m->stopped.empty()) {
-        row.insert(row.end(), {{"–", false}, {m ? m->stopped : "", false}, {"", false}});
+        row.insert(row.end(), {{"–", false}, {m ? brief(m->stopped) : "", false}, {"", false}});
         continue;
       }
       row.push_back({number(m->milliseconds), m == best_simulation(r, mechanism)});
@@ -124,7 +144,7 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
     auto& row = grid.rows.emplace_back();
     row = {{c.peer.mechanism, false}, {c.peer.method, false}};
     if (!c.peer.stopped.empty()) {
-      row.insert(row.end(), {{"–", false}, {c.peer.stopped, false}, {}, {}, {}, {}, {}});
+      row.insert(row.end(), {{"–", false}, {brief(c.peer.stopped), false}, {}, {}, {}, {}, {}});
       continue;
     }
     const bool ours_wins = c.factor() > 1;
@@ -183,13 +203,13 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   for (const ChainPoint& c : r.chains)
     chains.rows.push_back({{std::to_string(c.links), false},
                            {number(c.dtr), false},
-                           {c.dsr > 0 ? number(c.dsr) : "", false},
+                           {number(c.dsr), false},
                            {number(c.rr), false}});
   out += chains.text(bold, plain) + "Conclusions of the paper\n\n";
   int index = 0;
   for (const Conclusion& c : r.conclusions)
-    out += std::to_string(++index) + ". " + c.claim + ": " + bold +
-           (c.holds ? "holds" : "does not hold here") + plain + ". " + c.evidence + "\n";
+    out += std::to_string(++index) + ". " + c.claim + ": " + bold + verdict(c) + plain + ". " + c.evidence +
+           "\n";
   return out;
 }
 
@@ -238,7 +258,7 @@ nlohmann::json tables_json(const TablesResult& r) {
   for (const ChainPoint& c : r.chains)
     out["chains"].push_back({{"links", c.links}, {"DTR_us", c.dtr}, {"DSR_us", c.dsr}, {"RR_us", c.rr}});
   for (const Conclusion& c : r.conclusions)
-    out["conclusions"].push_back({{"claim", c.claim}, {"holds", c.holds}, {"evidence", c.evidence}});
+    out["conclusions"].push_back({{"claim", c.claim}, {"verdict", verdict(c)}, {"evidence", c.evidence}});
   return out;
 }
 

@@ -11,8 +11,8 @@ std::vector<Peer> simbody_peers();   ///< own model and equations: a whole other
 std::vector<Peer> sundials_peers();  ///< general-purpose integrators on Sinew's equations
 std::vector<Peer> odeint_peers();    ///< the same
 
-/// Repeats `simulate(trajectory, measurement)`, which answers "" or why it stopped and adds nothing to the CPU time
-/// but the integration; fills error and the quickest time.
+/// Repeats `simulate(trajectory, measurement)`, which answers "" or why it stopped and adds nothing to the
+/// CPU time but the integration; fills error and the quickest time.
 template <class Simulate>
 Measurement measure_peer(const std::string& name, const StudyCase& c, double tolerance, int repeats,
                          Simulate simulate) {

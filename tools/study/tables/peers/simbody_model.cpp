@@ -24,9 +24,12 @@ double pull_of_spring(const Force& f, double length, double rate) {
   return f.k * (length - f.rest_length) + f.c * rate;
 }
 
-SimTK::Vec3 vec(const Vec3<double>& v) { return {v.x(), v.y(), v.z()}; }
+SimTK::Vec3 vec(const Vec3<double>& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
-/// All force laws of the file. Stations are in body frames, whose axes are the world's in the reference configuration.
+/// All force laws of the file. Stations are in body frames, whose axes are the world's in the reference
+/// configuration.
 class Forces : public SimTK::Force::Custom::Implementation {
  public:
   Forces(const multibody::Mechanism& mechanism, const SimTK::SimbodyMatterSubsystem& matter,
@@ -36,8 +39,8 @@ class Forces : public SimTK::Force::Custom::Implementation {
   bool dependsOnlyOnPositions() const override { return false; }
   SimTK::Real calcPotentialEnergy(const State&) const override { return 0; }
 
-  void calcForce(const State& state, SimTK::Vector_<SimTK::SpatialVec>& on_bodies, SimTK::Vector_<SimTK::Vec3>&,
-                 SimTK::Vector& on_mobilities) const override {
+  void calcForce(const State& state, SimTK::Vector_<SimTK::SpatialVec>& on_bodies,
+                 SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector& on_mobilities) const override {
     const double t = state.getTime();
     for (std::size_t i = 0; i < mechanism_.joints.size(); ++i) {
       const JointForce& f = mechanism_.joints[i].force;
@@ -116,7 +119,8 @@ class Forces : public SimTK::Force::Custom::Implementation {
 
 }  // namespace
 
-SimbodyModel::SimbodyModel(const multibody::Mechanism& m) : matter(system), forces(system), mechanism_(m) {
+SimbodyModel::SimbodyModel(const multibody::Mechanism& m, const std::vector<bool>& one_angle)
+    : matter(system), forces(system), mechanism_(m) {
   system.setUseUniformBackground(true);
   SimTK::Force::UniformGravity(forces, matter, vec(m.gravity));
   std::vector<int> joint_of(m.bodies.size());
@@ -124,14 +128,16 @@ SimbodyModel::SimbodyModel(const multibody::Mechanism& m) : matter(system), forc
   for (const multibody::HingeOrSlider& j : m.joints) {
     const multibody::Body& b = m.bodies[j.child];
     const SimTK::Vec3 center = vec(Vec3<double>(b.center_of_mass - j.anchor));
-    const SimTK::Inertia central(b.inertia(0, 0), b.inertia(1, 1), b.inertia(2, 2), b.inertia(0, 1), b.inertia(0, 2),
-                                 b.inertia(1, 2));
+    const SimTK::Inertia central(b.inertia(0, 0), b.inertia(1, 1), b.inertia(2, 2), b.inertia(0, 1),
+                                 b.inertia(0, 2), b.inertia(1, 2));
     const SimTK::MassProperties mass(b.mass, center, central.shiftFromMassCenter(center, b.mass));
     const int parent = j.parent == kGround ? -1 : joint_of[j.parent];
     MobilizedBody& above = parent < 0 ? static_cast<MobilizedBody&>(matter.updGround()) : bodies[parent];
-    const Vec3<double> from = parent < 0 ? Vec3<double>(j.anchor) : Vec3<double>(j.anchor - m.joints[parent].anchor);
+    const Vec3<double> from =
+        parent < 0 ? Vec3<double>(j.anchor) : Vec3<double>(j.anchor - m.joints[parent].anchor);
     const bool turns = j.type == JointType::kRevolute;
-    const SimTK::Rotation frame(SimTK::UnitVec3(vec(j.axis)), turns ? SimTK::CoordinateAxis(2) : SimTK::CoordinateAxis(0));
+    const SimTK::Rotation frame(SimTK::UnitVec3(vec(j.axis)),
+                                turns ? SimTK::CoordinateAxis(2) : SimTK::CoordinateAxis(0));
     const SimTK::Transform in_parent(frame, vec(from)), in_child(frame);
     if (turns)
       bodies.push_back(MobilizedBody::Pin(above, in_parent, SimTK::Body::Rigid(mass), in_child));
@@ -142,9 +148,12 @@ SimbodyModel::SimbodyModel(const multibody::Mechanism& m) : matter(system), forc
     return file_body == kGround ? vec(point)
                                 : vec(Vec3<double>(point - m.joints[joint_of[file_body]].anchor));
   };
-  for (const multibody::Loop& l : m.loops) {
-    MobilizedBody& a = l.body_a == kGround ? static_cast<MobilizedBody&>(matter.updGround()) : bodies[joint_of[l.body_a]];
-    MobilizedBody& b = l.body_b == kGround ? static_cast<MobilizedBody&>(matter.updGround()) : bodies[joint_of[l.body_b]];
+  for (std::size_t i = 0; i < m.loops.size(); ++i) {
+    const multibody::Loop& l = m.loops[i];
+    MobilizedBody& a =
+        l.body_a == kGround ? static_cast<MobilizedBody&>(matter.updGround()) : bodies[joint_of[l.body_a]];
+    MobilizedBody& b =
+        l.body_b == kGround ? static_cast<MobilizedBody&>(matter.updGround()) : bodies[joint_of[l.body_b]];
     const SimTK::Vec3 pa = station(l.body_a, l.point_a), pb = station(l.body_b, l.point_b);
     if (l.type == multibody::LoopType::kDistance) {
       SimTK::Constraint::Rod(a, pa, b, pb, (l.point_b - l.point_a).norm());
@@ -153,8 +162,12 @@ SimbodyModel::SimbodyModel(const multibody::Mechanism& m) : matter(system), forc
     SimTK::Constraint::Ball(a, pa, b, pb);
     if (l.type != multibody::LoopType::kRevolute) continue;
     const Vec3<double> one = l.axis.unitOrthogonal(), two = l.axis.cross(one);
-    for (const Vec3<double>& normal : {one, two})
-      SimTK::Constraint::ConstantAngle(a, SimTK::UnitVec3(vec(normal)), b, SimTK::UnitVec3(vec(l.axis)), SimTK::Pi / 2);
+    const auto keep_normal = [&](const Vec3<double>& normal) {
+      SimTK::Constraint::ConstantAngle(a, SimTK::UnitVec3(vec(normal)), b, SimTK::UnitVec3(vec(l.axis)),
+                                       SimTK::Pi / 2);
+    };
+    keep_normal(one);
+    if (!one_angle[i]) keep_normal(two);
   }
   SimTK::Force::Custom(forces, new Forces(m, matter, bodies, joint_of));  // the subsystem takes ownership
 }

@@ -1,5 +1,5 @@
-// A mechanism as a Simbody system: its own mobilizers, constraints and equations of motion; the force laws of the file
-// in one custom force.
+// A mechanism as a Simbody system: its own mobilizers, constraints and equations of motion; the force laws of
+// the file in one custom force.
 #pragma once
 
 #include <Simbody.h>
@@ -13,7 +13,10 @@ namespace sinew::study {
 
 class SimbodyModel {
  public:
-  explicit SimbodyModel(const multibody::Mechanism& mechanism);
+  /// `one_angle` [loop]: leave out the second of the two conditions on a revolute loop's axis. Told to keep
+  /// redundant conditions, Simbody loses its way (Bricard at 1e-5: off by 0.7 rad); the condition follows
+  /// from the others.
+  SimbodyModel(const multibody::Mechanism& mechanism, const std::vector<bool>& one_angle);
 
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter;

@@ -24,8 +24,10 @@ void integrate(const SimbodyModel& model, SimTK::Integrator& integrator, Simbody
     while (integrator.getState().getTime() < t) integrator.stepTo(t);  // interpolates: steps are not cut
     run.seconds += thread_seconds() - begin;
     std::vector<double>& row = run.rows.emplace_back();
-    for (const SimTK::MobilizedBody& body : model.bodies) row.push_back(body.getOneQ(integrator.getState(), 0));
-    for (const SimTK::MobilizedBody& body : model.bodies) row.push_back(body.getOneU(integrator.getState(), 0));
+    for (const SimTK::MobilizedBody& body : model.bodies)
+      row.push_back(body.getOneQ(integrator.getState(), 0));
+    for (const SimTK::MobilizedBody& body : model.bodies)
+      row.push_back(body.getOneU(integrator.getState(), 0));
   }
   run.steps = integrator.getNumStepsTaken();
   run.evaluations = integrator.getNumRealizations();
@@ -33,19 +35,20 @@ void integrate(const SimbodyModel& model, SimTK::Integrator& integrator, Simbody
 
 }  // namespace
 
-void simulate_with_simbody(const multibody::Mechanism& mechanism, SimbodyRun& run) {
+}  // namespace sinew::study
+
+void sinew_simulate_with_simbody(const sinew::multibody::Mechanism& mechanism,
+                                 sinew::study::SimbodyRun& run) {
   try {
-    const SimbodyModel model(mechanism);
+    const sinew::study::SimbodyModel model(mechanism, run.one_angle);
     if (run.cpodes) {
       SimTK::CPodesIntegrator integrator(model.system);
-      integrate(model, integrator, run);
+      sinew::study::integrate(model, integrator, run);
     } else {
       SimTK::RungeKuttaMersonIntegrator integrator(model.system);
-      integrate(model, integrator, run);
+      sinew::study::integrate(model, integrator, run);
     }
   } catch (const std::exception& e) {
     run.stopped = std::string("Simbody: ") + e.what();
   }
 }
-
-}  // namespace sinew::study

@@ -1,4 +1,6 @@
-// One simulation by Simbody, in C++17 (its headers do not compile as C++20): plain data in and out.
+// One simulation by Simbody, plain data in and out. It is a module of its own, loaded at run time: Simbody's
+// headers do not compile as C++20, and its library carries an old SUNDIALS whose symbols clash with those of
+// the present one.
 #pragma once
 
 #include <string>
@@ -13,6 +15,7 @@ struct SimbodyRun {
   double accuracy = 1e-5;
   double max_step = 0;           ///< s; 0: none
   std::vector<double> instants;  ///< s, ascending
+  std::vector<bool> one_angle;   ///< [loop], see SimbodyModel
 
   std::vector<std::vector<double>> rows;  ///< q of all joints, then their rates, per instant
   long steps = 0, evaluations = 0;
@@ -20,6 +23,7 @@ struct SimbodyRun {
   std::string stopped;  ///< "" or why it ended early
 };
 
-void simulate_with_simbody(const multibody::Mechanism& mechanism, SimbodyRun& run);
-
 }  // namespace sinew::study
+
+extern "C" void sinew_simulate_with_simbody(const sinew::multibody::Mechanism& mechanism,
+                                            sinew::study::SimbodyRun& run);

@@ -1,5 +1,5 @@
-// CVODE (Adams with fixed-point iteration, BDF with dense numeric Jacobian) on derivatives, IDA on residuals: SUNDIALS
-// 6.4. IDA is the successor of DASSL.
+// CVODE (Adams with fixed-point iteration, BDF with dense numeric Jacobian) on derivatives, IDA on residuals:
+// SUNDIALS 6.4. IDA is the successor of DASSL.
 #include <cvode/cvode.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -35,7 +35,9 @@ struct Problem {
         r(2 * model.size()) {}
 };
 
-Eigen::Map<Vector> view(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+Eigen::Map<Vector> view(N_Vector v) {
+  return {N_VGetArrayPointer(v), N_VGetLength(v)};
+}
 
 int derivative(realtype t, N_Vector y, N_Vector yp, void* user) {
   Problem& p = *static_cast<Problem*>(user);
@@ -58,6 +60,14 @@ int residual(realtype t, N_Vector y, N_Vector yp, N_Vector r, void* user) {
 
 constexpr long kMaxSteps = 1000000;
 
+/// Lets the equations choose other independent coordinates where the present ones serve badly; the state
+/// stays.
+void offer(Problem& p, double t, N_Vector y) {
+  if (!p.equations.poorly_chosen()) return;
+  Vector state = view(y);
+  p.equations.accept(t, state);
+}
+
 void sample(Problem& p, double t, N_Vector y, Trajectory& out) {
   Vector state = view(y);
   p.equations.close(state);
@@ -65,7 +75,8 @@ void sample(Problem& p, double t, N_Vector y, Trajectory& out) {
   out.y.push_back(state);
 }
 
-std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& out, Measurement& m, double& seconds) {
+std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& out, Measurement& m,
+                  double& seconds) {
   const multibody::Model model(c.mechanism);
   Problem problem(model, derivatives_of(c));
   Vector y0;
@@ -83,20 +94,29 @@ std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& 
   CVodeSetMaxNumSteps(memory, kMaxSteps);
   CVodeSetErrFile(memory, nullptr);
   if (model.shortest_profile > 0) CVodeSetMaxStep(memory, model.shortest_profile);
-  const auto matrix = owned(SUNDenseMatrix(y0.size(), y0.size(), context), [](SUNMatrix x) { SUNMatDestroy(x); });
-  const auto linear = owned(SUNLinSol_Dense(y.get(), matrix.get(), context), [](SUNLinearSolver x) { SUNLinSolFree(x); });
-  const auto fixed = owned(SUNNonlinSol_FixedPoint(y.get(), 0, context), [](SUNNonlinearSolver x) { SUNNonlinSolFree(x); });
+  const auto matrix =
+      owned(SUNDenseMatrix(y0.size(), y0.size(), context), [](SUNMatrix x) { SUNMatDestroy(x); });
+  const auto linear =
+      owned(SUNLinSol_Dense(y.get(), matrix.get(), context), [](SUNLinearSolver x) { SUNLinSolFree(x); });
+  const auto fixed =
+      owned(SUNNonlinSol_FixedPoint(y.get(), 0, context), [](SUNNonlinearSolver x) { SUNNonlinSolFree(x); });
   if (method == CV_ADAMS)
     CVodeSetNonlinearSolver(memory, fixed.get());
   else
     CVodeSetLinearSolver(memory, linear.get(), matrix.get());
-  for (const double t : c.reference.t) {
-    const double begin = cpu_seconds();
-    realtype reached = 0;
-    const int flag = t > 0 ? CVode(memory, t, y.get(), &reached, CV_NORMAL) : 0;
+  const auto inside = owned(N_VNew_Serial(y0.size(), context), [](N_Vector x) { N_VDestroy(x); });
+  sample(problem, 0, y.get(), out);
+  realtype reached = 0;
+  for (std::size_t i = 1; i < c.reference.t.size(); ++i) {
+    const double t = c.reference.t[i], begin = cpu_seconds();
+    while (reached < t) {
+      const int flag = CVode(memory, c.reference.t.back(), y.get(), &reached, CV_ONE_STEP);
+      if (flag < 0) return "CVODE stopped with " + std::string(CVodeGetReturnFlagName(flag));
+      offer(problem, reached, y.get());
+    }
     seconds += cpu_seconds() - begin;
-    if (flag < 0) return "CVODE stopped with " + std::string(CVodeGetReturnFlagName(flag));
-    sample(problem, t, y.get(), out);
+    CVodeGetDky(memory, t, 0, inside.get());
+    sample(problem, t, inside.get(), out);
   }
   CVodeGetNumSteps(memory, &m.steps);
   if (method == CV_BDF) CVodeGetNumJacEvals(memory, &m.tangents);
@@ -126,16 +146,24 @@ std::string ida(const StudyCase& c, double tolerance, Trajectory& out, Measureme
   IDASetMaxNumSteps(memory, kMaxSteps);
   IDASetErrFile(memory, nullptr);
   if (model.shortest_profile > 0) IDASetMaxStep(memory, model.shortest_profile);
-  const auto matrix = owned(SUNDenseMatrix(y0.size(), y0.size(), context), [](SUNMatrix x) { SUNMatDestroy(x); });
-  const auto linear = owned(SUNLinSol_Dense(y.get(), matrix.get(), context), [](SUNLinearSolver x) { SUNLinSolFree(x); });
+  const auto matrix =
+      owned(SUNDenseMatrix(y0.size(), y0.size(), context), [](SUNMatrix x) { SUNMatDestroy(x); });
+  const auto linear =
+      owned(SUNLinSol_Dense(y.get(), matrix.get(), context), [](SUNLinearSolver x) { SUNLinSolFree(x); });
   IDASetLinearSolver(memory, linear.get(), matrix.get());
-  for (const double t : c.reference.t) {
-    const double begin = cpu_seconds();
-    realtype reached = 0;
-    const int flag = t > 0 ? IDASolve(memory, t, &reached, y.get(), yp.get(), IDA_NORMAL) : 0;
+  const auto inside = owned(N_VNew_Serial(y0.size(), context), [](N_Vector x) { N_VDestroy(x); });
+  sample(problem, 0, y.get(), out);
+  realtype reached = 0;
+  for (std::size_t i = 1; i < c.reference.t.size(); ++i) {
+    const double t = c.reference.t[i], begin = cpu_seconds();
+    while (reached < t) {
+      const int flag = IDASolve(memory, c.reference.t.back(), &reached, y.get(), yp.get(), IDA_ONE_STEP);
+      if (flag < 0) return "IDA stopped with " + std::string(IDAGetReturnFlagName(flag));
+      offer(problem, reached, y.get());
+    }
     seconds += cpu_seconds() - begin;
-    if (flag < 0) return "IDA stopped with " + std::string(IDAGetReturnFlagName(flag));
-    sample(problem, t, y.get(), out);
+    IDAGetDky(memory, t, 0, inside.get());
+    sample(problem, t, inside.get(), out);
   }
   IDAGetNumSteps(memory, &m.steps);
   IDAGetNumJacEvals(memory, &m.tangents);
@@ -145,9 +173,10 @@ std::string ida(const StudyCase& c, double tolerance, Trajectory& out, Measureme
 
 Peer cvode_peer(const std::string& name, int method) {
   return {name, method == CV_BDF, [name, method](const StudyCase& c, double tolerance, int repeats) {
-            return measure_peer(name, c, tolerance, repeats, [&](Trajectory& out, Measurement& m, double& seconds) {
-              return cvode(c, method, tolerance, out, m, seconds);
-            });
+            return measure_peer(name, c, tolerance, repeats,
+                                [&](Trajectory& out, Measurement& m, double& seconds) {
+                                  return cvode(c, method, tolerance, out, m, seconds);
+                                });
           }};
 }
 
@@ -155,11 +184,13 @@ Peer cvode_peer(const std::string& name, int method) {
 
 std::vector<Peer> sundials_peers() {
   const std::string name = "SUNDIALS · IDA, RR";
-  return {cvode_peer("SUNDIALS · CVODE Adams", CV_ADAMS), cvode_peer("SUNDIALS · CVODE BDF", CV_BDF),
+  return {cvode_peer("SUNDIALS · CVODE Adams", CV_ADAMS),
+          cvode_peer("SUNDIALS · CVODE BDF", CV_BDF),
           {name, true, [name](const StudyCase& c, double tolerance, int repeats) {
-             return measure_peer(name, c, tolerance, repeats, [&](Trajectory& out, Measurement& m, double& seconds) {
-               return ida(c, tolerance, out, m, seconds);
-             });
+             return measure_peer(name, c, tolerance, repeats,
+                                 [&](Trajectory& out, Measurement& m, double& seconds) {
+                                   return ida(c, tolerance, out, m, seconds);
+                                 });
            }}};
 }
 
