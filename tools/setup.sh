@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; quiet, and quick when everything is there.
-# Usage: tools/setup.sh [--tests]
+# Usage: tools/setup.sh [--tests] [--peers]     --peers: for -DSINEW_PEERS=ON, several hundred MB
 set -euo pipefail
 
 packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flatbuffers-compiler
@@ -8,7 +8,11 @@ packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flat
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libcairo2-dev libpng-dev libjpeg62-turbo-dev
   libseccomp-dev libsdl2-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev ccache clang-format clang-tidy)
-[ "${1:-}" = --tests ] && packages+=("${tests[@]}")
+peers=(libsimbody-dev libsundials-dev libboost-dev)
+for option in "$@"; do
+  [ "$option" = --tests ] && packages+=("${tests[@]}")
+  [ "$option" = --peers ] && packages+=("${peers[@]}")
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -248,6 +248,15 @@ bool Equations::close(Vector& y) {
   return true;
 }
 
+double Equations::noise() const {
+  // A gap of rounding size moves dependent coordinates by 1/σ of it, their rates by 1/σ², accelerations by
+  // 1/σ³.
+  const double weakest = rz_.weakest();
+  if (rz_.trivial() || weakest > VelocityTransformation::kWeak) return 0;
+  const double speed = qd_.cwiseAbs().maxCoeff();
+  return std::numeric_limits<double>::epsilon() * speed * speed / (weakest * weakest * weakest);
+}
+
 bool Equations::poorly_chosen() const {
   return rz_.growth() > kWorstGrowth;
 }

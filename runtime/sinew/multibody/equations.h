@@ -45,6 +45,7 @@ class Equations : public System {
   bool tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) override;
   bool factorise(double c) override;
   void solve(Vector& r) override;
+  double noise() const override;
   bool accept(double t, Vector& y) override;
 
   /// True when the last evaluation's independent coordinates determine the dependent ones badly: `accept`

@@ -9,7 +9,6 @@ namespace {
 /// Relative singular value below which the loops are taken to say nothing: a position error of 1e-10 m then
 /// moves the dependent coordinates by less than 1e-3.
 constexpr double kSingular = 1e-7;
-constexpr double kWeak = 1e-2;       ///< relative singular value below which loops are closed to rounding
 constexpr double kRounding = 1e-16;  ///< m
 constexpr double kFarthestMove = 1;  ///< rad or m, in one iteration
 constexpr int kMaxIterations = 12;
