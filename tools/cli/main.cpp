@@ -7,6 +7,7 @@
 
 #include "cli/evaluate.h"
 #include "cli/files.h"
+#include "cli/mechanism.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -116,8 +117,11 @@ struct EvaluateCommand {
 struct SimulateCommand {
   std::string scene_file, output;
   bool json_output = false, plot = false;
+  sinew::mechanism::SimulateOptions mechanism;
 
   Error run() const {
+    if (cli::is_mechanism_file(scene_file))
+      return cli::run_mechanism(scene_file, mechanism, output, json_output);
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     sinew::scene::Recording recording;
@@ -236,11 +240,12 @@ int main(int argc, char** argv) try {
 
   SimulateCommand simulate;
   auto* s =
-      app.add_subcommand("simulate", "run a scene\nExample: sinew simulate push.json -o push.csv --plot");
+      app.add_subcommand("simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
+  cli::add_mechanism_options(*s, simulate.mechanism);
 
   RenderCommand render;
   auto* r = app.add_subcommand(

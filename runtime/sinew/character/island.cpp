@@ -276,12 +276,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.contact_signature = signature;
   s.limit_signature = limits;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Mat3<T>& rate = s.history.rotation_rate[i];
-    r.kinetic_energy += 0.5 * double(s.tree.mass[i] * s.history.velocity[i].squaredNorm() +
-                                     (rate * s.tree.second_moment[i]).cwiseProduct(rate).sum());
-    r.potential_energy -= double(s.tree.mass[i] * world.gravity.template cast<T>().dot(s.history.center[i]));
-  }
+  s.report_totals(world.gravity);
 }
 
 /// What the animation wants at a fraction of the frame: the shorter way round between this frame's target and
@@ -371,7 +366,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   lagged_.clear();
   for (const Contact<T>& c : contacts_)
     if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
-      lagged_.push_back({c.id, force});
+      lagged_.push_back({c.id, force, c.stiffness, c.offset});
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }

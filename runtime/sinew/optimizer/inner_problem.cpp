@@ -194,6 +194,7 @@ bool InnerProblem<T>::newton_step() {
         factor_.row(rows.unknown + i)[unknowns_.pattern.depth[rows.unknown + j]] +=
             curvature * row.gradient[i] * row.gradient[j];
   }
+  factor_.raise_diagonal(sizeof(T) == 4 ? T(1e-6) : T(1e-10));
   ++factorisations;
   if (!factor_.factorise()) return false;
   if (contact_rows_.coupled()) return conjugate_gradients();

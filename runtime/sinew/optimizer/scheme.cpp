@@ -129,6 +129,7 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
     history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * torque[i];
   }
+  history.scheme = prediction.scheme;
   history.step_before = h;
 }
 
@@ -147,7 +148,33 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
     history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = r * (tree.inertia[i] * (r.transpose() * motion.omega[i]));
   }
+  history.scheme = Scheme::kBdf2;
   history.step_before = h;
+}
+
+template <class T>
+Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity) {
+  Totals sum;
+  double mass = 0;
+  Vec3<double> first = Vec3<double>::Zero(), about_origin = Vec3<double>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const double m = double(tree.mass[i]);
+    const Vec3<double> center = history.center[i].template cast<double>();
+    const Vec3<double> velocity = history.velocity[i].template cast<double>();
+    const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
+    const Mat3<T>& rate = history.rotation_rate[i];
+    const T turning = history.scheme == Scheme::kBdf1
+                          ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
+                          : spin.dot(tree.inverse_inertia[i] * spin);
+    sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
+    sum.potential_energy -= m * gravity.dot(center);
+    sum.momentum += m * velocity;
+    about_origin += m * center.cross(velocity) + history.momentum[i].template cast<double>();
+    mass += m;
+    first += m * center;
+  }
+  if (mass > 0) sum.angular_momentum = about_origin - first.cross(sum.momentum) / mass;
+  return sum;
 }
 
 SINEW_SCHEME_INSTANCES(template, float)
