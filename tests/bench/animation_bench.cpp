@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fixtures/clips.h"
+#include "sinew/animation/blending_job.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew {
@@ -62,6 +63,26 @@ void random_seek(benchmark::State& state) {
   per_joint(state);
 }
 
+/// Layers: a whole-body mix of two, or a base with a masked override, or a base with an additive layer.
+void blend(benchmark::State& state, BlendMode mode, bool masked) {
+  const Clip clip = fixtures::random_clip({});
+  std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
+  (void)SamplingJob<float>{&clip, 1, 1, a}.Run();
+  (void)SamplingJob<float>{&clip, 3, 1, b}.Run();
+  std::vector<float> mask(kJoints, 0.5f);
+  const std::span<const float> weights = masked ? std::span<const float>(mask) : std::span<const float>();
+  const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}, weights, mode}};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(BlendingJob<float>{layers, {}, out}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
+BENCHMARK_CAPTURE(blend, mix, BlendMode::kMix, false);
+BENCHMARK_CAPTURE(blend, mix_masked, BlendMode::kMix, true);
+BENCHMARK_CAPTURE(blend, override_masked, BlendMode::kOverride, true);
+BENCHMARK_CAPTURE(blend, additive, BlendMode::kAdditive, false);
 BENCHMARK(sequential<float>)->ArgName("degree")->Arg(3)->Arg(5);
 BENCHMARK(poses_only)->ArgName("degree")->Arg(3)->Arg(5);
 BENCHMARK(random_seek<float>)->ArgName("degree")->Arg(3)->Arg(5);

@@ -39,6 +39,12 @@ struct Pack {
   friend Pack operator/(const Pack& a, const Pack& b) { return a.v / b.v; }
   friend Pack operator-(const Pack& a) { return -a.v; }
   friend Pack operator*(T s, const Pack& a) { return s * a.v; }
+  friend Pack where_equal(const Pack& a, T b, const Pack& yes, const Pack& no) {
+    return Pack(a.v == b ? yes.v : no.v);
+  }
+  friend Pack where_negative(const Pack& a, const Pack& yes, const Pack& no) {
+    return Pack(a.v < T(0) ? yes.v : no.v);
+  }
   friend Pack sqrt(const Pack& a) {
     Pack x;
     for (int i = 0; i < N; ++i) {
@@ -50,6 +56,15 @@ struct Pack {
     return x;
   }
 };
+
+/// Four numbers from each of the addresses `at(group)`.
+template <class P, class At>
+P load_fours(At at) {
+  P x;
+  for (int group = 0; group < P::kLanes / 4; ++group)
+    __builtin_memcpy(reinterpret_cast<typename P::Scalar*>(&x.v) + 4 * group, at(group), 4 * sizeof(typename P::Scalar));
+  return x;
+}
 
 /// Calls f with the constants 0 … N − 1.
 template <int N, class F>
