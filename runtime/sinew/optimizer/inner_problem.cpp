@@ -30,8 +30,8 @@ void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
   turn_.reserve(bodies);
   slide_.reserve(bodies);
   unknowns_.reserve(dofs);
-  smooth_.reserve(dofs * (dofs + 1) / 2);
-  factor_.reserve(dofs * (dofs + 1) / 2);
+  smooth_.reserve(dofs);
+  factor_.reserve(dofs);
   contact_rows_.reserve(contacts);
   joint_rows_.reserve(dofs * 8);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
@@ -229,6 +229,14 @@ bool InnerProblem<T>::conjugate_gradients() {
   return true;
 }
 
+/// Length of the step that the last factor would take now (m): small where the step before met no new kink.
+template <class T>
+double InnerProblem<T>::remaining_length() {
+  for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
+  factor_.solve(residual_);
+  return double(displacement(residual_));
+}
+
 template <class T>
 InnerReport InnerProblem<T>::minimise(T tolerance) {
   InnerReport report;
@@ -265,8 +273,10 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     }
     contact_rows_.move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
-    if (last) break;
+    // Without rows the model is quadratic: solved.
+    if (last || (contact_rows_.empty() && joint_rows_.empty())) break;
     add_row_gradient(inner_gradient_);
+    if (!contact_rows_.coupled() && remaining_length() < kShrink * report.first_length) break;
   }
   report.solved = true;
   return report;

@@ -71,6 +71,7 @@ class InnerProblem {
   T exact_line_search(T quadratic, T linear) const;
   bool newton_step();
   bool conjugate_gradients();
+  double remaining_length();
   void multiply_smooth(std::span<const T> x, std::span<T> y) const;
   void multiply_full(std::span<const T> x, std::span<T> y) const;
 

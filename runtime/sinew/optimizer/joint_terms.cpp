@@ -48,8 +48,7 @@ void append_cone(const TreeProblem<T>& p, int i, T stiffness, std::vector<JointR
   const Vec3<T>& a = p.law.swing_axis[i];
   const Vec3<T> b = relative * a;
   const Vec3<T> across = a.cross(b);
-  const T sine = across.norm();
-  const T swing = std::atan2(sine, a.dot(b));
+  const T sine = across.norm(), cosine = a.dot(b);
   JointRow<T> row;
   row.dof = tree.first_dof[i];
   row.count = 3;
@@ -59,10 +58,12 @@ void append_cone(const TreeProblem<T>& p, int i, T stiffness, std::vector<JointR
   };
   // Rows well inside the range cannot become active within a step; leave them out.
   constexpr T near = T(0.5);
-  if (sine > T(1e-6) && swing > p.law.swing_limit[i] - near) {
+  const T limit = p.law.swing_limit[i];
+  if (sine > T(1e-6) && limit - near < T(3.14159265) && cosine < std::cos(std::max(limit - near, T(0)))) {
+    const T swing = std::atan2(sine, cosine);
     row.scalar = RowScalar::kSwing;
     set(across / sine);
-    append_limit<T>(stiffness, swing - p.law.swing_limit[i], T(kUnlimited), row, rows);
+    append_limit<T>(stiffness, swing - limit, T(kUnlimited), row, rows);
   }
   if (const T toward = T(1) + a.dot(b); toward > T(0.05)) {
     const T twist = twist_angle<T>(relative, a);
@@ -105,11 +106,20 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
     const int first = tree.first_dof[i], count = tree.dof_count(i);
     if (count == 0 || !p.free[first]) continue;
     const int rotational = tree.type[i] == JointType::kBall ? 0 : (tree.type[i] == JointType::kFree ? 3 : -1);
-    const JointOffset<T> from_target = joint_offset<T>(tree, i, p.target[i], p.local[i]);
-    const JointOffset<T> from_start = joint_offset<T>(tree, i, p.start[i], p.local[i]);
-    const bool boxed = tree.type[i] != JointType::kFree && p.law.swing_limit[i] < T(0);
-    const JointOffset<T> from_rest =
-        boxed ? joint_offset<T>(tree, i, tree.rest[i], p.local[i]) : JointOffset<T>{};
+    bool muscles = false, passive = false;
+    bool boxed = tree.type[i] != JointType::kFree && p.law.swing_limit[i] < T(0), bounded = false;
+    for (int dof = first; dof < first + count; ++dof) {
+      muscles = muscles || p.law.torque_minus[dof] > T(0) || p.law.torque_plus[dof] > T(0);
+      passive = passive || p.law.dry_friction[dof] > T(0) || p.law.damping[dof] > T(0);
+      bounded = bounded || p.law.lower[dof] > T(-kUnlimited) || p.law.upper[dof] < T(kUnlimited);
+    }
+    boxed = boxed && bounded;
+    const auto offset = [&](bool needed, const Transform<T>& reference) {
+      return needed ? joint_offset<T>(tree, i, reference, p.local[i]) : JointOffset<T>{};
+    };
+    const JointOffset<T> from_target = offset(muscles, p.target[i]);
+    const JointOffset<T> from_start = offset(passive, p.start[i]);
+    const JointOffset<T> from_rest = offset(boxed, tree.rest[i]);
     for (int k = 0; k < count; ++k) {
       const int dof = first + k;
       JointRow<T> row;

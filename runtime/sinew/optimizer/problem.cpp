@@ -1,6 +1,5 @@
 #include "sinew/optimizer/problem.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "sinew/optimizer/joint_terms.h"
@@ -47,6 +46,17 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
   pushes.reserve(64);
   rows.reserve(6 * t.dofs + 3 * t.bodies);
 }
+
+namespace {
+
+/// Of a symmetric matrix, by its leading minors.
+template <class T>
+bool positive_definite(const Mat3<T>& m) {
+  const T second = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
+  return m(0, 0) > T(0) && second > T(0) && m.determinant() > T(0);
+}
+
+}  // namespace
 
 template <class T>
 double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
@@ -106,7 +116,7 @@ void begin_composite(TreeProblem<T>& p) {
     Mat3<T> stiffness = a.trace() * Mat3<T>::Identity() - T(0.5) * (a + a.transpose());
     // Far from the prediction the exact block may be indefinite; plain inertia then. Other clamps measured
     // equal.
-    if (p.prediction.scheme == Scheme::kMomentum || Eigen::LLT<Mat3<T>>(stiffness).info() != Eigen::Success)
+    if (p.prediction.scheme == Scheme::kMomentum || !positive_definite(stiffness))
       stiffness = weight * (r * tree.inertia[i] * r.transpose());
     p.composite[i] = {};
     p.composite[i].add_body(weight * tree.mass[i], p.kinematics.center[i], stiffness);
