@@ -45,7 +45,8 @@ Status BlendingJob<T>::Run() const {
   for (const BlendLayer<T>& layer : layers) {
     const TimeJet<T>& w = layer.weight;
     if (w.value == T(0) && w.rate == T(0) && w.acceleration == T(0)) continue;
-    data[count++] = {kernels::layout(layer.jets.data()), layer.mask.empty() ? nullptr : layer.mask.data(),
+    data[count++] = {kernels::layout(layer.jets.data()),
+                     layer.mask.empty() ? nullptr : layer.mask.data(),
                      {w.value, w.rate, w.acceleration},
                      static_cast<typename Data::Mode>(layer.mode)};
   }

@@ -19,18 +19,19 @@ enum class BlendMode : std::uint8_t {
 template <class T>
 struct BlendLayer {
   std::span<const JointJet<T>> jets;
-  TimeJet<T> weight{T(1), T(0), T(0)};  ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
-  std::span<const T> mask = {};         ///< [joint] in [0, 1]; empty = 1 everywhere
+  TimeJet<T> weight{T(1), T(0),
+                    T(0)};       ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
+  std::span<const T> mask = {};  ///< [joint] in [0, 1]; empty = 1 everywhere
   BlendMode mode = BlendMode::kMix;
 };
 
-/// Blends jets joint by joint. Rotations are summed as quaternions in R⁴, of ±q the one nearer to what is below
-/// (to the first mixed layer), and normalised; all derivatives are those of the blended pose by the product rule:
-/// P'' = Σ (w·p'' + 2w'·p' + w''·p).
+/// Blends jets joint by joint. Rotations are summed as quaternions in R⁴, of ±q the one nearer to what is
+/// below (to the first mixed layer), and normalised; all derivatives are those of the blended pose by the
+/// product rule: P'' = Σ (w·p'' + 2w'·p' + w''·p).
 ///
-/// Mixed layers come first whatever their place in the list, the others follow in order. Exact where the mask says so:
-/// at mask 0 a layer leaves the bits below it alone; at mask 1 a constant override of weight 1, or the only mixed
-/// layer, gives its own bits. A joint that no mixed layer reaches rests in `rest`.
+/// Mixed layers come first whatever their place in the list, the others follow in order. Exact where the mask
+/// says so: at mask 0 a layer leaves the bits below it alone; at mask 1 a constant override of weight 1, or
+/// the only mixed layer, gives its own bits. A joint that no mixed layer reaches rests in `rest`.
 ///
 /// Allocates nothing. `out` may be one of the layers. Output shorter than the layers means fewer joints.
 template <class T>
@@ -47,8 +48,9 @@ struct BlendingJob {
 extern template struct BlendingJob<float>;
 extern template struct BlendingJob<double>;
 
-/// What an additive layer is: the difference between a motion and a reference pose, δ = reference⁻¹·jets for rotations
-/// (in child axes, so velocities stay as they are) and jets − reference for translations. `out` may be `jets`.
+/// What an additive layer is: the difference between a motion and a reference pose, δ = reference⁻¹·jets for
+/// rotations (in child axes, so velocities stay as they are) and jets − reference for translations. `out` may
+/// be `jets`.
 template <class T>
 void subtract_reference(std::span<const Transform<T>> reference, std::span<const JointJet<T>> jets,
                         std::span<JointJet<T>> out) {

@@ -20,8 +20,8 @@ struct EaseWeight : TimeJet<T> {
   }
 };
 
-/// out = (1 − w)·a + w·b per joint with exact derivatives: the BlendingJob of two layers that needs no status.
-/// 0 ≤ w ≤ 1. `out` may be `a` or `b`. Spans of equal length.
+/// out = (1 − w)·a + w·b per joint with exact derivatives: the BlendingJob of two layers that needs no
+/// status. 0 ≤ w ≤ 1. `out` may be `a` or `b`. Spans of equal length.
 template <class T>
 void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
                std::span<JointJet<T>> out);

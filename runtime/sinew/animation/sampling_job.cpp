@@ -85,11 +85,9 @@ Status SamplingJob<T>::Run() const {
   const bool held = !clip->loops && (time < 0 || time > clip->duration);  // a clamped pose stands still
   const double speed = held ? 0.0 : rate;
   if (!moving.empty())
-    sample<T>(*clip, place.time, speed,
-              std::span(kernels::layout(moving.data()), moving.size()));
+    sample<T>(*clip, place.time, speed, std::span(kernels::layout(moving.data()), moving.size()));
   if (!still.empty())
-    sample<T>(*clip, place.time, speed,
-              std::span(kernels::layout(still.data()), still.size()));
+    sample<T>(*clip, place.time, speed, std::span(kernels::layout(still.data()), still.size()));
   if (clip->loops && clip->duration > 0) {
     const Vec3<double> step = clip->root_step.template cast<double>();
     const Vec3<T> shift = (step * (place.loops + place.time / clip->duration)).template cast<T>();

@@ -5,12 +5,12 @@
 
 namespace sinew {
 
-/// value, d/dt, d²/dt². Arithmetic follows the product and chain rules exactly, so a formula written once on a
-/// scalar gives positions, velocities and accelerations alike. S is float, double, or a pack of them.
-/// Comparisons look at the value.
+/// value, d/dt, d²/dt². Arithmetic follows the product and chain rules exactly, so a formula written once on
+/// a scalar gives positions, velocities and accelerations alike. S is float, double, or a pack of them.
+/// Comparisons look at the value. Like a scalar, it begins uninitialised unless written with {}.
 template <class S>
 struct TimeJet {
-  S value = S(), rate = S(), acceleration = S();
+  S value, rate, acceleration;
 
   friend TimeJet operator+(const TimeJet& a, const TimeJet& b) {
     return {a.value + b.value, a.rate + b.rate, a.acceleration + b.acceleration};

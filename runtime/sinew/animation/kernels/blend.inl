@@ -15,11 +15,15 @@ struct PackedJets {
   P number[kNumbers];
 };
 
+/// jets = other where a equals b.
 template <class P>
-PackedJets<P> where_equal(const P& a, typename P::Scalar b, const PackedJets<P>& yes, const PackedJets<P>& no) {
-  PackedJets<P> chosen;
-  for (int i = 0; i < kNumbers; ++i) chosen.number[i] = where_equal(a, b, yes.number[i], no.number[i]);
-  return chosen;
+void replace_where_equal(const P& a, typename P::Scalar b, const PackedJets<P>& other, PackedJets<P>& jets) {
+  for (int i = 0; i < kNumbers; ++i) jets.number[i] = where_equal(a, b, other.number[i], jets.number[i]);
+}
+/// jets = other where a does not.
+template <class P>
+void replace_where_not(const P& a, typename P::Scalar b, const PackedJets<P>& other, PackedJets<P>& jets) {
+  for (int i = 0; i < kNumbers; ++i) jets.number[i] = where_equal(a, b, jets.number[i], other.number[i]);
 }
 
 /// Which joints a pack holds; the last one repeats where there are fewer joints than lanes.
@@ -119,8 +123,8 @@ struct BlockLayer {
   TimeJet<P> weight;
   bool full;  ///< where the mask is 1 the layer is all there is
 
-  BlockLayer(const BlendLayerData<typename P::Scalar>& layer, const Block<P>& block) {
-    jets = block.load(layer.jets);
+  BlockLayer(const BlendLayerData<typename P::Scalar>& layer, const Block<P>& block)
+      : jets(block.load(layer.jets)) {
     mask = layer.mask ? block.load(layer.mask) : P::all(1);
     weight = {layer.weight[0] * mask, layer.weight[1] * mask, layer.weight[2] * mask};
     full = layer.weight[0] == 1 && layer.weight[1] == 0 && layer.weight[2] == 0;
@@ -138,11 +142,10 @@ Moving<P> aligned(const PackedJets<P>& jets, const P* reference) {
   return m;
 }
 
-/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none rests.
+/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none stays.
 template <class P>
-PackedJets<P> mix(const BlendData<typename P::Scalar>& data, const Block<P>& block) {
+void mix(const BlendData<typename P::Scalar>& data, const Block<P>& block, PackedJets<P>& jets) {
   const P zero = P::all(0);
-  PackedJets<P> only = block.still(data.rest);
   Moving<P> sum;
   for (TimeJet<P>& x : sum.rotation) x = {zero, zero, zero};
   for (TimeJet<P>& x : sum.translation) x = {zero, zero, zero};
@@ -157,32 +160,32 @@ PackedJets<P> mix(const BlendData<typename P::Scalar>& data, const Block<P>& blo
     for (int i = 0; i < 4; ++i) sum.rotation[i] = sum.rotation[i] + layer.weight * m.rotation[i];
     for (int i = 0; i < 3; ++i) sum.translation[i] = sum.translation[i] + layer.weight * m.translation[i];
     total = total + layer.weight;
-    only = where_equal(layer.mask, 0, only, layer.jets);
+    replace_where_not(layer.mask, 0, layer.jets, jets);
     contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
   }
-  for (TimeJet<P>& x : sum.translation) x = x / total;  // the length of the quaternion cancels by itself
-  const PackedJets<P> blended = packed(sum);
+  const TimeJet<P> inverse = TimeJet<P>{P::all(1), zero, zero} / total;
+  for (TimeJet<P>& x : sum.translation) x = inverse * x;  // the length of the quaternion cancels by itself
   contributors = where_equal(total.value, 0, zero, contributors);  // weights that only begin to grow
-  return where_equal(contributors, 0, only, where_equal(contributors, 1, only, blended));
+  const P several = where_negative(P::all(1) - contributors, P::all(1), zero);
+  replace_where_equal(several, 1, packed(sum), jets);
 }
 
 /// (1 − w)·below + w·layer.
 template <class P>
-PackedJets<P> override(const PackedJets<P>& below, const BlockLayer<P>& layer) {
+void override_below(const BlockLayer<P>& layer, PackedJets<P>& below) {
   Moving<P> m = moving(below);
   const Moving<P> over = aligned(layer.jets, below.number + kRotation);
   for (int i = 0; i < 4; ++i)
     m.rotation[i] = m.rotation[i] + layer.weight * (over.rotation[i] - m.rotation[i]);
   for (int i = 0; i < 3; ++i)
     m.translation[i] = m.translation[i] + layer.weight * (over.translation[i] - m.translation[i]);
-  PackedJets<P> blended = packed(m);
-  if (layer.full) blended = where_equal(layer.mask, 1, layer.jets, blended);
-  return where_equal(layer.mask, 0, below, blended);
+  replace_where_not(layer.mask, 0, packed(m), below);
+  if (layer.full) replace_where_equal(layer.mask, 1, layer.jets, below);
 }
 
 /// Rotation below·((1 − w)·1 + w·layer), translation below + w·layer.
 template <class P>
-PackedJets<P> add(const PackedJets<P>& below, const BlockLayer<P>& layer) {
+void add_to_below(const BlockLayer<P>& layer, PackedJets<P>& below) {
   const P zero = P::all(0), one = P::all(1);
   const P identity[4] = {zero, zero, zero, one};
   Moving<P> m = moving(below);
@@ -198,7 +201,7 @@ PackedJets<P> add(const PackedJets<P>& below, const BlockLayer<P>& layer) {
   multiply(m.rotation, part, turned);
   for (int i = 0; i < 4; ++i) m.rotation[i] = turned[i];
   for (int i = 0; i < 3; ++i) m.translation[i] = m.translation[i] + layer.weight * over.translation[i];
-  return where_equal(layer.mask, 0, below, packed(m));
+  replace_where_not(layer.mask, 0, packed(m), below);
 }
 
 template <class T>
@@ -207,11 +210,12 @@ void blend_all(const BlendData<T>& data, int joints, JetLayout<T>* out) {
   using Layer = BlendLayerData<T>;
   for (int first = 0; first < joints; first += P::kLanes) {
     const Block<P> block(first, joints);
-    PackedJets<P> jets = mix(data, block);
+    PackedJets<P> jets = block.still(data.rest);
+    mix(data, block, jets);
     for (int n = 0; n < data.layer_count; ++n) {
       if (data.layers[n].mode == Layer::kMix) continue;
       const BlockLayer<P> layer(data.layers[n], block);
-      jets = data.layers[n].mode == Layer::kOverride ? override(jets, layer) : add(jets, layer);
+      data.layers[n].mode == Layer::kOverride ? override_below(layer, jets) : add_to_below(layer, jets);
     }
     block.store(jets, out);
   }
@@ -220,7 +224,11 @@ void blend_all(const BlendData<T>& data, int joints, JetLayout<T>* out) {
 }  // namespace
 
 namespace SINEW_KERNELS {
-void blend(const BlendData<float>& data, int joints, JetLayout<float>* out) { blend_all(data, joints, out); }
-void blend(const BlendData<double>& data, int joints, JetLayout<double>* out) { blend_all(data, joints, out); }
+void blend(const BlendData<float>& data, int joints, JetLayout<float>* out) {
+  blend_all(data, joints, out);
+}
+void blend(const BlendData<double>& data, int joints, JetLayout<double>* out) {
+  blend_all(data, joints, out);
+}
 }  // namespace SINEW_KERNELS
 }  // namespace sinew::kernels

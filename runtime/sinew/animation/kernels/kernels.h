@@ -34,8 +34,8 @@ template <class T>
 struct BlendLayerData {
   enum Mode { kMix, kOverride, kAdditive };
   const JetLayout<T>* jets = nullptr;
-  const T* mask = nullptr;     ///< [joint], or null for 1
-  T weight[3] = {1, 0, 0};     ///< value, 1/s, 1/s²
+  const T* mask = nullptr;  ///< [joint], or null for 1
+  T weight[3] = {1, 0, 0};  ///< value, 1/s, 1/s²
   Mode mode = kMix;
 };
 template <class T>
@@ -50,11 +50,11 @@ struct BlendData {
   void constants(const PoseLayout<float>* poses, int joints, Out<T>* out); \
   void rotations(const SplineSpan<T>& span, Out<T>* out);                  \
   void translations(const SplineSpan<T>& span, Out<T>* out);
-#define SINEW_ALL_KERNELS             \
-  SINEW_KERNELS_OF(float, JetLayout)  \
-  SINEW_KERNELS_OF(float, PoseLayout) \
-  SINEW_KERNELS_OF(double, JetLayout) \
-  SINEW_KERNELS_OF(double, PoseLayout) \
+#define SINEW_ALL_KERNELS                                                      \
+  SINEW_KERNELS_OF(float, JetLayout)                                           \
+  SINEW_KERNELS_OF(float, PoseLayout)                                          \
+  SINEW_KERNELS_OF(double, JetLayout)                                          \
+  SINEW_KERNELS_OF(double, PoseLayout)                                         \
   void blend(const BlendData<float>& data, int joints, JetLayout<float>* out); \
   void blend(const BlendData<double>& data, int joints, JetLayout<double>* out);
 namespace baseline {

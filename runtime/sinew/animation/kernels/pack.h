@@ -57,13 +57,21 @@ struct Pack {
   }
 };
 
-/// Four numbers from each of the addresses `at(group)`.
+/// Four numbers from each of the addresses `at(group)`. Registers are joined, never assembled in memory: a
+/// wide load that follows narrow stores stalls.
 template <class P, class At>
-P load_fours(At at) {
-  P x;
-  for (int group = 0; group < P::kLanes / 4; ++group)
-    __builtin_memcpy(reinterpret_cast<typename P::Scalar*>(&x.v) + 4 * group, at(group), 4 * sizeof(typename P::Scalar));
-  return x;
+P load_fours(At at, int group = 0) {
+  if constexpr (P::kLanes == 4) {
+    return P::load(at(group));
+  } else {
+    constexpr int kHalf = P::kLanes / 2;
+    using Half = Pack<typename P::Scalar, kHalf>;
+    const Half low = load_fours<Half>(at, group), high = load_fours<Half>(at, group + kHalf / 4);
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return P(__builtin_shufflevector(low.v, high.v, I...));
+    }
+    (std::make_integer_sequence<int, P::kLanes>());
+  }
 }
 
 /// Calls f with the constants 0 … N − 1.
