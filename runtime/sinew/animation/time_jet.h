@@ -6,12 +6,21 @@
 namespace sinew {
 
 /// value, d/dt, d²/dt². Arithmetic follows the product and chain rules exactly, so a formula written once on
-/// a scalar gives positions, velocities and accelerations alike. S is float, double, or a pack of them.
-/// Comparisons look at the value. Like a scalar, it begins uninitialised unless written with {}.
+/// a scalar gives positions, velocities and accelerations alike: Transform<TimeJet<float>> is a moving frame.
+/// S is float, double, or a pack of them. Comparisons look at the value. Like a scalar, it begins
+/// uninitialised.
 template <class S>
 struct TimeJet {
   S value, rate, acceleration;
 
+  TimeJet() = default;
+  TimeJet(const S& constant) : value(constant), rate(S()), acceleration(S()) {}
+  TimeJet(const S& p, const S& dp, const S& ddp) : value(p), rate(dp), acceleration(ddp) {}
+
+  TimeJet& operator+=(const TimeJet& b) { return *this = *this + b; }
+  TimeJet& operator-=(const TimeJet& b) { return *this = *this - b; }
+  TimeJet& operator*=(const TimeJet& b) { return *this = *this * b; }
+  TimeJet& operator/=(const TimeJet& b) { return *this = *this / b; }
   friend TimeJet operator+(const TimeJet& a, const TimeJet& b) {
     return {a.value + b.value, a.rate + b.rate, a.acceleration + b.acceleration};
   }

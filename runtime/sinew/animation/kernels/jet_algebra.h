@@ -13,6 +13,7 @@ namespace {
 template <class S>
 [[gnu::always_inline]] inline void project(const S (&p)[4], const S (&dp)[4], const S (&ddp)[4], S (&q)[4],
                                            S (&omega)[3], S (&alpha)[3]) {
+  using std::sqrt;
   const S n = (p[0] * p[0] + p[1] * p[1]) + (p[2] * p[2] + p[3] * p[3]);
   const S along = (p[0] * dp[0] + p[1] * dp[1]) + (p[2] * dp[2] + p[3] * dp[3]);
   const S inverse = sqrt(n) / n;
