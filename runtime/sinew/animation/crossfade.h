@@ -10,13 +10,15 @@ namespace sinew {
 /// A weight and its first two time derivatives. A weight that is not C² injects torque.
 template <class T>
 struct EaseWeight : TimeJet<T> {
+  using TimeJet<T>::TimeJet;
+  EaseWeight() : TimeJet<T>(T(0)) {}
   /// Quintic ease from 0 at `elapsed` = 0 to 1 at `duration` (s), flat and uncurved at both ends.
   static EaseWeight at(T elapsed, T duration) {
-    if (duration <= T(0) || elapsed >= duration) return {{T(1), T(0), T(0)}};
+    if (duration <= T(0) || elapsed >= duration) return {T(1), T(0), T(0)};
     if (elapsed <= T(0)) return {};
     const T u = elapsed / duration, u2 = u * u;
-    return {{u2 * u * (T(10) - T(15) * u + T(6) * u2), T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
-             T(60) * u * (T(1) - u) * (T(1) - T(2) * u) / (duration * duration)}};
+    return {u2 * u * (T(10) - T(15) * u + T(6) * u2), T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
+            T(60) * u * (T(1) - u) * (T(1) - T(2) * u) / (duration * duration)};
   }
 };
 
