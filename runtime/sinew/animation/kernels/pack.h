@@ -45,6 +45,13 @@ struct Pack {
   friend Pack where_negative(const Pack& a, const Pack& yes, const Pack& no) {
     return Pack(a.v < T(0) ? yes.v : no.v);
   }
+  /// Whether any lane is below zero.
+  friend bool any_negative(const Pack& a) {
+    const auto below = a.v < T(0);
+    bool any = false;
+    for (int i = 0; i < N; ++i) any |= below[i] != 0;
+    return any;
+  }
   friend Pack sqrt(const Pack& a) {
     Pack x;
     for (int i = 0; i < N; ++i) {

@@ -1,0 +1,3 @@
+// Compiled for a wider instruction set: nothing but kernels may be defined here.
+#define SINEW_KERNELS avx2
+#include "sinew/crowd/kernels/batch.inl"

@@ -1,0 +1,2 @@
+#define SINEW_KERNELS baseline
+#include "sinew/crowd/kernels/batch.inl"
