@@ -1,4 +1,5 @@
-// What a crowd of undisturbed characters costs on one core, per character, against plain playback of the same.
+// What a crowd of undisturbed characters costs on one core, per character, against plain playback of the
+// same.
 #include <benchmark/benchmark.h>
 
 #include <numeric>
@@ -64,7 +65,8 @@ void crowd_frame(benchmark::State& state, InstructionSet set, int lanes) {
   per_character(state, settings.capacity);
 }
 
-/// Torques and comparison alone, from jets that stay as they are. 0: all; 1: with ground support; 2: and poses.
+/// Torques and comparison alone, from jets that stay as they are. 0: all; 1: with ground support; 2: and
+/// poses.
 void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool ground, bool poses) {
   if (!available(set)) return state.SkipWithError("this processor lacks the instruction set");
   const Skeleton rig = fixtures::humanoid();

@@ -30,7 +30,8 @@ std::unique_ptr<Crowd> crowd_of(const Skeleton& skeleton, const CrowdSettings& s
 /// Sways all joints of a rig within 0.3 rad of rest.
 Clip swaying_clip(const Skeleton& skeleton, unsigned seed) {
   const int joints = int(skeleton.joints.size());
-  Clip clip = fixtures::random_clip({.joints = joints, .duration = 4, .knot_interval = 0.5f, .moving = 1, .seed = seed});
+  Clip clip = fixtures::random_clip(
+      {.joints = joints, .duration = 4, .knot_interval = 0.5f, .moving = 1, .seed = seed});
   Clip::Group& turns = clip.groups[0];
   for (std::size_t n = 0; n < turns.controls.size() / 4; ++n) {
     Eigen::Map<Quat<float>> q(turns.controls.data() + 4 * n);
@@ -69,7 +70,8 @@ struct Scene {
     track.clip = &clips[i % 3];
     track.time = 0.137 * i;
     track.rate = 0.8 + 0.05 * (i % 9);
-    track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}), {3.f * float(i % 10), 2.f * float(i / 10), 0}};
+    track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}),
+                   {3.f * float(i % 10), 2.f * float(i / 10), 0}};
     return track;
   }
   std::unique_ptr<Crowd> crowd(const CrowdSettings& settings) const {
@@ -115,9 +117,9 @@ TEST(Crowd, TorquesAreThoseOfTheResidualPassForEveryTypeOfJoint) {
       ASSERT_TRUE(crowd->play(i, {}).ok());
       const auto pose = fixtures::random_pose(tree, random, 0.6);
       for (int j = 0; j < tree.bodies; ++j) {
-        const auto vector = [&](double scale) { return random.vector(scale).cast<float>(); };
-        crowd->jets(i)[j] = {pose[j].rotation.cast<float>(), vector(1), vector(3), pose[j].translation.cast<float>(),
-                             vector(1), vector(3)};
+        const auto vector = [&](double scale) -> Vec3<float> { return random.vector(scale).cast<float>(); };
+        crowd->jets(i)[j] = {pose[j].rotation.cast<float>(),    vector(1), vector(3),
+                             pose[j].translation.cast<float>(), vector(1), vector(3)};
       }
     }
     ASSERT_TRUE(crowd->step(kStep).ok());
@@ -163,7 +165,8 @@ TEST(Crowd, SaysOfACharacterWhatAWorldSays) {
     EXPECT_TRUE(crowd->overloaded().empty());
     float peak = 0;
     for (int dof = 0; dof < crowd->dof_count(); ++dof) {
-      EXPECT_NEAR(crowd->torque(1, dof), scene.character().torque()[dof], 0.05) << "N·m; weight 770 N, in float";
+      EXPECT_NEAR(crowd->torque(1, dof), scene.character().torque()[dof], 0.05)
+          << "N·m; weight 770 N, in float";
       if (dof >= 6) peak = std::max(peak, scene.character().load()[dof]);
     }
     EXPECT_NEAR(crowd->peak_load(1), peak, 1e-3);
@@ -221,7 +224,8 @@ TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
         settings.chunks = threads == 0 ? 1 : 2 * threads + 1;
         const auto crowd = scene.crowd(settings);
         for (int n = 0; n < 3; ++n)
-          ASSERT_TRUE(crowd->step(kStep, threads == 0 ? ParallelFor{} : ParallelFor{run_on_threads, &threads}).ok());
+          ASSERT_TRUE(
+              crowd->step(kStep, threads == 0 ? ParallelFor{} : ParallelFor{run_on_threads, &threads}).ok());
         EXPECT_TRUE(Result(*crowd, settings.capacity).same_bits(wanted))
             << "set " << int(set) << ", " << lanes << " lanes, " << threads << " threads";
       }
@@ -258,7 +262,8 @@ TEST(Crowd, OnlyTheCharacterWhoseMusclesAreTooWeakIsOverloaded) {
   ASSERT_TRUE(crowd->set_strength(17, 0.001f).ok());
   ASSERT_TRUE(crowd->set_strength(33, 0).ok());
   ASSERT_TRUE(crowd->step(kStep).ok());
-  EXPECT_EQ(std::vector<int>(crowd->overloaded().begin(), crowd->overloaded().end()), (std::vector<int>{17, 33}));
+  EXPECT_EQ(std::vector<int>(crowd->overloaded().begin(), crowd->overloaded().end()),
+            (std::vector<int>{17, 33}));
   // The load is the torque over the limit of its own direction.
   const Tree<double> tree(scene.rig);
   double load = 0;
@@ -266,7 +271,8 @@ TEST(Crowd, OnlyTheCharacterWhoseMusclesAreTooWeakIsOverloaded) {
     for (int k = 0; k < tree.dof_count(i); ++k) {
       const double torque = crowd->torque(17, tree.first_dof[i] + k);
       const DofLimits& limits = scene.rig.joints[i].dofs[k];
-      load = std::max(load, std::abs(torque) / (0.001 * (torque >= 0 ? limits.torque_plus : limits.torque_minus)));
+      load = std::max(load,
+                      std::abs(torque) / (0.001 * (torque >= 0 ? limits.torque_plus : limits.torque_minus)));
     }
   EXPECT_NEAR(crowd->peak_load(17), load, 1e-5 * load);
 }

@@ -24,14 +24,17 @@ Check kernel(InstructionSet set, int lanes) {
 #ifdef __x86_64__
   if (set == InstructionSet::kAvx512)
     return lanes == 8 ? crowd_kernels::avx512::check8 : crowd_kernels::avx512::check16;
-  if (set == InstructionSet::kAvx2) return lanes == 8 ? crowd_kernels::avx2::check8 : crowd_kernels::avx2::check16;
+  if (set == InstructionSet::kAvx2)
+    return lanes == 8 ? crowd_kernels::avx2::check8 : crowd_kernels::avx2::check16;
 #endif
   (void)set;
   return lanes == 8 ? crowd_kernels::baseline::check8 : crowd_kernels::baseline::check16;
 }
 
 /// 1 / limit; a muscle that has nothing is overloaded by anything.
-float inverse(float limit) { return limit > 0 ? 1 / limit : std::numeric_limits<float>::max(); }
+float inverse(float limit) {
+  return limit > 0 ? 1 / limit : std::numeric_limits<float>::max();
+}
 
 }  // namespace
 
@@ -59,8 +62,8 @@ struct Crowd::Impl {
   int lanes, batches, joints, lines;  ///< lines: of one array [dof][lane]
   std::vector<CrowdTrack> tracks;     ///< [character]
   std::vector<std::uint8_t> active;
-  std::vector<JointJet<float>> jets;     ///< [character][joint]
-  std::vector<Transform<float>> models;  ///< [character][joint]
+  std::vector<JointJet<float>> jets;                      ///< [character][joint]
+  std::vector<Transform<float>> models;                   ///< [character][joint]
   std::vector<Line> inverse_plus, inverse_minus, torque;  ///< [batch][dof][lane]
   std::vector<Line> peak;                                 ///< [batch][lane]
   std::vector<Line> scratch;                              ///< [chunk]
@@ -96,7 +99,9 @@ struct Crowd::Impl {
   std::size_t dof_place(int character, int dof) const {
     return std::size_t(character / lanes) * lines * 16 + std::size_t(dof) * lanes + character % lanes;
   }
-  static float& number(std::vector<Line>& array, std::size_t place) { return array[place / 16].numbers[place % 16]; }
+  static float& number(std::vector<Line>& array, std::size_t place) {
+    return array[place / 16].numbers[place % 16];
+  }
 
   void rest(int character) {
     for (int j = 0; j < joints; ++j) {
@@ -165,14 +170,16 @@ struct Crowd::Impl {
 Crowd::Crowd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Crowd::~Crowd() = default;
 
-std::unique_ptr<Crowd> Crowd::create(const Skeleton& skeleton, const CrowdSettings& settings, Status& status) {
+std::unique_ptr<Crowd> Crowd::create(const Skeleton& skeleton, const CrowdSettings& settings,
+                                     Status& status) {
   status = validate(skeleton);
   if (!status) return nullptr;
   const auto refuse = [&](const char* reason) {
     status = Status::error(Code::kInvalidArgument, reason);
     return nullptr;
   };
-  if (settings.capacity < 1 || settings.capacity > 10'000'000) return refuse("capacity is not within 1 and 10 million");
+  if (settings.capacity < 1 || settings.capacity > 10'000'000)
+    return refuse("capacity is not within 1 and 10 million");
   if (settings.lanes != 0 && settings.lanes != 8 && settings.lanes != 16) return refuse("lanes are 8 or 16");
   if (settings.chunks < 1 || settings.chunks > 65536) return refuse("chunks are not within 1 and 65536");
   if (!available(settings.instruction_set)) return refuse("this processor lacks the instruction set");
@@ -195,8 +202,10 @@ Status Crowd::play(int character, const CrowdTrack& track) {
   if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
   if (track.clip) {
     if (track.clip->joint_count != impl_->joints)
-      return Status::error(Code::kInvalidArgument, "clip has another number of joints than the rig", character);
-    if (Status status = SamplingJob<float>{track.clip, track.time, track.rate}.Validate(); !status) return status;
+      return Status::error(Code::kInvalidArgument, "clip has another number of joints than the rig",
+                           character);
+    if (Status status = SamplingJob<float>{track.clip, track.time, track.rate}.Validate(); !status)
+      return status;
   }
   if (!track.place.rotation.coeffs().allFinite() || !track.place.translation.allFinite())
     return Status::error(Code::kNotFinite, "place is not finite", character);
@@ -232,20 +241,26 @@ Status Crowd::step(double h, const ParallelFor& parallel_for) {
   return {};
 }
 
-std::span<const int> Crowd::overloaded() const { return impl_->overloaded; }
+std::span<const int> Crowd::overloaded() const {
+  return impl_->overloaded;
+}
 float Crowd::peak_load(int character) const {
   return impl_->peak[character / impl_->lanes].numbers[character % impl_->lanes];
 }
 float Crowd::torque(int character, int dof) const {
   return Impl::number(impl_->torque, impl_->dof_place(character, dof));
 }
-int Crowd::dof_count() const { return impl_->rig.view.dof_count; }
+int Crowd::dof_count() const {
+  return impl_->rig.view.dof_count;
+}
 std::span<JointJet<float>> Crowd::jets(int character) {
   return {impl_->jets_of(character), std::size_t(impl_->joints)};
 }
 std::span<const Transform<float>> Crowd::model(int character) const {
   return {impl_->model_of(character), std::size_t(impl_->joints)};
 }
-const CrowdTrack& Crowd::track(int character) const { return impl_->tracks[character]; }
+const CrowdTrack& Crowd::track(int character) const {
+  return impl_->tracks[character];
+}
 
 }  // namespace sinew

@@ -8,9 +8,10 @@
 //     for (int i : crowd->overloaded()) promote(i, crowd->jets(i));   // into a World
 //     draw(crowd->model(i));
 //
-// The check is the one that World makes of an undisturbed character with a kinematic root: torques of the motion,
-// with the ground's support shared out to the feet, against the muscles' limits. It runs in batches of 8 or 16
-// characters, one per SIMD lane. Pushes and contacts with others are the World's business: promote first.
+// The check is the one that World makes of an undisturbed character with a kinematic root: torques of the
+// motion, with the ground's support shared out to the feet, against the muscles' limits. It runs in batches
+// of 8 or 16 characters, one per SIMD lane. Pushes and contacts with others are the World's business: promote
+// first.
 #pragma once
 
 #include <memory>
@@ -23,8 +24,8 @@ namespace sinew {
 
 /// The host's job system.
 struct ParallelFor {
-  /// Calls task(context, i) once for every i in [0, count), on any threads and in any order, and returns when all
-  /// have returned. Null: here, one after the other.
+  /// Calls task(context, i) once for every i in [0, count), on any threads and in any order, and returns when
+  /// all have returned. Null: here, one after the other.
   void (*run)(void* host, int count, void (*task)(void* context, int index), void* context) = nullptr;
   void* host = nullptr;
 };
@@ -53,13 +54,15 @@ struct CrowdTrack {
   const Clip* clip = nullptr;  ///< valid; null: the host writes `jets` itself before every step
   double time = 0;             ///< s, of the clip; a step moves it on by rate · h
   double rate = 1;
-  Transform<float> place;  ///< clip → world
+  Transform<float> place = {};  ///< clip → world
 };
 
 class Crowd {
  public:
-  /// Set-up: copies the skeleton and allocates everything. Null with `status` set if something cannot be meant.
-  static std::unique_ptr<Crowd> create(const Skeleton& skeleton, const CrowdSettings& settings, Status& status);
+  /// Set-up: copies the skeleton and allocates everything. Null with `status` set if something cannot be
+  /// meant.
+  static std::unique_ptr<Crowd> create(const Skeleton& skeleton, const CrowdSettings& settings,
+                                       Status& status);
   ~Crowd();
   Crowd(const Crowd&) = delete;
   Crowd& operator=(const Crowd&) = delete;
@@ -71,7 +74,8 @@ class Crowd {
   /// Of all its muscles, ≥ 0; infinity: never overloaded.
   Status set_strength(int character, float strength);
 
-  /// One frame: times move on by h (s, ≥ 0), active characters are sampled, checked and posed. Allocates nothing.
+  /// One frame: times move on by h (s, ≥ 0), active characters are sampled, checked and posed. Allocates
+  /// nothing.
   Status step(double h, const ParallelFor& parallel_for = {});
 
   /// Active characters whose motion asks for more than a muscle has (or is not finite), ascending.
@@ -81,7 +85,7 @@ class Crowd {
   /// N·m (N for translations), degrees of freedom as JointType orders them; the root's is what must hold it.
   float torque(int character, int dof) const;
   int dof_count() const;
-  std::span<JointJet<float>> jets(int character);               ///< [joint] local, the root's in the world
+  std::span<JointJet<float>> jets(int character);                ///< [joint] local, the root's in the world
   std::span<const Transform<float>> model(int character) const;  ///< [joint] joint → world
   const CrowdTrack& track(int character) const;
 

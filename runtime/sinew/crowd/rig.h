@@ -10,7 +10,7 @@ namespace sinew {
 
 struct CrowdRig {
   std::vector<crowd_kernels::RigBody> bodies;
-  std::vector<crowd_kernels::RigPoint> points;  ///< by body
+  std::vector<crowd_kernels::RigPoint> points;   ///< by body
   std::vector<float> torque_plus, torque_minus;  ///< [dof] muscle limits at strength 1, N·m
   crowd_kernels::Rig view;                       ///< of the above
 

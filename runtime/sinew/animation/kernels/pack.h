@@ -22,9 +22,10 @@ struct Pack {
   Pack() = default;
   Pack(Vector x) : v(x) {}
   static Pack all(T x) {
-    Pack same;
-    for (int i = 0; i < N; ++i) same.v[i] = x;
-    return same;
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return Pack(Vector{(static_cast<void>(I), x)...});
+    }
+    (std::make_integer_sequence<int, N>());
   }
   template <class U>
   static Pack load(const U* from) {

@@ -1,8 +1,9 @@
-// The check of one batch of characters: one lane per character, one source, compiled for every instruction set.
+// The check of one batch of characters: one lane per character, one source, compiled for every instruction
+// set.
 //
-// Plain numbers and pointers only, for the reason that animation/kernels/kernels.h gives. Nothing is contracted to
-// fused multiply-add and lanes never meet, so a character's numbers depend neither on its neighbours, nor on the
-// width of the batch, nor on the instruction set.
+// Plain numbers and pointers only, for the reason that animation/kernels/kernels.h gives. Nothing is
+// contracted to fused multiply-add and lanes never meet, so a character's numbers depend neither on its
+// neighbours, nor on the width of the batch, nor on the instruction set.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +23,12 @@ struct RigBody {
   Freedom freedom = Freedom::kFixed;
   int first_dof = 0;
   int dof_count = 0;
-  float mass = 0;                    ///< kg
-  float first[3] = {};               ///< mass · centre of mass, joint axes, kg·m
-  float inertia[6] = {};             ///< about the joint's origin, joint axes: xx yy zz xy xz yz, kg·m²
-  float axis[3][3] = {};             ///< see project() in batch.inl: child axes, or parent axes where said there
+  float mass = 0;         ///< kg
+  float first[3] = {};    ///< mass · centre of mass, joint axes, kg·m
+  float inertia[6] = {};  ///< about the joint's origin, joint axes: xx yy zz xy xz yz, kg·m²
+  float axis[3][3] = {};  ///< see project() in batch.inl: child axes, or parent axes where said there
   int first_point = 0, point_count = 0;  ///< that may stand on the ground
-  float bound = 0;                   ///< m, from the joint's origin to the furthest of them, radius included
+  float bound = 0;  ///< m, from the joint's origin to the furthest of them, radius included
 };
 
 struct RigPoint {
@@ -57,15 +58,16 @@ struct Batch {
   void* scratch = nullptr;               ///< scratch_bytes(), aligned to 64
 };
 
-constexpr int kBodyPacks = 43, kPointPacks = 4;  ///< numbers per lane that a check keeps, see Scratch in batch.inl
+constexpr int kBodyPacks = 43,
+              kPointPacks = 4;  ///< numbers per lane that a check keeps, see Scratch in batch.inl
 
 /// What a check of 16 lanes or fewer works in.
 constexpr std::size_t scratch_bytes(int bodies, int points) {
   return kMaxLanes * sizeof(float) * (std::size_t(bodies) * kBodyPacks + std::size_t(points) * kPointPacks);
 }
 
-#define SINEW_CROWD_KERNELS                           \
-  void check8(const Rig& rig, const Batch& batch);    \
+#define SINEW_CROWD_KERNELS                        \
+  void check8(const Rig& rig, const Batch& batch); \
   void check16(const Rig& rig, const Batch& batch);
 namespace baseline {
 SINEW_CROWD_KERNELS

@@ -1,8 +1,8 @@
-// Recursive Newton–Euler in the axes of each body, a pack of characters at a time. Included once per instruction
-// set with SINEW_KERNELS naming it.
+// Recursive Newton–Euler in the axes of each body, a pack of characters at a time. Included once per
+// instruction set with SINEW_KERNELS naming it and SINEW_FLOAT_LANES its registers.
 //
-// residual/tree.h does the same recursion in world axes, because the optimizer wants its matrices there. Body axes
-// need no rotated inertias, which is most of the arithmetic of a check that asks for torques alone.
+// residual/tree.h does the same recursion in world axes, because the optimizer wants its matrices there. Body
+// axes need no rotated inertias, which is most of the arithmetic of a check that asks for torques alone.
 #include "sinew/animation/kernels/jet_algebra.h"
 #include "sinew/crowd/kernels/batch.h"
 #include "sinew/crowd/kernels/spatial.h"
@@ -13,12 +13,12 @@ namespace {
 /// One body of every character of the batch. Vectors in body axes unless said.
 template <class P>
 struct Body {
-  Turn<P> turn;         ///< body → parent
-  Vec<P> arm;           ///< origin, parent axes
-  Vec<P> omega, alpha;  ///< of the body
-  Vec<P> acceleration;  ///< of its origin, less gravity
-  Vec<P> force, moment; ///< that its motion asks for, about its origin
-  P rotation[4];        ///< body → world
+  Turn<P> turn;          ///< body → parent
+  Vec<P> arm;            ///< origin, parent axes
+  Vec<P> omega, alpha;   ///< of the body
+  Vec<P> acceleration;   ///< of its origin, less gravity
+  Vec<P> force, moment;  ///< that its motion asks for, about its origin
+  P rotation[4];         ///< body → world
   Turn<P> world;
   Vec<P> origin;  ///< from the root's, world axes
 };
@@ -40,19 +40,26 @@ struct Scratch {
   static_assert(sizeof(Body<P>) == kBodyPacks * sizeof(P) && sizeof(Standing<P>) == kPointPacks * sizeof(P));
 };
 
-/// Numbers of one body's jet over all lanes, in the order of JetLayout.
+/// The lanes of a batch that one pass takes: as many as a register of the instruction set holds.
+struct Lanes {
+  int first = 0;
+  int stride = 0;  ///< lanes of the batch
+};
+
+/// Numbers of one body's jet over the lanes, in the order of JetLayout.
 template <class P>
 struct Jet {
   P rotation[4];
   Vec<P> omega, alpha, translation, velocity, acceleration;
 
-  Jet(const Batch& batch, int i) {
+  Jet(const Batch& batch, int first_lane, int i) {
     P n[20];
     for (int c = 0; c < 20; c += 4) {
       P m[4];
       for (int r = 0; r < 4; ++r)
-        m[r] = load_fours<P>(
-            [&](int group) { return reinterpret_cast<const float*>(batch.jets[4 * group + r] + i) + c; });
+        m[r] = load_fours<P>([&](int group) {
+          return reinterpret_cast<const float*>(batch.jets[first_lane + 4 * group + r] + i) + c;
+        });
       transpose(m);
       for (int r = 0; r < 4; ++r) n[c + r] = m[r];
     }
@@ -86,8 +93,9 @@ void move(const Rig& rig, const RigBody& constants, const Jet<P>& jet, const Bod
   const Vec<P> first = same<P>(constants.first);
   body.force = constants.mass * body.acceleration +
                (cross(body.alpha, first) + cross(body.omega, cross(body.omega, first)));
-  body.moment = symmetric_times(constants.inertia, body.alpha) +
-                (cross(body.omega, symmetric_times(constants.inertia, body.omega)) + cross(first, body.acceleration));
+  body.moment =
+      symmetric_times(constants.inertia, body.alpha) +
+      (cross(body.omega, symmetric_times(constants.inertia, body.omega)) + cross(first, body.acceleration));
 }
 
 /// Orientation and origin in the world.
@@ -106,8 +114,9 @@ void place(const Jet<P>& jet, const Body<P>* parent, Body<P>& body) {
 
 /// Torques about the joint's degrees of freedom, as JointType orders them.
 template <class P>
-void project(const RigBody& constants, const Body<P>& body, float* torque) {
-  const auto put = [&](int k, const P& t) { store<0, P::kLanes>(t, torque + (constants.first_dof + k) * P::kLanes); };
+void project(const RigBody& constants, const Body<P>& body, const Lanes& lanes, float* torque) {
+  float* rows = torque + constants.first_dof * lanes.stride + lanes.first;
+  const auto put = [&](int k, const P& t) { store<0, P::kLanes>(t, rows + k * lanes.stride); };
   const auto axis = [&](int k) { return same<P>(constants.axis[k]); };
   switch (constants.freedom) {
     case Freedom::kFixed:
@@ -185,8 +194,8 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
   // Weighted least squares of vertical forces w·(1, y, −x)·λ; one point alone can't hold a tilt.
   const P slack = 1e-6f * (one + (sum + yy + xx));
   const P a = sum + slack, b = y_sum, c = -x_sum, d = yy + slack, e = -xy, f = xx + slack;
-  const P c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d, c11 = a * f - c * c, c12 = b * c - a * e,
-          c22 = a * d - b * b;
+  const P c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d, c11 = a * f - c * c,
+          c12 = b * c - a * e, c22 = a * d - b * b;
   const P inverse = one / (a * c00 + b * c01 + c * c02);
   const P l0 = inverse * (c00 * total.z + c01 * tilt.x + c02 * tilt.y),
           l1 = inverse * (c01 * total.z + c11 * tilt.x + c12 * tilt.y),
@@ -201,7 +210,8 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
         carried = carried + lift(scratch.standing[rig.bodies[i].first_point + k]);
   // Lanes that fall, fly or stand on nothing keep their wrenches.
   P scale = total.z / carried * smallest(one, 5 * sum);
-  for (const P& needed : {total.z, sum - P::all(1e-3f), carried}) scale = where_negative(-needed, scale, zero);
+  for (const P& needed : {total.z, sum - P::all(1e-3f), carried})
+    scale = where_negative(-needed, scale, zero);
   const P level = one / largest(total.z, sqrt(total.x * total.x + total.y * total.y));
   const Vec<P> direction{level * total.x, level * total.y, one};
   for (int i = 0; i < rig.body_count; ++i) {
@@ -211,7 +221,8 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
     for (int k = 0; k < rig.bodies[i].point_count; ++k) {
       const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
       const P up = where_equal(scale, 0, zero, scale * lift(s));
-      const Vec<P> push{where_equal(up, 0, zero, up * direction.x), where_equal(up, 0, zero, up * direction.y), up};
+      const Vec<P> push{where_equal(up, 0, zero, up * direction.x),
+                        where_equal(up, 0, zero, up * direction.y), up};
       force = force + push;
       moment = moment + cross(s.place - body.origin, push);
     }
@@ -222,21 +233,23 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
 
 /// Largest load of every lane. A NaN anywhere stays.
 template <class P>
-void compare(const Rig& rig, const Batch& batch) {
+void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   P peak = P::all(0), sum = peak;
   for (int dof = rig.first_checked_dof; dof < rig.dof_count; ++dof) {
-    const P torque = P::load(batch.torque + dof * P::kLanes);
-    const P plus = torque * P::load(batch.inverse_plus + dof * P::kLanes);
-    const P minus = -torque * P::load(batch.inverse_minus + dof * P::kLanes);
+    const int at = dof * lanes.stride + lanes.first;
+    const P torque = P::load(batch.torque + at);
+    const P plus = torque * P::load(batch.inverse_plus + at);
+    const P minus = -torque * P::load(batch.inverse_minus + at);
     const P load = where_negative(torque, minus, plus);
     peak = largest(peak, load);
     sum = sum + load;
   }
-  store<0, P::kLanes>(where_equal(sum - sum, 0, peak, sum), batch.peak);
+  store<0, P::kLanes>(where_equal(sum - sum, 0, peak, sum), batch.peak + lanes.first);
 }
 
 template <class P>
-void write_model(const Rig& rig, const Batch& batch, const Vec<P>& root, const Body<P>* bodies) {
+void write_model(const Rig& rig, const Batch& batch, int first_lane, const Vec<P>& root,
+                 const Body<P>* bodies) {
   for (int i = 0; i < rig.body_count; ++i) {
     const Body<P>& body = bodies[i];
     const Vec<P> at = root + body.origin;
@@ -246,21 +259,21 @@ void write_model(const Rig& rig, const Batch& batch, const Vec<P>& root, const B
     transpose(x);
     for_each_index<P::kLanes / 4>([&](auto group) {
       for (int r = 0; r < 4; ++r) {
-        store<4 * group, 4>(q[r], batch.model[4 * group + r][i].rotation);
-        store<4 * group, 4>(x[r], batch.model[4 * group + r][i].translation);
+        store<4 * group, 4>(q[r], batch.model[first_lane + 4 * group + r][i].rotation);
+        store<4 * group, 4>(x[r], batch.model[first_lane + 4 * group + r][i].translation);
       }
     });
   }
 }
 
 template <class P>
-void check(const Rig& rig, const Batch& batch) {
+void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Scratch<P> scratch(batch.scratch, rig.body_count);
   const bool placed = rig.ground || batch.model[0];
   for (int i = 0; i < rig.body_count; ++i) {
     const int p = rig.bodies[i].parent;
     const Body<P>* parent = p < 0 ? nullptr : scratch.body + p;
-    const Jet<P> jet(batch, i);
+    const Jet<P> jet(batch, lanes.first, i);
     move(rig, rig.bodies[i], jet, parent, scratch.body[i]);
     if (placed) place(jet, parent, scratch.body[i]);
   }
@@ -268,21 +281,33 @@ void check(const Rig& rig, const Batch& batch) {
   if (rig.ground) share_support(rig, root.z, scratch);
   for (int i = rig.body_count - 1; i >= 0; --i) {
     const Body<P>& body = scratch.body[i];
-    project(rig.bodies[i], body, batch.torque);
+    project(rig.bodies[i], body, lanes, batch.torque);
     if (rig.bodies[i].parent < 0) continue;
     Body<P>& parent = scratch.body[rig.bodies[i].parent];
     const Vec<P> force = body.turn * body.force;
     parent.force = parent.force + force;
     parent.moment = parent.moment + (body.turn * body.moment + cross(body.arm, force));
   }
-  compare<P>(rig, batch);
-  if (batch.model[0]) write_model(rig, batch, root, scratch.body);
+  compare<P>(rig, batch, lanes);
+  if (batch.model[0]) write_model(rig, batch, lanes.first, root, scratch.body);
+}
+
+/// A batch in as many passes as registers of `kRegister` lanes need.
+template <int kRegister, int kBatch>
+void check_batch(const Rig& rig, const Batch& batch) {
+  constexpr int kLanes = kRegister < kBatch ? kRegister : kBatch;
+  for (int first = 0; first < kBatch; first += kLanes)
+    check<Pack<float, kLanes>>(rig, batch, {first, kBatch});
 }
 
 }  // namespace
 
 namespace SINEW_KERNELS {
-void check8(const Rig& rig, const Batch& batch) { check<Pack<float, 8>>(rig, batch); }
-void check16(const Rig& rig, const Batch& batch) { check<Pack<float, 16>>(rig, batch); }
+void check8(const Rig& rig, const Batch& batch) {
+  check_batch<SINEW_FLOAT_LANES, 8>(rig, batch);
+}
+void check16(const Rig& rig, const Batch& batch) {
+  check_batch<SINEW_FLOAT_LANES, 16>(rig, batch);
+}
 }  // namespace SINEW_KERNELS
 }  // namespace sinew::crowd_kernels

@@ -41,11 +41,13 @@ struct Turn {
 
 /// Of a unit quaternion x y z w.
 template <class P>
-Turn<P> turn_of(const P* q) {
+[[gnu::always_inline]] inline Turn<P> turn_of(const P* q) {
   const P x2 = q[0] + q[0], y2 = q[1] + q[1], z2 = q[2] + q[2], one = P::all(1);
   const P xx = x2 * q[0], xy = x2 * q[1], xz = x2 * q[2], yy = y2 * q[1], yz = y2 * q[2], zz = z2 * q[2];
   const P wx = x2 * q[3], wy = y2 * q[3], wz = z2 * q[3];
-  return {{one - (yy + zz), xy + wz, xz - wy}, {xy - wz, one - (xx + zz), yz + wx}, {xz + wy, yz - wx, one - (xx + yy)}};
+  return {{one - (yy + zz), xy + wz, xz - wy},
+          {xy - wz, one - (xx + zz), yz + wx},
+          {xz + wy, yz - wx, one - (xx + yy)}};
 }
 
 /// Symmetric matrix xx yy zz xy xz yz times v.
