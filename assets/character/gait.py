@@ -37,11 +37,11 @@ class Gait:
 
 
 WALK = Gait(
-    frames=64, stride=1.36, stance=0.61, width=0.10, splay=6, pelvis=(0.932, -0.0155, -0.006),
-    pitch=[(0, 16), (0.08, 0), (0.34, 0), (0.45, -7), (0.50, -17), (0.55, -34), (0.60, -58)], toes=40,
-    swing={"thigh": [(0.72, 10), (0.89, 26.5)], "shin": [(0.725, 60), (0.9, 17)], "foot": [(0.66, -19), (0.85, 4)], "toes": [(0.8, 12)]},
+    frames=64, stride=1.36, stance=0.61, width=0.10, splay=6, pelvis=(0.93, -0.0155, -0.006),
+    pitch=[(-0.04, 22), (0, 16.5), (0.04, 6), (0.08, 0), (0.34, 0), (0.45, -7), (0.50, -16), (0.55, -34), (0.60, -58)], toes=40,
+    swing={"thigh": [(0.72, 10), (0.89, 26.5)], "shin": [(0.725, 60), (0.9, 17)], "foot": [(0.66, -19), (0.85, 3), (0.94, 2)], "toes": [(0.8, 12)]},
     lean=2.5, turn=(3.7, 2.1), drop=(1.9, 2.1), thorax=(-3.0, -1.7), arm=(-6, 17, 7, 27, 11),
-    pressure=[(0.0, -0.03), (0.12, 0.05), (0.5, 0.148), (0.61, 0.17)])
+    pressure=[(0.0, -0.02), (0.12, 0.065), (0.5, 0.155), (0.61, 0.17)])
 RUN = Gait(
     frames=42, stride=2.25, stance=0.345, width=0.05, splay=5, pelvis=(0.896, 0.0, 0.0),
     pitch=[(0, 9), (0.06, 0), (0.13, 0), (0.20, -6), (0.24, -12), (0.28, -21), (0.32, -36), (0.345, -47)], toes=30,
@@ -55,7 +55,8 @@ def roll(g, phase):
     """The standing foot: pitch, bend of the toes, and the ankle relative to where the flat foot's ankle is (forward) and the floor (up)."""
     n = g.frames * FINE
     grid = np.arange(-n // 8, n)  # a little before the contact, so that the foot arrives moving
-    flat = (grid >= g.pitch[1][0] * n) & (grid <= g.pitch[2][0] * n)
+    zeros = [p for p, v in g.pitch if not v]
+    flat = (grid >= zeros[0] * n) & (grid <= zeros[1] * n)
     track = smoothest(flat, np.zeros(len(grid)), [(p * n - grid[0], v) for p, v in g.pitch if v])
     pitch = np.interp(phase * n, grid, track)
     # The toes lie flat until they can bend no further; then the foot rolls over their tips.
