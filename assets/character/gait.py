@@ -103,7 +103,7 @@ def upper_body(m, g, phase):
             spine_twist=wave(g.thorax) - wave(g.turn), neck=-g.lean, head_twist=-wave(g.thorax))
     for tail, back in (("_r", c), ("_l", -c)):  # the arm goes back as its leg comes forward
         mean, swing, out, elbow, bend = g.arm
-        m.arm(tail, mean - swing * back, out, elbow - bend * back, wrist=5)
+        m.arm(tail, mean - swing * back, out, elbow - bend * back, wrist=-6)
 
 
 def target_pressure(g, phase):
