@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from balance import floor_forces, pelvis_shift, points, waves
-from motion import ANKLE, AT, BALL, HEEL, RATE, Motion, X, Y, Z, blurred, exp, log, smoothest, turn
+from balance import GRAVITY, floor_forces, pelvis_shift, points, waves
+from motion import ANKLE, BALL, HEEL, RATE, Motion, X, Y, Z, exp, log, smoothest, turn
 
 FINE = 4  # frames computed per frame kept
 SOFT = 4.0  # degrees over which the toes' bend comes to its end
@@ -129,41 +129,39 @@ def target_pressure(g, phase):
 
 
 def make(name, g):
-    """The pelvis path is found by turns: build the motion, see where the floor would have to push, shift."""
+    """The pelvis' path is found by turns: build the motion, see where the floor would have to push, shift."""
     n = g.frames * FINE
     phase = np.arange(n) / n
     seconds, travel = g.frames / RATE, np.array([0, 0, g.stride])
     target, share, touching = target_pressure(g, phase)
-    root = np.stack([np.zeros(n), g.pelvis[0] + g.pelvis[1] * np.cos(4 * np.pi * phase) + g.pelvis[2] * np.sin(4 * np.pi * phase), g.stride * (phase - 0.25) + 0.03 + 0.016 * np.sin(4 * np.pi * phase)], axis=1)
-    basis = waves(n, 6)
+    bob, surge = 4 * np.pi * phase, g.stride * (phase - 0.25) + 0.03
+    root = np.stack([np.zeros(n), g.pelvis[0] + g.pelvis[1] * np.cos(bob) + g.pelvis[2] * np.sin(bob), surge + 0.016 * np.sin(bob)], axis=1)
+    basis, weight = waves(n, 6), np.where(touching, 1.0, 0.0)
     for k in range(14):
         m = Motion(n)
         m.root = root
         upper_body(m, g, phase)
-        beyond = [leg(m, g, tail, phase) for tail in ("_l", "_r")]
+        short = max(np.max(leg(m, g, tail, phase)) for tail in ("_l", "_r"))
+        if k == 13:
+            break
         if g.flight:  # the body's height follows from the floor's force
             masses, paths = points(m)
-            wanted = -np.fft.fft((share - 1) * 9.81) / np.maximum(1e-9, (2 * np.pi * np.fft.fftfreq(n, seconds / n)) ** 2)
+            wanted = -np.fft.fft((share - 1) * GRAVITY) / np.maximum(1e-9, (2 * np.pi * np.fft.fftfreq(n, seconds / n)) ** 2)
             wanted[0] = 0
             height = np.tensordot(masses, paths, 1)[:, 1]
             root = root + [[0, 0.7 * d, 0] for d in np.fft.ifft(wanted).real - (height - height.mean())]
-        report(name, m, g, seconds, travel, target, touching, beyond)
-        weight = np.where(touching, 1.0, 0.0)
         root = root + 0.7 * pelvis_shift(m, seconds, travel, basis, weight, target, 1.0 - weight if g.flight else None)
-    report(name, m, g, seconds, travel, target, touching, beyond)
+    force, at = floor_forces(m, seconds, travel)
+    loaded = touching & (force[:, 1] > 0.2)
+    off = np.linalg.norm((at - target)[loaded][:, [0, 2]], axis=1)
+    print(f"{name}: the floor bears {force[:, 1].min():.2f} to {force[:, 1].max():.2f} of the weight, {1000 * np.sqrt(np.mean(off ** 2)):.0f} mm rms from where "
+          f"it should; legs {1000 * short:.0f} mm too short at most")
     keep = np.arange(0, n, FINE)
     out = Motion(g.frames + 1)
     out.local = {j: np.concatenate([r[keep], r[:1]]) for j, r in m.local.items()}
     out.root = np.concatenate([m.root[keep], m.root[:1] + travel])
     out.root[:, 2] -= out.root[0, 2]
     return out.clip(name)
-
-
-def report(name, m, g, seconds, travel, target, touching, beyond):
-    force, at = floor_forces(m, seconds, travel)
-    off = np.linalg.norm((at - target)[touching][:, [0, 2]], axis=1)
-    print(f"{name}: floor {force[:, 1].min():.2f}–{force[:, 1].max():.2f} of the weight, fore-aft {force[:, 2].min():.2f}–{force[:, 2].max():.2f}, "
-          f"acts {1000 * np.sqrt(np.mean(off ** 2)):.0f} mm rms from where it should, legs {1000 * np.max(beyond):.0f} mm too short at {np.argmax(beyond[1]) / m.frames:.2f}, pelvis {m.root[:, 1].min():.3f}–{m.root[:, 1].max():.3f} m")
 
 
 def walk():

@@ -86,12 +86,6 @@ def smoothest(fixed, values, keys=(), periodic=False):
     return out.reshape(values.shape)
 
 
-def blurred(values, width):
-    """Periodic Gaussian blur; `width`: standard deviation in samples."""
-    k = np.fft.rfftfreq(len(values))
-    return np.fft.irfft(np.fft.rfft(values, axis=0) * np.exp(-2 * (np.pi * k * width) ** 2), len(values), axis=0)
-
-
 class Motion:
     """Local rotations of all joints and the root's path, frame by frame."""
 

@@ -2,7 +2,7 @@
 import numpy as np
 
 from balance import points
-from motion import ANKLE, RATE, Motion, X, Y, turn
+from motion import ANKLE, RATE, Motion, Y, turn
 
 SECONDS = 8  # whole sways and two breaths
 FEET, SPLAY, WEIGHT = 0.088, 9, 0.045  # m off the middle, degrees, m before the ankles
