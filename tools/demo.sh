@@ -3,7 +3,10 @@
 # Usage: tools/demo.sh [FILE]
 set -euo pipefail
 source_file=${1:-}
-[ -n "$source_file" ] && source_file=$(realpath "$source_file")
+if [ -n "$source_file" ]; then
+  [ -f "$source_file" ] || { echo "demo: $source_file: no such file" >&2; exit 1; }
+  source_file=$(realpath "$source_file")
+fi
 cd "$(dirname "$0")/.."
 
 tools/setup.sh
@@ -18,7 +21,7 @@ sinew=build/sinew
 
 # Nothing changed since the last run: nothing to do.
 stamp=$(sha256sum "$sinew" assets/character/* assets/scenes/* ${source_file:+"$source_file"} | sha256sum | cut -d' ' -f1)
-if [ -f out/demo.mp4 ] && [ "$(cat out/.stamp 2>/dev/null)" = "$stamp" ]; then
+if [ -f out/demo.mp4 ] && [ -f out/demo.csv ] && [ -f out/demo.png ] && [ "$(cat out/.stamp 2>/dev/null)" = "$stamp" ]; then
   echo "out/demo.mp4, out/demo.csv and out/demo.png are up to date"
   exit 0
 fi
@@ -34,8 +37,13 @@ else
   "$sinew" convert /usr/share/assimp/models/BVH/01_01.bvh -o out/mocap.sinew >>out/convert.log
   cp assets/scenes/demo.json out/demo.json
   echo "simulating and rendering …" >&2
-  "$sinew" render out/demo.json --telemetry out/demo.csv -o out/demo.mp4 >/dev/null
+  "$sinew" render out/demo.json --telemetry out/demo.csv -o out/story.mp4 >/dev/null
   "$sinew" render out/mocap.sinew --demo --mode xray --telemetry out/mocap.csv -o out/mocap.mp4 >/dev/null
+  # Both halves come from the same encoder: joined without encoding again.
+  printf "file '%s'\n" story.mp4 mocap.mp4 >out/halves.txt
+  ffmpeg -nostdin -loglevel error -y -f concat -i out/halves.txt -c copy -movflags +faststart out/joined.mp4
+  mv out/joined.mp4 out/demo.mp4
+  rm -f out/halves.txt out/story.mp4 out/mocap.mp4
 fi
 echo "$stamp" >out/.stamp
-echo "out/demo.mp4: video; out/demo.csv and out/demo.png: telemetry and its plot${source_file:-; out/mocap.mp4: motion capture, the same story}"
+echo "out/demo.mp4: video; out/demo.csv and out/demo.png: telemetry and its plot"

@@ -93,7 +93,7 @@ struct Limp {
   }
   double energy() {
     const CharacterReport& r = world.character(0).report();
-    return r.kinetic_energy + r.potential_energy;
+    return r.kinetic_energy + r.potential_energy + r.elastic_energy;
   }
 };
 

@@ -1,6 +1,7 @@
 // The command as a user runs it: exit codes, one-line errors, whole files or none.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -28,8 +29,15 @@ Outcome sinew(const std::string& arguments) {
 
 const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
 
+/// A directory of this process: ctest runs the cases side by side.
+std::string own_directory() {
+  const std::string directory = testing::TempDir() + "sinew_cli_" + std::to_string(getpid()) + "/";
+  fs::create_directories(directory);
+  return directory;
+}
+
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = testing::TempDir() + name;
+  const std::string path = own_directory() + name;
   std::ofstream(path) << content;
   return path;
 }
@@ -54,15 +62,15 @@ TEST(Command, UsageErrorsExitWithTwoAndHelpWithZero) {
 }
 
 TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
-  const std::string out = testing::TempDir() + "never.sinew";
+  const std::string out = own_directory() + "never.sinew";
   expect_refused("convert /no/such.glb -o " + out, "/no/such.glb");
   expect_refused("convert " + written("text.glb", "hello") + " -o " + out, "text.glb");
   expect_refused("info " + written("cut.sinew", std::string("\x10\0\0\0SNEW____________", 20)), "cut.sinew");
   expect_refused("render " + kAsset + " -o /no/such/directory/x.png", "/no/such/directory");
-  expect_refused("render " + kAsset + " -o " + testing::TempDir() + "x.avi", "x.avi");
-  expect_refused("render " + kAsset + " --size 641x480 -o " + testing::TempDir() + "x.png", "even");
-  expect_refused("render " + kAsset + " --clip nothing -o " + testing::TempDir() + "x.png", "nothing");
-  for (const auto& entry : fs::directory_iterator(testing::TempDir())) {
+  expect_refused("render " + kAsset + " -o " + own_directory() + "x.avi", "x.avi");
+  expect_refused("render " + kAsset + " --size 641x480 -o " + own_directory() + "x.png", "even");
+  expect_refused("render " + kAsset + " --clip nothing -o " + own_directory() + "x.png", "nothing");
+  for (const auto& entry : fs::directory_iterator(own_directory())) {
     EXPECT_EQ(entry.path().filename().string().find("never.sinew"), std::string::npos);
     EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
   }
@@ -84,7 +92,7 @@ TEST(Command, ScenesAreCheckedByNameBeforeAnythingRuns) {
       {"{\"characters\": []}", "characters"},
       {"not json", "JSON"}};
   for (const auto& [text, names] : cases) {
-    const std::string path = written("scene.json", text), out = testing::TempDir() + "scene.csv";
+    const std::string path = written("scene.json", text), out = own_directory() + "scene.csv";
     expect_refused("simulate " + path + " -o " + out, names);
     EXPECT_FALSE(fs::exists(out)) << names;
   }
@@ -95,7 +103,7 @@ TEST(Command, SimulateWritesTelemetryOfAScene) {
       written("good.json", "{\"duration\": 1.5, \"characters\": [{\"asset\": \"" + kAsset +
                                "\", \"clips\": [{\"clip\": \"walk\"}]}], \"pushes\": [{\"time\": 0.5, "
                                "\"joint\": \"chest\", \"impulse\": [0, 60, 0]}]}");
-  const std::string out = testing::TempDir() + "good.csv";
+  const std::string out = own_directory() + "good.csv";
   const Outcome run = sinew("simulate " + path + " --json -o " + out);
   ASSERT_EQ(run.code, 0) << run.out;
   const json summary = json::parse(run.out);
@@ -135,7 +143,7 @@ TEST(Command, EvaluatePrintsWhatItPromises) {
 }
 
 TEST(Command, RendersAPictureOfAnAsset) {
-  const std::string out = testing::TempDir() + "picture.png";
+  const std::string out = own_directory() + "picture.png";
   const Outcome run = sinew("render " + kAsset + " --size 320x180 -o " + out);
   ASSERT_EQ(run.code, 0) << run.out;
   EXPECT_GT(fs::file_size(out), 5000u);  // a blank picture of this size takes well below 2 kB

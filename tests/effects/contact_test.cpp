@@ -68,7 +68,10 @@ TEST(ContactPoints, SpanTheCollider) {
   capsule.size = {0.05, 0.05, 0.2};
   points.clear();
   append_contact_points<double>(capsule, points);
-  ASSERT_EQ(points.size(), 2u);
+  // Two ends, the axis between them, and what fills it at most two radii apart.
+  ASSERT_EQ(points.size(), 2u + 1u + 4u);
+  EXPECT_EQ(points[2].kind, PointKind::kAxis);
+  EXPECT_NEAR(points[2].half_axis.norm(), 0.2, 1e-12);
   EXPECT_NEAR((points[0].local - points[1].local).norm(), 0.4, 1e-12);
   EXPECT_EQ(points[0].radius, 0.05);
 }
@@ -118,18 +121,19 @@ TEST(FrictionLaw, NeverExceedsCoulombsLimit) {
 /// Two random trees with a contact between a body of each.
 struct Pair {
   Tree<double> tree{fixtures::random_skeleton(1)};
-  Random random{77};
+  Random random;
   std::vector<Transform<double>> pose_a, pose_b;
   Kinematics<double> a{tree}, b{tree};
   Contact<double> contact;
 
-  Pair(Shape shape, bool against_body, bool plane) {
+  Pair(Shape shape, bool against_body, bool plane, bool axis = false, unsigned seed = 77) : random(seed) {
     pose_a = fixtures::random_pose(tree, random, 0.4);
     pose_b = fixtures::random_pose(tree, random, 0.4);
     refresh();
     contact.body_a = 9;
     contact.local_a = random.vector(0.2);
     contact.radius = 0.03;
+    if (axis) contact.half_axis_a = random.vector(0.15);
     contact.shape = shape;
     contact.size = {0.1, 0.15, 0.2};
     contact.shape_pose = {random.rotation(), random.vector(0.2)};
@@ -199,6 +203,13 @@ TEST(Contact, GapAndSlipChangeAsTheirGradientsSay) {
     for (const bool against_body : {false, true}) {
       Pair pair(shape, against_body, false);
       SCOPED_TRACE(testing::Message() << "shape " << int(shape) << " against body " << against_body);
+      expect_gradients(pair);
+    }
+  // Axis against axis: nearest inside both, at an end of one, or at ends of both, as the seeds fall.
+  for (unsigned seed = 1; seed <= 30; ++seed)
+    for (const Shape shape : {Shape::kSphere, Shape::kCapsule}) {
+      Pair pair(shape, true, false, true, seed);
+      SCOPED_TRACE(testing::Message() << "axis, shape " << int(shape) << " seed " << seed);
       expect_gradients(pair);
     }
   Pair floor(Shape::kSphere, false, true);

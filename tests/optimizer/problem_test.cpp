@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "residual/random_tree.h"
+#include "sinew/optimizer/joint_terms.h"
 
 namespace sinew {
 namespace {
@@ -131,6 +132,48 @@ TEST_P(Problem, EveryRowsGradientIsTheDerivativeOfItsScalar) {
   EXPECT_GT(kinks, 40);
   EXPECT_GT(springs, 20);
   EXPECT_GT(limits, 3) << "limits that are violated";
+}
+
+TEST_P(Problem, JointCurvatureIsTheSecondDerivativeOfTheRowsScalars) {
+  // Σ slope·∂²s/∂d² per ball and free joint, from differences of the rows' own gradients; the chart's second
+  // order is the rotation vector's, so mixed differences are symmetrised.
+  Scene s(GetParam(), 0.4, true);
+  s.gradient();
+  const auto base = s.problem.local;
+  const std::vector<JointRow<double>> rows = s.problem.rows;
+  measure_joint_curvature(s.problem);
+  const std::vector<Mat3<double>> curvature = s.problem.joint_curvature;
+  constexpr double step = 1e-5;
+  double largest = 0;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int first = fixtures::rotation_vector_dof(s.tree, i);
+    if (first < 0) continue;
+    Mat3<double> difference = Mat3<double>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      std::vector<JointRow<double>> side[2];
+      for (const int n : {0, 1}) {
+        VectorXd d = VectorXd::Zero(s.tree.dofs);
+        d[first + k] = n == 0 ? step : -step;
+        s.problem.local = fixtures::displaced_pose(s.tree, base, d.data());
+        begin_evaluation(s.settings, s.problem);
+        side[n] = s.problem.rows;
+        ASSERT_EQ(side[n].size(), rows.size());
+      }
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        if (rows[r].count != 3 || rows[r].dof != first) continue;
+        const double slope = rows[r].slope(rows[r].value);
+        for (int a = 0; a < 3; ++a)
+          difference(a, k) += slope * (side[0][r].gradient[a] - side[1][r].gradient[a]) / (2 * step);
+      }
+    }
+    difference = (0.5 * (difference + difference.transpose())).eval();
+    largest = std::max(largest, difference.norm());
+    EXPECT_LT((difference - curvature[i]).norm(), 1e-6 * (1 + difference.norm()))
+        << "joint " << i << " of type " << int(s.tree.type[i]) << "\n"
+        << difference << "\n\n"
+        << curvature[i];
+  }
+  EXPECT_GT(largest, 1);
 }
 
 TEST_P(Problem, ConesOfBallJointsAreAmongTheRows) {

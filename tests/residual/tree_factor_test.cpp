@@ -76,11 +76,16 @@ TEST(TreeFactor, RefusesIndefiniteAndNan) {
   pattern.add(-1);
   pattern.add(0);
   TreeMatrix<double> matrix(pattern);
-  matrix.values() = {1, 2, 1};  // eigenvalues 3 and −1
+  const auto set = [&](double coupling) {
+    matrix.set_zero();
+    matrix.row(0)[0] = matrix.row(1)[1] = 1;
+    matrix.row(1)[0] = coupling;
+  };
+  set(2);  // eigenvalues 3 and −1
   EXPECT_FALSE(matrix.factorise());
-  matrix.values() = {1, std::nan(""), 1};
+  set(std::nan(""));
   EXPECT_FALSE(matrix.factorise());
-  matrix.values() = {1, 0.5, 1};
+  set(0.5);
   EXPECT_TRUE(matrix.factorise());
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "convert/roles.h"
@@ -124,10 +125,40 @@ double extent(const std::vector<Matrix>& world, const std::vector<int>& nodes, i
   return high - low;
 }
 
-void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const Options& options,
+/// Metres per unit that make sense of a height (and a widest extent) in units; `stated`: what the file says,
+/// or 0. `how` says where it comes from.
+double choose_scale(double stated, double height, double widest, const char*& how) {
+  // A character is larger than a mouse and smaller than a house.
+  if (stated > 0 && (height < 1e-9 || (widest * stated > 0.05 && widest * stated < 10))) {
+    how = "file";
+    return stated;
+  }
+  how = stated > 0 ? "guessed from the first frame's height: the file's makes no sense"
+                   : "guessed from the first frame's height";
+  if (height < 1e-9) return 1;
+  constexpr double kCmu = 0.056444;  // of the CMU motion library, by its own notes
+  const auto is_person = [&](double unit) { return height * unit > 1.35 && height * unit < 2.1; };
+  if (stated >
+      0) {  // wrong by what exporters forget: CMU's unit, centimetres or millimetres for metres, or back
+    if (is_person(stated * kCmu)) return stated * kCmu;
+    for (const double forgotten : {0.01, 0.001, 100.0, 1000.0})
+      if (height * stated * forgotten > 0.2 && height * stated * forgotten < 3) return stated * forgotten;
+  } else {
+    for (const double unit : {1.0, 0.01, 0.0254, kCmu, 0.1, 0.001})
+      if (is_person(unit)) return unit;
+  }
+  return 1.7 / height;
+}
+
+void choose_unit(const SourceScene& scene, const std::vector<int>& joints, const Options& options,
                  bool skinned, Rig& rig, nlohmann::json& report) {
   const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
   const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
+  std::vector<int> nodes = joints;
+  if (scene.format == "bvh") {  // whose end sites are the top of the head and the tips of the toes
+    nodes.resize(scene.nodes.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+  }
   const char* how = "option";
   rig.up = options.up == "x" ? 0 : (options.up == "y" ? 1 : (options.up == "z" ? 2 : scene.up_axis));
   if (options.up.empty()) how = "file";
@@ -139,21 +170,8 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& nodes, const 
   const double raw = extent(world, nodes, rig.up);
   const double widest =
       std::max({raw, extent(world, nodes, 0), extent(world, nodes, 1), extent(world, nodes, 2)});
-  if (options.unit > 0) {
-    rig.unit = options.unit;
-    how = "option";
-  } else if (scene.meters_per_unit > 0 && widest * scene.meters_per_unit < 5 &&
-             widest * scene.meters_per_unit > 0.05) {
-    rig.unit = scene.meters_per_unit;
-    how = "file";
-  } else {
-    // Metre, centimetre, inch, CMU's own, decimetre, millimetre: the one that makes a person, else just that
-    // height.
-    rig.unit = raw > 1e-9 ? 1.7 / raw : 1;
-    for (const double candidate : {1.0, 0.01, 0.0254, 0.056444, 0.1, 0.001})
-      if (raw * candidate > 1.35 && raw * candidate < 2.1) rig.unit = candidate;
-    how = "guessed from the first frame's height";
-  }
+  how = "option";
+  rig.unit = options.unit > 0 ? options.unit : choose_scale(scene.meters_per_unit, raw, widest, how);
   rig.height = raw * rig.unit;
   report["unit"] = {{"meters_per_unit", rig.unit}, {"from", how}};
   report["height_m"] = rig.height;

@@ -1,8 +1,7 @@
 #include "import/serialize.h"
 
-#include <cmath>
-
 #include "import/bytes.h"
+#include "import/scene_check.h"
 
 namespace sinew::import {
 namespace {
@@ -38,6 +37,14 @@ struct Read {
   bool pod(T& v) {
     return bytes.pod(v);
   }
+  bool pod(bool& v) {  // another byte than 0 or 1 in a bool is undefined behaviour
+    std::uint8_t byte = 0;
+    if (!bytes.pod(byte) || byte > 1) return false;
+    v = byte == 1;
+    return true;
+  }
+  bool pod(JointType& v) { return bytes.pod(v) && v >= JointType::kFixed && v <= JointType::kFree; }
+  bool pod(Shape& v) { return bytes.pod(v) && v >= Shape{} && v <= Shape::kBox; }
   bool text(std::string& s) { return bytes.text(s); }
   template <class T>
   bool array(std::vector<T>& v) {
@@ -124,69 +131,6 @@ bool scene_io(Io& io, Scene& s) {
          io.list(s.notes, [](auto& i, auto& n) { return i.text(n); });
 }
 
-/// What is wrong with a scene that came in, or empty.
-std::string fault(const SourceScene& s) {
-  const int nodes = static_cast<int>(s.nodes.size());
-  for (int i = 0; i < nodes; ++i) {
-    const SourceNode& n = s.nodes[i];
-    if (n.parent < -1 || n.parent >= i) return "node '" + n.name + "' comes before its parent";
-    if (!n.local.allFinite()) return "node '" + n.name + "' has a transform that is not finite";
-  }
-  for (const SourceMesh& m : s.meshes) {
-    if (m.node < -1 || m.node >= nodes) return "mesh '" + m.name + "' hangs on a node that does not exist";
-    for (const auto& p : m.positions)
-      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-        return "mesh '" + m.name + "' has a vertex that is not finite";
-    if (m.indices.size() % 3 != 0) return "mesh '" + m.name + "' is not made of triangles";
-    for (const std::uint32_t i : m.indices)
-      if (i >= m.positions.size()) return "mesh '" + m.name + "' has an index out of range";
-    if ((!m.normals.empty() && m.normals.size() != m.positions.size()) ||
-        (!m.uvs.empty() && m.uvs.size() != m.positions.size()))
-      return "mesh '" + m.name + "' has arrays of different length";
-    for (const auto& b : m.bones) {
-      if (b.node < 0 || b.node >= nodes) return "mesh '" + m.name + "' has a bone that is no node";
-      if (!b.inverse_bind.allFinite()) return "mesh '" + m.name + "' has a bind matrix that is not finite";
-      for (const auto& [vertex, weight] : b.weights)
-        if (vertex >= m.positions.size() || !std::isfinite(weight))
-          return "mesh '" + m.name + "' has a bad weight";
-    }
-    if (m.material < -1 || m.material >= static_cast<int>(s.materials.size()))
-      return "mesh '" + m.name + "' has no such material";
-  }
-  for (const SourceClip& clip : s.clips) {
-    if (!std::isfinite(clip.duration) || clip.duration < 0)
-      return "clip '" + clip.name + "' has no meaningful duration";
-    for (const SourceChannel& c : clip.channels) {
-      if (c.node < 0 || c.node >= nodes) return "clip '" + clip.name + "' moves a node that does not exist";
-      const std::string where = "clip '" + clip.name + "', node '" + s.nodes[c.node].name + "': ";
-      if (c.positions.size() != c.position_times.size() || c.rotations.size() != c.rotation_times.size() ||
-          c.scales.size() != c.scale_times.size())
-        return where + "keys and times differ in number";
-      for (const auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
-        for (const double t : *times)
-          if (!std::isfinite(t)) return where + "a key time is not finite";
-      for (const auto& p : c.positions)
-        if (!p.allFinite()) return where + "a position key is not finite";
-      for (const auto& q : c.rotations)
-        if (!q.coeffs().allFinite() || q.norm() < 1e-6) return where + "a rotation key is not a rotation";
-      for (const auto& v : c.scales)
-        if (!v.allFinite()) return where + "a scale key is not finite";
-    }
-  }
-  const int links = static_cast<int>(s.links.size());
-  for (int i = 0; i < links; ++i) {
-    const SourceUrdfLink& l = s.links[i];
-    if (l.parent < -1 || l.parent >= i) return "link '" + l.name + "' comes before its parent";
-    if (!l.origin.translation.allFinite() || !l.origin.rotation.coeffs().allFinite() || !l.axis.allFinite())
-      return "joint '" + l.joint_name + "' has a place or axis that is not finite";
-    if (!std::isfinite(l.mass) || !l.inertia.allFinite() || !l.inertial_origin.translation.allFinite())
-      return "link '" + l.name + "' has an inertial that is not finite";
-    if (!std::isfinite(l.lower) || !std::isfinite(l.upper) || !std::isfinite(l.effort))
-      return "joint '" + l.joint_name + "' has a limit that is not finite";
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string to_bytes(const SourceScene& scene) {
@@ -202,7 +146,7 @@ bool from_bytes(const std::string& bytes, SourceScene& out, std::string& error) 
     error = "the reader's answer is damaged";
     return false;
   }
-  error = fault(scene);
+  error = fault_in(scene);
   if (!error.empty()) return false;
   out = std::move(scene);
   return true;

@@ -54,7 +54,7 @@ struct SourceChannel {
 struct SourceClip {
   std::string name;
   double duration = 0;  ///< s
-  double key_rate = 0;  ///< 1/s, median over channels; 0 when unknown
+  double key_rate = 0;  ///< 1/s, of the channel with the closest keys; 0 when no channel has two
   std::vector<SourceChannel> channels;
 };
 

@@ -16,8 +16,12 @@ class Collector : public console_bridge::OutputHandler {
  public:
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_WARN) messages.push_back(text);
+    const bool says_something = text.find("is not initialized correctly") == std::string::npos;
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && says_something)
+      errors += (errors.empty() ? "" : "; ") + text;
   }
   std::vector<std::string> messages;
+  std::string errors;  ///< the cause first, then where it stands
 };
 
 Transform<double> transform_of(const urdf::Pose& pose) {
@@ -117,15 +121,16 @@ void read_inertial(const urdf::Inertial& inertial, SourceUrdfLink& link) {
 }  // namespace
 
 SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
-  if (content.find("xacro:") != std::string::npos)
+  if (content.find("<xacro:") != std::string::npos || content.find("=\"${") != std::string::npos)
     throw std::runtime_error("it still holds xacro macros; expand them first");
   Collector collector;
   console_bridge::useOutputHandler(&collector);
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(content);
   console_bridge::restorePreviousOutputHandler();
   if (!model)
-    throw std::runtime_error(collector.messages.empty() ? "urdfdom cannot read it"
-                                                        : collector.messages.front());
+    throw std::runtime_error(collector.errors.empty() ? "urdfdom cannot read it" : collector.errors);
+  if (collector.errors.find("Could not parse inertial") != std::string::npos)
+    throw std::runtime_error(collector.errors);  // shapes may be left out, masses not
   SourceScene scene;
   scene.format = "urdf";
   scene.name = model->getName();

@@ -1,14 +1,8 @@
 #include "scene/run.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <map>
 
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/sampling_job.h"
@@ -43,6 +37,13 @@ double heading(const Quat<double>& rotation, const Quat<double>& rest) {
   return std::atan2(forward.y(), forward.x());
 }
 
+/// Turn about the vertical that brings `from` nearest to `to`, also of bodies that lie: it maximises
+/// tr(toᵀ·Rz·from).
+double turn_between(const Quat<double>& from, const Quat<double>& to) {
+  const Mat3<double> r = (to * from.conjugate()).toRotationMatrix();
+  return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
+}
+
 /// What one character's animation wants at a time: its clips one after the other, crossfaded, each placed in
 /// the world.
 template <class T>
@@ -51,6 +52,7 @@ class Player {
   explicit Player(const SceneCharacter& c)
       : c_(c), places_(c.clips.size()), a_(c.asset->skeleton.joints.size()), b_(a_.size()) {
     for (auto& place : places_) place = upright(c.position, c.yaw);
+    for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
   }
 
   const std::vector<JointJet<T>>& at(double t, const Transform<T>& root_now) {
@@ -59,10 +61,10 @@ class Player {
     for (std::size_t i = 0; i < c_.clips.size(); ++i) {
       const ClipUse& use = c_.clips[i];
       if (t < use.start - 1e-9) break;
-      if (use.align && !aligned_.count(i)) align(i, root_now);
+      if (i >= begun_) begin(i, root_now);
       const bool over = i + 1 < c_.clips.size() && t >= c_.clips[i + 1].start + c_.clips[i + 1].blend;
       if (over) continue;
-      const SamplingJob<T> job{&c_.asset->clips[use.clip], (t - use.start) * use.rate, use.rate, b_};
+      const SamplingJob<T> job{&c_.asset->clips[chosen_[i]], (t - use.start) * use.rate, use.rate, b_};
       job.Run();
       place_root<T>(places_[i].template cast<T>(), b_[0]);
       const EaseWeight<T> w =
@@ -86,24 +88,28 @@ class Player {
     place_root<T>(upright(c_.position, c_.yaw).template cast<T>(), jets[0]);
   }
 
-  /// The clip's first root pose comes to stand where the character's root is, facing the same way; heights
-  /// stay.
-  void align(std::size_t i, const Transform<T>& root_now) {
-    SamplingJob<T>{&c_.asset->clips[c_.clips[i].clip], 0, 1, b_}.Run();
-    const Quat<double> rest = c_.asset->skeleton.joints[0].rest.rotation;
+  /// Chooses the clip by how the character lies and places it: its first root pose comes to stand where the
+  /// character's root is, turned the same way; heights stay.
+  void begin(std::size_t i, const Transform<T>& root_now) {
+    begun_ = i + 1;
+    const ClipUse& use = c_.clips[i];
     const Transform<double> now = root_now.template cast<double>();
-    const Quat<double> first = b_[0].rotation.template cast<double>();
-    const double turn = heading(now.rotation, rest) - heading(first, rest);
+    const Quat<double> from_rest = now.rotation * c_.asset->skeleton.joints[0].rest.rotation.conjugate();
+    const bool prone = (from_rest * Vec3<double>::UnitX()).z() < 0;
+    if (prone && use.clip_when_prone >= 0) chosen_[i] = use.clip_when_prone;
+    if (!use.align) return;
+    SamplingJob<T>{&c_.asset->clips[chosen_[i]], 0, 1, b_}.Run();
+    const double turn = turn_between(b_[0].rotation.template cast<double>(), now.rotation);
     const Transform<double> turned = upright(Vec3<double>::Zero(), turn);
     Vec3<double> shift = now.translation - turned * b_[0].translation.template cast<double>();
     shift.z() = c_.position.z();
     places_[i] = upright(shift, turn);
-    aligned_[i] = true;
   }
 
   const SceneCharacter& c_;
   std::vector<Transform<double>> places_;
-  std::map<std::size_t, bool> aligned_;
+  std::vector<int> chosen_;  ///< [use] clip
+  std::size_t begun_ = 0;    ///< uses that have started
   std::vector<JointJet<T>> a_, b_;
 };
 
@@ -123,7 +129,8 @@ class Runner {
         if (convert::Error error = drive(static_cast<int>(c), t, f == 0)) return error;
       double microseconds = 0;
       if (f > 0) {
-        launch_and_push(t - 1 / s_.frame_rate);
+        launch(t - 1 / s_.frame_rate);
+        if (convert::Error error = push(t - 1 / s_.frame_rate)) return error;
         const auto begin = std::chrono::steady_clock::now();
         const Status status = world_.step(h);
         microseconds =
@@ -151,6 +158,7 @@ class Runner {
         return {"character '" + c.name + "': " + status.reason};
       recording_.characters.push_back(c.asset);
       players_.emplace_back(c);
+      root_velocity_.emplace_back(Vec3<double>::Zero());
     }
     for (const Collider& o : s_.obstacles)
       if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
@@ -178,11 +186,13 @@ class Runner {
       return {};
     }
     character.set_strength(T(ramp_at(source.strength, t)));
+    for (const auto& [joint, factor] : source.group_strength)
+      character.set_strength(joint, T(ramp_at(factor, t)));
     character.set_root_drive(value_at(source.root, t, RootDrive::kKinematic));
     return {};
   }
 
-  void launch_and_push(double t) {
+  void launch(double t) {
     for (std::size_t p = 0; p < s_.props.size(); ++p) {
       const SceneProp& prop = s_.props[p];
       if (!launched_[p] && t < prop.launch_time) {
@@ -197,11 +207,22 @@ class Runner {
       world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
                       Vec3<T>::Zero());
     }
-    for (const Push& push : s_.pushes)
-      if (push.time >= t - 1e-9 && push.time < t + 1 / s_.frame_rate - 1e-9) {
-        Character<T> c = world_.character(push.character);
-        c.apply_impulse(push.joint, c.model()[push.joint].translation, push.impulse.cast<T>());
-      }
+  }
+
+  /// The share of every push that falls into the step from t.
+  convert::Error push(double t) {
+    const double end = t + 1 / s_.frame_rate;
+    for (const Push& p : s_.pushes) {
+      double share = p.time >= t - 1e-9 && p.time < end - 1e-9 ? 1 : 0;
+      if (p.duration > 0)
+        share = std::max(0.0, std::min(end, p.time + p.duration) - std::max(t, p.time)) / p.duration;
+      if (share <= 0) continue;
+      Character<T> c = world_.character(p.character);
+      const Vec3<T> point = c.model()[p.joint] * Vec3<T>(p.point.cast<T>());
+      const Status status = c.apply_impulse(p.joint, point, (share * p.impulse).cast<T>());
+      if (!status) return {"push at " + std::to_string(p.time) + " s: " + status.reason};
+    }
+    return {};
   }
 
   /// Ballistic launch that meets the moving joint: its velocity is taken from the root's.
@@ -214,7 +235,8 @@ class Runner {
     const double yaw = heading(root.rotation, skeleton.joints[0].rest.rotation);
     from = upright({root.translation.x(), root.translation.y(), 0}, yaw) * prop.from;
     const double flight = (joint - from).norm() / prop.speed;
-    const Vec3<double> drift(root_velocity_.x(), root_velocity_.y(), 0);
+    const Vec3<double>& speed = root_velocity_[prop.target_character];
+    const Vec3<double> drift(speed.x(), speed.y(), 0);
     velocity = (joint + drift * flight - from) / flight - s_.world.gravity * (flight / 2);
   }
 
@@ -251,12 +273,9 @@ class Runner {
       made.microseconds = static_cast<float>(microseconds);
       made.strength = static_cast<float>(ramp_at(s_.characters[n].strength, t));
       made.root_free = value_at(s_.characters[n].root, t, RootDrive::kKinematic) == RootDrive::kFree;
-      if (n == 0) {
-        const Vec3<double> root = made.model[0].translation.cast<double>();
-        if (!recording_.frames.empty())
-          root_velocity_ =
-              (root - recording_.frames.back().characters[0].model[0].translation.template cast<double>()) *
-              s_.frame_rate;
+      if (!recording_.frames.empty()) {
+        const Vec3<float>& before = recording_.frames.back().characters[n].model[0].translation;
+        root_velocity_[n] = (made.model[0].translation - before).template cast<double>() * s_.frame_rate;
       }
       TelemetryRow row;
       row.time = t;
@@ -270,7 +289,8 @@ class Runner {
       const int plotted = s_.plotted_joint >= 0 && n == 0 ? s_.plotted_joint : row.loaded_joint;
       row.plotted_torque = double(made.torque[plotted]);
       row.plotted_limit = double(made.limit[plotted]);
-      telemetry_.rows.push_back(row);
+      row.loads.assign(made.load.begin(), made.load.begin() + skeleton.body_count);
+      telemetry_.rows.push_back(std::move(row));
       frame.characters.push_back(std::move(made));
     }
     for (int p = 0; p < world_.prop_count(); ++p)
@@ -284,7 +304,7 @@ class Runner {
   World<T> world_;
   std::vector<Player<T>> players_;
   std::vector<bool> launched_;
-  Vec3<double> root_velocity_ = Vec3<double>::Zero();
+  std::vector<Vec3<double>> root_velocity_;  ///< [character] m/s, of the last frame
 };
 
 }  // namespace
@@ -293,83 +313,6 @@ convert::Error run_scene(const Scene& scene, Recording& recording, Telemetry& te
                          const std::function<void(int, int)>& progress) {
   if (scene.double_precision) return Runner<double>(scene, recording, telemetry).run(progress);
   return Runner<float>(scene, recording, telemetry).run(progress);
-}
-
-std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
-  std::string csv =
-      "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,"
-      "penetration_m,"
-      "kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,plotted_limit_Nm\n";
-  char line[512];
-  for (const TelemetryRow& r : telemetry.rows) {
-    std::snprintf(line, sizeof line,
-                  "%.6f,%s,%d,%d,%.2f,%d,%d,%d,%d,%d,%.6f,%.6f,%.6f,%s,%.4f,%.3f,%.3f,%.3f,%.3f\n", r.time,
-                  scene.characters[r.character].name.c_str(), r.report.dofs, r.report.unknown_dofs,
-                  r.microseconds, r.report.outer_passes, r.report.factorisations, r.report.converged,
-                  r.report.used_bdf2, r.report.contacts, r.report.penetration, r.report.kinetic_energy,
-                  r.report.potential_energy,
-                  scene.characters[r.character].asset->skeleton.joints[r.loaded_joint].name.c_str(), r.load,
-                  r.torque, r.limit, r.plotted_torque, r.plotted_limit);
-    csv += line;
-  }
-  return csv;
-}
-
-nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry) {
-  nlohmann::json out{
-      {"title", scene.title}, {"duration_s", scene.duration}, {"frame_rate", scene.frame_rate}};
-  std::vector<double> playback, solved;
-  int unconverged = 0, most = 0;
-  for (const TelemetryRow& r : telemetry.rows) {
-    if (r.time > 0) (r.report.unknown_dofs == 0 ? playback : solved).push_back(r.microseconds);
-    unconverged += !r.report.converged;
-    most = std::max(most, r.report.unknown_dofs);
-  }
-  const auto median = [](std::vector<double>& v) {
-    if (v.empty()) return 0.0;
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  out["frames_playback"] = playback.size();
-  out["frames_solved"] = solved.size();
-  out["median_us_playback"] = median(playback);
-  out["median_us_solved"] = median(solved);
-  out["most_unknown_dofs"] = most;
-  out["unconverged_steps"] = unconverged;
-  return out;
-}
-
-convert::Error plot_telemetry(const std::string& csv_path, const Telemetry& telemetry,
-                              const std::string& png_path) {
-  const std::string script_path = png_path + ".gp";
-  FILE* script = std::fopen(script_path.c_str(), "w");
-  if (!script) return {script_path + ": cannot be written"};
-  std::fprintf(
-      script,
-      "set terminal pngcairo size 1200,900 font ',11'\nset output '%s'\nset datafile separator ','\nset grid "
-      "lc rgb '#dddddd'\n"
-      "set lmargin 10\nset rmargin 4\nset multiplot layout 3,1\nset key top right\nset ylabel 'unknown "
-      "DOFs'\n"
-      "plot '%s' using 1:4 every ::1 with filledcurves y1=0 lc rgb '#3d9a8b' title 'handed to the "
-      "optimizer'\n"
-      "set ylabel 'µs per step'\nset logscale y\nplot '%s' using 1:5 every ::2 with lines lc rgb '#34556e' "
-      "title 'world step'\n"
-      "unset logscale y\nset ylabel 'N·m'\nset xlabel 'time, s'\n"
-      "plot '%s' using 1:18 every ::1 with lines lw 2 lc rgb '#c8553d' title 'torque of %s', '' using 1:19 "
-      "every ::1 with lines dt 2 lc rgb "
-      "'#888888' title 'limit', '' using 1:(-$19) every ::1 with lines dt 2 lc rgb '#888888' notitle\n",
-      png_path.c_str(), csv_path.c_str(), csv_path.c_str(), csv_path.c_str(), telemetry.plotted_name.c_str());
-  std::fclose(script);
-  const char* arguments[] = {"gnuplot", script_path.c_str(), nullptr};
-  pid_t pid = 0;
-  int status = -1;
-  const bool started =
-      posix_spawnp(&pid, "gnuplot", nullptr, nullptr, const_cast<char**>(arguments), environ) == 0;
-  if (started) waitpid(pid, &status, 0);
-  std::remove(script_path.c_str());
-  if (!started) return {"gnuplot is not installed; no plot"};
-  if (status != 0) return {"gnuplot could not draw " + png_path};
-  return {};
 }
 
 }  // namespace sinew::scene

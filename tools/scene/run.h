@@ -18,6 +18,7 @@ struct TelemetryRow {
   int loaded_joint = -1;
   double load = 0, torque = 0, limit = 0;
   double plotted_torque = 0, plotted_limit = 0;
+  std::vector<float> loads;  ///< [simulated joint] largest |torque| / limit
 };
 
 struct Telemetry {

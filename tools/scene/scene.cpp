@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -39,6 +40,12 @@ class Reader {
     const double v = number(key, otherwise);
     if (!(v > 0)) fail(inside(key), "must be positive");
     return v;
+  }
+  int count(const char* key, int otherwise, int most) const {
+    const double v = number(key, otherwise);
+    if (v != std::floor(v) || v < 1 || v > most)
+      fail(inside(key), "must be a whole number from 1 to " + std::to_string(most));
+    return static_cast<int>(v);
   }
   double time(const char* key, double otherwise) const {
     const double v = number(key, otherwise);
@@ -102,6 +109,12 @@ RootDrive drive_of(const json& v, const std::string& where) {
   fail(where, "root drive is kinematic, assisted or free");
 }
 
+double strength_of(const json& v, const std::string& where) {
+  const double s = Reader::number_of(v, where);
+  if (s < 0) fail(where, "strength must not be negative");
+  return s;
+}
+
 template <class Value, class Convert>
 Timeline<Value> timeline(const Reader& in, const char* key, Timeline<Value> otherwise, Convert convert) {
   if (!in.has(key)) return otherwise;
@@ -138,8 +151,8 @@ void check_effects(const Reader& in) {
 SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
   const Reader in(value, where,
-                  {"asset", "name", "position", "yaw_deg", "clips", "strength", "root", "root_force",
-                   "root_torque", "ground_contact", "options"});
+                  {"asset", "name", "position", "yaw_deg", "clips", "strength", "group_strength", "root",
+                   "root_force", "root_torque", "ground_contact", "options"});
   SceneCharacter c;
   if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
   std::filesystem::path path = in.at("asset").get<std::string>();
@@ -159,6 +172,10 @@ SceneCharacter read_character(const json& value, const std::string& where,
     if (!use.at("clip").is_string()) fail(use.inside("clip"), "expected a clip name");
     const std::string name = use.at("clip").get<std::string>();
     made.clip = asset->find_clip(name);
+    if (made.clip < 0 && name == "get_up") {
+      made.clip = asset->find_clip("get_up_supine");
+      made.clip_when_prone = asset->find_clip("get_up_prone");
+    }
     if (made.clip < 0) fail(use.inside("clip"), "unknown clip '" + name + "'");
     made.start = use.time("start", 0);
     made.blend = use.time("blend", 0.3);
@@ -168,11 +185,16 @@ SceneCharacter read_character(const json& value, const std::string& where,
       fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);
   }
-  c.strength = timeline<double>(in, "strength", c.strength, [](const json& v, const std::string& w) {
-    const double s = Reader::number_of(v, w);
-    if (s < 0) fail(w, "strength must not be negative");
-    return s;
-  });
+  c.strength = timeline<double>(in, "strength", c.strength, strength_of);
+  const json& groups = in.list("group_strength");
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const Reader group(groups[i], in.item("group_strength", i), {"joint", "strength"});
+    const int joint = joint_of(*asset, group.text("joint", ""), group.inside("joint"));
+    if (joint >= asset->skeleton.body_count) fail(group.inside("joint"), "the joint is not simulated");
+    c.group_strength.emplace_back(joint, timeline<double>(group, "strength", {{0, 1}}, strength_of));
+  }
+  std::stable_sort(c.group_strength.begin(), c.group_strength.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   c.root = timeline<RootDrive>(in, "root", c.root, drive_of);
   c.settings.root_force = in.time("root_force", c.settings.root_force);
   c.settings.root_torque = in.time("root_torque", c.settings.root_torque);
@@ -238,8 +260,7 @@ Scene parse(const json& root, const std::filesystem::path& base) {
     if (scheme != "bdf1" && scheme != "bdf2") fail("accuracy.scheme", "unknown scheme '" + scheme + "'");
     s.world.accuracy.scheme = scheme == "bdf1" ? Scheme::kBdf1 : Scheme::kBdf2;
     s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
-    s.world.accuracy.max_iterations =
-        static_cast<int>(a.positive("max_iterations", s.world.accuracy.max_iterations));
+    s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1000);
     s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
     s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
     s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
@@ -269,9 +290,12 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   }
   const json& pushes = in.list("pushes");
   for (std::size_t i = 0; i < pushes.size(); ++i) {
-    const Reader p(pushes[i], in.item("pushes", i), {"time", "character", "joint", "impulse"});
+    const Reader p(pushes[i], in.item("pushes", i),
+                   {"time", "duration", "character", "joint", "point", "impulse"});
     Push push;
     push.time = p.time("time", 0);
+    push.duration = p.time("duration", 0);
+    push.point = p.vector("point", push.point);
     push.character = character_of(s, p, "character");
     push.joint = joint_of(*s.characters[push.character].asset, p.text("joint", "chest"), p.inside("joint"));
     push.impulse = p.vector("impulse", push.impulse);
@@ -306,68 +330,6 @@ convert::Error load_scene(const std::string& path, Scene& out) {
     return {path + ": " + e.what()};
   }
   return {};
-}
-
-Scene demo_scene(std::shared_ptr<const Asset> asset) {
-  Scene s;
-  const Skeleton& body = asset->skeleton;
-  const auto first_of = [&](std::initializer_list<const char*> names, int otherwise) {
-    for (const char* n : names)
-      for (std::size_t i = 0; i < asset->clips.size(); ++i)
-        if (asset->clips[i].name.find(n) != std::string::npos && asset->clips[i].duration > 0.3f)
-          return static_cast<int>(i);
-    return otherwise;
-  };
-  int longest = -1;
-  for (std::size_t i = 0; i < asset->clips.size(); ++i)
-    if (longest < 0 || asset->clips[i].duration > asset->clips[longest].duration)
-      longest = static_cast<int>(i);
-  const auto body_at = [&](std::initializer_list<Role> roles) {
-    for (const Role r : roles)
-      if (const int j = body.find(r); j >= 0 && j < body.body_count) return j;
-    return body.body_count / 2;
-  };
-  s.title = body.name;
-  s.duration = 12;
-  SceneCharacter c;
-  c.asset = asset;
-  c.name = body.name;
-  const int walk = first_of({"walk", "Walk"}, longest), stand = first_of({"stand", "idle", "Idle"}, walk);
-  if (walk >= 0) {
-    c.clips.push_back({walk, 0, 0, 1, false});
-    c.clips.push_back({stand, 8.2, 0.5, 1, true});
-  }
-  const double height = std::max(0.3, body.joints[0].rest.translation.z() * 1.8), mass = body.total_mass();
-  c.strength = {{0, 1}, {4.9, 1}, {5.0, 0.01}, {7.8, 0.01}, {8.8, 1}};
-  c.root = {{0, RootDrive::kKinematic}, {5.0, RootDrive::kFree}, {7.8, RootDrive::kAssisted}};
-  c.settings.root_force = 30 * mass;
-  c.settings.root_torque = 8 * mass * height;
-  s.characters.push_back(c);
-  SceneProp ball;
-  ball.name = "ball";
-  ball.settings.size = Vec3<double>::Constant(0.07 * height);
-  ball.settings.mass = 0.035 * mass;
-  ball.target_character = 0;
-  ball.target_joint = body_at({Role::kUpperArmL, Role::kChest});
-  ball.speed = 7;
-  ball.from = {0.6, 2.6, 1.0};
-  ball.launch_time = 2.2;
-  s.props.push_back(ball);
-  ball.name = "heavy ball";
-  ball.settings.size = Vec3<double>::Constant(0.1 * height);
-  ball.settings.mass = 0.12 * mass;
-  ball.target_joint = body_at({Role::kChest, Role::kSpine, Role::kPelvis});
-  ball.speed = 9;
-  ball.from = {2.4, -1.6, 1.0};
-  ball.launch_time = 4.75;
-  s.props.push_back(ball);
-  s.captions = {
-      {0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"},
-      {3.8, "back on the animation"},    {5.0, "a harder hit: the strength is gone"},
-      {7.8, "strength returns"},         {9.6, "playback again"}};
-  s.camera.follow_character = 0;
-  s.plotted_joint = body_at({Role::kUpperArmL, Role::kChest});
-  return s;
 }
 
 }  // namespace sinew::scene

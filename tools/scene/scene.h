@@ -18,7 +18,8 @@ using Timeline = std::vector<std::pair<double, Value>>;  ///< (time, value), tim
 struct ClipUse {
   int clip = 0;
   double start = 0, blend = 0.3, rate = 1;
-  bool align = false;  ///< begins where the character's root stands and faces then
+  bool align = false;        ///< begins where the character's root stands and faces then
+  int clip_when_prone = -1;  ///< get_up: played instead when the character lies face down at `start`
 };
 
 struct SceneCharacter {
@@ -28,6 +29,9 @@ struct SceneCharacter {
   double yaw = 0;  ///< rad
   std::vector<ClipUse> clips;
   Timeline<double> strength{{0, 1}};
+  /// Further factors for the subtrees below joints, parents first; a subtree's own factor replaces that of a
+  /// larger one around it.
+  std::vector<std::pair<int, Timeline<double>>> group_strength;
   Timeline<RootDrive> root{{0, RootDrive::kKinematic}};
   CharacterSettings settings;
 };
@@ -43,9 +47,10 @@ struct SceneProp {
 };
 
 struct Push {
-  double time = 0;
+  double time = 0, duration = 0;  ///< s; 0: within one step
   int character = 0, joint = 0;
-  Vec3<double> impulse = Vec3<double>::Zero();  ///< N·s, world
+  Vec3<double> point = Vec3<double>::Zero();    ///< m, in the joint's axes
+  Vec3<double> impulse = Vec3<double>::Zero();  ///< N·s in total, world
 };
 
 struct Scene {

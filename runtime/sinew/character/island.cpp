@@ -10,15 +10,12 @@ constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its tar
 constexpr double kSnapAngle =
     2e-3;  ///< rad (0.1°) and m: a returning joint this close is on the animation again
 constexpr double kSnapRate = 5e-2;  ///< 1/s
+constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
+constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
+constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
-
-/// Contact identity that survives from step to step.
-std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
-  return (std::uint64_t(tree_a + 1) << 48) ^ (std::uint64_t(point + 1) << 32) ^
-         (std::uint64_t(tree_b + 1) << 16) ^ std::uint64_t(shape + 1);
-}
 
 /// Order-independent digest of a set of contacts.
 std::uint64_t mixed(std::uint64_t id) {
@@ -38,10 +35,11 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contact_points) {
+void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
   problems_.reserve(trees);
-  contacts_.reserve(contact_points);
-  solver_.reserve(dofs, bodies, contact_points);
+  finder_.reserve(contacts, colliders);
+  lagged_.reserve(contacts);
+  solver_.reserve(dofs, bodies, contacts);
 }
 
 /// Muscles pull to the animation, or along a critically damped way back to it:
@@ -51,7 +49,7 @@ void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings&
   const T tau = T(world.accuracy.return_time);
   const T decay = std::exp(-h / tau);
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T> wanted{s.target[i].rotation, s.target[i].translation};
+    const Transform<T>& wanted = s.wanted[i];
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation) {
       s.problem.target[i] = wanted;
@@ -98,14 +96,15 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
   return any;
 }
 
-/// Driven joints start at their target, the others go on as they moved: the best start measured.
+/// Driven joints start at their target, the others go on as they moved; where contacts stay as they are, with
+/// the change of their speed too (flight: 2.4 passes instead of 3.4).
 template <class T>
 void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     TreeProblem<T>& p = s.problem;
     p.start[i] = s.local[i];
-    const Transform<T> wanted{s.target[i].rotation, s.target[i].translation};
+    const Transform<T>& wanted = s.wanted[i];
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
       T load = T(0);
@@ -121,88 +120,10 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
       continue;
     }
     std::array<T, 6> moved{};
-    for (int k = 0; k < count; ++k) moved[k] = h * s.rate[i][k];
+    const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
+    for (int k = 0; k < count; ++k)
+      moved[k] = h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
-  }
-}
-
-template <class T>
-void IslandStepper<T>::add_contact(Contact<T> c, T reach, std::span<const LaggedForce<T>> lagged) {
-  TreeProblem<T>& a = *problems_[c.tree_a];
-  TreeProblem<T>* b = c.tree_b < 0 ? nullptr : problems_[c.tree_b];
-  begin_step<T>(a.kinematics, b ? &b->kinematics : nullptr, c);
-  if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
-  const auto found = std::lower_bound(lagged.begin(), lagged.end(), c.id,
-                                      [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
-  if (found != lagged.end() && found->id == c.id) c.lagged_normal_force = found->force;
-  contacts_.push_back(c);
-}
-
-/// All pairs that may touch within the step, measured at its start. Points of bodies that no unknown moves
-/// meet only other trees: a driven root bears what its feet would.
-template <class T>
-void IslandStepper<T>::collect_contacts(const WorldSettings& world, std::span<const Collider> obstacles, T h,
-                                        std::span<const int> indices,
-                                        std::span<const LaggedForce<T>> lagged) {
-  contacts_.clear();
-  for (std::size_t n = 0; n < states_.size(); ++n) {
-    CharacterState<T>& s = *states_[n];
-    const T sink_stiffness =
-        T(s.skeleton.total_mass() * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
-    for (std::size_t k = 0; k < s.points.size(); ++k) {
-      const ContactPoint<T>& point = s.points[k];
-      bool moved = false;
-      for (int i = point.body; i >= 0 && !moved; i = s.tree.parent[i])
-        moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
-      const T reach = T(0.1) + T(1) * h * (s.history.velocity[point.body].norm() + T(5) * h);
-      Contact<T> c;
-      c.tree_a = static_cast<int>(n);
-      c.body_a = point.body;
-      c.local_a = point.local;
-      c.radius = point.radius;
-      c.stiffness = sink_stiffness;
-      if (moved && s.settings.ground_contact) {
-        if (world.ground) {
-          c.plane = true;
-          c.plane_height = T(world.ground_height) - settings_.common_origin.z();
-          c.friction = point.friction * T(world.ground_friction);
-          c.id = contact_id(indices[n], static_cast<int>(k), -1, -1);
-          add_contact(c, reach, lagged);
-        }
-        for (std::size_t o = 0; o < obstacles.size(); ++o) {
-          c.plane = false;
-          c.shape = obstacles[o].shape;
-          c.size = obstacles[o].size.template cast<T>();
-          c.shape_pose = obstacles[o].local.template cast<T>();
-          c.shape_pose.translation -= settings_.common_origin;
-          c.friction = std::sqrt(point.friction * T(obstacles[o].friction));
-          c.id = contact_id(indices[n], static_cast<int>(k), -1, static_cast<int>(o));
-          add_contact(c, reach, lagged);
-        }
-      }
-      c.plane = false;
-      for (std::size_t m = 0; m < states_.size(); ++m) {
-        const CharacterState<T>& other = *states_[m];
-        // A ball's centre against a limb says it all; the limb's ends against the ball would say it twice.
-        const bool ball = other.is_prop && other.skeleton.colliders[0].shape == Shape::kSphere;
-        if (m == n || (ball && !(s.is_prop && m < n))) continue;
-        for (std::size_t o = 0; o < other.skeleton.colliders.size(); ++o) {
-          const Collider& shape = other.skeleton.colliders[o];
-          if (shape.joint >= other.skeleton.body_count) continue;
-          c.tree_b = static_cast<int>(m);
-          c.body_b = shape.joint;
-          c.shape = shape.shape;
-          c.size = shape.size.template cast<T>();
-          c.shape_pose = shape.local.template cast<T>();
-          c.stiffness =
-              std::min(sink_stiffness, T(other.skeleton.total_mass() * std::max(1.0, world.gravity.norm()) /
-                                         world.accuracy.sink_depth));
-          c.friction = std::sqrt(point.friction * T(shape.friction));
-          c.id = contact_id(indices[n], static_cast<int>(k), indices[m], static_cast<int>(o));
-          add_contact(c, reach + h * other.history.velocity[shape.joint].norm(), lagged);
-        }
-      }
-    }
   }
 }
 
@@ -221,14 +142,49 @@ bool IslandStepper<T>::contacts_unchanged(const WorldSettings& world, T h, int t
     if (c.tree_a != tree && c.tree_b != tree) continue;
     T gap = c.gap + h * c.normal.dot(speed(c.tree_a, c.body_a, c.point));
     if (c.tree_b >= 0) gap -= h * c.normal.dot(speed(c.tree_b, c.body_b, c.point));
-    if (gap < T(0)) signature ^= mixed(c.id);
+    if (gap < T(-kTouch)) signature ^= mixed(c.id);
   }
   return signature == states_[tree]->contact_signature;
 }
 
+/// Whether any tree's touching contacts or bearing limits now differ from those after the last step.
 template <class T>
-void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSettings& world, T h,
-                              const SolveReport& solved) {
+bool IslandStepper<T>::touching_changed() const {
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (touching(static_cast<int>(n)) != states_[n]->contact_signature ||
+        bearing(static_cast<int>(n)) != states_[n]->limit_signature)
+      return true;
+  return false;
+}
+
+/// Digest of a tree's contacts that touch at the present pose.
+template <class T>
+std::uint64_t IslandStepper<T>::touching(int tree) const {
+  std::uint64_t signature = 0;
+  for (const Contact<T>& c : contacts_)
+    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(-kTouch)) signature ^= mixed(c.id);
+  return signature;
+}
+
+/// Digest of a tree's joint limits that bear at the present pose.
+template <class T>
+std::uint64_t IslandStepper<T>::bearing(int tree) const {
+  std::uint64_t signature = 0;
+  for (const JointRow<T>& row : problems_[tree]->rows)
+    if (row.kind == RowKind::kOneSided && row.value > T(kTouch))
+      signature ^= mixed(64 * std::uint64_t(row.dof) + 8 * std::uint64_t(row.scalar) +
+                         2 * std::uint64_t(row.component) + (row.sign < T(0)));
+  return signature;
+}
+
+template <class T>
+void IslandStepper<T>::predict_all(Scheme scheme, T h) {
+  for (CharacterState<T>* s : states_)
+    predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
+}
+
+template <class T>
+void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
   std::fill(s.torque.begin(), s.torque.end(), T(0));
   for (int dof = 0; dof < s.tree.dofs; ++dof)
@@ -244,9 +200,10 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
+    s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset<T>(s.tree, i, s.local[i], p.local[i]).value;
     for (T& r : s.rate[i]) r /= h;
-    const Transform<T> wanted{s.target[i].rotation, s.target[i].translation};
+    const Transform<T>& wanted = s.wanted[i];
     const JointOffset<T> from_animation = joint_offset<T>(s.tree, i, wanted, p.local[i]);
     const JointOffset<T> from_target = joint_offset<T>(s.tree, i, p.target[i], p.local[i]);
     Deviation<T>& d = s.deviation[i];
@@ -272,6 +229,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.rate_step = h;
   s.update_model();
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
 
@@ -279,19 +237,20 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r = {};
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
-  r.outer_passes = solved.outer_passes;
-  r.factorisations = solved.factorisations;
-  r.converged = solved.converged;
   r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
-  std::uint64_t signature = 0;
+  const std::uint64_t signature = touching(tree), limits = bearing(tree);
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
-    signature ^= mixed(c.id);
     ++r.contacts;
+    if (c.tree_a == tree) r.elastic_energy += double(ContactLaw<T>::energy(c.stiffness, c.gap));
     r.penetration = std::max(r.penetration, double(-c.gap));
   }
-  s.steps_unchanged = signature == s.contact_signature ? s.steps_unchanged + 1 : 0;
+  for (const JointRow<T>& row : p.rows)
+    if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+  const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
+  s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.contact_signature = signature;
+  s.limit_signature = limits;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Mat3<T>& rate = s.history.rotation_rate[i];
     r.kinetic_energy += 0.5 * double(s.tree.mass[i] * s.history.velocity[i].squaredNorm() +
@@ -300,54 +259,166 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
 }
 
+/// What the animation wants at a fraction of the frame: the shorter way round between this frame's target and
+/// the last one's.
 template <class T>
-void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider> obstacles, T h,
-                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
-  states_ = states;
+void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const JointJet<T>&now = s.target[i], &before = s.target_before[i];
+    s.wanted[i] = {now.rotation, now.translation};
+    if (fraction >= T(1)) continue;
+    s.wanted[i].rotation = before.rotation.slerp(fraction, now.rotation);
+    s.wanted[i].translation = before.translation + fraction * (now.translation - before.translation);
+  }
+}
+
+/// Solves one part of the step without moving anything: the result stays in the problems.
+template <class T>
+SolveReport IslandStepper<T>::attempt(T h, T fraction) {
+  const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.gravity = world.gravity.template cast<T>();
-  settings_.common_origin = states[0]->model[0].translation;
-  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  settings_.common_origin = states_[0]->model[0].translation;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
-  for (CharacterState<T>* s : states) {
+  for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
+    choose_wanted(*s, fraction);
     choose_targets(*s, world, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
-    for (const ExternalForce<T>& j : s->impulses) s->problem.pushes.push_back({j.body, j.local, j.force / h});
-    forward_kinematics<T>(s->tree, s->local, settings_.common_origin, s->problem.kinematics);
+    for (const ExternalForce<T>& j : s->impulses)
+      s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
   SolveReport total;
+  bool second = false;
+  mispredicted_ = false;
   for (int round = 0; round < kReleaseRounds; ++round) {
     // Which points can move depends on what was released.
-    for (CharacterState<T>* s : states)
+    for (CharacterState<T>* s : states_)
       forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
-    collect_contacts(world, obstacles, h, indices, lagged);
+    contacts_ = finder_.find(world, obstacles_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
-      bool second = world.accuracy.scheme == Scheme::kBdf2;
-      for (std::size_t n = 0; n < states.size() && second; ++n)
-        second = states[n]->steps_unchanged >= kUnchangedSteps &&
+      second = world.accuracy.scheme == Scheme::kBdf2;
+      for (std::size_t n = 0; n < states_.size() && second; ++n)
+        second = states_[n]->steps_unchanged >= kUnchangedSteps &&
                  contacts_unchanged(world, h, static_cast<int>(n));
-      for (CharacterState<T>* s : states)
-        predict<T>(s->tree, s->history, second ? Scheme::kBdf2 : Scheme::kBdf1, h, settings_.common_origin,
-                   s->problem.prediction);
+      predict_all(
+          second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
     }
-    const SolveReport solved = solver_.solve(settings_, world.accuracy, problems_, contacts_);
-    total.outer_passes += solved.outer_passes;
-    total.factorisations += solved.factorisations;
-    total.converged = solved.converged;
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+    if (second && touching_changed()) {
+      // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
+      second = false;
+      mispredicted_ = true;
+      predict_all(Scheme::kBdf1, h);
+      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+    }
     bool released = false;
-    for (CharacterState<T>* s : states) released = release_overloaded(*s) || released;
+    for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
     if (!released) break;
   }
-  for (std::size_t n = 0; n < states.size(); ++n) finish(*states[n], static_cast<int>(n), world, h, total);
+  return total;
+}
+
+/// One part of the step, from `begin` to `end` (fractions of the frame): halved where the solve does not
+/// converge.
+template <class T>
+void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
+  const T h = (end - begin) * frame_;
+  const SolveReport solved = attempt(h, end);
+  total_.add(solved);
+  if (!solved.converged && splits_left > 0) {
+    ++splits_;
+    const T middle = (begin + end) / 2;
+    advance_part(begin, middle, splits_left - 1);
+    advance_part(middle, end, splits_left - 1);
+    return;
+  }
+  all_converged_ = all_converged_ && solved.converged;
+  ++parts_;
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    if (!settled(s)) hold(s);
+    finish(s, static_cast<int>(n), *world_, h);
+  }
+  lagged_.clear();
   for (const Contact<T>& c : contacts_)
     if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
-      lagged_out.push_back({c.id, force});
+      lagged_.push_back({c.id, force});
+  std::sort(lagged_.begin(), lagged_.end(),
+            [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+}
+
+/// Last rung: where a solve left something that is no pose, the tree stays where it was, at rest.
+template <class T>
+void IslandStepper<T>::hold(CharacterState<T>& s) {
+  s.problem.local = s.problem.start;
+  forward_kinematics<T>(s.tree, s.problem.local, settings_.common_origin, s.problem.kinematics);
+  s.problem.rows.clear();
+  std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
+  s.history.stop();
+  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
+  std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
+  all_converged_ = false;
+  ++held_;
+}
+
+template <class T>
+bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
+  T sum = T(0);
+  for (const Vec3<T>& c : s.problem.kinematics.center) sum += c.sum();
+  for (const Mat3<T>& r : s.problem.kinematics.rotation) sum += r.sum();
+  return std::isfinite(sum);
+}
+
+/// How often to divide a step so that no body turns further than the accuracy allows in one part.
+template <class T>
+int IslandStepper<T>::parts_of(T h) const {
+  const Accuracy& accuracy = world_->accuracy;
+  int parts = std::max(accuracy.substeps, 1);
+  if (accuracy.max_rotation > 0) {
+    T fastest = T(0);
+    for (const CharacterState<T>* s : states_)
+      for (int i = 0; i < s->tree.bodies; ++i) {
+        const Mat3<T> spin = s->history.rotation_rate[i] * s->history.rotation[i].transpose();
+        fastest = std::max(fastest, Vec3<T>(spin(2, 1), spin(0, 2), spin(1, 0)).norm());
+      }
+    const double wanted = std::ceil(double(h * fastest) / accuracy.max_rotation);
+    parts = std::max(parts, static_cast<int>(std::min(wanted, double(kMostParts))));
+  }
+  return parts;
+}
+
+template <class T>
+void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider> obstacles, T h,
+                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
+  world_ = &world;
+  obstacles_ = obstacles;
+  states_ = states;
+  indices_ = indices;
+  frame_ = h;
+  lagged_.assign(lagged.begin(), lagged.end());
+  settings_.gravity = world.gravity.template cast<T>();
+  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  total_ = {};
+  all_converged_ = true;
+  splits_ = parts_ = held_ = 0;
+  const int parts = parts_of(h);
+  for (int n = 0; n < parts; ++n)
+    advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), world.accuracy.max_splits);
+  for (CharacterState<T>* s : states_) {
+    CharacterReport& r = s->report;
+    r.outer_passes = total_.outer_passes;
+    r.factorisations = total_.factorisations;
+    r.converged = all_converged_;
+    r.substeps = parts_;
+    r.splits = splits_;
+    r.held = held_;
+  }
+  lagged_out.insert(lagged_out.end(), lagged_.begin(), lagged_.end());
 }
 
 template class IslandStepper<float>;

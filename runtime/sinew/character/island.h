@@ -4,23 +4,16 @@
 
 #include <vector>
 
-#include "sinew/character/state.h"
+#include "sinew/character/contact_finder.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
-
-/// A contact's normal force, remembered for the friction of the next step.
-template <class T>
-struct LaggedForce {
-  std::uint64_t id = 0;
-  T force = T(0);
-};
 
 /// Working memory of island steps; one per world, sized when characters are added.
 template <class T>
 class IslandStepper {
  public:
-  void reserve(int trees, int dofs, int bodies, int contact_points);
+  void reserve(int trees, int dofs, int bodies, int contacts, int colliders);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
@@ -30,20 +23,37 @@ class IslandStepper {
             std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out);
 
  private:
+  int parts_of(T h) const;
+  void advance_part(T begin, T end, int splits_left);
+  SolveReport attempt(T h, T fraction);
+  void hold(CharacterState<T>& state);
+  bool settled(const CharacterState<T>& state) const;
+  void choose_wanted(CharacterState<T>& state, T fraction);
   void choose_targets(CharacterState<T>& state, const WorldSettings& world, T h);
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
   void first_guess(CharacterState<T>& state, T h);
-  void collect_contacts(const WorldSettings& world, std::span<const Collider> obstacles, T h,
-                        std::span<const int> indices, std::span<const LaggedForce<T>> lagged);
-  void add_contact(Contact<T> contact, T reach, std::span<const LaggedForce<T>> lagged);
+  void predict_all(Scheme scheme, T h);
+  std::uint64_t touching(int tree) const;
+  std::uint64_t bearing(int tree) const;
+  bool touching_changed() const;
   bool contacts_unchanged(const WorldSettings& world, T h, int tree) const;
-  void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h, const SolveReport& solved);
+  void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
 
+  const WorldSettings* world_ = nullptr;
+  std::span<const Collider> obstacles_;
   std::span<CharacterState<T>* const> states_;
+  std::span<const int> indices_;
+  T frame_ = T(0);                      ///< s, the whole step
+  std::vector<LaggedForce<T>> lagged_;  ///< of the last part
+  SolveReport total_;
+  bool all_converged_ = true;
+  bool mispredicted_ = false;  ///< contacts or limits changed under bdf2
+  int parts_ = 0, splits_ = 0, held_ = 0;
   StepSettings<T> settings_;
   std::vector<TreeProblem<T>*> problems_;
-  std::vector<Contact<T>> contacts_;
+  ContactFinder<T> finder_;
+  std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
 };
 

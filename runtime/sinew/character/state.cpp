@@ -15,6 +15,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       local(s.joints.size()),
       model(s.joints.size()),
       rate(s.body_count),
+      rate_before(s.body_count),
       deviation(s.body_count),
       joint_strength(s.body_count, T(1)),
       torque(tree.dofs, T(0)),
@@ -23,7 +24,8 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       unknown(tree.dofs, 0),
       problem(tree, skeleton),
       history(tree.bodies),
-      motion(tree) {
+      motion(tree),
+      wanted(tree.bodies) {
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
@@ -31,20 +33,67 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
     target[i].translation = rest.translation;
   }
   target_before = target;
-  for (const Collider& collider : skeleton.colliders) {
-    Collider on_body = collider;
+  for (std::size_t n = 0; n < skeleton.colliders.size(); ++n) {
+    Collider on_body = skeleton.colliders[n];
     while (on_body.joint >= skeleton.body_count) {
       on_body.local = skeleton.joints[on_body.joint].rest * on_body.local;
       on_body.joint = skeleton.joints[on_body.joint].parent;
     }
-    append_contact_points<T>(on_body, points);
+    first_point.push_back(static_cast<int>(points.size()));
+    append_contact_points<T>(on_body, points, static_cast<int>(n));
+    colliders.push_back(on_body);
+    const Vec3<double>& size = on_body.size;
+    const double round = size.x() + (on_body.shape == Shape::kCapsule ? size.z() : 0);
+    bound_center.push_back(on_body.local.translation.template cast<T>());
+    bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
+  first_point.push_back(static_cast<int>(points.size()));
   report.dofs = tree.dofs;
   refresh_limits();
   reset_to_target(Vec3<T>::Zero());
+  choose_self_pairs();
   radius = T(0.1);
   for (const ContactPoint<T>& p : points)
     radius = std::max(radius, (model[p.body] * p.local - model[0].translation).norm() + p.radius);
+}
+
+/// Colliders of one body, of neighbours, and those that overlap at rest never touch: joints hold them.
+template <class T>
+void CharacterState<T>::choose_self_pairs() {
+  const int count = static_cast<int>(colliders.size());
+  may_touch.assign(std::size_t(count) * count, 0);
+  const auto moving = [&](int body) {  // the body itself, or what it is fixed to
+    while (body > 0 && tree.dof_count(body) == 0) body = tree.parent[body];
+    return body;
+  };
+  constexpr double clearance = 0.01;  // m
+  for (int a = 0; a < count; ++a)
+    for (int b = 0; b < count; ++b) {
+      const int i = moving(colliders[a].joint), j = moving(colliders[b].joint);
+      const auto above = [&](int body) { return tree.parent[body] < 0 ? -1 : moving(tree.parent[body]); };
+      if (i == j || above(i) == j || above(j) == i) continue;
+      bool apart = true;
+      for (int k = first_point[a]; k < first_point[a + 1] && apart; ++k) {
+        if (!points[k].meets(colliders[b].shape)) continue;
+        Contact<T> c;
+        c.body_a = points[k].body;
+        c.local_a = points[k].local;
+        c.half_axis_a = points[k].half_axis;
+        c.radius = points[k].radius;
+        c.body_b = colliders[b].joint;
+        c.shape = colliders[b].shape;
+        c.size = colliders[b].size.template cast<T>();
+        c.shape_pose = colliders[b].local.template cast<T>();
+        measure<T>(problem.kinematics, &problem.kinematics, c);
+        apart = c.gap > T(clearance);
+      }
+      may_touch[std::size_t(a) * count + b] = apart;
+    }
+  for (int a = 0; a < count; ++a)
+    for (int b = 0; b < a; ++b) {
+      std::uint8_t &one = may_touch[std::size_t(a) * count + b], &two = may_touch[std::size_t(b) * count + a];
+      one = two = one && two;
+    }
 }
 
 template <class T>
@@ -107,7 +156,8 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
-  contact_signature = 0;
+  rate_step = T(0);
+  contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
 }

@@ -1,6 +1,7 @@
 // What one character (or prop) carries from step to step. Internal to the character layer.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -27,26 +28,39 @@ struct CharacterState {
   bool is_prop = false;
 
   std::vector<JointJet<T>> target,
-      target_before;                       ///< [joint] what the animation wants now, and wanted last step
-  std::vector<Transform<T>> local, model;  ///< [joint]
-  std::vector<std::array<T, 6>> rate;      ///< [body] joint speed over the last step, as joint_offset
-  std::vector<Deviation<T>> deviation;     ///< [body]
-  std::vector<T> joint_strength;           ///< [body]
-  std::vector<T> torque, load, limit;      ///< [dof]
-  std::vector<std::uint8_t> unknown;       ///< [dof]
-  std::vector<ExternalForce<T>> impulses;  ///< N·s, waiting for the next step
+      target_before;                          ///< [joint] what the animation wants now, and wanted last step
+  std::vector<Transform<T>> local, model;     ///< [joint]
+  std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
+  std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
+  T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
+  std::vector<Deviation<T>> deviation;        ///< [body]
+  std::vector<T> joint_strength;              ///< [body]
+  std::vector<T> torque, load, limit;         ///< [dof]
+  std::vector<std::uint8_t> unknown;          ///< [dof]
+  std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
   History<T> history;
   Motion<T> motion;
+  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
+  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
+  std::vector<T> bound_radius;
   std::vector<ContactPoint<T>> points;
+  std::vector<int> first_point;         ///< [collider + 1] into points
+  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
   T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
-  std::uint64_t contact_signature = 0;  ///< of the contacts that were active after the last step
+  std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
+  std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
+  std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
   CharacterReport report;
 
   CharacterState(const Skeleton& s, const CharacterSettings& c);
 
+  /// N/m of one contact point: the whole weight sinks it by the accuracy's depth.
+  T contact_stiffness(const WorldSettings& world) const {
+    return T(skeleton.total_mass() * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
+  }
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
   /// Model transforms of all joints from the local ones.
@@ -56,6 +70,7 @@ struct CharacterState {
   bool undisturbed() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
+  void choose_self_pairs();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 

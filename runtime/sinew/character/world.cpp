@@ -48,7 +48,7 @@ void World<T>::Impl::reserve() {
   // furthest last.
   const int contacts =
       points * (2 + static_cast<int>(obstacles.size())) + std::min(points * shapes, 4 * points + 64);
-  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts);
+  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes);
   lagged.reserve(contacts);
   lagged_new.reserve(contacts);
   group.reserve(states.size());
@@ -233,7 +233,8 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
   advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
-  s.contact_signature = 0;
+  s.rate_step = T(0);
+  s.contact_signature = s.limit_signature = 0;
   s.steps_unchanged = 0;
   s.report = {};
   s.report.dofs = s.tree.dofs;

@@ -35,6 +35,7 @@ struct CharacterSettings {
   double root_torque = 600;  ///< N·m, assisted
   double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
+  bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
 };
 
 /// What the last step did with one character.
@@ -44,10 +45,14 @@ struct CharacterReport {
   int outer_passes = 0;
   int factorisations = 0;
   int contacts = 0;  ///< active contact points
+  int substeps = 0;  ///< parts that the step was solved in; 0 = played
+  int splits = 0;    ///< of these, halvings because a solve did not converge
+  int held = 0;      ///< trees that were stopped where they stood: no pose could be found
   bool converged = true;
   bool used_bdf2 = false;
   double kinetic_energy = 0;    ///< J
   double potential_energy = 0;  ///< J, gravity
+  double elastic_energy = 0;    ///< J, stored in contacts and joint limits
   double penetration = 0;       ///< m, deepest contact
 };
 

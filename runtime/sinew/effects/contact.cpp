@@ -14,7 +14,9 @@ SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T
       const T length = offset.norm();
       // On the axis any direction is right; take one that is square to it.
       const Vec3<T> normal = length > T(1e-9) ? Vec3<T>(offset / length) : Vec3<T>(Vec3<T>::UnitX());
-      return {length - size.x(), normal};
+      const bool side = shape == Shape::kCapsule && std::abs(point.z()) < half;
+      return {length - size.x(), normal, length > T(1e-9) ? 1 / length : T(0),
+              side ? Vec3<T>(Vec3<T>::UnitZ()) : Vec3<T>(Vec3<T>::Zero())};
     }
     case Shape::kBox:
       break;
@@ -23,33 +25,52 @@ SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T
   if (beyond.maxCoeff() > T(0)) {  // outside: the nearest point of the box
     const Vec3<T> offset = point - point.cwiseMax(-size).cwiseMin(size);
     const T length = offset.norm();
-    return {length, offset / length};
+    const Vec3<T> outside =
+        (beyond.array() > T(0)).template cast<T>();  // one face, two at an edge, three at a corner
+    const Vec3<T> edge = Vec3<T>::Ones() - outside;
+    const bool face = outside.sum() < T(1.5);
+    return {length, offset / length, face ? T(0) : 1 / length,
+            outside.sum() > T(2.5) ? Vec3<T>(Vec3<T>::Zero()) : edge};
   }
   Eigen::Index axis = 0;
   const T depth = beyond.maxCoeff(&axis);
   Vec3<T> normal = Vec3<T>::Zero();
   normal[axis] = point[axis] < T(0) ? T(-1) : T(1);
-  return {depth, normal};
+  return {depth, normal, T(0), Vec3<T>::Zero()};
 }
 
 template <class T>
-void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out) {
-  const auto add = [&](const Vec3<double>& in_shape, double radius) {
-    out.push_back(
-        {collider.joint, (collider.local * in_shape).template cast<T>(), T(radius), T(collider.friction)});
+void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index) {
+  const auto add = [&](PointKind kind, const Vec3<double>& in_shape, double radius, double half) {
+    ContactPoint<T> point;
+    point.body = collider.joint;
+    point.kind = kind;
+    point.local = (collider.local * in_shape).template cast<T>();
+    point.half_axis = (collider.local.rotation * Vec3<double>(0, 0, half)).template cast<T>();
+    point.radius = T(radius);
+    point.friction = T(collider.friction);
+    point.collider = index;
+    out.push_back(point);
   };
   const Vec3<double>& s = collider.size;
   switch (collider.shape) {
     case Shape::kSphere:
-      add(Vec3<double>::Zero(), s.x());
+      add(PointKind::kTip, Vec3<double>::Zero(), s.x(), 0);
+      add(PointKind::kAxis, Vec3<double>::Zero(), s.x(), 0);
       break;
-    case Shape::kCapsule:
-      add({0, 0, s.z()}, s.x());
-      if (s.z() > 0) add({0, 0, -s.z()}, s.x());
+    case Shape::kCapsule: {
+      add(PointKind::kTip, {0, 0, s.z()}, s.x(), 0);
+      if (s.z() > 0) add(PointKind::kTip, {0, 0, -s.z()}, s.x(), 0);
+      add(PointKind::kAxis, Vec3<double>::Zero(), s.x(), s.z());
+      const int inner = static_cast<int>(std::min(s.z() / std::max(s.x(), 1e-3), 6.0));
+      for (int n = 1; n <= inner; ++n)
+        add(PointKind::kInner, {0, 0, s.z() * (2.0 * n / (inner + 1) - 1)}, s.x(), 0);
       break;
+    }
     case Shape::kBox:
       for (int corner = 0; corner < 8; ++corner)
-        add({corner & 1 ? s.x() : -s.x(), corner & 2 ? s.y() : -s.y(), corner & 4 ? s.z() : -s.z()}, 0);
+        add(PointKind::kCorner,
+            {corner & 1 ? s.x() : -s.x(), corner & 2 ? s.y() : -s.y(), corner & 4 ? s.z() : -s.z()}, 0, 0);
       break;
   }
 }
@@ -63,20 +84,76 @@ Vec3<T> at(const Kinematics<T>* k, int body, const Vec3<T>& local) {
 
 }  // namespace
 
+namespace {
+
+/// Distance between the axis of a (half length `a`, about `from`) and that of a sphere or capsule in its own
+/// axes, and how far along the first the nearest point lies, in [−1, 1]. The distance of two skew axes does
+/// not bend along either.
+template <class T>
+SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from, const Vec3<T>& a,
+                                T& along) {
+  // Nearest points of from + s·a and (0, 0, t): alternating clamps on the exact minimiser.
+  const T aa = a.squaredNorm(), az = a.z();
+  const T across = aa - az * az;  // squared sine, times aa
+  const Vec3<T>& r = from;
+  T s = T(0);
+  bool inner = false;
+  if (across > T(1e-6) * aa) {
+    const T free = (az * r.z() - a.dot(r)) / across;
+    s = std::clamp(free, T(-1), T(1));
+    inner = free == s;
+  }
+  const T t_free = r.z() + s * az;
+  const T t = std::clamp(t_free, -half, half);
+  if (t != t_free || !inner) {
+    s = std::clamp((az * t - a.dot(r)) / aa, T(-1), T(1));
+    inner = false;
+  }
+  along = s;
+  const Vec3<T> p = r + s * a;
+  if (!inner || half <= T(0)) {
+    auto d =
+        signed_distance<T>(half > T(0) ? Shape::kCapsule : Shape::kSphere, {size.x(), size.y(), half}, p);
+    if (std::abs(s) < T(1)) d.straight = a / std::sqrt(aa);
+    return d;
+  }
+  const Vec3<T> offset(p.x(), p.y(), T(0));
+  const T length = offset.norm();
+  if (length > T(1e-6)) return {length - size.x(), offset / length, T(0), Vec3<T>::Zero()};
+  return {-size.x(), Vec3<T>(-a.y(), a.x(), T(0)).normalized(), T(0), Vec3<T>::Zero()};
+}
+
+}  // namespace
+
 template <class T>
 void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.point = at(&a, c.body_a, c.local_a);
   if (c.plane) {
     c.normal = Vec3<T>::UnitZ();
     c.gap = c.point.z() - c.plane_height - c.radius;
+    c.bends = false;
   } else {
     const Mat3<T> rotation =
         (b ? b->rotation[c.body_b] : Mat3<T>(Mat3<T>::Identity())) * c.shape_pose.rotation.toRotationMatrix();
     const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
-    const SignedDistance<T> d =
-        signed_distance<T>(c.shape, c.size, rotation.transpose() * (c.point - origin));
+    SignedDistance<T> d;
+    if (c.half_axis_a.isZero(T(0)) || c.shape == Shape::kBox) {
+      d = signed_distance<T>(c.shape, c.size, rotation.transpose() * (c.point - origin));
+    } else {
+      const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
+      T along = T(0);
+      d = axis_distance<T>(c.size, c.shape == Shape::kCapsule ? c.size.z() : T(0),
+                           rotation.transpose() * (c.point - origin), rotation.transpose() * axis, along);
+      c.point += along * axis;
+    }
     c.normal = rotation * d.normal;
     c.gap = d.distance - c.radius;
+    c.bends = d.curvature > T(0);
+    if (c.bends) {
+      const Vec3<T> straight = rotation * d.straight;
+      c.bending = d.curvature *
+                  (Mat3<T>::Identity() - c.normal * c.normal.transpose() - straight * straight.transpose());
+    }
   }
   c.material_point = at(&a, c.body_a, c.material_a);
   c.material_point_b = at(b, c.body_b, c.material_b);

@@ -15,29 +15,48 @@
 
 namespace sinew {
 
-/// Distance of a point to a surface (m, negative inside) and the outward unit normal there.
+/// Distance of a point to a surface (m, negative inside), the outward unit normal there, and how it bends:
+/// ∇²distance = curvature·(1 − normal·normalᵀ − straight·straightᵀ).
 template <class T>
 struct SignedDistance {
   T distance = T(0);
   Vec3<T> normal = Vec3<T>::UnitZ();
+  T curvature = T(0);                  ///< 1/m; 0 over a face
+  Vec3<T> straight = Vec3<T>::Zero();  ///< unit tangent along which the surface is straight, or zero
 };
 
 /// Sphere, capsule or box in its own axes (see Collider::size).
 template <class T>
 SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point);
 
-/// A point of a body that may touch something: the ends of a capsule, the corners of a box, a sphere.
+/// What a contact point stands for, which decides what it can meet.
+enum class PointKind : std::uint8_t {
+  kTip,     ///< centre of a sphere, end of a capsule: meets planes and boxes
+  kInner,   ///< between the ends of a long capsule: meets boxes, whose edges would slip between the ends
+  kAxis,    ///< whole axis of a sphere or capsule: meets spheres and capsules at the nearest point
+  kCorner,  ///< of a box: meets everything
+};
+
+/// A point of a body that may touch something.
 template <class T>
 struct ContactPoint {
   int body = 0;
-  Vec3<T> local = Vec3<T>::Zero();  ///< centre, body axes
-  T radius = T(0);                  ///< m
+  PointKind kind = PointKind::kTip;
+  Vec3<T> local = Vec3<T>::Zero();      ///< centre, body axes
+  Vec3<T> half_axis = Vec3<T>::Zero();  ///< kAxis: from the centre to one end
+  T radius = T(0);                      ///< m
   T friction = T(0.8);
+  int collider = 0;  ///< that it belongs to, within its skeleton
+
+  bool meets_plane() const { return kind == PointKind::kTip || kind == PointKind::kCorner; }
+  bool meets(Shape shape) const {
+    return kind == PointKind::kCorner || (shape == Shape::kBox) != (kind == PointKind::kAxis);
+  }
 };
 
-/// Appends the points of a collider.
+/// Appends the points of a collider, the `index`th of its skeleton.
 template <class T>
-void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out);
+void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index = 0);
 
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
 template <class T>
@@ -46,6 +65,8 @@ struct Contact {
   int tree_b = -1, body_b = -1;
   std::uint64_t id = 0;  ///< same pair of features in the next step: carries λ over
   Vec3<T> local_a = Vec3<T>::Zero();
+  Vec3<T> half_axis_a =
+      Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
   T radius = T(0);
   Shape shape = Shape::kSphere;
   bool plane = false;       ///< static half space z ≤ plane_height instead of a shape
@@ -65,6 +86,8 @@ struct Contact {
   Vec3<T> material_point = Vec3<T>::Zero(), material_point_b = Vec3<T>::Zero();
   T gap = T(0);
   T slip[2] = {T(0), T(0)};
+  bool bends = false;                 ///< the surface is curved at the contact
+  Mat3<T> bending = Mat3<T>::Zero();  ///< ∇²distance, 1/m
 };
 
 /// Normal energy of a gap (m) and its derivatives; `width` of the cubic start is 0.5 mm (fewer
@@ -104,6 +127,32 @@ struct FrictionLaw {
   static T curvature(T s, T stick) { return s < stick ? 2 * (1 - s / stick) / stick : T(0); }
 };
 
+/// Normal and friction energy at the present gap and slip (J).
+template <class T>
+T contact_energy(const Contact<T>& c, T stick) {
+  const T grip = c.friction * c.lagged_normal_force;
+  T energy = ContactLaw<T>::energy(c.stiffness, c.gap);
+  if (grip > T(0))
+    energy += grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
+  return energy;
+}
+
+/// Gradient of the normal energy by the contact point of body a (N, pointing into the obstacle).
+template <class T>
+Vec3<T> normal_gradient(const Contact<T>& c) {
+  return -ContactLaw<T>::force(c.stiffness, c.gap) * c.normal;
+}
+
+/// Gradient of the friction energy by the material point of body a (N).
+template <class T>
+Vec3<T> friction_gradient(const Contact<T>& c, T stick) {
+  const T grip = c.friction * c.lagged_normal_force;
+  if (grip <= T(0)) return Vec3<T>::Zero();
+  const T slip = std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]);
+  const T scale = grip * FrictionLaw<T>::slope_over_slip(slip, stick);
+  return scale * (c.slip[0] * c.frame.col(0) + c.slip[1] * c.frame.col(1));
+}
+
 /// Re-measures gap, normal, points and slips at the present kinematics of the two bodies (`b` ignored when
 /// static).
 template <class T>
@@ -113,10 +162,10 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact
 template <class T>
 void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
 
-#define SINEW_CONTACT_INSTANCES(prefix, T)                                              \
-  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);   \
-  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&); \
-  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);      \
+#define SINEW_CONTACT_INSTANCES(prefix, T)                                                   \
+  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);        \
+  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int); \
+  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);           \
   prefix void begin_step<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);
 SINEW_CONTACT_INSTANCES(extern template, float)
 SINEW_CONTACT_INSTANCES(extern template, double)

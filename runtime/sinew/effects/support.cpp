@@ -9,6 +9,7 @@ namespace {
 /// How much of its share a point may bear: 1 on the floor, smoothly 0 at `reach` above it.
 template <class T>
 T bearing(const Kinematics<T>& k, const ContactPoint<T>& p, T ground, T reach, Vec3<T>& where) {
+  if (!p.meets_plane()) return T(0);
   where = k.origin[p.body] + k.rotation[p.body] * p.local - Vec3<T>(0, 0, p.radius);
   const T up = std::clamp((where.z() - ground) / reach, T(0), T(1));
   return (1 - up) * (1 - up);

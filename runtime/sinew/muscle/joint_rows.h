@@ -18,9 +18,21 @@ enum class RowKind : std::uint8_t {
   kOneSided,  ///< ½ k max(s, 0)²: joint limit
 };
 
+/// Which scalar of its joint a row is a function of.
+enum class RowScalar : std::uint8_t {
+  kFromTarget,  ///< offset from the muscle's target (see joint_offset)
+  kFromStart,   ///< offset from the pose at the beginning of the step
+  kFromRest,    ///< offset from the rest pose
+  kSwing,       ///< angle of a ball joint's bone from its rest direction
+  kTwist,       ///< rotation of a ball joint about its bone
+};
+
 template <class T>
 struct JointRow {
   RowKind kind = RowKind::kKink;
+  RowScalar scalar = RowScalar::kFromTarget;
+  int component = 0;  ///< of the offset: which of a ball's or free joint's three rotations, if any
+  T sign = T(1);      ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
   int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
   int count = 1;                ///< how many

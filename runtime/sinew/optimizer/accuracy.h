@@ -7,6 +7,8 @@ namespace sinew {
 
 /// How inertia is carried across a step (DESIGN of the incremental potential: runtime/README.md).
 enum class Scheme : std::uint8_t {
+  kMomentum,  ///< the seed talk's literal residual M₁V₁ − M₀V₀ − F·h, angular velocity the finite rotation
+              ///< over the step: no energy, so no descent to fall back on; splits where Newton fails
   kBdf1,  ///< implicit Euler: first order, damps; true after a change of contacts
   kBdf2,  ///< second order, torque-free rotation prediction; falls back to bdf1 while the contact set changes
 };
@@ -16,6 +18,9 @@ struct Accuracy {
   Scheme scheme = Scheme::kBdf2;
   double tolerance = 3e-5;        ///< stop when the last correction moves no body by more (m)
   int max_iterations = 60;        ///< outer passes; the mean is 3.5, hard impacts at 1/30 s need the tail
+  int substeps = 1;               ///< every step in so many equal parts
+  double max_rotation = 0;        ///< rad; more substeps where a body would turn further in one. 0: never
+  int max_splits = 3;             ///< an unconverged step is halved, and its halves, so often
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)
   double stick_speed = 0.01;      ///< slip speed below which friction sticks (m/s)
   double limit_stiffness = 2000;  ///< joint limits, N·m/rad

@@ -52,7 +52,8 @@ struct TreeProblem {
   std::vector<T> gradient;             ///< [dof] ∂E/∂d in the chart centred at `local`
   std::vector<JointRow<T>> rows;
   std::vector<Composite<T>> composite;
-  int first_unknown_map = 0;  ///< where this tree's part of Unknowns::of_dof begins
+  std::vector<Mat3<T>> joint_curvature;  ///< [body] see measure_joint_curvature
+  int first_unknown_map = 0;             ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
 };

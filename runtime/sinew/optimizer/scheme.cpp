@@ -1,6 +1,7 @@
 #include "sinew/optimizer/scheme.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace sinew {
 
@@ -17,7 +18,15 @@ History<T>::History(int bodies)
       momentum_before(bodies) {}
 
 template <class T>
-Prediction<T>::Prediction(int bodies) : center(bodies), rotation(bodies), momentum(bodies) {}
+void History<T>::stop() {
+  for (auto* v : {&velocity, &velocity_before, &momentum, &momentum_before})
+    std::fill(v->begin(), v->end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(rotation_rate.begin(), rotation_rate.end(), Mat3<T>(Mat3<T>::Zero()));
+  step_before = T(0);
+}
+
+template <class T>
+Prediction<T>::Prediction(int bodies) : center(bodies), rotation(bodies), momentum(bodies), start(bodies) {}
 
 namespace {
 
@@ -51,7 +60,7 @@ template <class T>
 void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h, const Vec3<T>& common_origin,
              Prediction<T>& out) {
   const bool second = scheme == Scheme::kBdf2 && history.step_before > T(0);
-  out.scheme = second ? Scheme::kBdf2 : Scheme::kBdf1;
+  out.scheme = scheme == Scheme::kMomentum ? scheme : second ? Scheme::kBdf2 : Scheme::kBdf1;
   if (!second) {
     out.weight = T(1) / (h * h);
     out.momentum_step = h;
@@ -59,6 +68,7 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
       out.center[i] = history.center[i] - common_origin + h * history.velocity[i];
       out.rotation[i] = history.rotation[i] + h * history.rotation_rate[i];
       out.momentum[i] = history.momentum[i];
+      out.start[i] = history.rotation[i];
     }
     return;
   }

@@ -3,6 +3,8 @@
 // The step minimises  E(q) = α/2 Σ [ m‖c − ĉ‖² + tr((R − R̂) P (R − R̂)ᵀ) ] + potentials  (Gauss's principle of
 // least constraint at finite displacement). ĉ, R̂ and α are what a scheme is:
 //
+//   momentum as bdf1, but the rotational residual is (I₁ω₁ − L₀)/h with ω₁ = log(R₁R₀ᵀ)/h: no gradient of
+//          any energy
 //   bdf1   ĉ = c₀ + h ċ₀                     R̂ = R₀ + h Ṙ₀ (affine)      α = 1/h²
 //   bdf2   ĉ = a₀c₀ + a₁c₋₁ + βh(a₀ċ₀ + a₁ċ₋₁)   R̂ = R₀ exp(x)           α = 1/(βh)²
 //          a₀ = (1+w)²/(1+2w), a₁ = −w²/(1+2w), β = (1+w)/(1+2w), w = h/h₋₁
@@ -29,6 +31,8 @@ struct History {
   T step_before = T(0);                            ///< s between before and now; 0: no earlier state
 
   explicit History(int bodies);
+  /// Takes all motion out.
+  void stop();
 };
 
 /// Targets of inertia for one step, relative to the common origin.
@@ -37,6 +41,7 @@ struct Prediction {
   std::vector<Vec3<T>> center;    ///< ĉ
   std::vector<Mat3<T>> rotation;  ///< R̂
   std::vector<Vec3<T>> momentum;  ///< L*, so that L₁ = L* + βh·g
+  std::vector<Mat3<T>> start;     ///< R₀ (momentum scheme)
   T weight = T(0);                ///< α, 1/s²
   T momentum_step = T(0);         ///< βh, s
   Scheme scheme = Scheme::kBdf1;

@@ -44,29 +44,32 @@ void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, std::sp
   const TreePattern& pattern = unknowns.pattern;
   for (int i = tree.bodies - 1; i >= 0; --i) {
     const Composite<T>& c = bodies[i];
+    const bool one_rotation_vector = tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree;
     for (int d = tree.first_dof[i]; d < tree.first_dof[i + 1]; ++d) {
       const int k = unknowns.of_dof[first + d];
       if (k < 0) continue;
       const Vec3<T> force = c.mass * kin.v[d] + kin.w[d].cross(c.first);
       const Vec3<T> moment = c.rotational * kin.w[d] + c.first.cross(kin.v[d]);
-      Vec3<T> turned = Vec3<T>::Zero();
-      if (geometric) turned = geometric_column(c, kin.w[d], kin.v[d]);
+      const Vec3<T> turned = geometric ? geometric_column(c, kin.w[d], kin.v[d]) : Vec3<T>(Vec3<T>::Zero());
+      const Vec3<T> whole = moment + turned;
       T* path = out.row(k);
-      for (int l = k; l >= 0; l = pattern.parent[l]) {
+      int position = pattern.depth[k];
+      int l = k;
+      for (; l >= 0 && tree.dof_body[unknowns.dof[l]] == i; l = pattern.parent[l], --position) {
         const int e = unknowns.dof[l];
         T value = kin.w[e].dot(moment) + kin.v[e].dot(force);
-        if (geometric) {
-          const bool same_ball =
-              tree.dof_body[e] == i && (tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree);
-          if (same_ball && kin.w[d].squaredNorm() > T(0)) {
-            // One rotation vector: neither axis acts first.
-            const Vec3<T> other = geometric_column(c, kin.w[e], kin.v[e]);
-            if (kin.w[e].squaredNorm() > T(0)) value += T(0.5) * (kin.w[e].dot(turned) + kin.w[d].dot(other));
-          } else {
-            value += kin.w[e].dot(turned);
-          }
+        if (geometric && one_rotation_vector && kin.w[d].squaredNorm() > T(0)) {
+          // One rotation vector: neither axis acts first.
+          if (kin.w[e].squaredNorm() > T(0))
+            value += T(0.5) * (kin.w[e].dot(turned) + kin.w[d].dot(geometric_column(c, kin.w[e], kin.v[e])));
+        } else {
+          value += kin.w[e].dot(turned);
         }
-        path[pattern.depth[l]] = value;
+        path[position] = value;
+      }
+      for (; l >= 0; l = pattern.parent[l], --position) {
+        const int e = unknowns.dof[l];
+        path[position] = kin.w[e].dot(whole) + kin.v[e].dot(force);
       }
     }
     if (const int p = tree.parent[i]; p >= 0) bodies[p] += bodies[i];

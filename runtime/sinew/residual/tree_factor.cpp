@@ -21,7 +21,7 @@ int TreePattern::add(int above) {
   parent.push_back(above);
   depth.push_back(above < 0 ? 0 : depth[above] + 1);
   row.push_back(entries);
-  entries += depth.back() + 1;
+  entries += padded(depth.back() + 1);
   return size++;
 }
 
@@ -40,6 +40,17 @@ void TreeMatrix<T>::multiply(std::span<const T> x, std::span<T> y) const {
   }
 }
 
+namespace {
+
+/// target −= factor·path over the blocks that hold entries 0 … last.
+template <class T>
+inline void subtract(T* __restrict target, const T* __restrict path, T factor, int last) {
+  for (int block = 0; block <= last; block += TreePattern::kBlock)
+    for (int i = block; i < block + TreePattern::kBlock; ++i) target[i] -= factor * path[i];
+}
+
+}  // namespace
+
 template <class T>
 bool TreeMatrix<T>::factorise() {
   const TreePattern& p = *pattern_;
@@ -53,11 +64,8 @@ bool TreeMatrix<T>::factorise() {
     path[depth] = root;
     for (int i = 0; i < depth; ++i) path[i] *= inverse;
     int position = depth - 1;
-    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) {
-      T* target = row(l);
-      const T factor = path[position];
-      for (int i = 0; i <= position; ++i) target[i] -= factor * path[i];
-    }
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position)
+      subtract(row(l), path, path[position], position);
   }
   return true;
 }

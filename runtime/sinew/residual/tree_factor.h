@@ -3,7 +3,9 @@
 // Entry (k, l) is non-zero only where l lies on the path from k to the root, so row k holds the path:
 // contiguous, root first, k last. H = LᵀL, solved leaves → root and back (Featherstone, "Rigid Body Dynamics
 // Algorithms", 2008, section 6.5). O(n·depth²). Storing whole paths contiguously makes the inner loop a plain
-// vector update: 2.9 times faster than the pointer-chasing form (solver-prototype, addendum A).
+// vector update: 2.9 times faster than the pointer-chasing form (solver-prototype, addendum A). Rows are
+// padded to whole blocks, so that the update needs no tail; what lies in the padding is never read into an
+// entry.
 #pragma once
 
 #include <span>
@@ -13,11 +15,17 @@ namespace sinew {
 
 /// Which unknowns there are and how they hang together; shared by all matrices of one solve.
 struct TreePattern {
+  static constexpr int kBlock = 4;  ///< values per block
+
+  /// Room that a path of so many entries takes: whole blocks, and one more for those who begin inside a
+  /// block.
+  static constexpr int padded(int entries) { return (entries + kBlock - 1) / kBlock * kBlock + kBlock; }
+
   std::vector<int> parent;  ///< [unknown] next unknown towards the root, or -1
   std::vector<int> depth;   ///< [unknown] position in its own path = number of unknowns above it
   std::vector<int> row;     ///< [unknown] first entry of its path in the value array
   int size = 0;
-  int entries = 0;
+  int entries = 0;  ///< of the value array, padding included
 
   /// Set-up for at most `capacity` unknowns: later rebuilds allocate nothing.
   void reserve(int capacity);
@@ -31,7 +39,8 @@ template <class T>
 class TreeMatrix {
  public:
   explicit TreeMatrix(const TreePattern& pattern) : pattern_(&pattern) {}
-  void reserve(int entries) { values_.reserve(entries); }
+  /// Set-up for patterns of at most so many unknowns.
+  void reserve(int unknowns) { values_.reserve(std::size_t(unknowns) * TreePattern::padded(unknowns)); }
   void set_zero() { values_.assign(pattern_->entries, T(0)); }
   T* row(int k) { return values_.data() + pattern_->row[k]; }
   const T* row(int k) const { return values_.data() + pattern_->row[k]; }

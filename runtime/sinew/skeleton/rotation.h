@@ -79,6 +79,28 @@ Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
   return Mat3<T>::Identity() + T(0.5) * s + c * (s * s);
 }
 
+/// Symmetric M with ½·δᵀMδ the second-order term of λ·log(exp(d)·exp(δ)): how a rotation vector bends away
+/// from its own tangent. From dθ/dt = Jr⁻¹(θ)·ω, once more by t.
+template <class T>
+Mat3<T> log_curvature(const Vec3<T>& d, const Vec3<T>& lambda) {
+  const T a2 = d.squaredNorm();
+  T c, slope;  // c of right_jacobian_inverse, and c'(a)/a
+  if (a2 < T(1e-2)) {
+    c = T(1) / 12 + a2 / 720;
+    slope = T(1) / 360 + a2 / 7560;
+  } else {
+    const T a = std::sqrt(a2), sine = std::sin(a / 2), cotangent = std::cos(a / 2) / sine;
+    c = T(1) / a2 - cotangent / (T(2) * a);
+    slope = (-T(2) / (a2 * a) + cotangent / (T(2) * a2) + T(1) / (T(4) * a * sine * sine)) / a;
+  }
+  const Mat3<T> s = skew(d), l = skew(lambda);
+  const Vec3<T> squared = s * (s * lambda);
+  const Mat3<T> bilinear =
+      -T(0.5) * l - c * (l * s) - c * skew<T>(lambda.cross(d)) + slope * (d * squared.transpose());
+  const Mat3<T> m = right_jacobian_inverse(d).transpose() * bilinear;
+  return T(0.5) * (m + m.transpose());
+}
+
 /// Angle of the part of q that turns about the unit vector `axis` (swing–twist decomposition), in (−π, π].
 template <class T>
 T twist_angle(const Quat<T>& q, const Vec3<T>& axis) {

@@ -1,0 +1,167 @@
+#include "sinew/character/contact_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+constexpr double kMargin =
+    0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
+
+/// Contact identity that survives from step to step.
+std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
+  return (std::uint64_t(tree_a + 1) << 48) ^ (std::uint64_t(point + 1) << 32) ^
+         (std::uint64_t(tree_b + 1) << 16) ^ std::uint64_t(shape + 1);
+}
+
+}  // namespace
+
+template <class T>
+void ContactFinder<T>::reserve(int contacts, int colliders) {
+  contacts_.reserve(contacts);
+  bounds_.reserve(colliders);
+  first_bound_.reserve(colliders + 1);
+}
+
+template <class T>
+void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
+  for (std::size_t c = 0; c < s.colliders.size(); ++c) {
+    const int body = s.colliders[c].joint;
+    Bound b;
+    b.center = s.problem.kinematics.origin[body] + s.problem.kinematics.rotation[body] * s.bound_center[c];
+    b.radius = s.bound_radius[c];
+    b.reach = T(kMargin) + h * (s.history.velocity[body].norm() + T(5) * h);
+    for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
+      b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
+    bounds_.push_back(b);
+  }
+}
+
+template <class T>
+Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) const {
+  Contact<T> c;
+  c.tree_a = n;
+  c.body_a = point.body;
+  c.local_a = point.local;
+  c.half_axis_a = point.half_axis;
+  c.radius = point.radius;
+  c.stiffness = states_[n]->contact_stiffness(*world_);
+  return c;
+}
+
+template <class T>
+void ContactFinder<T>::add(Contact<T>& c, T reach) {
+  const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
+  begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
+  if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
+  const auto found = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
+                                      [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
+  if (found != lagged_.end() && found->id == c.id) c.lagged_normal_force = found->force;
+  contacts_.push_back(c);
+}
+
+template <class T>
+void ContactFinder<T>::meet_static(int n, std::span<const Collider> obstacles) {
+  const CharacterState<T>& s = *states_[n];
+  const T ground = T(world_->ground_height) - common_origin_.z();
+  for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
+    const Bound& b = bounds_[first_bound_[n] + static_cast<int>(collider)];
+    if (!b.moved) continue;
+    if (world_->ground && b.center.z() - b.radius - ground < b.reach)
+      for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
+        if (!s.points[k].meets_plane()) continue;
+        Contact<T> c = contact_of(n, s.points[k]);
+        c.plane = true;
+        c.plane_height = ground;
+        c.friction = s.points[k].friction * T(world_->ground_friction);
+        c.id = contact_id(indices_[n], k, -1, -1);
+        add(c, b.reach);
+      }
+    for (std::size_t o = 0; o < obstacles.size(); ++o) {
+      const Collider& obstacle = obstacles[o];
+      Transform<T> pose = obstacle.local.template cast<T>();
+      pose.translation -= common_origin_;
+      const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
+      if (signed_distance<T>(obstacle.shape, obstacle.size.template cast<T>(), apart).distance >
+          b.radius + b.reach)
+        continue;
+      for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
+        if (!s.points[k].meets(obstacle.shape)) continue;
+        Contact<T> c = contact_of(n, s.points[k]);
+        c.shape = obstacle.shape;
+        c.size = obstacle.size.template cast<T>();
+        c.shape_pose = pose;
+        c.friction = std::sqrt(s.points[k].friction * T(obstacle.friction));
+        c.id = contact_id(indices_[n], k, -1, static_cast<int>(o));
+        add(c, b.reach);
+      }
+    }
+  }
+}
+
+/// The points of one collider of tree n against the shape of one of tree m.
+template <class T>
+void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
+  const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
+  const T reach = a.reach + b.reach - T(kMargin);
+  if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
+  const CharacterState<T>&s = *states_[n], &t = *states_[m];
+  const Collider& shape = t.colliders[other];
+  // Two axes need to meet once only.
+  const bool second = m < n || (m == n && other < collider);
+  for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
+    const ContactPoint<T>& point = s.points[k];
+    if (!point.meets(shape.shape) || (second && point.kind == PointKind::kAxis)) continue;
+    Contact<T> c = contact_of(n, point);
+    c.tree_b = m;
+    c.body_b = shape.joint;
+    c.shape = shape.shape;
+    c.size = shape.size.template cast<T>();
+    c.shape_pose = shape.local.template cast<T>();
+    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_));
+    c.friction = std::sqrt(point.friction * T(shape.friction));
+    c.id = contact_id(indices_[n], k, indices_[m], other);
+    add(c, reach);
+  }
+}
+
+template <class T>
+void ContactFinder<T>::meet_tree(int n, int m) {
+  const CharacterState<T>&s = *states_[n], &t = *states_[m];
+  const int count = static_cast<int>(t.colliders.size());
+  for (int c = 0; c < static_cast<int>(s.colliders.size()); ++c)
+    for (int o = 0; o < count; ++o)
+      if (n != m || s.may_touch[c * count + o]) meet_collider(n, c, m, o);
+}
+
+template <class T>
+std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, std::span<const Collider> obstacles,
+                                             std::span<CharacterState<T>* const> states,
+                                             std::span<const int> indices,
+                                             std::span<const LaggedForce<T>> lagged,
+                                             const Vec3<T>& common_origin, T h) {
+  world_ = &world;
+  states_ = states;
+  indices_ = indices;
+  lagged_ = lagged;
+  common_origin_ = common_origin;
+  contacts_.clear();
+  bounds_.clear();
+  first_bound_.clear();
+  for (const CharacterState<T>* s : states) {
+    first_bound_.push_back(static_cast<int>(bounds_.size()));
+    bound(*s, h);
+  }
+  for (int n = 0; n < static_cast<int>(states.size()); ++n) {
+    if (states[n]->settings.ground_contact) meet_static(n, obstacles);
+    for (int m = 0; m < static_cast<int>(states.size()); ++m)
+      if (m != n || states[n]->settings.self_collision) meet_tree(n, m);
+  }
+  return contacts_;
+}
+
+template class ContactFinder<float>;
+template class ContactFinder<double>;
+
+}  // namespace sinew

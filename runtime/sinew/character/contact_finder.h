@@ -1,0 +1,59 @@
+// Which features may touch within a step: floor, static obstacles, other trees, and a character itself.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// A contact's normal force, remembered for the friction of the next step.
+template <class T>
+struct LaggedForce {
+  std::uint64_t id = 0;
+  T force = T(0);
+};
+
+template <class T>
+class ContactFinder {
+ public:
+  void reserve(int contacts, int colliders);
+
+  /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
+  /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
+  /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
+  /// feet would. Allocates nothing; contacts beyond what was reserved are dropped.
+  std::span<Contact<T>> find(const WorldSettings& world, std::span<const Collider> obstacles,
+                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                             std::span<const LaggedForce<T>> lagged, const Vec3<T>& common_origin, T h);
+
+ private:
+  /// Bounding sphere of a collider now, and how far its body may come within the step.
+  struct Bound {
+    Vec3<T> center;
+    T radius = T(0), reach = T(0);
+    bool moved = false;  ///< by some unknown
+  };
+
+  void bound(const CharacterState<T>& state, T h);
+  void meet_static(int n, std::span<const Collider> obstacles);
+  void meet_tree(int n, int m);
+  void meet_collider(int n, int collider, int m, int other);
+  void add(Contact<T>& contact, T reach);
+  Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
+
+  const WorldSettings* world_ = nullptr;
+  std::span<CharacterState<T>* const> states_;
+  std::span<const int> indices_;
+  std::span<const LaggedForce<T>> lagged_;
+  Vec3<T> common_origin_ = Vec3<T>::Zero();
+  std::vector<Contact<T>> contacts_;
+  std::vector<Bound> bounds_;     ///< all colliders of all states
+  std::vector<int> first_bound_;  ///< [state]
+};
+
+extern template class ContactFinder<float>;
+extern template class ContactFinder<double>;
+
+}  // namespace sinew

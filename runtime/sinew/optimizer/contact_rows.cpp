@@ -1,0 +1,278 @@
+#include "sinew/optimizer/contact_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+constexpr int kEntriesPerContact = 64;
+
+/// path += a·x + b·y + c·z over the blocks that hold entries 0 … last.
+template <class T>
+inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b, const T* __restrict y, T c,
+                            const T* __restrict z, int last) {
+  for (int block = 0; block <= last; block += TreePattern::kBlock)
+    for (int j = block; j < block + TreePattern::kBlock; ++j) path[j] += a * x[j] + b * y[j] + c * z[j];
+}
+
+/// The last degree of freedom at or above a body that is an unknown, as an unknown; −1 where nothing moves
+/// it.
+template <class T>
+int unknown_above(const TreeProblem<T>& p, int body, const Unknowns& unknowns) {
+  const Tree<T>& tree = *p.tree;
+  int dof = -1;
+  for (int i = body; i >= 0 && dof < 0; i = tree.parent[i])
+    if (tree.dof_count(i) > 0) dof = tree.first_dof[i + 1] - 1;
+  while (dof >= 0 && unknowns.of_dof[p.first_unknown_map + dof] < 0) dof = tree.dof_parent[dof];
+  return dof < 0 ? -1 : unknowns.of_dof[p.first_unknown_map + dof];
+}
+
+int common_ancestor(const TreePattern& pattern, int a, int b) {
+  while (a != b) {
+    if (a < 0 || b < 0) return -1;
+    int& deeper = pattern.depth[a] >= pattern.depth[b] ? a : b;
+    deeper = pattern.parent[deeper];
+  }
+  return a;
+}
+
+}  // namespace
+
+template <class T>
+void ContactRows<T>::reserve(int contacts) {
+  rows_.reserve(contacts);
+  unknown_.reserve(contacts * kEntriesPerContact);
+  for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]})
+    v->reserve(contacts * kEntriesPerContact);
+}
+
+template <class T>
+typename ContactRows<T>::Side ContactRows<T>::add_side(const TreeProblem<T>& p, const Contact<T>& c, int leaf,
+                                                       const Vec3<T>& material, T sign, int above,
+                                                       const Unknowns& unknowns) {
+  Side side;
+  side.first = static_cast<int>(unknown_.size());
+  if (leaf < 0 || leaf == above) return side;
+  const TreePattern& pattern = unknowns.pattern;
+  side.depth = above < 0 ? 0 : pattern.depth[above] + 1;
+  side.count = pattern.depth[leaf] + 1 - side.depth;
+  const std::size_t size = unknown_.size() + TreePattern::padded(side.count);
+  if (size > unknown_.capacity()) {  // full: this side stands still in the inner problem
+    side.count = 0;
+    return side;
+  }
+  unknown_.resize(size);
+  for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->resize(size);
+  // A unit force along each direction, and its moment about the common origin: n·(v + w × x) = n·v + (x ×
+  // n)·w.
+  const Vec3<T> normal = sign * c.normal, first = sign * c.frame.col(0), second = sign * c.frame.col(1);
+  const Vec3<T> normal_moment = c.point.cross(normal), first_moment = material.cross(first),
+                second_moment = material.cross(second);
+  for (int k = leaf, e = side.first + side.count - 1; e >= side.first; k = pattern.parent[k], --e) {
+    const Vec3<T>& w = p.kinematics.w[unknowns.dof[k]];
+    const Vec3<T>& v = p.kinematics.v[unknowns.dof[k]];
+    unknown_[e] = k;
+    gap_[e] = normal.dot(v) + normal_moment.dot(w);
+    slip_[0][e] = first.dot(v) + first_moment.dot(w);
+    slip_[1][e] = second.dot(v) + second_moment.dot(w);
+    if (!c.bends) continue;
+    const Vec3<T> moved = sign * (v + w.cross(c.point));
+    for (int a = 0; a < 3; ++a) move_[a][e] = moved[a];
+  }
+  return side;
+}
+
+template <class T>
+void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<const Contact<T>> contacts,
+                             const Unknowns& unknowns, T near, T stick) {
+  rows_.clear();
+  unknown_.clear();
+  for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->clear();
+  stick_ = stick;
+  coupled_ = false;
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    const Contact<T>& c = contacts[n];
+    if (c.gap > near) continue;
+    Row row;
+    row.contact = static_cast<int>(n);
+    row.stiffness = c.stiffness;
+    row.grip = c.friction * c.lagged_normal_force;
+    row.gap = c.gap;
+    row.slip[0] = c.slip[0];
+    row.slip[1] = c.slip[1];
+    const int leaf_a = unknown_above(*trees[c.tree_a], c.body_a, unknowns);
+    const int leaf_b = c.tree_b < 0 ? -1 : unknown_above(*trees[c.tree_b], c.body_b, unknowns);
+    // What moves both sides alike moves neither gap nor slip.
+    const int shared = c.tree_a == c.tree_b ? common_ancestor(unknowns.pattern, leaf_a, leaf_b) : -1;
+    row.side[0] = add_side(*trees[c.tree_a], c, leaf_a, c.material_point, T(1), shared, unknowns);
+    if (c.tree_b >= 0)
+      row.side[1] = add_side(*trees[c.tree_b], c, leaf_b, c.material_point_b, T(-1), shared, unknowns);
+    if (row.side[0].count + row.side[1].count == 0) continue;
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
+    row.bends = force > T(0) && c.bends;
+    if (row.bends) row.bending = -force * c.bending;
+    coupled_ = coupled_ || (row.side[0].count > 0 && row.side[1].count > 0);
+    rows_.push_back(row);
+  }
+}
+
+template <class T>
+void ContactRows<T>::look_along(std::span<const T> direction) {
+  for (Row& row : rows_) {
+    T gap = T(0), first = T(0), second = T(0);
+    for (const Side& side : row.side)
+      for (int e = side.first; e < side.first + side.count; ++e) {
+        const T d = direction[unknown_[e]];
+        gap += gap_[e] * d;
+        first += slip_[0][e] * d;
+        second += slip_[1][e] * d;
+      }
+    row.d_gap = gap;
+    row.d_slip[0] = first;
+    row.d_slip[1] = second;
+  }
+}
+
+template <class T>
+T ContactRows<T>::slope(T t) const {
+  T slope = T(0);
+  for (const Row& row : rows_) {
+    slope -= ContactLaw<T>::force(row.stiffness, row.gap + t * row.d_gap) * row.d_gap;
+    if (row.grip <= T(0)) continue;
+    const T s0 = row.slip[0] + t * row.d_slip[0], s1 = row.slip[1] + t * row.d_slip[1];
+    slope += row.grip * FrictionLaw<T>::slope_over_slip(std::sqrt(s0 * s0 + s1 * s1), stick_) *
+             (s0 * row.d_slip[0] + s1 * row.d_slip[1]);
+  }
+  return slope;
+}
+
+template <class T>
+void ContactRows<T>::move(T t) {
+  for (Row& row : rows_) {
+    row.gap += t * row.d_gap;
+    row.slip[0] += t * row.d_slip[0];
+    row.slip[1] += t * row.d_slip[1];
+  }
+}
+
+template <class T>
+void ContactRows<T>::correct(std::span<const Contact<T>> contacts) {
+  for (Row& row : rows_) {
+    const Contact<T>& c = contacts[row.contact];
+    row.gap = c.gap - row.d_gap;
+    row.slip[0] = c.slip[0] - row.d_slip[0];
+    row.slip[1] = c.slip[1] - row.d_slip[1];
+  }
+}
+
+template <class T>
+void ContactRows<T>::add_gradient(std::span<T> gradient) const {
+  for (const Row& row : rows_) {
+    const T pressure = ContactLaw<T>::force(row.stiffness, row.gap);
+    T drag[2] = {};
+    if (row.grip > T(0)) {
+      const T slip = std::sqrt(row.slip[0] * row.slip[0] + row.slip[1] * row.slip[1]);
+      const T scale = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);
+      drag[0] = scale * row.slip[0];
+      drag[1] = scale * row.slip[1];
+    } else if (pressure <= T(0)) {
+      continue;
+    }
+    for (const Side& side : row.side)
+      for (int e = side.first; e < side.first + side.count; ++e)
+        gradient[unknown_[e]] += drag[0] * slip_[0][e] + drag[1] * slip_[1][e] - pressure * gap_[e];
+  }
+}
+
+template <class T>
+typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
+  Block b;
+  b.normal = ContactLaw<T>::curvature(row.stiffness, row.gap);
+  if (row.grip <= T(0)) return b;
+  const T slip = std::sqrt(row.slip[0] * row.slip[0] + row.slip[1] * row.slip[1]);
+  const T across = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);
+  b.slip11 = b.slip22 = across;
+  if (slip <= T(0)) return b;
+  const T along = row.grip * FrictionLaw<T>::curvature(slip, stick_) - across;
+  const T x = row.slip[0] / slip, y = row.slip[1] / slip;
+  b.slip11 += along * x * x;
+  b.slip12 = along * x * y;
+  b.slip22 += along * y * y;
+  return b;
+}
+
+template <class T>
+void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
+  for (const Row& row : rows_) {
+    const Block b = block(row);
+    if (b.zero()) continue;
+    for (const Side& side : row.side) {
+      const T *gap = gap_.data() + side.first, *first = slip_[0].data() + side.first,
+              *second = slip_[1].data() + side.first;
+      for (int i = 0; i < side.count; ++i) {
+        const T normal = b.normal * gap[i];
+        const T one = b.slip11 * first[i] + b.slip12 * second[i];
+        const T two = b.slip12 * first[i] + b.slip22 * second[i];
+        add_combination(matrix.row(unknown_[side.first + i]) + side.depth, normal, gap, one, first, two,
+                        second, i);
+      }
+    }
+  }
+}
+
+template <class T>
+void ContactRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
+  for (const Row& row : rows_) {
+    const Block b = block(row);
+    if (b.zero()) continue;
+    T gap = T(0), first = T(0), second = T(0);
+    for (const Side& side : row.side)
+      for (int e = side.first; e < side.first + side.count; ++e) {
+        const T d = x[unknown_[e]];
+        gap += gap_[e] * d;
+        first += slip_[0][e] * d;
+        second += slip_[1][e] * d;
+      }
+    const T normal = b.normal * gap;
+    const T one = b.slip11 * first + b.slip12 * second, two = b.slip12 * first + b.slip22 * second;
+    for (const Side& side : row.side)
+      for (int e = side.first; e < side.first + side.count; ++e)
+        y[unknown_[e]] += normal * gap_[e] + one * slip_[0][e] + two * slip_[1][e];
+  }
+}
+
+template <class T>
+void ContactRows<T>::add_bending(TreeMatrix<T>& matrix) const {
+  for (const Row& row : rows_) {
+    if (!row.bends) continue;
+    for (const Side& side : row.side)
+      for (int i = 0; i < side.count; ++i) {
+        const int e = side.first + i;
+        const Vec3<T> f = row.bending * Vec3<T>(move_[0][e], move_[1][e], move_[2][e]);
+        add_combination(matrix.row(unknown_[e]) + side.depth, f.x(), &move_[0][side.first], f.y(),
+                        &move_[1][side.first], f.z(), &move_[2][side.first], i);
+      }
+  }
+}
+
+template <class T>
+void ContactRows<T>::multiply_bending(std::span<const T> x, std::span<T> y) const {
+  for (const Row& row : rows_) {
+    if (!row.bends || row.side[0].count == 0 || row.side[1].count == 0) continue;
+    Vec3<T> moved[2] = {Vec3<T>::Zero(), Vec3<T>::Zero()};
+    for (const int n : {0, 1})
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        moved[n] += x[unknown_[e]] * Vec3<T>(move_[0][e], move_[1][e], move_[2][e]);
+    for (const int n : {0, 1}) {
+      const Vec3<T> f = row.bending * moved[1 - n];
+      for (int e = row.side[n].first; e < row.side[n].first + row.side[n].count; ++e)
+        y[unknown_[e]] += f.x() * move_[0][e] + f.y() * move_[1][e] + f.z() * move_[2][e];
+    }
+  }
+}
+
+template class ContactRows<float>;
+template class ContactRows<double>;
+
+}  // namespace sinew

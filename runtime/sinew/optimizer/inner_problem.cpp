@@ -1,0 +1,337 @@
+#include "sinew/optimizer/inner_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sinew/optimizer/joint_terms.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kShrink = 0.1;  ///< of the first step: tighter costs factorisations, looser outer passes
+constexpr int kMostSteps = 8;
+constexpr double kNear = 0.1;          ///< m; contacts further away are left out
+constexpr double kRotationArm = 0.15;  ///< m; turns a rotation into a displacement for the tolerance
+constexpr int kMostProducts = 80;
+constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
+
+template <class T>
+T dot(std::span<const T> a, std::span<const T> b) {
+  T sum = T(0);
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+}  // namespace
+
+template <class T>
+void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
+  turn_.reserve(bodies);
+  slide_.reserve(bodies);
+  unknowns_.reserve(dofs);
+  smooth_.reserve(dofs);
+  factor_.reserve(dofs);
+  contact_rows_.reserve(contacts);
+  joint_rows_.reserve(dofs * 8);
+  for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
+                  &correction_product_, &residual_, &preconditioned_, &direction_})
+    v->reserve(dofs);
+}
+
+template <class T>
+void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees) {
+  settings_ = &settings;
+  trees_ = trees;
+  factorisations = products = 0;
+  unknowns_.clear();
+  for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
+}
+
+template <class T>
+void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric) {
+  geometric_ = geometric;
+  contact_rows_.collect(trees_, contacts, unknowns_, T(kNear), settings_->stick);
+  joint_rows_.clear();
+  for (TreeProblem<T>* p : trees_)
+    for (const JointRow<T>& row : p->rows)
+      joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
+  assemble(contacts, geometric);
+  // The gradient without the rows', which are added back wherever they move.
+  base_gradient_.assign(size(), T(0));
+  for (const TreeProblem<T>* p : trees_)
+    for (int dof = 0; dof < p->tree->dofs; ++dof)
+      if (const int k = unknown(*p, dof); k >= 0) base_gradient_[k] = p->gradient[dof];
+  smooth_gradient_.assign(size(), T(0));
+  add_row_gradient(smooth_gradient_);
+  for (int k = 0; k < size(); ++k) smooth_gradient_[k] = base_gradient_[k] - smooth_gradient_[k];
+}
+
+template <class T>
+void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geometric) {
+  smooth_.set_zero();
+  for (TreeProblem<T>* p : trees_) {
+    begin_composite(*p);
+    if (geometric) {
+      for (const Contact<T>& c : contacts) {
+        const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
+        if (trees_[c.tree_a] == p) {
+          p->composite[c.body_a].add_force(c.point, normal);
+          p->composite[c.body_a].add_force(c.material_point, tangent);
+        }
+        if (c.tree_b >= 0 && trees_[c.tree_b] == p) {
+          p->composite[c.body_b].add_force(c.point, -normal);
+          p->composite[c.body_b].add_force(c.material_point_b, -tangent);
+        }
+      }
+    }
+    assemble_tree_matrix<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, geometric,
+                            smooth_);
+    if (geometric) add_joint_geometry(*p);
+  }
+  if (geometric) contact_rows_.add_bending(smooth_);
+}
+
+template <class T>
+void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
+  measure_joint_curvature(p);
+  const Tree<T>& tree = *p.tree;
+  for (int i = 0; i < tree.bodies; ++i) {
+    if (tree.type[i] != JointType::kBall && tree.type[i] != JointType::kFree) continue;
+    const int k = unknown(p, tree.first_dof[i + 1] - 3);
+    if (k < 0) continue;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b <= a; ++b)
+        smooth_.row(k + a)[unknowns_.pattern.depth[k + b]] += p.joint_curvature[i](a, b);
+  }
+}
+
+template <class T>
+void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
+  contact_rows_.add_gradient(gradient);
+  for (const JointRows& rows : joint_rows_) {
+    const JointRow<T>& row = rows.row;
+    const T slope = row.slope(rows.value);
+    for (int a = 0; a < row.count; ++a) gradient[rows.unknown + a] += slope * row.gradient[a];
+  }
+}
+
+template <class T>
+T InnerProblem<T>::row_slope(T t) const {
+  T slope = contact_rows_.slope(t);
+  for (const JointRows& rows : joint_rows_)
+    slope += rows.row.slope(rows.value + t * rows.d_value) * rows.d_value;
+  return slope;
+}
+
+/// Zero of the derivative t ↦ linear + t·quadratic + row_slope(t), which is increasing where the model is
+/// convex.
+template <class T>
+T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
+  const auto derivative = [&](T t) { return linear + t * quadratic + row_slope(t); };
+  const T d0 = derivative(T(0));
+  T low = T(0), d_low = d0, high = T(1), d_high = derivative(T(1));
+  for (int grow = 0; d_high < T(0) && grow < 3; ++grow) {
+    if (-d_high < T(0.05) * -d0) return high;
+    low = high;
+    d_low = d_high;
+    high *= 2;
+    d_high = derivative(high);
+  }
+  if (d_high <= T(0)) return high;
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    T t = low + (high - low) * (-d_low) / (d_high - d_low);  // secant, kept off the ends: kinks make it stall
+    t = std::clamp(t, low + T(0.05) * (high - low), high - T(0.05) * (high - low));
+    if (iteration % 3 == 2) t = (low + high) / 2;
+    const T d = derivative(t);
+    if (std::abs(d) <= T(0.02) * -d0 || high - low < T(1e-4)) return t;
+    if (d < T(0)) {
+      low = t;
+      d_low = d;
+    } else {
+      high = t;
+      d_high = d;
+    }
+  }
+  return low > T(0) ? low : high;
+}
+
+template <class T>
+void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) const {
+  smooth_.multiply(x, y);
+  if (geometric_ && contact_rows_.coupled()) contact_rows_.multiply_bending(x, y);
+}
+
+template <class T>
+void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const {
+  multiply_smooth(x, y);
+  contact_rows_.multiply(x, y);
+  for (const JointRows& rows : joint_rows_) {
+    const JointRow<T>& row = rows.row;
+    const T curvature = row.curvature(rows.value);
+    if (curvature <= T(0)) continue;
+    T along = T(0);
+    for (int a = 0; a < row.count; ++a) along += row.gradient[a] * x[rows.unknown + a];
+    for (int a = 0; a < row.count; ++a) y[rows.unknown + a] += curvature * along * row.gradient[a];
+  }
+}
+
+/// step_ = −H⁻¹·inner_gradient_ at the inner solution so far.
+template <class T>
+bool InnerProblem<T>::newton_step() {
+  factor_.values() = smooth_.values();
+  contact_rows_.add_curvature(factor_);
+  for (const JointRows& rows : joint_rows_) {
+    const JointRow<T>& row = rows.row;
+    const T curvature = row.curvature(rows.value);
+    if (curvature <= T(0)) continue;
+    for (int i = 0; i < row.count; ++i)
+      for (int j = 0; j <= i; ++j)
+        factor_.row(rows.unknown + i)[unknowns_.pattern.depth[rows.unknown + j]] +=
+            curvature * row.gradient[i] * row.gradient[j];
+  }
+  ++factorisations;
+  if (!factor_.factorise()) return false;
+  if (contact_rows_.coupled()) return conjugate_gradients();
+  for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
+  factor_.solve(step_);
+  return true;
+}
+
+/// Solves with the whole matrix, the factor as preconditioner. Where curvature turns negative on the way, the
+/// step so far is a descent direction (truncated Newton); false if that happens at once.
+template <class T>
+bool InnerProblem<T>::conjugate_gradients() {
+  std::fill(step_.begin(), step_.end(), T(0));
+  for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
+  preconditioned_ = residual_;
+  factor_.solve(preconditioned_);
+  direction_ = preconditioned_;
+  T energy = dot<T>(residual_, preconditioned_);
+  const T goal = energy * T(kCgTolerance * kCgTolerance);
+  for (int iteration = 0; iteration < kMostProducts && energy > goal; ++iteration) {
+    multiply_full(direction_, product_);
+    ++products;
+    const T curvature = dot<T>(direction_, product_);
+    if (!(curvature > T(0))) return iteration > 0;
+    const T length = energy / curvature;
+    for (int k = 0; k < size(); ++k) {
+      step_[k] += length * direction_[k];
+      residual_[k] -= length * product_[k];
+    }
+    preconditioned_ = residual_;
+    factor_.solve(preconditioned_);
+    const T next = dot<T>(residual_, preconditioned_);
+    const T ratio = next / energy;
+    energy = next;
+    for (int k = 0; k < size(); ++k) direction_[k] = preconditioned_[k] + ratio * direction_[k];
+  }
+  return true;
+}
+
+/// Length of the step that the last factor would take now (m): small where the step before met no new kink.
+template <class T>
+double InnerProblem<T>::remaining_length() {
+  for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
+  factor_.solve(residual_);
+  return double(displacement(residual_));
+}
+
+template <class T>
+InnerReport InnerProblem<T>::minimise(T tolerance) {
+  InnerReport report;
+  const int n = size();
+  for (auto* v :
+       {&step_, &correction_, &product_, &correction_product_, &residual_, &preconditioned_, &direction_})
+    v->assign(n, T(0));
+  inner_gradient_ = smooth_gradient_;
+  add_row_gradient(inner_gradient_);
+  for (int iteration = 0; iteration < kMostSteps; ++iteration) {
+    if (!newton_step()) return report;
+    const T length = displacement(step_);
+    if (!std::isfinite(length)) return report;
+    if (iteration == 0) report.first_length = double(length);
+    const bool last =
+        (iteration > 0 && double(length) < kShrink * report.first_length) || length < T(0.1) * tolerance;
+    contact_rows_.look_along(step_);
+    for (JointRows& rows : joint_rows_) {
+      const JointRow<T>& row = rows.row;
+      rows.d_value = T(0);
+      for (int a = 0; a < row.count; ++a) rows.d_value += row.gradient[a] * step_[rows.unknown + a];
+    }
+    multiply_smooth(step_, product_);
+    T quadratic = T(0), linear = T(0);
+    for (int k = 0; k < n; ++k) {
+      quadratic += step_[k] * product_[k];
+      linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
+    }
+    const T t = exact_line_search(quadratic, linear);
+    for (int k = 0; k < n; ++k) {
+      correction_[k] += t * step_[k];
+      correction_product_[k] += t * product_[k];
+      inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
+    }
+    contact_rows_.move(t);
+    for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
+    // Without rows the model is quadratic: solved.
+    if (last || (contact_rows_.empty() && joint_rows_.empty())) break;
+    add_row_gradient(inner_gradient_);
+    if (!contact_rows_.coupled() && remaining_length() < kShrink * report.first_length) break;
+  }
+  report.solved = true;
+  return report;
+}
+
+template <class T>
+void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
+  contact_rows_.look_along(correction_);
+  contact_rows_.correct(contacts);
+  for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
+}
+
+template <class T>
+T InnerProblem<T>::slope(std::span<const T> direction) const {
+  return dot<T>(base_gradient_, direction);
+}
+
+template <class T>
+T InnerProblem<T>::slope_now(std::span<const T> direction) const {
+  T sum = T(0);
+  for (const TreeProblem<T>* p : trees_)
+    for (int dof = 0; dof < p->tree->dofs; ++dof)
+      if (const int k = unknown(*p, dof); k >= 0) sum += p->gradient[dof] * direction[k];
+  return sum;
+}
+
+template <class T>
+T InnerProblem<T>::displacement(std::span<const T> direction) const {
+  T largest = T(0);
+  bool finite = true;
+  for (const TreeProblem<T>* p : trees_) {
+    const Tree<T>& tree = *p->tree;
+    turn_.assign(tree.bodies, Vec3<T>::Zero());
+    slide_.assign(tree.bodies, Vec3<T>::Zero());
+    for (int i = 0; i < tree.bodies; ++i) {
+      Vec3<T>&w = turn_[i], &v = slide_[i];
+      if (const int parent = tree.parent[i]; parent >= 0) {
+        w = turn_[parent];
+        v = slide_[parent];
+      }
+      for (int dof = tree.first_dof[i]; dof < tree.first_dof[i + 1]; ++dof) {
+        const int k = unknown(*p, dof);
+        if (k < 0) continue;
+        w += p->kinematics.w[dof] * direction[k];
+        v += p->kinematics.v[dof] * direction[k];
+      }
+      const T moved = (v + w.cross(p->kinematics.center[i])).norm() + T(kRotationArm) * w.norm();
+      finite = finite && std::isfinite(moved);
+      largest = std::max(largest, moved);
+    }
+  }
+  return finite ? largest : std::numeric_limits<T>::infinity();
+}
+
+template class InnerProblem<float>;
+template class InnerProblem<double>;
+
+}  // namespace sinew

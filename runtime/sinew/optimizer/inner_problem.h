@@ -1,0 +1,97 @@
+// The convex model of one outer pass: kinematics frozen, contact and joint rows linear, their one-sided
+// energies exact.
+//
+//     m(d) = g·d + ½ dᵀ H₀ d + Σ contact rows + Σ joint rows
+//
+// H₀ is inertia with the geometric terms. Minimised by Newton with an exact line search in row space until
+// its steps have shrunk to a tenth. While nothing couples two branches the matrix has the tree's sparsity and
+// is factorised exactly; contacts between trees, or between branches of one, are left to preconditioned
+// conjugate gradients with that factor (6–10 products; solver-prototype, addendum D).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/optimizer/contact_rows.h"
+#include "sinew/optimizer/problem.h"
+
+namespace sinew {
+
+struct InnerReport {
+  bool solved = false;      ///< false: H₀ was indefinite where the rows did not help
+  double first_length = 0;  ///< m, of the first Newton step
+};
+
+template <class T>
+class InnerProblem {
+ public:
+  void reserve(int dofs, int bodies, int contacts);
+
+  /// Numbers the unknowns of all trees.
+  void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
+  int size() const { return unknowns_.pattern.size; }
+  /// Unknown of a tree's degree of freedom, or −1.
+  int unknown(const TreeProblem<T>& tree, int dof) const {
+    return unknowns_.of_dof[tree.first_unknown_map + dof];
+  }
+
+  /// Model about the present pose, whose gradient and wrenches the trees hold.
+  void build(std::span<const Contact<T>> contacts, bool geometric);
+  /// Minimises from the chart centres; the minimiser is correction().
+  InnerReport minimise(T tolerance);
+  /// Second-order correction: the model again, with gaps and slips as the contacts found them where the
+  /// correction led, and the old Jacobians. Call minimise() after it.
+  void correct(std::span<const Contact<T>> contacts);
+
+  std::vector<T>& correction() { return correction_; }
+  const std::vector<T>& correction() const { return correction_; }
+  bool has_contacts() const { return !contact_rows_.empty(); }
+  /// Directional derivative of the true energy at the chart centres.
+  T slope(std::span<const T> direction) const;
+  /// Directional derivative with the gradient that the trees hold now.
+  T slope_now(std::span<const T> direction) const;
+  /// Largest displacement (m) of any body along a direction: of its centre plus 0.15 m per radian. Infinite
+  /// where it is no number.
+  T displacement(std::span<const T> direction) const;
+
+  int factorisations = 0;  ///< since begin()
+  int products = 0;        ///< of conjugate gradients, since begin()
+
+ private:
+  struct JointRows {
+    JointRow<T> row;
+    int unknown = 0;  ///< of the row's first degree of freedom
+    T value = T(0), d_value = T(0);
+  };
+
+  void assemble(std::span<const Contact<T>> contacts, bool geometric);
+  void add_joint_geometry(TreeProblem<T>& tree);
+  void add_row_gradient(std::span<T> gradient) const;
+  T row_slope(T t) const;
+  T exact_line_search(T quadratic, T linear) const;
+  bool newton_step();
+  bool conjugate_gradients();
+  double remaining_length();
+  void multiply_smooth(std::span<const T> x, std::span<T> y) const;
+  void multiply_full(std::span<const T> x, std::span<T> y) const;
+
+  const StepSettings<T>* settings_ = nullptr;
+  std::span<TreeProblem<T>* const> trees_;
+  Unknowns unknowns_;
+  TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
+  TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
+  bool geometric_ = true;
+  ContactRows<T> contact_rows_;
+  std::vector<JointRows> joint_rows_;
+  std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
+  std::vector<T> smooth_gradient_;  ///< the same without the rows
+  std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
+  std::vector<T> step_, product_, correction_, correction_product_;
+  std::vector<T> residual_, preconditioned_, direction_;  ///< conjugate gradients
+  mutable std::vector<Vec3<T>> turn_, slide_;             ///< [body] of displacement()
+};
+
+extern template class InnerProblem<float>;
+extern template class InnerProblem<double>;
+
+}  // namespace sinew

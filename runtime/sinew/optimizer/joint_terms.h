@@ -1,0 +1,24 @@
+// Rows of a tree's free joints at the present pose: muscles, dry friction, damping, limits and cones.
+#pragma once
+
+#include "sinew/optimizer/problem.h"
+
+namespace sinew {
+
+/// Fills `problem.rows` for all free joints at `problem.local`, in the order of the bodies. O(free DOFs).
+template <class T>
+void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& problem);
+
+/// Second derivatives of the rows' scalars times their slopes, per ball or free joint: the geometric term of
+/// its own three rotations, `problem.joint_curvature`. Zero for joints without active rows. Call after
+/// measure_joint_rows.
+template <class T>
+void measure_joint_curvature(TreeProblem<T>& problem);
+
+#define SINEW_JOINT_TERMS_INSTANCES(prefix, T)                                \
+  prefix void measure_joint_rows<T>(const StepSettings<T>&, TreeProblem<T>&); \
+  prefix void measure_joint_curvature<T>(TreeProblem<T>&);
+SINEW_JOINT_TERMS_INSTANCES(extern template, float)
+SINEW_JOINT_TERMS_INSTANCES(extern template, double)
+
+}  // namespace sinew

@@ -1,0 +1,19 @@
+// Damaged, hostile and nonsensical files of every format, made on the spot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sinew::import::test {
+
+struct Malformed {
+  std::string name;
+  std::string file;  ///< name it is written under
+  std::string content;
+  std::string cause;  ///< regular expression that the message must match
+};
+
+/// All must be refused.
+const std::vector<Malformed>& malformed_inputs();
+
+}  // namespace sinew::import::test

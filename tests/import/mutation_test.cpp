@@ -1,0 +1,90 @@
+// Files damaged at random: each must come back, soon, as a sound scene or as one line.
+#include <algorithm>
+#include <random>
+
+#include "import/scene_check.h"
+#include "reading.h"
+
+namespace sinew::import::test {
+namespace {
+
+constexpr int kMutations = 200;
+constexpr unsigned kSeed = 5489;
+
+struct Seed {
+  const char* name;
+  const char* file;  ///< name to write it under
+  std::string (*content)();
+};
+
+/// Cut off, or up to 16 bytes changed, or a piece repeated.
+std::string mutated(std::string content, std::mt19937& random) {
+  switch (random() % 8) {
+    case 0:
+      return content.substr(0, random() % content.size());
+    case 1: {
+      const std::size_t from = random() % content.size(), size = std::min<std::size_t>(random() % 200, 199);
+      return content.insert(from, content.substr(random() % content.size(), size));
+    }
+    default:
+      for (unsigned n = 1 + random() % 16; n-- > 0;)
+        content[random() % content.size()] = static_cast<char>(random());
+      return content;
+  }
+}
+
+class Mutation : public testing::TestWithParam<Seed> {};
+
+TEST_P(Mutation, GivesASoundSceneOrOneLine) {
+  const std::string content = GetParam().content();
+  if (content.empty()) GTEST_SKIP() << "assimp-testmodels are not installed";
+  ASSERT_TRUE(read_content(GetParam().file, content).ok);
+  std::mt19937 random(kSeed);
+  ReadLimits limits;
+  limits.cpu_seconds = 5;
+  limits.wall_seconds = 20;  // wider than processor time: the tests share their cores
+  int read_well = 0;
+  double slowest = 0;
+  for (int k = 0; k < kMutations; ++k) {
+    const Outcome outcome = read_content(GetParam().file, mutated(content, random), limits);
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", mutation " + std::to_string(k) + ": " + outcome.error);
+    read_well += outcome.ok;
+    slowest = std::max(slowest, outcome.seconds);
+    if (outcome.ok) {
+      ASSERT_EQ(fault_in(outcome.scene), "");
+    } else {
+      ASSERT_FALSE(outcome.error.empty());
+      ASSERT_EQ(outcome.error.find('\n'), std::string::npos);
+      ASSERT_NE(outcome.error, "the reader ran out of time");
+      ASSERT_NE(outcome.error, "the reader tried something that it may not");
+    }
+  }
+  EXPECT_LT(read_well, kMutations);  // else nothing was damaged
+  std::printf("%s: %d read, %d refused, slowest %.0f ms\n", GetParam().name, read_well,
+              kMutations - read_well, 1e3 * slowest);
+}
+
+std::string model(const char* path) {
+  return content_of(std::string("/usr/share/assimp/models/") + path);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, Mutation,
+    testing::Values(Seed{"Gltf", "a.gltf", [] { return with_triangle(kicking_leg(), 0).dump(); }},
+                    Seed{"Glb", "a.glb",
+                         [] { return as_glb(with_triangle(kicking_leg(), 0), kick_keys_and_corners()); }},
+                    Seed{"Bvh", "a.bvh", [] { return walking_bvh(); }},
+                    Seed{"Fbx", "a.fbx", [] { return model("FBX/huesitos.fbx"); }},
+                    Seed{"Collada", "a.dae", [] { return model("Collada/box_nested_animation.dae"); }},
+                    Seed{"Urdf", "a.urdf",
+                         [] {
+                           return short_urdf(
+                               knee(kGoodLimit),
+                               "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+                               "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><visual><geometry><box size=\"1 2 "
+                               "3\"/></geometry></visual>");
+                         }}),
+    [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace sinew::import::test

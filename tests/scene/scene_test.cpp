@@ -1,0 +1,247 @@
+// Scenes on the project's own character: what a scene file says is what happens.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scene/run.h"
+#include "sinew/animation/sampling_job.h"
+
+namespace sinew::scene {
+namespace {
+
+const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
+
+struct Result {
+  Scene scene;
+  Recording recording;
+  Telemetry telemetry;
+
+  const CharacterFrame& at(double t, std::size_t character = 0) const {
+    return recording.frames[static_cast<std::size_t>(std::lround(t * scene.frame_rate))]
+        .characters[character];
+  }
+  int joint(const char* name) const { return scene.characters[0].asset->skeleton.find(name); }
+};
+
+/// A directory of this process: ctest runs the cases side by side.
+std::string own_file(const std::string& name) {
+  const std::filesystem::path directory = testing::TempDir() + "sinew_scene_" + std::to_string(getpid());
+  std::filesystem::create_directories(directory);
+  return (directory / name).string();
+}
+
+std::string written(const std::string& name, const std::string& content) {
+  const std::string path = own_file(name);
+  std::ofstream(path) << content;
+  return path;
+}
+
+/// `character` and `extra` are JSON members that are added to the only character and to the scene.
+Result run(const std::string& character, const std::string& extra = "", double duration = 1) {
+  Result r;
+  std::ostringstream text;
+  text << R"({"duration": )" << duration << R"(, "characters": [{"asset": ")" << kAsset << "\"" << character
+       << "}]" << extra << "}";
+  const convert::Error loaded = load_scene(written("run.json", text.str()), r.scene);
+  EXPECT_FALSE(loaded) << loaded.message;
+  if (loaded) return r;
+  const convert::Error ran = run_scene(r.scene, r.recording, r.telemetry, {});
+  EXPECT_FALSE(ran) << ran.message;
+  return r;
+}
+
+Vec3<double> forward(const Result& r, const CharacterFrame& frame) {
+  const Quat<double> rest = r.scene.characters[0].asset->skeleton.joints[0].rest.rotation;
+  return frame.model[0].rotation.cast<double>() * rest.conjugate() * Vec3<double>::UnitX();
+}
+
+Vec3<double> center_of_mass(const Result& r, const CharacterFrame& frame) {
+  const Skeleton& s = r.scene.characters[0].asset->skeleton;
+  Vec3<double> sum = Vec3<double>::Zero();
+  for (int i = 0; i < s.body_count; ++i)
+    sum += s.joints[i].mass * (frame.model[i].cast<double>() * s.joints[i].center_of_mass);
+  return sum / s.total_mass();
+}
+
+TEST(Scene, UndisturbedPlaybackIsTheClip) {
+  const Result r = run(R"(, "clips": [{"clip": "walk"}])");
+  const Asset& asset = *r.scene.characters[0].asset;
+  std::vector<JointJet<float>> jets(asset.skeleton.joints.size());
+  std::vector<Transform<float>> model(jets.size());
+  for (const Frame& frame : r.recording.frames) {
+    EXPECT_EQ(frame.characters[0].unknown_dofs, 0);
+    SamplingJob<float>{&asset.clips[r.scene.characters[0].clips[0].clip], frame.time, 1, jets}.Run();
+    for (std::size_t i = 0; i < jets.size(); ++i) {
+      const int parent = asset.skeleton.joints[i].parent;
+      model[i] = {jets[i].rotation, jets[i].translation};
+      if (parent >= 0) model[i] = model[static_cast<std::size_t>(parent)] * model[i];
+      EXPECT_LT((frame.characters[0].model[i].translation - model[i].translation).norm(), 1e-5f);
+      EXPECT_LT(frame.characters[0].model[i].rotation.angularDistance(model[i].rotation),
+                1e-3f);  // acos near 1
+    }
+  }
+}
+
+TEST(Scene, PositionAndYawPlaceTheClip) {
+  const Result r = run(R"(, "position": [3, -2, 0], "yaw_deg": 90, "clips": [{"clip": "walk"}])");
+  const Vec3<float> start = r.at(0).model[0].translation, end = r.at(1).model[0].translation;
+  EXPECT_NEAR(start.x(), 3, 0.1);
+  EXPECT_NEAR(start.y(), -2, 0.1);
+  EXPECT_GT(end.y() - start.y(), 0.8f);  // it walks along its own X, now the world's Y
+  EXPECT_LT(std::abs(end.x() - start.x()), 0.1f);
+}
+
+TEST(Scene, AlignedClipBeginsWhereTheCharacterStandsAndFaces) {
+  const Result r = run(R"(, "yaw_deg": 70, "clips": [{"clip": "walk"},
+                          {"clip": "stand", "start": 1.5, "blend": 0, "align": true}])",
+                       "", 2);
+  const Vec3<float> before = r.at(1.5 - 1 / 60.0).model[0].translation,
+                    after = r.at(1.5).model[0].translation;
+  // One frame of walking at about 1.3 m/s is 22 mm.
+  EXPECT_LT((before - after).head<2>().norm(), 0.03f);
+  EXPECT_GT(forward(r, r.at(1.4)).dot(forward(r, r.at(1.6))), 0.98);
+}
+
+TEST(Scene, GetUpIsChosenByTheSideThatTheCharacterLiesOn) {
+  for (const std::string side : {"supine", "prone"}) {
+    const Result r = run(R"(, "yaw_deg": 130, "position": [1, 2, 0], "clips": [{"clip": "get_up_)" + side +
+                             R"(", "rate": 0}, {"clip": "get_up", "start": 0.5, "blend": 0, "align": true}])",
+                         "", 0.6);
+    EXPECT_EQ(forward(r, r.at(0.4)).z() < 0, side == "prone");
+    // The chosen clip begins with the very pose in which the body lies: nothing may jump.
+    for (std::size_t i = 0; i < r.at(0.4).model.size(); ++i)
+      EXPECT_LT((r.at(0.4).model[i].translation - r.at(0.5).model[i].translation).norm(), 1e-3f) << side << i;
+  }
+}
+
+TEST(Scene, GroupStrengthSlackensOnlyItsSubtree) {
+  const Result r = run(R"(, "clips": [{"clip": "stand"}],
+                          "group_strength": [{"joint": "upperarm_l", "strength": [[0, 0]]}])");
+  const CharacterFrame& frame = r.at(1);
+  for (const char* slack : {"upperarm_l", "forearm_l"}) EXPECT_EQ(frame.limit[r.joint(slack)], 0) << slack;
+  for (const char* strong : {"upperarm_r", "chest", "clavicle_l"})
+    EXPECT_GT(frame.limit[r.joint(strong)], 1) << strong;
+  EXPECT_GT(frame.unknown_dofs, 0);
+}
+
+TEST(Scene, PushIsSpreadOverItsDurationAndGivesItsImpulse) {
+  const std::string floating = R"(, "ground": false, "gravity": [0, 0, 0], "pushes": [{"time": 0.2, )"
+                               R"("duration": 0.25, "joint": "pelvis", "impulse": [0, 75, 0]}])";
+  const Result r = run(R"(, "clips": [{"clip": "stand"}], "root": [[0, "free"]])", floating);
+  const auto velocity = [&](double from, double to) {
+    return Vec3<double>((center_of_mass(r, r.at(to)) - center_of_mass(r, r.at(from))) / (to - from));
+  };
+  const double expected = 75 / r.scene.characters[0].asset->skeleton.total_mass();
+  const double before = velocity(0, 0.2).y();  // the clip's own sway, some mm/s
+  // Linear momentum is exact in the scheme; 1 % covers the solver's 0.03 mm per step.
+  EXPECT_NEAR(velocity(0.5, 1.0).y() - before, expected, 0.01 * expected);
+  EXPECT_NEAR(velocity(0.2 + 7 / 60.0, 0.2 + 8 / 60.0).y() - before, expected / 2, 0.05 * expected);
+}
+
+TEST(Scene, ThrownBallMeetsTheJointOfAWalkingCharacter) {
+  const Result r = run(R"(, "clips": [{"clip": "walk"}])",
+                       R"(, "props": [{"size": 0.1, "mass": 0.5, "throw_at": {"joint": "chest", "time": 0.3,
+                           "speed": 8, "from": [2, 2, 1]}}])",
+                       1.2);
+  float closest = 1e9f;
+  const int chest = r.joint("chest");
+  for (const Frame& frame : r.recording.frames)
+    closest = std::min(
+        closest, (frame.props[0].world.translation - frame.characters[0].model[chest].translation).norm());
+  EXPECT_LT(closest, 0.1f + 0.25f);  // radius, and the chest around its joint
+  EXPECT_LT(r.recording.frames.front().props[0].world.translation.z(), -100) << "hidden until its launch";
+}
+
+TEST(Scene, SameSceneGivesTheSameBits) {
+  const std::string character = R"(, "clips": [{"clip": "walk"}], "strength": [[0, 1], [0.4, 0.01]],
+                                   "root": [[0, "kinematic"], [0.4, "free"]])";
+  const Result a = run(character), b = run(character);
+  for (std::size_t f = 0; f < a.recording.frames.size(); ++f)
+    for (std::size_t i = 0; i < a.recording.frames[f].characters[0].model.size(); ++i) {
+      const auto &x = a.recording.frames[f].characters[0].model[i],
+                 &y = b.recording.frames[f].characters[0].model[i];
+      ASSERT_EQ(x.translation, y.translation) << f << " " << i;
+      ASSERT_EQ(x.rotation.coeffs(), y.rotation.coeffs()) << f << " " << i;
+    }
+}
+
+TEST(Telemetry, EveryRowHasOneFieldPerColumnWhateverNamesSay) {
+  const Result r = run(R"(, "name": "a,\"b\nc", "clips": [{"clip": "walk"}])", "", 0.2);
+  std::istringstream csv(telemetry_csv(r.scene, r.telemetry));
+  std::string header, row;
+  std::getline(csv, header);
+  const auto columns = std::count(header.begin(), header.end(), ',');
+  EXPECT_NE(header.find(",load_upperarm_l"), std::string::npos);
+  int rows = 0;
+  for (; std::getline(csv, row); ++rows) EXPECT_EQ(std::count(row.begin(), row.end(), ','), columns) << row;
+  EXPECT_EQ(rows, 13);
+}
+
+TEST(Telemetry, PlotIsDrawnAlsoUnderAwkwardNames) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  Result r = run(R"(, "clips": [{"clip": "walk"}])", R"(, "plot": "chest")", 0.5);
+  r.telemetry.plotted_name = "it's \" a _joint";
+  const std::string csv = written("it's.csv", telemetry_csv(r.scene, r.telemetry));
+  const std::string png = own_file("it's.png");
+  const convert::Error error = plot_telemetry(csv, r.telemetry, png);
+  ASSERT_FALSE(error) << error.message;
+  EXPECT_GT(std::filesystem::file_size(png), 10000u);
+  EXPECT_FALSE(std::filesystem::exists(png + ".gp"));
+  EXPECT_TRUE(plot_telemetry("/no/such.csv", r.telemetry, png + "2"));
+  EXPECT_FALSE(std::filesystem::exists(png + "2"));
+}
+
+TEST(DemoScene, RunsOnAModelWithoutClipsAndRoles) {
+  const std::string link =
+      "<inertial><mass value=\"2\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" "
+      "ixz=\"0\" iyz=\"0\"/></inertial>";
+  const std::string urdf = written(
+      "chain.urdf", "<robot name=\"chain\"><link name=\"a\">" + link + "</link><link name=\"b\">" + link +
+                        "</link><joint name=\"j\" type=\"continuous\"><parent "
+                        "link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0.5\"/>"
+                        "<axis xyz=\"0 1 0\"/></joint></robot>");
+  auto asset = std::make_shared<Asset>();
+  nlohmann::json report;
+  const convert::Error error = convert::open_any(urdf, {}, *asset, report);
+  ASSERT_FALSE(error) << error.message;
+  Recording recording;
+  Telemetry telemetry;
+  const convert::Error ran = run_scene(demo_scene(asset), recording, telemetry, {});
+  EXPECT_FALSE(ran) << ran.message;
+  for (const Frame& frame : recording.frames)
+    for (const auto& x : frame.characters[0].model) ASSERT_TRUE(x.translation.allFinite()) << frame.time;
+}
+
+TEST(DemoScene, MotionCaptureFallsAndReturnsToItsClip) {
+  const std::string bvh = "/usr/share/assimp/models/BVH/01_01.bvh";
+  if (!std::filesystem::exists(bvh)) GTEST_SKIP() << "assimp-testmodels is not installed";
+  auto asset = std::make_shared<Asset>();
+  nlohmann::json report;
+  const convert::Error error = convert::open_any(bvh, {}, *asset, report);
+  ASSERT_FALSE(error) << error.message;
+  Recording recording;
+  Telemetry telemetry;
+  const Scene scene = demo_scene(asset);
+  const convert::Error ran = run_scene(scene, recording, telemetry, {});
+  ASSERT_FALSE(ran) << ran.message;
+  const auto pelvis = [&](double t) {
+    return recording.frames[static_cast<std::size_t>(t * scene.frame_rate)]
+        .characters[0]
+        .model[0]
+        .translation.z();
+  };
+  const auto unknown = [&](double t) {
+    return recording.frames[static_cast<std::size_t>(t * scene.frame_rate)].characters[0].unknown_dofs;
+  };
+  EXPECT_EQ(unknown(1), 0);
+  EXPECT_LT(pelvis(7.5), 0.5f * pelvis(1)) << "it lies";
+  EXPECT_GT(pelvis(11.5), 0.8f * pelvis(1)) << "it stands again";
+  EXPECT_EQ(unknown(11.5), 0);
+}
+
+}  // namespace
+}  // namespace sinew::scene

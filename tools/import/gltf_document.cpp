@@ -1,0 +1,178 @@
+#include "import/gltf_document.h"
+
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "import/readers.h"
+
+namespace sinew::import {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  ///< "JSON", little-endian
+
+std::uint32_t word_at(const std::string& content, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, content.data() + at, sizeof word);
+  return word;
+}
+
+std::string as_bytes(std::uint32_t word) {
+  return {reinterpret_cast<const char*>(&word), sizeof word};
+}
+
+/// Length of the JSON chunk of a GLB.
+std::size_t json_length(const std::string& content) {
+  if (content.size() < kHeader + kChunkHeader) throw std::runtime_error("the GLB ends within its header");
+  if (word_at(content, 4) != 2)
+    throw std::runtime_error("GLB version " + std::to_string(word_at(content, 4)) + "; only 2 can be read");
+  if (word_at(content, 8) > content.size())
+    throw std::runtime_error("the GLB is cut off: " + std::to_string(content.size()) + " of " +
+                             std::to_string(word_at(content, 8)) + " bytes");
+  const std::size_t length = word_at(content, kHeader);
+  if (word_at(content, kHeader + 4) != kJsonChunk || length > content.size() - kHeader - kChunkHeader)
+    throw std::runtime_error("the GLB does not begin with a whole JSON chunk");
+  return length;
+}
+
+std::size_t index_in(const Json& owner, const char* key, std::size_t count, const std::string& where) {
+  const Json& value = owner.at(key);
+  if (!value.is_number_unsigned() || value.get<std::size_t>() >= count)
+    throw std::runtime_error(where + ": '" + key + "' points nowhere");
+  return value.get<std::size_t>();
+}
+
+std::size_t length_of(const Json& document, const char* key) {
+  return document.contains(key) ? document.at(key).size() : 0;
+}
+
+/// Every node has at most one parent and hangs, not too deep, on one that has none.
+void check_tree(const Json& nodes, const ReadLimits& limits) {
+  if (nodes.size() > static_cast<std::size_t>(limits.max_nodes)) throw std::runtime_error("too many nodes");
+  std::vector<bool> has_parent(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (!nodes[k].contains("children")) continue;
+    for (const Json& child : nodes[k].at("children")) {
+      const std::string where = "node " + std::to_string(k);
+      if (!child.is_number_unsigned() || child.get<std::size_t>() >= nodes.size())
+        throw std::runtime_error(where + ": a child points nowhere");
+      if (has_parent[child.get<std::size_t>()])
+        throw std::runtime_error("node " + std::to_string(child.get<std::size_t>()) + " has two parents");
+      has_parent[child.get<std::size_t>()] = true;
+    }
+  }
+  struct Open {
+    std::size_t node;
+    int depth;
+  };
+  std::vector<Open> stack;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (!has_parent[k]) stack.push_back({k, 1});
+  std::size_t reached = 0;
+  while (!stack.empty()) {
+    const Open open = stack.back();
+    stack.pop_back();
+    ++reached;
+    if (open.depth > limits.max_depth) throw std::runtime_error("nodes are nested too deeply");
+    if (!nodes[open.node].contains("children")) continue;
+    for (const Json& child : nodes[open.node].at("children"))
+      stack.push_back({child.get<std::size_t>(), open.depth + 1});
+  }
+  if (reached != nodes.size()) throw std::runtime_error("nodes form a loop");
+}
+
+void check_animation(const Json& document, const Json& animation, const std::string& where) {
+  static const Json kNone = Json::array();
+  const Json& samplers = animation.at("samplers");
+  const Json& accessors = document.contains("accessors") ? document.at("accessors") : kNone;
+  for (const Json& channel : animation.at("channels")) {
+    const Json& sampler = samplers[index_in(channel, "sampler", samplers.size(), where)];
+    const Json& target = channel.at("target");
+    if (target.contains("node")) index_in(target, "node", length_of(document, "nodes"), where);
+    const Json& input = accessors[index_in(sampler, "input", accessors.size(), where)];
+    const Json& output = accessors[index_in(sampler, "output", accessors.size(), where)];
+    if (target.value("path", "") == "weights") continue;  // times the number of morph targets
+    const std::size_t per_key = sampler.value("interpolation", "LINEAR") == "CUBICSPLINE" ? 3 : 1;
+    if (output.at("count").get<std::size_t>() != per_key * input.at("count").get<std::size_t>())
+      throw std::runtime_error(where + ": key times and values differ in number");
+  }
+}
+
+/// "my%20skin.png" → "my skin.png"; assimp 5.2.5 asks for the name as it stands.
+std::string percent_decoded(const std::string& uri) {
+  std::string out;
+  for (std::size_t at = 0; at < uri.size(); ++at) {
+    const auto digit = [&](std::size_t i) { return std::isxdigit(static_cast<unsigned char>(uri[i])); };
+    const bool coded = uri[at] == '%' && at + 2 < uri.size() && digit(at + 1) && digit(at + 2);
+    out += coded ? static_cast<char>(std::stoi(uri.substr(at + 1, 2), nullptr, 16)) : uri[at];
+    if (coded) at += 2;
+  }
+  return out;
+}
+
+void decode_uris(Json& document) {
+  for (const char* list : {"buffers", "images"}) {
+    if (!document.contains(list)) continue;
+    for (Json& item : document.at(list)) {
+      const std::string uri = item.value("uri", "");
+      if (!uri.empty() && uri.rfind("data:", 0) != 0) item["uri"] = percent_decoded(uri);
+    }
+  }
+}
+
+GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& limits) {
+  const std::size_t begin = binary ? kHeader + kChunkHeader : 0;
+  const std::size_t length = binary ? json_length(content) : content.size();
+  const std::string_view text(content.data() + begin, length);
+  check_json_nesting(text);
+  Json document = Json::parse(text);
+  GltfDocument out;
+  if (document.contains("nodes")) {
+    Json& nodes = document.at("nodes");
+    check_tree(nodes, limits);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      out.node_names.push_back(nodes[k].value("name", ""));
+      nodes[k]["name"] = node_tag(k);
+    }
+  }
+  if (document.contains("animations")) {
+    const Json& animations = document.at("animations");
+    for (std::size_t a = 0; a < animations.size(); ++a)
+      check_animation(document, animations[a], "animation " + std::to_string(a));
+  }
+  decode_uris(document);
+  out.content = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (binary) {
+    out.content.resize((out.content.size() + 3) / 4 * 4, ' ');
+    const std::string rest = content.substr(begin + length);
+    const std::size_t total = begin + out.content.size() + rest.size();
+    out.content = "glTF" + as_bytes(2) + as_bytes(static_cast<std::uint32_t>(total)) +
+                  as_bytes(static_cast<std::uint32_t>(out.content.size())) + as_bytes(kJsonChunk) +
+                  out.content + rest;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string node_tag(std::size_t k) {
+  return "node_" + std::to_string(k);
+}
+
+GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLimits& limits) {
+  try {
+    return prepare(content, binary, limits);
+  } catch (const Json::parse_error& e) {
+    throw std::runtime_error("its JSON is damaged at byte " + std::to_string(e.byte));
+  } catch (const Json::exception& e) {
+    throw std::runtime_error(std::string("its glTF structure is wrong: ") + e.what());
+  }
+}
+
+}  // namespace sinew::import

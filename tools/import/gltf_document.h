@@ -1,0 +1,24 @@
+// glTF before assimp sees it: its JSON, checked where assimp 5.2.5 does not look, with a name of its own for
+// every node, because assimp's channels and bones go by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/source_scene.h"
+
+namespace sinew::import {
+
+struct GltfDocument {
+  std::string content;                  ///< the file again, node k named node_tag(k)
+  std::vector<std::string> node_names;  ///< as in the file, perhaps empty or repeated
+};
+
+/// Name that node k goes by between here and SceneBuilder, and keeps when the file gives it none.
+std::string node_tag(std::size_t k);
+
+/// Throws std::runtime_error with one clause: damaged JSON or GLB chunks, nodes with two parents, in a loop
+/// or too deep, channels and samplers that point nowhere, key times and values that differ in number.
+GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLimits& limits);
+
+}  // namespace sinew::import
