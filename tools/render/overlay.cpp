@@ -1,5 +1,7 @@
 #include "render/overlay.h"
 
+#include <cairo.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

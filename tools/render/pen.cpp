@@ -1,5 +1,7 @@
 #include "render/pen.h"
 
+#include <cairo.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +32,10 @@ Color Pen::stress(float load) const {
   const double bright = dark_ ? 1.25 : 0.92;
   const auto shown = [&](float linear) { return std::min(1.0, bright * std::pow(double(linear), 1 / 2.2)); };
   return {shown(c.x()), shown(c.y()), shown(c.z())};
+}
+
+void Pen::set(const Color& c) const {
+  cairo_set_source_rgba(cairo_, c.r, c.g, c.b, c.a);
 }
 
 void Pen::font(double size, bool bold) const {

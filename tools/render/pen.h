@@ -1,12 +1,14 @@
 // cairo with the overlay's colours and units.
 #pragma once
 
-#include <cairo.h>
-
 #include <string>
 
 #include "render/geometry.h"
 #include "render/overlay.h"
+
+// As cairo.h declares them.
+typedef struct _cairo cairo_t;
+typedef struct _cairo_surface cairo_surface_t;
 
 namespace sinew::render {
 
@@ -47,7 +49,7 @@ class Pen {
 
   cairo_t* cairo() const { return cairo_; }
   double unit() const { return unit_; }
-  void set(const Color& c) const { cairo_set_source_rgba(cairo_, c.r, c.g, c.b, c.a); }
+  void set(const Color& color) const;
 
  private:
   void rounded(const Rect& at, double radius) const;

@@ -19,27 +19,31 @@ bool one_of(const std::string& value, std::initializer_list<const char*> allowed
   return std::find(allowed.begin(), allowed.end(), value) != allowed.end();
 }
 
-Error check(const Options& o, const std::string& output) {
+/// What is wrong, or nothing.
+std::string fault(const Options& o, const std::filesystem::path& output) {
+  const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
   if (o.width < 16 || o.height < 16 || o.width > 8192 || o.height > 8192)
-    return {"size is not between 16 and 8192"};
-  if (o.width % 2 || o.height % 2)
-    return {"width and height must be even (" + std::to_string(o.width) + "x" + std::to_string(o.height) +
-            ")"};
-  if (o.samples != 1 && o.samples != 4) return {"samples are 1 or 4"};
-  if (!one_of(o.quality, {"full", "fast"})) return {"unknown quality '" + o.quality + "'"};
-  if (!one_of(o.theme, {"dark", "light"})) return {"unknown theme '" + o.theme + "'"};
-  if (!one_of(o.mode, {"skin", "xray", "shapes", "both"})) return {"unknown mode '" + o.mode + "'"};
-  if (!(o.fps >= 1 && o.fps <= 240)) return {"fps is not between 1 and 240"};
-  if (!(o.start >= 0)) return {"start is not a time from 0 s on"};
-  if (o.frames_per_revolution < 1) return {"frames per revolution are not positive"};
-  if (o.threads < 1 || o.threads > 64) return {"encoder threads are not between 1 and 64"};
-  const std::filesystem::path path(output);
-  if (!one_of(path.extension().string(), {".mp4", ".webm", ".gif", ".png"}))
-    return {output + ": unknown kind of output; .mp4, .webm, .gif or .png"};
+    return "its size is not between 16 and 8192 (" + size + ")";
+  if (o.width % 2 || o.height % 2) return "width and height must be even (" + size + ")";
+  if (o.samples != 1 && o.samples != 4) return "samples are 1 or 4";
+  if (!one_of(o.quality, {"full", "fast"})) return "unknown quality '" + o.quality + "'";
+  if (!one_of(o.theme, {"dark", "light"})) return "unknown theme '" + o.theme + "'";
+  if (!one_of(o.mode, {"skin", "xray", "shapes", "both"})) return "unknown mode '" + o.mode + "'";
+  if (!(o.fps >= 1 && o.fps <= 240)) return "fps is not between 1 and 240";
+  if (!(o.start >= 0)) return "start is not a time from 0 s on";
+  if (o.frames_per_revolution < 1) return "frames per revolution are not positive";
+  if (o.threads < 1 || o.threads > 64) return "encoder threads are not between 1 and 64";
+  if (!one_of(output.extension().string(), {".mp4", ".webm", ".gif", ".png"}))
+    return "unknown kind of output; .mp4, .webm, .gif or .png";
   std::error_code ignored;
-  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), ignored))
-    return {output + ": its directory does not exist"};
+  if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path(), ignored))
+    return "its directory does not exist";
   return {};
+}
+
+Error check(const Options& o, const std::string& output) {
+  const std::string found = fault(o, output);
+  return found.empty() ? Error{} : Error{output + ": " + found};
 }
 
 void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look look, Geometry& out) {
@@ -153,7 +157,7 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   if (Error error = check(o, output)) return error;
   if (rec.frames.empty()) return {"the recording has no frames"};
   if (o.start > rec.frames.back().time - rec.frames.front().time)
-    return {"start is after the end of the recording"};
+    return {output + ": start is after the end of the recording"};
   std::unique_ptr<Painter> painter;
   if (Error error = Painter::create(o, painter)) return error;
   Error error;
@@ -175,7 +179,7 @@ Error render_asset(std::shared_ptr<const Asset> asset, const Options& o, const s
                    const std::function<void(int, int)>& progress) {
   if (Error error = check(o, output)) return error;
   const int clip = o.clip.empty() ? -1 : asset->find_clip(o.clip);
-  if (!o.clip.empty() && clip < 0) return {"unknown clip '" + o.clip + "'"};
+  if (!o.clip.empty() && clip < 0) return {asset->skeleton.name + ": no clip '" + o.clip + "'"};
   const Clip* played = clip < 0 ? nullptr : &asset->clips[static_cast<std::size_t>(clip)];
   std::unique_ptr<Painter> painter;
   if (Error error = Painter::create(o, painter)) return error;

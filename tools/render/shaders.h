@@ -132,7 +132,9 @@ void main() {
   float coarse = max(line(g.x * 0.25, 0.0028), line(g.y * 0.25, 0.0028));
   float spot = mix(1.0, exp(-0.045 * off * off), pool);
   float lit = shadow(p, vec3(0, 0, 1), 0.0030);
-  vec3 light = ground_color * (key_color * light_direction.z * mix(0.16, 1.0, lit) * spot + sky_color * 0.6 * mix(0.35, 1.0, openness()));
+  float open = openness();
+  vec3 light = ground_color * (key_color * light_direction.z * mix(0.16, 1.0, lit) * mix(0.55, 1.0, open) * spot
+                               + sky_color * 0.6 * mix(0.2, 1.0, open));
   light = mix(light, line_color * mix(0.45, 1.0, lit) * mix(0.35, 1.0, spot), max(fine, coarse) * 0.55);
   result = vec4(mix(fog_color, tone(light), exp(-away * away * 0.0024)) * vignette(), 1.0);
 }
@@ -183,7 +185,7 @@ void main() {
   vec3 dx = smaller(position(min(here + ivec2(1, 0), last)) - p, p - position(max(here - ivec2(1, 0), ivec2(0))));
   vec3 dy = smaller(position(min(here + ivec2(0, 1), last)) - p, p - position(max(here - ivec2(0, 1), ivec2(0))));
   vec3 n = normalize(cross(dx, dy));
-  float radius = 0.20 * unit, squared = radius * radius;
+  float radius = 0.26 * unit, squared = radius * radius;
   float reach = min(radius / (slope.y * -p.z) * 0.5 * float(last.y + 1), 0.25 * float(last.y + 1)); // texels
   float turn = float((here.x & 3) * 4 + (here.y & 3)) * 0.3926991;
   float sum = 0.0;
@@ -194,7 +196,7 @@ void main() {
     float vv = dot(v, v), f = max(squared - vv, 0.0);
     sum += f * f * f * max((dot(v, n) - 0.006 * unit) / (vv + 1e-4 * unit * unit), 0.0);
   }
-  float open = max(0.0, 1.0 - sum * 0.17 * unit / (squared * squared * squared * 14.0));
+  float open = max(0.0, 1.0 - sum * 0.38 * unit / (squared * squared * squared * 14.0));
   result = vec2(open, -p.z);
 }
 )";
