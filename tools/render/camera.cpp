@@ -83,28 +83,33 @@ std::vector<float> dilated(const std::vector<float>& values, int reach) {
   return out;
 }
 
-/// Distance from which the box's upright cylinder fills the picture but for its margins: the same from all
-/// sides, so that a turntable keeps still. `down` is the sine of the camera's pitch below the horizon.
-float fitting_distance(const Box& box, float fov, float aspect, float down) {
+/// Distance from which the box fills the picture but for its margins. `direction` leads from target to eye
+/// (unit). On a turntable the box's upright cylinder counts, from all sides the same, so that the camera
+/// keeps its distance.
+float fitting_distance(const Box& box, const Vec3<float>& direction, float fov, float aspect, bool turning) {
   const Vec3<float> half = (box.high - box.low) / 2;
-  const float radius = half.head<2>().norm(), level = std::sqrt(std::max(0.f, 1 - down * down));
-  const float tall = half.z() * level + radius * std::abs(down);
+  const Eigen::Vector2f toward = direction.head<2>().normalized();
+  const float radius = half.head<2>().norm();
+  const float across = turning ? radius : std::abs(toward.y()) * half.x() + std::abs(toward.x()) * half.y();
+  const float deep = turning ? radius : std::abs(toward.x()) * half.x() + std::abs(toward.y()) * half.y();
+  const float level = direction.head<2>().norm();
+  const float tall = half.z() * level + deep * std::abs(direction.z());
   const float up = std::tan(fov / 2);
-  return std::max(tall / (0.80f * up), radius / (0.72f * up * aspect)) + 0.5f * radius;
+  return std::max(tall / (0.80f * up), across / (0.72f * up * aspect)) + 0.5f * deep;
 }
 
 /// Views along `direction` (from target to eye, unit), one target and distance for each frame.
 std::vector<View> follow(const scene::Recording& rec, const std::vector<Box>& boxes,
-                         const Vec3<float>& direction, float fov, float aspect) {
+                         const Vec3<float>& direction, float fov, float aspect, bool turning) {
   std::vector<Vec3<float>> targets;
   std::vector<float> distances;
   for (const Box& box : boxes) {
     targets.push_back(box.centre());
-    distances.push_back(fitting_distance(box, fov, aspect, direction.z()));
+    distances.push_back(fitting_distance(box, direction, fov, aspect, turning));
   }
   const float rate = float(rec.frame_rate);
   targets = smoothed(targets, std::max(0.1f, 0.35f * rate));
-  distances = smoothed(dilated(distances, static_cast<int>(1.2f * rate)), std::max(0.1f, 0.5f * rate));
+  distances = smoothed(dilated(distances, static_cast<int>(0.8f * rate)), std::max(0.1f, 0.5f * rate));
   const float unit = std::max(1e-3f, boxes.front().diagonal() / (1.15f * kAdult));
   std::vector<View> views;
   for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -129,7 +134,7 @@ std::vector<View> plan_camera(const scene::Recording& rec, float aspect) {
       }
       std::fill(boxes.begin(), boxes.end(), all);
     }
-    return follow(rec, boxes, offset.normalized(), fov, aspect);
+    return follow(rec, boxes, offset.normalized(), fov, aspect, false);
   }
   std::vector<Vec3<float>> shift(boxes.size(), Vec3<float>::Zero());
   if (following) {
@@ -154,7 +159,7 @@ std::vector<View> plan_turntable(const scene::Recording& rec, float aspect, int 
   constexpr float kDown = 0.16f;  // sine of the pitch
   const float start = -0.62f;     // rad: a little from the figure's right
   std::vector<View> views =
-      follow(rec, boxes_of(rec), Vec3<float>(std::sqrt(1 - kDown * kDown), 0, kDown), 0.5f, aspect);
+      follow(rec, boxes_of(rec), Vec3<float>(std::sqrt(1 - kDown * kDown), 0, kDown), 0.5f, aspect, true);
   for (std::size_t n = 0; n < views.size(); ++n) {
     const double turn = per_revolution > 0 ? 2 * 3.14159265358979 * double(n) / double(per_revolution) : 0;
     const Quat<float> around(Eigen::AngleAxisf(start + float(turn), Vec3<float>::UnitZ()));

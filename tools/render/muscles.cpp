@@ -1,5 +1,6 @@
 #include "render/muscles.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/shapes.h"
@@ -56,12 +57,6 @@ constexpr Strand kStrands[] = {
      0.026f,
      Role::kUpperArmL},  // pectorals
     {Role::kChest,
-     {0.030f, 0.020f, 0.078f},
-     Role::kUpperArmL,
-     {0.005f, 0.028f, -0.060f},
-     0.024f,
-     Role::kUpperArmL},  // deltoids
-    {Role::kChest,
      {-0.048f, 0.020f, -0.010f},
      Role::kUpperArmL,
      {-0.018f, 0.000f, -0.040f},
@@ -98,27 +93,21 @@ Role mirrored(Role role) {
   return r >= first && (r - first) % 2 == 0 ? static_cast<Role>(r + 1) : role;
 }
 
-bool is_trunk(Role role) {
-  return role == Role::kPelvis || role == Role::kSpine || role == Role::kChest || role == Role::kNeck ||
-         role == Role::kClavicleL || role == Role::kClavicleR;
-}
-
-/// Trunk muscles by role, on both sides. False where the skeleton has no chest and pelvis to carry them.
-bool append_strands(const Asset& asset, const scene::CharacterFrame& frame, Geometry& out) {
-  const Skeleton& s = asset.skeleton;
+/// Trunk muscles by role, on both sides; none where the skeleton has no chest and pelvis to carry them.
+void append_strands(const Skeleton& s, const std::vector<Transform<float>>& rest,
+                    const scene::CharacterFrame& frame, Geometry& out) {
   int chest = s.find(Role::kChest);
   for (std::size_t i = 0; chest < 0 && i < s.joints.size(); ++i)  // no chest by name: the highest spine
     if (s.joints[i].role == Role::kSpine && s.find(Role::kUpperArmL) >= 0) chest = static_cast<int>(i);
   const int head = s.find(Role::kHead), foot = s.find(Role::kFootL), pelvis = s.find(Role::kPelvis);
-  if (chest < 0 || head < 0 || foot < 0) return false;
-  const std::vector<Transform<float>> rest = rest_model(s);
+  if (chest < 0 || head < 0 || foot < 0) return;
   const auto joint = [&](Role role) {
     return role == Role::kChest ? chest : (role == Role::kPelvis && pelvis < 0 ? 0 : s.find(role));
   };
   const float height = (rest[static_cast<std::size_t>(head)].translation.z() -
                         rest[static_cast<std::size_t>(foot)].translation.z()) /
                        0.86f;
-  if (!(height > 0.1f)) return false;
+  if (!(height > 0.1f)) return;
   for (const Strand& strand : kStrands)
     for (const bool left : {true, false}) {
       const int from = joint(left ? strand.from : mirrored(strand.from)),
@@ -134,7 +123,79 @@ bool append_strands(const Asset& asset, const scene::CharacterFrame& frame, Geom
       append_spindle(at(from, strand.from_offset), at(to, strand.to_offset), strand.radius * height,
                      moves >= 0 ? frame.load[static_cast<std::size_t>(moves)] : 0, out);
     }
-  return true;
+}
+
+/// Half the thickness of the body's flesh: its shape's smallest radius, m; 0 without a shape.
+float girth(const Skeleton& s, std::size_t joint) {
+  for (const Collider& c : s.colliders)
+    if (c.joint == static_cast<int>(joint))
+      return float(c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x());
+  return 0;
+}
+
+bool is_long_bone(Role role) {
+  return role == Role::kUpperArmL || role == Role::kUpperArmR || role == Role::kForearmL ||
+         role == Role::kForearmR || role == Role::kThighL || role == Role::kThighR || role == Role::kShinL ||
+         role == Role::kShinR;
+}
+
+/// Bones from every joint to its children, and around the limbs' long bones two muscles in front and one
+/// behind, which move the joint at their far end; over the shoulders the deltoids.
+void append_bones(const Skeleton& s, const std::vector<Transform<float>>& rest,
+                  const scene::CharacterFrame& frame, Geometry& out) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(s.body_count); ++i) {
+    if (s.joints[i].parent < 0) continue;
+    const auto p = static_cast<std::size_t>(s.joints[i].parent);
+    const Vec3<float> a = frame.model[p].translation, b = frame.model[i].translation;
+    const float length = (b - a).norm(), flesh = girth(s, p);
+    if (length < 1e-3f) continue;
+    const float radius = flesh > 0 ? std::min(0.26f * flesh, 0.2f * length) : 0.07f * length;
+    append_capsule(between(a, b), radius, length / 2, kBone, 0, out);
+    if (!is_long_bone(s.joints[p].role)) continue;
+    const Vec3<float> along = (b - a) / length;
+    Vec3<float> front =
+        frame.model[p].rotation * (rest[p].rotation.conjugate() * Vec3<float>(Vec3<float>::UnitX()));
+    front = (front - front.dot(along) * along).normalized();
+    const Vec3<float> left = along.cross(front);
+    for (const float angle : {0.25f * kPi, -0.45f * kPi, 0.9f * kPi}) {
+      const Vec3<float> side = (std::cos(angle) * front + std::sin(angle) * left) * (0.5f * flesh);
+      append_spindle(a + side + 0.03f * length * along, b + 0.5f * side - 0.04f * length * along,
+                     0.52f * flesh, frame.load[i], out);
+    }
+    const Role role = s.joints[p].role;
+    if (role != Role::kUpperArmL && role != Role::kUpperArmR) continue;
+    // The deltoid lies over the shoulder: above it in a T-pose, outside of it where the arm hangs at rest.
+    const Vec3<float> outward(0, role == Role::kUpperArmL ? 1 : -1, 1);
+    Vec3<float> over = frame.model[p].rotation * (rest[p].rotation.conjugate() * outward);
+    over = (over - over.dot(along) * along).normalized();
+    append_spindle(a + 0.35f * flesh * over - 0.20f * length * along,
+                   a + 0.55f * flesh * over + 0.58f * length * along, 0.62f * flesh, frame.load[p], out);
+  }
+}
+
+/// A shape whose body has no child or no known role: its bone, and three muscles around it when its role is
+/// unknown.
+void append_part(const Collider& c, Role role, const Transform<float>& world, float load, Geometry& out) {
+  const float radius = float(c.size.x()), half = float(c.size.z());
+  if (c.shape == Shape::kBox) {
+    append_capsule({world.rotation * Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), Vec3<float>::UnitX()),
+                    world.translation},
+                   0.6f * half, 0.75f * radius, kBone, 0, out);
+    return;
+  }
+  if (role != Role::kNone) {
+    append_capsule(world, (role == Role::kHead ? 0.82f : 0.5f) * radius, half, kBone, 0, out);
+    return;
+  }
+  const float reach = half + 0.5f * radius;
+  append_capsule(world, 0.28f * radius, reach, kBone, 0, out);
+  const Vec3<float> along = world.rotation * Vec3<float>::UnitZ();
+  for (int k = 0; k < 3; ++k) {
+    const float angle = 2 * kPi * (float(k) + 0.25f) / 3;
+    const Vec3<float> side = world.rotation * Vec3<float>(std::cos(angle), std::sin(angle), 0);
+    const Vec3<float> middle = world.translation + side * (0.5f * radius);
+    append_spindle(middle - along * reach, middle + along * reach, 0.5f * radius, load, out);
+  }
 }
 
 }  // namespace
@@ -142,35 +203,18 @@ bool append_strands(const Asset& asset, const scene::CharacterFrame& frame, Geom
 void append_muscles(const Asset& asset, const scene::CharacterFrame& frame, Geometry& out) {
   const std::size_t first = out.indices.size();
   const Skeleton& s = asset.skeleton;
-  const bool trunk_done = append_strands(asset, frame, out);
+  const std::vector<Transform<float>> rest = rest_model(s);
+  append_bones(s, rest, frame, out);
+  append_strands(s, rest, frame, out);
+  std::vector<bool> carries(s.joints.size(), false);  // a body further out
+  for (std::size_t i = 0; i < static_cast<std::size_t>(s.body_count); ++i)
+    if (s.joints[i].parent >= 0) carries[static_cast<std::size_t>(s.joints[i].parent)] = true;
   for (const Collider& c : s.colliders) {
-    if (c.joint >= s.body_count) continue;
     const auto joint = static_cast<std::size_t>(c.joint);
-    const Transform<float> world = frame.model[joint] * c.local.cast<float>();
     const Role role = s.joints[joint].role;
-    if (c.shape == Shape::kBox || role == Role::kToesL || role == Role::kToesR) {
-      if (c.shape == Shape::kBox)
-        append_capsule(
-            {world.rotation * Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), Vec3<float>::UnitX()),
-             world.translation},
-            0.6f * float(c.size.z()), 0.75f * float(c.size.x()), kBone, 0, out);
-      continue;
-    }
-    const float radius = float(c.size.x()), half = float(c.size.z()) + 0.5f * radius;
-    if (role == Role::kHead) {
-      append_capsule(world, 0.82f * radius, float(c.size.z()), kBone, 0, out);
-      continue;
-    }
-    append_capsule(world, (is_trunk(role) ? 0.32f : 0.28f) * radius, half, kBone, 0, out);
-    if (trunk_done && is_trunk(role)) continue;
-    const Vec3<float> along = world.rotation * Vec3<float>::UnitZ();
-    for (int k = 0; k < 3; ++k) {
-      const float angle = 2 * kPi * (float(k) + 0.25f) / 3;
-      const Vec3<float> side = world.rotation * Vec3<float>(std::cos(angle), std::sin(angle), 0);
-      const Vec3<float> middle = world.translation + side * (0.5f * radius);
-      append_spindle(middle - along * (half * 1.02f), middle + along * (half * 1.02f), 0.5f * radius,
-                     frame.load[joint], out);
-    }
+    const bool foot = role == Role::kFootL || role == Role::kFootR;
+    if (c.joint >= s.body_count || (role != Role::kNone && carries[joint] && !foot)) continue;
+    append_part(c, role, frame.model[joint] * c.local.cast<float>(), frame.load[joint], out);
   }
   out.close_draw(first, {.closed = true});
 }

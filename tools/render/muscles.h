@@ -5,8 +5,8 @@
 
 namespace sinew::render {
 
-/// Trunk muscles by the joints' roles where the skeleton has a chest and a pelvis, three spindles around
-/// every other bone. Sizes follow the skeleton's shapes.
+/// Bones from joint to joint; muscles of trunk and limbs by the joints' roles, and three spindles around
+/// every shape whose role is unknown. Sizes follow the skeleton's shapes.
 void append_muscles(const Asset& asset, const scene::CharacterFrame& frame, Geometry& out);
 
 }  // namespace sinew::render

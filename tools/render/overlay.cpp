@@ -20,6 +20,15 @@ std::string text(const char* format, double a, double b = 0) {
   return buffer;
 }
 
+/// Median of the last steps, µs: readable, and one that waited for the processor does not count.
+double usual_cost(const scene::Recording& rec, std::size_t index) {
+  std::vector<float> last;
+  for (std::size_t i = index >= 8 ? index - 8 : 0; i <= index; ++i)
+    last.push_back(rec.frames[i].characters[0].microseconds);
+  std::nth_element(last.begin(), last.begin() + static_cast<std::ptrdiff_t>(last.size() / 2), last.end());
+  return double(last[last.size() / 2]);
+}
+
 void draw_state(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
   const scene::Frame& frame = rec.frames[index];
   const scene::CharacterFrame& c = frame.characters[0];
@@ -34,10 +43,7 @@ void draw_state(const Pen& pen, const Rect& at, const scene::Recording& rec, std
   pen.write(x, at.y + 67, 15, text("of %.0f DOFs unknown", c.total_dofs), pen.text);
   const std::string word = playback ? "playback" : "solved";
   pen.badge(right - pen.width(13, word, true) - 1.3 * 13, at.y + 66, 13, word, state);
-  double us = 0;
-  const std::size_t first = index >= 8 ? index - 8 : 0;
-  for (std::size_t i = first; i <= index; ++i) us += double(rec.frames[i].characters[0].microseconds);
-  pen.write(left, at.y + 93, 15, text("%.0f µs a step", us / double(index - first + 1)), pen.dim);
+  pen.write(left, at.y + 93, 15, text("%.0f µs a step", usual_cost(rec, index)), pen.dim);
   pen.write_right(right, at.y + 93, 15, text("strength %.0f %%", 100.0 * double(c.strength)), pen.dim);
   const int j = c.most_loaded_joint;
   const float load = j >= 0 ? c.load[static_cast<std::size_t>(j)] : 0;

@@ -71,13 +71,15 @@ class Painter {
     StageOptions stage{o.width / static_cast<int>(out->looks_.size()), o.height, o.samples, o.theme == "dark",
                        o.quality == "full"};
     out->aspect_ = float(stage.width) / float(stage.height);
+    if (out->looks_.size() == 2) out->shift_ = 0.4f;
     out->width_ = o.width;
     std::string why;
     out->stage_ = Stage::create(stage, why);
     return out->stage_ ? Error{} : Error{"renderer: " + why};
   }
 
-  float aspect() const { return aspect_; }
+  /// Of the room that the figure has.
+  float aspect() const { return aspect_ * (1 - 0.6f * shift_); }
 
   void paint(const scene::Recording& rec, const scene::Frame& frame, const View& view, float ground,
              Image& out) {
@@ -88,7 +90,9 @@ class Painter {
     }
     for (std::size_t part = 0; part < looks_.size(); ++part) {
       append_frame(rec, frame, looks_[part], geometry_);
-      stage_->draw(geometry_, view, ground, part_);
+      View own = view;
+      own.shift = part == 0 ? shift_ : -shift_;
+      stage_->draw(geometry_, own, ground, part_);
       out.width = width_;
       out.height = part_.height;
       const std::size_t row = std::size_t(width_) * 4, piece = std::size_t(part_.width) * 4;
@@ -102,7 +106,7 @@ class Painter {
   Painter() = default;
   std::vector<Look> looks_;
   std::unique_ptr<Stage> stage_;
-  float aspect_ = 1;
+  float aspect_ = 1, shift_ = 0;  ///< shift: two figures stand closer together, clear of the overlay
   int width_ = 0;
   Geometry geometry_;
   Image part_;

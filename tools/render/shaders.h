@@ -9,7 +9,7 @@ inline constexpr const char* kUniforms = R"(
 uniform mat4 view_projection, light_matrix;
 uniform vec3 eye, target, light_direction, key_color, sky_color, ground_color, fog_color, rim_color;
 uniform vec2 viewport; // pixels
-uniform float unit, ground;
+uniform float unit, ground, shift; // shift: of the target, in half widths
 )";
 
 /// Before every fragment shader.
@@ -31,7 +31,7 @@ float shadow(vec3 p, vec3 n, float softness) {
   return mix(1.0, sum / float(SHADOW_TAPS), edge.x * edge.y);
 }
 float vignette() {
-  vec2 away = (gl_FragCoord.xy / viewport - 0.5) * vec2(1.0, 0.8);
+  vec2 away = (gl_FragCoord.xy / viewport - 0.5 - vec2(0.5 * shift, 0.0)) * vec2(1.0, 0.8);
   return 1.0 - 0.55 * dot(away, away);
 }
 #ifdef OCCLUSION
@@ -176,7 +176,7 @@ float distance_at(ivec2 at) {
 }
 vec3 position(ivec2 at) {
   float z = distance_at(at);
-  return vec3(((vec2(at) + 0.5) / vec2(textureSize(depth_map, 0)) * 2.0 - 1.0) * slope * z, -z);
+  return vec3(((vec2(at) + 0.5) / vec2(textureSize(depth_map, 0)) * 2.0 - 1.0 - vec2(shift, 0.0)) * slope * z, -z);
 }
 vec3 smaller(vec3 a, vec3 b) { return abs(a.z) < abs(b.z) ? a : b; }
 void main() {

@@ -23,7 +23,7 @@ const Theme kDark{
     {1.95f, 1.74f, 1.48f}, {0.24f, 0.30f, 0.40f},   {0.070f, 0.078f, 0.092f}, {0.30f, 0.35f, 0.42f},
     {0.34f, 0.46f, 0.62f}, {0.165f, 0.185f, 0.22f}, {0.055f, 0.062f, 0.080f}, 0.75f};
 const Theme kLight{
-    {1.75f, 1.64f, 1.50f}, {0.52f, 0.57f, 0.64f},  {0.36f, 0.37f, 0.39f}, {0.16f, 0.18f, 0.21f},
+    {1.75f, 1.64f, 1.50f}, {0.42f, 0.47f, 0.54f},  {0.36f, 0.37f, 0.39f}, {0.16f, 0.18f, 0.21f},
     {0.16f, 0.19f, 0.24f}, {0.86f, 0.875f, 0.90f}, {0.70f, 0.77f, 0.86f}, 0.12f};
 
 Mat4 look_at(const Vec3<float>& eye, const Vec3<float>& target) {
@@ -38,10 +38,11 @@ Mat4 look_at(const Vec3<float>& eye, const Vec3<float>& target) {
   return m;
 }
 
-Mat4 perspective(float fov, float aspect, float near, float far) {
+Mat4 perspective(float fov, float aspect, float shift, float near, float far) {
   const float f = 1 / std::tan(fov / 2);
   Mat4 m = Mat4::Zero();
   m(0, 0) = f / aspect;
+  m(0, 2) = -shift;
   m(1, 1) = f;
   m(2, 2) = (far + near) / (near - far);
   m(2, 3) = 2 * far * near / (near - far);
@@ -61,7 +62,8 @@ struct Stage::Matrices {
     const float distance = (view.eye - view.target).norm();
     near = 0.04f * distance;
     far = 30 * distance + 60 * view.unit;
-    view_projection = perspective(view.vertical_fov, aspect, near, far) * look_at(view.eye, view.target);
+    view_projection =
+        perspective(view.vertical_fov, aspect, view.shift, near, far) * look_at(view.eye, view.target);
     // The key light stands high to the left of the camera, as in a studio: also around a turntable.
     Vec3<float> toward = view.eye - view.target;
     toward.z() = 0;
@@ -279,6 +281,7 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
   vec("fog_color", theme.fog);
   vec("zenith", theme.zenith);
   gl.Uniform1f(place("pool"), theme.pool);
+  gl.Uniform1f(place("shift"), view.shift);
   gl.Uniform1f(place("unit"), view.unit);
   gl.Uniform1f(place("ground"), ground);
   // Grid cells of half a metre around an adult, by tens for other sizes.

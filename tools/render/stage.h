@@ -15,7 +15,8 @@ namespace sinew::render {
 struct View {
   Vec3<float> eye, target;
   float vertical_fov = 0.56f;  ///< rad
-  float unit = 1;  ///< the figure's size in adults of 1.75 m: scales shadow, occlusion, grid and fog
+  float unit = 1;   ///< the figure's size in adults of 1.75 m: scales shadow, occlusion, grid and fog
+  float shift = 0;  ///< of the target to the right of the picture's middle, in half widths
 };
 
 struct StageOptions {
