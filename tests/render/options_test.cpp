@@ -31,6 +31,8 @@ TEST(Options, BadOnesAreRefusedInOneLineThatNamesThem) {
       {[](Options& o) { o.quality = "best"; }, "best"},
       {[](Options& o) { o.theme = "pink"; }, "pink"},
       {[](Options& o) { o.mode = "wire"; }, "wire"},
+      {[](Options& o) { o.background = "red"; }, "red"},
+      {[](Options& o) { o.background = "12345g"; }, "12345g"},
       {[](Options& o) { o.fps = 0; }, "fps"},
       {[](Options& o) { o.fps = std::nan(""); }, "fps"},
       {[](Options& o) { o.start = -1; }, "start"},

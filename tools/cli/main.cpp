@@ -262,6 +262,7 @@ int main(int argc, char** argv) try {
   r->add_option("--start", render.options.start, "first moment shown, s; the moment of a single .png")
       ->check(CLI::NonNegativeNumber);
   r->add_option("--theme", render.options.theme)->check(CLI::IsMember({"dark", "light"}));
+  r->add_option("--background", render.options.background, "RRGGBB instead of the theme's sky");
   r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes", "both"}));
   r->add_flag("--turntable", render.options.turntable);
   r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")

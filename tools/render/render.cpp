@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "render/camera.h"
 #include "render/overlay.h"
@@ -19,6 +20,13 @@ bool one_of(const std::string& value, std::initializer_list<const char*> allowed
   return std::find(allowed.begin(), allowed.end(), value) != allowed.end();
 }
 
+/// RRGGBB to 0 … 1 each.
+std::optional<Vec3<float>> parse_color(const std::string& text) {
+  if (text.size() != 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) return {};
+  const unsigned long value = std::stoul(text, nullptr, 16);
+  return Vec3<float>(float(value >> 16), float(value >> 8 & 255), float(value & 255)) / 255;
+}
+
 /// What is wrong, or nothing.
 std::string fault(const Options& o, const std::filesystem::path& output) {
   const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
@@ -28,6 +36,8 @@ std::string fault(const Options& o, const std::filesystem::path& output) {
   if (o.samples != 1 && o.samples != 4) return "samples are 1 or 4";
   if (!one_of(o.quality, {"full", "fast"})) return "unknown quality '" + o.quality + "'";
   if (!one_of(o.theme, {"dark", "light"})) return "unknown theme '" + o.theme + "'";
+  if (!o.background.empty() && !parse_color(o.background))
+    return "background '" + o.background + "' is not a colour RRGGBB";
   if (!one_of(o.mode, {"skin", "xray", "shapes", "both"})) return "unknown mode '" + o.mode + "'";
   if (!(o.fps >= 1 && o.fps <= 240)) return "fps is not between 1 and 240";
   if (!(o.start >= 0)) return "start is not a time from 0 s on";
@@ -61,17 +71,22 @@ void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look l
 /// One picture per look, side by side.
 class Painter {
  public:
-  static Error create(const Options& o, std::unique_ptr<Painter>& out) {
+  /// `clear`: of two figures each moves towards the middle, clear of the overlay's panels.
+  static Error create(const Options& o, bool clear, std::unique_ptr<Painter>& out) {
     out.reset(new Painter);
     if (o.mode == "both") {
       out->looks_ = {Look::kSkin, Look::kXray};
     } else {
       out->looks_ = {o.mode == "xray" ? Look::kXray : (o.mode == "shapes" ? Look::kShapes : Look::kSkin)};
     }
-    StageOptions stage{o.width / static_cast<int>(out->looks_.size()), o.height, o.samples, o.theme == "dark",
-                       o.quality == "full"};
+    StageOptions stage{o.width / static_cast<int>(out->looks_.size()),
+                       o.height,
+                       o.samples,
+                       o.theme == "dark",
+                       o.quality == "full",
+                       parse_color(o.background)};
     out->aspect_ = float(stage.width) / float(stage.height);
-    if (out->looks_.size() == 2) out->shift_ = 0.4f;
+    if (out->looks_.size() == 2 && clear) out->shift_ = 0.5f;
     out->width_ = o.width;
     std::string why;
     out->stage_ = Stage::create(stage, why);
@@ -106,7 +121,7 @@ class Painter {
   Painter() = default;
   std::vector<Look> looks_;
   std::unique_ptr<Stage> stage_;
-  float aspect_ = 1, shift_ = 0;  ///< shift: two figures stand closer together, clear of the overlay
+  float aspect_ = 1, shift_ = 0;
   int width_ = 0;
   Geometry geometry_;
   Image part_;
@@ -163,7 +178,7 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   if (o.start > rec.frames.back().time - rec.frames.front().time)
     return {output + ": start is after the end of the recording"};
   std::unique_ptr<Painter> painter;
-  if (Error error = Painter::create(o, painter)) return error;
+  if (Error error = Painter::create(o, o.overlay, painter)) return error;
   Error error;
   const auto sink = Sink::open(output, o, error);
   if (!sink) return error;
@@ -186,7 +201,7 @@ Error render_asset(std::shared_ptr<const Asset> asset, const Options& o, const s
   if (!o.clip.empty() && clip < 0) return {asset->skeleton.name + ": no clip '" + o.clip + "'"};
   const Clip* played = clip < 0 ? nullptr : &asset->clips[static_cast<std::size_t>(clip)];
   std::unique_ptr<Painter> painter;
-  if (Error error = Painter::create(o, painter)) return error;
+  if (Error error = Painter::create(o, false, painter)) return error;
   Error error;
   const auto sink = Sink::open(output, o, error);
   if (!sink) return error;

@@ -15,6 +15,7 @@ struct Options {
   int samples = 4;               ///< multisampling, 1 or 4
   std::string quality = "full";  ///< full: ambient occlusion, softer shadows | fast
   std::string theme = "dark";    ///< dark | light
+  std::string background;        ///< RRGGBB, sRGB: one colour instead of the theme's sky; empty: the sky
   std::string mode = "skin";     ///< skin | xray: muscles coloured by load in translucent skin | shapes |
                                  ///< both: skin on the left, xray on the right
   bool overlay = true;

@@ -30,9 +30,10 @@ float shadow(vec3 p, vec3 n, float softness) {
   vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(s.xy - 0.5));
   return mix(1.0, sum / float(SHADOW_TAPS), edge.x * edge.y);
 }
+uniform float vignetting;
 float vignette() {
   vec2 away = (gl_FragCoord.xy / viewport - 0.5 - vec2(0.5 * shift, 0.0)) * vec2(1.0, 0.8);
-  return 1.0 - 0.55 * dot(away, away);
+  return 1.0 - vignetting * dot(away, away);
 }
 #ifdef OCCLUSION
 uniform sampler2D occlusion_map; // half resolution: openness, distance
@@ -155,7 +156,7 @@ in float up;
 uniform vec3 zenith;
 out vec4 result;
 void main() {
-  float dither = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) / 255.0;
+  float dither = (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) * 0.998 / 255.0;
   result = vec4(mix(fog_color, zenith, smoothstep(0.0, 0.42, up)) * vignette() + dither, 1.0);
 }
 )";

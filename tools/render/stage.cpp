@@ -278,8 +278,9 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
   vec("ground_color", theme.ground);
   vec("line_color", theme.line);
   vec("rim_color", theme.rim);
-  vec("fog_color", theme.fog);
-  vec("zenith", theme.zenith);
+  vec("fog_color", options_.background.value_or(theme.fog));
+  vec("zenith", options_.background.value_or(theme.zenith));
+  gl.Uniform1f(place("vignetting"), options_.background ? 0.f : 0.55f);
   gl.Uniform1f(place("pool"), theme.pool);
   gl.Uniform1f(place("shift"), view.shift);
   gl.Uniform1f(place("unit"), view.unit);

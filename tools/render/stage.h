@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render/context.h"
@@ -23,7 +24,8 @@ struct StageOptions {
   int width = 1280, height = 720;
   int samples = 4;  ///< multisampling, 1 or 4
   bool dark = true;
-  bool fine = true;  ///< ambient occlusion, softer shadows
+  bool fine = true;                            ///< ambient occlusion, softer shadows
+  std::optional<Vec3<float>> background = {};  ///< sRGB 0 … 1, one colour; else the theme's sky
 };
 
 class Stage {
