@@ -68,6 +68,13 @@ void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look l
     append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), wall, out);
 }
 
+/// A thin dark line between two pictures.
+void draw_seam(Image& image) {
+  const std::size_t row = std::size_t(image.width) * 4;
+  for (std::size_t y = 0; y < std::size_t(image.height); ++y)
+    for (std::size_t k = row / 2 - 4; k < row / 2 + 4; ++k) image.pixels[y * row + k] /= 2;
+}
+
 /// One picture per look, side by side.
 class Painter {
  public:
@@ -115,6 +122,7 @@ class Painter {
       for (std::size_t y = 0; y < std::size_t(out.height); ++y)
         std::memcpy(&out.pixels[y * row + part * piece], &part_.pixels[y * piece], piece);
     }
+    draw_seam(out);
   }
 
  private:
