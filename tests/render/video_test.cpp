@@ -150,6 +150,13 @@ TEST(Video, TurntableHasExactlyTheFramesOfARevolution) {
   EXPECT_EQ(decode(path).frames.size(), 7u);
 }
 
+TEST(Video, Mp4PlaysWhileItLoads) {
+  rendered(swinging(bare_humanoid(), 0.2), small_options(64, 64), "fast.mp4");
+  std::ifstream file(own_file("fast.mp4"), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));  // the index comes before the pictures
+}
+
 TEST(Video, UnfinishedIsNotLeftBehind) {
   for (const char* extension : {".mp4", ".webm", ".gif"}) {
     convert::Error error;

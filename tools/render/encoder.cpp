@@ -51,7 +51,9 @@ convert::Error Encoder::open(const std::string& path, Codec codec, int width, in
   path_ = path;
   const AVCodec* encoder = avcodec_find_encoder_by_name(kEncoders[static_cast<int>(codec)]);
   if (!encoder) return {path + ": this libavcodec lacks the encoder " + kEncoders[static_cast<int>(codec)]};
-  if (avformat_alloc_output_context2(&format_, nullptr, kMuxers[static_cast<int>(codec)], path.c_str()) < 0)
+  const std::string temporary = path + ".tmp";
+  if (avformat_alloc_output_context2(&format_, nullptr, kMuxers[static_cast<int>(codec)], temporary.c_str()) <
+      0)
     return unwritable();
   format_->flags |= AVFMT_FLAG_BITEXACT;
   stream_ = avformat_new_stream(format_, nullptr);
@@ -71,10 +73,13 @@ convert::Error Encoder::open(const std::string& path, Codec codec, int width, in
     return {path + ": the encoder refuses " + std::to_string(width) + "x" + std::to_string(height)};
   stream_->time_base = codec_->time_base;
   stream_->avg_frame_rate = codec_->framerate;
-  const std::string temporary = path + ".tmp";
   if (avio_open(&format_->pb, temporary.c_str(), AVIO_FLAG_WRITE) < 0) return unwritable();
   temporary_ = temporary;
-  return avformat_write_header(format_, nullptr) < 0 ? unwritable() : convert::Error{};
+  AVDictionary* layout = nullptr;
+  if (codec == Codec::kH264) av_dict_set(&layout, "movflags", "+faststart", 0);  // plays while it loads
+  const bool begun = avformat_write_header(format_, &layout) >= 0;
+  av_dict_free(&layout);
+  return begun ? convert::Error{} : unwritable();
 }
 
 bool Encoder::drain() {
