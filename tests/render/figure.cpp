@@ -49,7 +49,7 @@ std::shared_ptr<Asset> skinned_humanoid() {
   return asset;
 }
 
-scene::Recording swinging(std::shared_ptr<const Asset> asset, double seconds) {
+scene::Recording swinging(const std::shared_ptr<const Asset>& asset, double seconds) {
   const Skeleton& s = asset->skeleton;
   scene::Recording rec;
   rec.title = "swing";
@@ -89,14 +89,16 @@ namespace {
 std::filesystem::path own_directory() {
   struct Root {
     std::filesystem::path path = testing::TempDir() + "sinew_render_" + std::to_string(getpid());
+    Root() = default;
     ~Root() {
       std::error_code ignored;
       std::filesystem::remove_all(path, ignored);
     }
+    Root(const Root&) = delete;
+    Root& operator=(const Root&) = delete;
   };
   static const Root root;
-  const std::filesystem::path directory =
-      root.path / testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::path directory = root.path / testing::UnitTest::GetInstance()->current_test_info()->name();
   std::filesystem::create_directories(directory);
   return directory;
 }

@@ -15,7 +15,7 @@ std::shared_ptr<Asset> bare_humanoid();
 std::shared_ptr<Asset> skinned_humanoid();
 
 /// `seconds` at 30 fps: the arms swing, the load of all joints rises from 0 to 1, a caption is shown.
-scene::Recording swinging(std::shared_ptr<const Asset> asset, double seconds);
+scene::Recording swinging(const std::shared_ptr<const Asset>& asset, double seconds);
 
 /// Name in a directory of the running case.
 std::string own_file(const std::string& name);

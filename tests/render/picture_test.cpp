@@ -30,8 +30,8 @@ double difference(const Image& a, const Image& b, double left, double top, doubl
   return sum / count;
 }
 
-scene::Recording still(std::shared_ptr<const Asset> asset, float load = 0) {
-  scene::Recording rec = swinging(std::move(asset), 0);
+scene::Recording still(const std::shared_ptr<const Asset>& asset, float load = 0) {
+  scene::Recording rec = swinging(asset, 0);
   for (float& value : rec.frames[0].characters[0].load) value = load;
   return rec;
 }

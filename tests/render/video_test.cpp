@@ -85,7 +85,7 @@ TEST(Video, DecodesToTheSamePicturesWhateverTheMemoryHeldBefore) {
         soil_heap(byte);
         const std::string path = own_file(std::string("d.") + extension);
         convert::Error error;
-        const auto writer = VideoWriter::create(path, width, height, 30, 4, error);
+        const auto writer = create_video(path, width, height, 30, 4, error);
         ASSERT_TRUE(writer) << error.message;
         for (int n = 0; n < 12 && !error; ++n) error = writer->add(pattern(width, height, n));
         if (!error) error = writer->finish();
@@ -116,7 +116,7 @@ TEST(Video, KeepsBrightnessAndColour) {
     for (const int value : {40, 60, 200, 0}) red.pixels.push_back(static_cast<std::uint8_t>(value));
   for (const char* name : {"c.mp4", "c.webm"}) {
     convert::Error error;
-    const auto writer = VideoWriter::create(own_file(name), 64, 64, 30, 4, error);
+    const auto writer = create_video(own_file(name), 64, 64, 30, 4, error);
     ASSERT_TRUE(writer);
     for (int n = 0; n < 3 && !error; ++n) error = writer->add(red);
     ASSERT_FALSE(error);
@@ -160,7 +160,7 @@ TEST(Video, Mp4PlaysWhileItLoads) {
 TEST(Video, UnfinishedIsNotLeftBehind) {
   for (const char* extension : {".mp4", ".webm", ".gif"}) {
     convert::Error error;
-    const auto writer = VideoWriter::create(own_file(std::string("u") + extension), 64, 64, 30, 4, error);
+    const auto writer = create_video(own_file(std::string("u") + extension), 64, 64, 30, 4, error);
     ASSERT_TRUE(writer);
     EXPECT_FALSE(writer->add(pattern(64, 64, 0)));
   }
@@ -174,7 +174,7 @@ TEST(Video, AFullDiskIsReportedAndTheOldFileKept) {
     std::ofstream(path) << "old";
     std::filesystem::create_symlink("/dev/full", path + ".tmp");
     convert::Error error;
-    const auto writer = VideoWriter::create(path, 64, 64, 30, 4, error);
+    const auto writer = create_video(path, 64, 64, 30, 4, error);
     for (int n = 0; n < 30 && writer && !error; ++n) error = writer->add(pattern(64, 64, n));
     if (writer && !error) error = writer->finish();
     EXPECT_NE(error.message.find(path), std::string::npos) << error.message;

@@ -62,9 +62,9 @@ std::vector<T> smoothed(const std::vector<T>& values, float sigma) {
   for (int i = 0; i <= last; ++i) {
     T sum = values[static_cast<std::size_t>(i)] * 0.f;
     float total = 0;
-    for (int k = -reach; k <= reach; ++k) {
-      const float w = weight[static_cast<std::size_t>(k + reach)];
-      sum += w * values[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+    int from = i - reach;
+    for (const float w : weight) {
+      sum += w * values[static_cast<std::size_t>(std::clamp(from++, 0, last))];
       total += w;
     }
     out[static_cast<std::size_t>(i)] = sum / total;
@@ -151,6 +151,7 @@ std::vector<View> plan_camera(const scene::Recording& rec, float aspect) {
   }
   const float unit = std::max(1e-3f, boxes.front().diagonal() / (1.15f * kAdult));
   std::vector<View> views;
+  views.reserve(shift.size());
   for (const Vec3<float>& s : shift) views.push_back({rec.camera.eye + s, rec.camera.target + s, fov, unit});
   return views;
 }

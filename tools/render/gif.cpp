@@ -59,7 +59,7 @@ Frame pull(AVFilterContext* sink) {
   return av_buffersink_get_frame(sink, frame.get()) >= 0 ? std::move(frame) : nullptr;
 }
 
-class GifWriter : public VideoWriter {
+class GifWriter : public FrameWriter {
  public:
   GifWriter(int width, int height) : width_(width), height_(height) {}
 
@@ -140,7 +140,7 @@ class GifWriter : public VideoWriter {
 
 }  // namespace
 
-std::unique_ptr<VideoWriter> create_gif(const std::string& path, int width, int height, double fps,
+std::unique_ptr<FrameWriter> create_gif(const std::string& path, int width, int height, double fps,
                                         convert::Error& error) {
   auto writer = std::make_unique<GifWriter>(width, height);
   error = writer->open(path, fps);

@@ -9,7 +9,7 @@ namespace sinew::render {
 
 /// The palette is known only after the last frame: frames wait, compressed, in memory (about a tenth of
 /// width·height·4 bytes each) and are written by finish().
-std::unique_ptr<VideoWriter> create_gif(const std::string& path, int width, int height, double fps,
+std::unique_ptr<FrameWriter> create_gif(const std::string& path, int width, int height, double fps,
                                         convert::Error& error);
 
 }  // namespace sinew::render

@@ -3,8 +3,8 @@
 
 namespace sinew::render {
 
-std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int, int, double, int,
-                                                 convert::Error& error) {
+std::unique_ptr<FrameWriter> create_video(const std::string& path, int, int, double, int,
+                                          convert::Error& error) {
   error = {path + ": this build has no video (SINEW_VIDEO=OFF); write .png pictures"};
   return nullptr;
 }

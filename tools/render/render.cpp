@@ -140,6 +140,7 @@ std::vector<std::size_t> pick_frames(const scene::Recording& rec, const Options&
   const double duration = rec.frames.back().time - rec.frames.front().time - o.start;
   const int total = single ? 1 : std::max(1, static_cast<int>(std::lround(duration * o.fps)));
   std::vector<std::size_t> picked;
+  picked.reserve(static_cast<std::size_t>(total));
   for (int n = 0; n < total; ++n)
     picked.push_back(std::min(rec.frames.size() - 1,
                               static_cast<std::size_t>(std::lround((o.start + n / o.fps) * rec.frame_rate))));
@@ -147,7 +148,7 @@ std::vector<std::size_t> pick_frames(const scene::Recording& rec, const Options&
 }
 
 /// A recording of the asset's clip or rest pose, one frame per picture.
-scene::Recording record_asset(std::shared_ptr<const Asset> asset, const Clip* clip, const Options& o,
+scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const Clip* clip, const Options& o,
                               int frames) {
   const Skeleton& s = asset->skeleton;
   std::vector<JointJet<float>> jets(s.joints.size());
@@ -202,7 +203,7 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   return sink->finish();
 }
 
-Error render_asset(std::shared_ptr<const Asset> asset, const Options& o, const std::string& output,
+Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, const std::string& output,
                    const std::function<void(int, int)>& progress) {
   if (Error error = check(o, output)) return error;
   const int clip = o.clip.empty() ? -1 : asset->find_clip(o.clip);

@@ -33,7 +33,7 @@ convert::Error render_recording(const scene::Recording& recording, const Options
 
 /// An asset on its own: one revolution of the turntable, or one pass of a clip (with `turntable` too: one
 /// revolution while the clip plays).
-convert::Error render_asset(std::shared_ptr<const Asset> asset, const Options& options,
+convert::Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& options,
                             const std::string& output, const std::function<void(int, int)>& progress);
 
 }  // namespace sinew::render

@@ -3,42 +3,26 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 
 #include "render/render.h"
-#include "render/video.h"
 
 namespace sinew::render {
 
 using convert::Error;
 
-class Sink::Writer {
- public:
-  virtual ~Writer() = default;
-  virtual Error add(const Image& image) = 0;
-  virtual Error finish() = 0;
-};
-
-class Sink::Video : public Writer {
- public:
-  Error open(const std::string& output, const Options& o) {
-    Error error;
-    video_ = VideoWriter::create(output, o.width, o.height, o.fps, o.threads, error);
-    return error;
-  }
-  Error add(const Image& image) override { return video_->add(image); }
-  Error finish() override { return video_->finish(); }
-
- private:
-  std::unique_ptr<VideoWriter> video_;
-};
+namespace {
 
 /// frame_%04d.png, or one picture. Written under temporary names, renamed when all are there.
-class Sink::Pictures : public Writer {
+class Pictures : public FrameWriter {
  public:
+  Pictures() = default;
   ~Pictures() override {
     for (std::size_t n = done_; n < names_.size(); ++n) std::remove(temporary(n).c_str());
   }
+  Pictures(const Pictures&) = delete;
+  Pictures& operator=(const Pictures&) = delete;
 
   Error open(const std::string& output) {
     const auto percent = output.find('%');
@@ -83,6 +67,8 @@ class Sink::Pictures : public Writer {
   std::size_t done_ = 0;
 };
 
+}  // namespace
+
 std::unique_ptr<Sink> Sink::open(const std::string& output, const Options& options, Error& error) {
   std::unique_ptr<Sink> sink(new Sink);
   if (std::filesystem::path(output).extension() == ".png") {
@@ -91,9 +77,7 @@ std::unique_ptr<Sink> Sink::open(const std::string& output, const Options& optio
     sink->single_ = output.find('%') == std::string::npos;
     sink->writer_ = std::move(pictures);
   } else {
-    auto video = std::make_unique<Video>();
-    error = video->open(output, options);
-    sink->writer_ = std::move(video);
+    sink->writer_ = create_video(output, options.width, options.height, options.fps, options.threads, error);
   }
   if (error) return nullptr;
   sink->thread_ = std::thread([made = sink.get()] { made->work(); });
@@ -118,7 +102,11 @@ void Sink::work() {
     const bool failed = static_cast<bool>(error_);
     lock.unlock();
     Error error;
-    if (!failed) error = writer_->add(image);
+    try {
+      if (!failed) error = writer_->add(image);
+    } catch (const std::exception& unexpected) {  // memory ran out
+      error = {unexpected.what()};
+    }
     lock.lock();
     if (error) error_ = error;
     spare_.push_back(std::move(image));

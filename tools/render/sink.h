@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "render/image.h"
+#include "render/video.h"
 
 namespace sinew::render {
 
@@ -21,6 +21,8 @@ class Sink {
  public:
   static std::unique_ptr<Sink> open(const std::string& output, const Options& options, convert::Error& error);
   ~Sink();
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
 
   /// Only one frame is wanted: "x.png" without a number in its name.
   bool single() const;
@@ -30,10 +32,6 @@ class Sink {
   convert::Error finish();
 
  private:
-  class Writer;
-  class Pictures;
-  class Video;
-
   Sink() = default;
   void work();
   void stop();
@@ -41,7 +39,7 @@ class Sink {
   static constexpr std::size_t kWaiting = 4;  ///< frames; 4 of 1080p are 33 MB
 
   bool single_ = false;
-  std::unique_ptr<Writer> writer_;
+  std::unique_ptr<FrameWriter> writer_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Image> waiting_;

@@ -13,12 +13,15 @@ namespace sinew::render {
 namespace {
 
 /// H.264 or VP9: every frame is converted to yuv420p with bt709 coefficients and handed on.
-class YuvWriter : public VideoWriter {
+class YuvWriter : public FrameWriter {
  public:
+  YuvWriter() = default;
   ~YuvWriter() override {
     sws_freeContext(scale_);
     av_frame_free(&frame_);
   }
+  YuvWriter(const YuvWriter&) = delete;
+  YuvWriter& operator=(const YuvWriter&) = delete;
 
   convert::Error open(const std::string& path, Codec codec, int width, int height, double fps, int threads) {
     if (convert::Error error = encoder_.open(path, codec, width, height, fps, threads)) return error;
@@ -53,8 +56,8 @@ class YuvWriter : public VideoWriter {
 
 }  // namespace
 
-std::unique_ptr<VideoWriter> VideoWriter::create(const std::string& path, int width, int height, double fps,
-                                                 int threads, convert::Error& error) {
+std::unique_ptr<FrameWriter> create_video(const std::string& path, int width, int height, double fps,
+                                          int threads, convert::Error& error) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".gif") return create_gif(path, width, height, fps, error);
   auto writer = std::make_unique<YuvWriter>();
