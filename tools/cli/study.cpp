@@ -4,9 +4,23 @@
 #include <filesystem>
 
 #include "cli/files.h"
+#include "study/maps.h"
 #include "study/study.h"
 
 namespace sinew::cli {
+
+convert::Error StabilityCommand::draw_maps() const {
+  const auto draw = [&](const study::FailureMap& map, const std::string& name) {
+    const std::string file = directory + "/" + name;
+    if (convert::Error error = write_atomically(file + ".csv", study::map_csv(map))) return error;
+    if (convert::Error error = study::draw_map(map, file + ".svg")) return error;
+    return study::draw_map(map, file + ".png");
+  };
+  if (convert::Error error =
+          draw(study::map_of_speeds(quick, progress_bar("joint speeds")), "failure_map_speed"))
+    return error;
+  return draw(study::map_of_masses(quick, progress_bar("mass ratios")), "failure_map_mass");
+}
 
 convert::Error StabilityCommand::run() const {
   std::error_code failed;
@@ -24,6 +38,8 @@ convert::Error StabilityCommand::run() const {
   const nlohmann::json summary = study::stability_json(results);
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))
     return error;
+  if (only.empty() && !json_output)
+    if (convert::Error error = draw_maps()) return error;
   if (json_output)
     std::puts(summary.dump().c_str());
   else

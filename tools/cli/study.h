@@ -12,6 +12,9 @@ struct StabilityCommand {
   bool quick = false, json_output = false;
 
   convert::Error run() const;
+
+ private:
+  convert::Error draw_maps() const;
 };
 
 }  // namespace sinew::cli

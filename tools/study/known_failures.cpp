@@ -43,7 +43,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"thrown_at_thin_wall", "no continuous detection"},
     {"bullet", "no continuous detection"},
     {"spawned_in_floor", "thrown out in double, played in float"},
-    {"adjacent_limb_overlap", "neighbours push each other out of the rest pose by 0.2 mm"},
     {"limp_fall_counts", "more passes than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"figures_in_a_pile", "energy gained between figures"},
