@@ -240,8 +240,8 @@ int main(int argc, char** argv) try {
   evaluate.source.add(*e);
 
   SimulateCommand simulate;
-  auto* s =
-      app.add_subcommand("simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
+  auto* s = app.add_subcommand(
+      "simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
