@@ -278,6 +278,13 @@ int main(int argc, char** argv) try {
   hard->add_option("--case", stability.only, "run one case");
   hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
   hard->add_flag("--json", stability.json_output);
+  cli::AccuracyCommand accuracy;
+  auto* cost = study->add_subcommand(
+      "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
+  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
+  cost->add_option("--scene", accuracy.only, "tumbling, drop, stack or tracking");
+  cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
+  cost->add_flag("--json", accuracy.json_output);
 
   try {
     app.parse(argc, argv);
@@ -297,6 +304,8 @@ int main(int argc, char** argv) try {
     error = simulate.run();
   else if (hard->parsed())
     error = stability.run();
+  else if (cost->parsed())
+    error = accuracy.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -17,4 +17,11 @@ struct StabilityCommand {
   convert::Error draw_maps() const;
 };
 
+struct AccuracyCommand {
+  std::string directory = "out/study", only;
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 }  // namespace sinew::cli

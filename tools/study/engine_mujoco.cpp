@@ -48,10 +48,12 @@ void write_joint(std::ostream& xml, const Joint& joint, const std::string& name,
 
 /// A figure touches the floor and other figures, not itself, as ours by default.
 void write_geom(std::ostream& xml, const Collider& c, int figure) {
+  const bool round = c.shape == Shape::kCapsule && c.size.z() <= 0;  // refused as a capsule
   const char* kinds[] = {"sphere", "capsule", "box"};
-  xml << "<geom type=\"" << kinds[static_cast<int>(c.shape)] << "\" pos=\"" << c.local.translation
-      << "\" quat=\"" << c.local.rotation << "\" friction=\"" << c.friction << "\" contype=\""
-      << (1 << (figure + 1)) << "\" conaffinity=\"" << (0x7fffffff & ~(1 << (figure + 1))) << "\" size=\"";
+  xml << "<geom type=\"" << (round ? "sphere" : kinds[static_cast<int>(c.shape)]) << "\" pos=\""
+      << c.local.translation << "\" quat=\"" << c.local.rotation << "\" friction=\"" << c.friction
+      << "\" contype=\"" << (1 << (figure + 1)) << "\" conaffinity=\"" << (0x7fffffff & ~(1 << (figure + 1)))
+      << "\" size=\"";
   if (c.shape == Shape::kCapsule)
     xml << c.size.x() << ' ' << c.size.z();
   else
@@ -160,8 +162,7 @@ class MujocoEngine : public Engine {
       for (int k = 0; k < dof_count(s.joints[i].type); ++k, ++actuator) {
         const double wanted = hinge ? angle.dot(s.joints[i].axis) : angle[k];
         const double speed = hinge ? jets[i].omega.dot(s.joints[i].axis) : jets[i].omega[k];
-        const mjtNum* bias = model_->actuator_biasprm + mjNBIAS * actuator;
-        data_->ctrl[actuator] = wanted + bias[2] / std::min(bias[1], -1e-12) * speed;
+        data_->ctrl[actuator] = wanted + 2 * kReturnTime * speed;  // damping over stiffness, see tune_servos
       }
     }
   }
@@ -226,17 +227,18 @@ class MujocoEngine : public Engine {
     fresh_ = false;
   }
 
-  /// Critically damped at the time constant with which ours comes back, for the inertia about each axis.
+  /// Critically damped at the time constant with which ours comes back, for the inertia about each axis. The
+  /// damping is the joints', which MuJoCo's Euler and implicit integrators take implicitly.
   void tune_servos() {
     for (int a = 0; a < model_->nu; ++a) {
-      const int joint = model_->actuator_trnid[2 * a];
       int axis = 0;
       while (model_->actuator_gear[6 * a + axis] < 0.5) ++axis;
-      const double inertia = data_->qM[model_->dof_Madr[model_->jnt_dofadr[joint] + axis]];
-      const double stiffness = inertia / (kReturnTime * kReturnTime), damping = 2 * inertia / kReturnTime;
+      const int dof = model_->jnt_dofadr[model_->actuator_trnid[2 * a]] + axis;
+      const double inertia = data_->qM[model_->dof_Madr[dof]];
+      const double stiffness = inertia / (kReturnTime * kReturnTime);
       model_->actuator_gainprm[mjNGAIN * a] = stiffness;
       model_->actuator_biasprm[mjNBIAS * a + 1] = -stiffness;
-      model_->actuator_biasprm[mjNBIAS * a + 2] = -damping;
+      model_->dof_damping[dof] += 2 * inertia / kReturnTime;
     }
   }
 
