@@ -7,6 +7,8 @@
 
 #include "cli/evaluate.h"
 #include "cli/files.h"
+#include "cli/mechanism.h"
+#include "cli/study.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -116,8 +118,11 @@ struct EvaluateCommand {
 struct SimulateCommand {
   std::string scene_file, output;
   bool json_output = false, plot = false;
+  sinew::mechanism::SimulateOptions mechanism;
 
   Error run() const {
+    if (cli::is_mechanism_file(scene_file))
+      return cli::run_mechanism(scene_file, mechanism, output, json_output);
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     sinew::scene::Recording recording;
@@ -200,7 +205,7 @@ struct RenderCommand {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
@@ -235,12 +240,13 @@ int main(int argc, char** argv) {
   evaluate.source.add(*e);
 
   SimulateCommand simulate;
-  auto* s =
-      app.add_subcommand("simulate", "run a scene\nExample: sinew simulate push.json -o push.csv --plot");
+  auto* s = app.add_subcommand(
+      "simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
+  cli::add_mechanism_options(*s, simulate.mechanism);
 
   RenderCommand render;
   auto* r = app.add_subcommand(
@@ -263,6 +269,16 @@ int main(int argc, char** argv) {
   r->add_flag("--json", render.json_output);
   render.source.add(*r);
 
+  cli::StabilityCommand stability;
+  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
+  study->require_subcommand(1);
+  auto* hard = study->add_subcommand(
+      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
+  hard->add_option("--case", stability.only, "run one case");
+  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
+  hard->add_flag("--json", stability.json_output);
+
   try {
     app.parse(argc, argv);
     if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0))
@@ -271,21 +287,22 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   Error error;
-  try {
-    if (c->parsed())
-      error = convert.run();
-    else if (i->parsed())
-      error = info.run();
-    else if (e->parsed())
-      error = evaluate.run();
-    else if (s->parsed())
-      error = simulate.run();
-    else
-      error = render.run();
-  } catch (const std::exception& unexpected) {
-    error = {unexpected.what()};
-  }
+  if (c->parsed())
+    error = convert.run();
+  else if (i->parsed())
+    error = info.run();
+  else if (e->parsed())
+    error = evaluate.run();
+  else if (s->parsed())
+    error = simulate.run();
+  else if (hard->parsed())
+    error = stability.run();
+  else
+    error = render.run();
   if (!error) return 0;
   std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+  return 1;
+} catch (const std::exception& unexpected) {
+  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
   return 1;
 }

@@ -23,9 +23,11 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       limit(tree.dofs, T(0)),
       unknown(tree.dofs, 0),
       problem(tree, skeleton),
+      guessed(tree),
       history(tree.bodies),
       motion(tree),
       wanted(tree.bodies) {
+  total_mass = skeleton.total_mass();
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
@@ -120,6 +122,15 @@ void CharacterState<T>::refresh_limits() {
 }
 
 template <class T>
+void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
+  const Totals sum = totals<T>(tree, history, gravity);
+  report.kinetic_energy = sum.kinetic_energy;
+  report.potential_energy = sum.potential_energy;
+  report.momentum = sum.momentum;
+  report.angular_momentum = sum.angular_momentum;
+}
+
+template <class T>
 void CharacterState<T>::update_model() {
   for (std::size_t i = 0; i < local.size(); ++i) {
     const int parent = skeleton.joints[i].parent;
@@ -167,6 +178,14 @@ bool CharacterState<T>::undisturbed() const {
   if (is_prop) return false;
   return std::all_of(deviation.begin(), deviation.end(),
                      [](const Deviation<T>& d) { return d.on_animation && !d.released; });
+}
+
+template <class T>
+bool CharacterState<T>::fully_driven() const {
+  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.first_dof[1] : 0;
+  for (int dof = first; dof < tree.dofs; ++dof)
+    if (!(problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0))) return false;
+  return true;
 }
 
 template <class T>

@@ -78,6 +78,7 @@ class InnerProblem {
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
   Unknowns unknowns_;
+  PathAxes<T> axes_;
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
