@@ -5,7 +5,7 @@
 
 #include "convert/convert.h"
 #include "sinew/animation/sampling_job.h"
-#include "sinew/residual/dynamics.h"
+#include "sinew/residual/tree.h"
 
 namespace sinew::convert {
 namespace {
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(All, Clips,
                                          Asked{"run", 253, 360, 313, 120},
                                          Asked{"get_up_supine", 375, 375, 375, 375},
                                          Asked{"get_up_prone", 375, 375, 375, 375}),
-                         [](const auto& info) { return std::string(info.param.clip); });
+                         [](const auto& of) { return std::string(of.param.clip); });
 
 /// Paths [frame] of a joint's origin over one pass of a clip, 120 frames a second.
 std::vector<Vec3<double>> path(const Asset& asset, const char* joint) {
@@ -59,8 +59,9 @@ std::vector<Vec3<double>> path(const Asset& asset, const char* joint) {
   std::vector<Vec3<double>> force(tree.bodies), moment(tree.bodies), out;
   std::vector<JointJet<double>> jets(asset.skeleton.joints.size());
   const int index = asset.skeleton.find(joint);
-  for (int f = 0; f < 120 * asset.clips[0].duration; ++f) {
-    EXPECT_FALSE(!SamplingJob<double>{&asset.clips[0], f / 120.0, 1, jets}.Run());
+  for (int f = 0; f < static_cast<int>(120 * asset.clips[0].duration); ++f) {
+    const SamplingJob<double> job{&asset.clips[0], f / 120.0, 1, jets};
+    EXPECT_TRUE(job.Run());
     inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
                               moment);
     out.push_back(kinematics.origin[index]);
@@ -68,7 +69,7 @@ std::vector<Vec3<double>> path(const Asset& asset, const char* joint) {
   return out;
 }
 
-TEST(Clips, FeetStandStillBetweenHeelStrikeAndHeelRise) {
+TEST(ClipFeet, StandStillBetweenHeelStrikeAndHeelRise) {
   struct Window {
     const char* clip;
     double from, to;  ///< share of the cycle in which the right foot is flat

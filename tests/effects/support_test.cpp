@@ -71,7 +71,7 @@ TEST(Support, AccelerationToTheRightPushesOffTheLeftFoot) {
   for (const int foot : {left, right}) EXPECT_GE((before[foot] - s.force[foot]).z(), 0);
 }
 
-TEST(Support, FeetOfAStrideLeanTowardsTheRootAndAgainstEachOther) {
+TEST(Support, FeetOfAStrideLeanTowardsTheHipsAndAgainstEachOther) {
   Standing s;
   const int left = s.skeleton.find("foot_l"), right = s.skeleton.find("foot_r");
   s.kinematics.origin[left].x() += 0.2;
