@@ -289,6 +289,13 @@ int main(int argc, char** argv) try {
                                       "formulations and integrators of the reference family\nExample: sinew "
                                       "study tables --quick -o out/study");
   cli::add_options(*paper, tables);
+  cli::AccuracyCommand accuracy;
+  auto* cost = study->add_subcommand(
+      "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
+  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
+  cost->add_option("--scene", accuracy.only, "tumbling, drop, stack or tracking");
+  cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
+  cost->add_flag("--json", accuracy.json_output);
 
   try {
     app.parse(argc, argv);
@@ -310,6 +317,8 @@ int main(int argc, char** argv) try {
     error = stability.run();
   else if (paper->parsed())
     error = tables.run();
+  else if (cost->parsed())
+    error = accuracy.run();
   else
     error = render.run();
   if (!error) return 0;
