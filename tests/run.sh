@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs, builds and tests. Quiet; ends with one line (and, with CI set, ctest's own summary last).
-# Usage: tests/run.sh [--all]     --all adds the address and undefined-behaviour sanitizers and the format check.
+# Usage: tests/run.sh [--all]     --all adds the address and undefined-behaviour sanitizers, the format check and
+# clang-tidy (.clang-tidy), which runs inside a build of its own: the next run looks at changed files only.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,6 +31,7 @@ run() {  # run DIRECTORY
 
 if [ "${1:-}" = --all ]; then
   git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+  build build-tidy -DCMAKE_CXX_CLANG_TIDY=clang-tidy
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   build build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo
   run build-asan

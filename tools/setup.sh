@@ -7,7 +7,7 @@ packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flat
   libassimp-dev liburdfdom-dev libosmesa6-dev libgl-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libcairo2-dev libpng-dev libjpeg62-turbo-dev
   libseccomp-dev libsdl2-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg assimp-testmodels)
-tests=(libgtest-dev libgmock-dev libmujoco-dev ccache clang-format)
+tests=(libgtest-dev libgmock-dev libmujoco-dev ccache clang-format clang-tidy)
 [ "${1:-}" = --tests ] && packages+=("${tests[@]}")
 
 missing=()

@@ -51,6 +51,7 @@ TEST(Allocation, PlaybackPushAndReturnAllocateNothing) {
   fixtures::Playing<float> scene;
   const int hand = scene.skeleton.find("hand_r");
   std::vector<std::vector<JointJet<float>>> frames;
+  frames.reserve(120);
   for (int n = 0; n < 120; ++n) frames.push_back(fixtures::idle<float>(scene.skeleton, n / 60.0));
   Character<float> c = scene.character();
   const long before = allocations;

@@ -31,13 +31,13 @@ const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
 
 /// A directory of this process: ctest runs the cases side by side.
 std::string own_directory() {
-  const std::string directory = testing::TempDir() + "sinew_cli_" + std::to_string(getpid()) + "/";
+  std::string directory = testing::TempDir() + "sinew_cli_" + std::to_string(getpid()) + "/";
   fs::create_directories(directory);
   return directory;
 }
 
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = own_directory() + name;
+  std::string path = own_directory() + name;
   std::ofstream(path) << content;
   return path;
 }

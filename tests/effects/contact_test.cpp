@@ -58,8 +58,10 @@ TEST(ContactPoints, SpanTheCollider) {
   ASSERT_EQ(points.size(), 8u);
   V low = points[0].local, high = low;
   for (const auto& p : points) {
-    low = low.cwiseMin(p.local);
-    high = high.cwiseMax(p.local);
+    const V round = V::Constant(p.radius);  // corners are small balls that touch the faces from within
+    low = low.cwiseMin(p.local - round);
+    high = high.cwiseMax(p.local + round);
+    EXPECT_LE(p.radius, 0.01);
   }
   EXPECT_LT((low - V(0.9, -0.2, -0.3)).norm() + (high - V(1.1, 0.2, 0.3)).norm(), 1e-12);
 

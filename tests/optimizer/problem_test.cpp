@@ -209,7 +209,10 @@ TEST_P(Problem, CompositeMatrixWithGeometricTermsIsTheSecondDerivative) {
   const int first = append_unknowns<double>(s.tree, s.problem.free, all);
   TreeMatrix<double> matrix(all.pattern);
   matrix.set_zero();
-  assemble_tree_matrix<double>(s.tree, s.problem.kinematics, s.problem.composite, all, first, true, matrix);
+  PathAxes<double> axes;
+  axes.append(s.tree, s.problem.kinematics, all, first);
+  assemble_tree_matrix<double>(s.tree, s.problem.kinematics, axes, s.problem.composite, all, first, true,
+                               matrix);
 
   Eigen::MatrixXd difference(n, n);
   constexpr double step = 1e-5;  // central difference of gradients: 1e-10 relative truncation
@@ -242,8 +245,10 @@ TEST_P(Problem, MatrixOverSomeUnknownsIsTheSubmatrix) {
     TreeMatrix<double> matrix(unknowns.pattern);
     matrix.set_zero();
     begin_composite(s.problem);
-    assemble_tree_matrix<double>(s.tree, s.problem.kinematics, s.problem.composite, unknowns, first, true,
-                                 matrix);
+    PathAxes<double> axes;
+    axes.append(s.tree, s.problem.kinematics, unknowns, first);
+    assemble_tree_matrix<double>(s.tree, s.problem.kinematics, axes, s.problem.composite, unknowns, first,
+                                 true, matrix);
     return matrix.values();
   };
   Unknowns all, some;

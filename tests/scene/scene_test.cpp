@@ -35,7 +35,7 @@ std::string own_file(const std::string& name) {
 }
 
 std::string written(const std::string& name, const std::string& content) {
-  const std::string path = own_file(name);
+  std::string path = own_file(name);
   std::ofstream(path) << content;
   return path;
 }
@@ -118,6 +118,32 @@ TEST(Scene, GetUpIsChosenByTheSideThatTheCharacterLiesOn) {
   }
 }
 
+TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
+  const Result r = run(R"(, "clips": [{"clip": "walk"},
+                            {"clip": "get_up", "start": 3, "blend": 1, "rate": 0, "align": true, "from_pose": true}],
+                            "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]])",
+                       "", 4.5);
+  const auto fastest = [&](double from, double to) {
+    float speed = 0;
+    for (double t = from; t < to; t += 1 / 60.0)
+      for (std::size_t i = 0; i < r.at(t).model.size(); ++i)
+        speed = std::max(
+            speed, 60 * (r.at(t + 1 / 60.0).model[i].translation - r.at(t).model[i].translation).norm());
+    return speed;
+  };
+  ASSERT_LT(r.at(2.9).model[0].translation.z(), 0.3f) << "it lies";
+  // The ease of 1 s has moved no further than 30u²(1 − u)² · 1.5 m/s (an arm's span) at u = 0.12.
+  EXPECT_LT(fastest(3, 3.1), 0.33f * 1.5f);
+  EXPECT_EQ(r.at(4.5).unknown_dofs, 0) << "it has come to the clip";
+}
+
+TEST(Scene, OffsetStartsInTheMiddleOfAClip) {
+  const Result whole = run(R"(, "clips": [{"clip": "get_up_supine"}])"),
+               later = run(R"(, "clips": [{"clip": "get_up_supine", "offset": 0.5}])", "", 0.5);
+  for (std::size_t i = 0; i < whole.at(0).model.size(); ++i)
+    EXPECT_LT((whole.at(0.75).model[i].translation - later.at(0.25).model[i].translation).norm(), 1e-5f);
+}
+
 TEST(Scene, GroupStrengthSlackensOnlyItsSubtree) {
   const Result r = run(R"(, "clips": [{"clip": "stand"}],
                           "group_strength": [{"joint": "upperarm_l", "strength": [[0, 0]]}])");
@@ -169,6 +195,16 @@ TEST(Scene, SameSceneGivesTheSameBits) {
     }
 }
 
+TEST(Scene, SubstepsAreSolvedAndReported) {
+  const std::string limp = R"(, "clips": [{"clip": "stand"}], "strength": [[0, 0]], "root": [[0, "free"]])";
+  for (const int parts : {1, 3}) {
+    const Result r =
+        run(limp, R"(, "accuracy": {"max_splits": 0, "substeps": )" + std::to_string(parts) + "}", 0.5);
+    EXPECT_EQ(r.telemetry.rows.back().report.substeps, parts);
+    EXPECT_NE(telemetry_csv(r.scene, r.telemetry).find(",elastic_J,substeps,"), std::string::npos);
+  }
+}
+
 TEST(Telemetry, EveryRowHasOneFieldPerColumnWhateverNamesSay) {
   const Result r = run(R"(, "name": "a,\"b\nc", "clips": [{"clip": "walk"}])", "", 0.2);
   std::istringstream csv(telemetry_csv(r.scene, r.telemetry));
@@ -214,6 +250,7 @@ TEST(DemoScene, RunsOnAModelWithoutClipsAndRoles) {
   EXPECT_FALSE(ran) << ran.message;
   for (const Frame& frame : recording.frames)
     for (const auto& x : frame.characters[0].model) ASSERT_TRUE(x.translation.allFinite()) << frame.time;
+  EXPECT_EQ(recording.frames.back().characters[0].unknown_dofs, 0) << "back in its rest pose";
 }
 
 TEST(DemoScene, MotionCaptureFallsAndReturnsToItsClip) {

@@ -21,7 +21,7 @@ std::vector<V> vectors(double longest) {
   for (const double length : {0.0, 1e-9, 1e-4, 9.9e-4, 1.1e-3, 0.03, 0.032, 0.5, 1.5, 3.1, 4.0, 6.0}) {
     if (length > longest) break;
     for (int n = 0; n < 4; ++n)
-      out.push_back(V(normal(random), normal(random), normal(random)).normalized() * length);
+      out.emplace_back(V(normal(random), normal(random), normal(random)).normalized() * length);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "cli/evaluate.h"
 #include "cli/files.h"
+#include "cli/mechanism.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -116,8 +117,11 @@ struct EvaluateCommand {
 struct SimulateCommand {
   std::string scene_file, output;
   bool json_output = false, plot = false;
+  sinew::mechanism::SimulateOptions mechanism;
 
   Error run() const {
+    if (cli::is_mechanism_file(scene_file))
+      return cli::run_mechanism(scene_file, mechanism, output, json_output);
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     sinew::scene::Recording recording;
@@ -200,7 +204,7 @@ struct RenderCommand {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
@@ -236,11 +240,12 @@ int main(int argc, char** argv) {
 
   SimulateCommand simulate;
   auto* s =
-      app.add_subcommand("simulate", "run a scene\nExample: sinew simulate push.json -o push.csv --plot");
+      app.add_subcommand("simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
+  cli::add_mechanism_options(*s, simulate.mechanism);
 
   RenderCommand render;
   auto* r = app.add_subcommand(
@@ -271,21 +276,20 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   Error error;
-  try {
-    if (c->parsed())
-      error = convert.run();
-    else if (i->parsed())
-      error = info.run();
-    else if (e->parsed())
-      error = evaluate.run();
-    else if (s->parsed())
-      error = simulate.run();
-    else
-      error = render.run();
-  } catch (const std::exception& unexpected) {
-    error = {unexpected.what()};
-  }
+  if (c->parsed())
+    error = convert.run();
+  else if (i->parsed())
+    error = info.run();
+  else if (e->parsed())
+    error = evaluate.run();
+  else if (s->parsed())
+    error = simulate.run();
+  else
+    error = render.run();
   if (!error) return 0;
   std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+  return 1;
+} catch (const std::exception& unexpected) {
+  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
   return 1;
 }

@@ -3,10 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "convert/human.h"
+#include "convert/muscles.h"
 #include "convert/roles.h"
-#include "sinew/animation/sampling_job.h"
-#include "sinew/effects/support.h"
+#include "convert/volume.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew::convert {
@@ -14,33 +16,33 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Muscle limits for average adults, N·m per kg of body mass at 1.75 m, the stronger direction of each joint:
-/// `limit_average_adult` values compiled from isokinetic tables and muscle models (Anderson et al. 2007;
-/// Šarabon et al. 2021; Delp 1996; Vasavada 2001; sources in tools/convert/README.md). Swing range from rest
-/// and twist range in degrees (Soucie 2011; Namdari 2011), wide because rest poses differ.
+/// Swing range from rest and twist range in degrees (Soucie 2011; Namdari 2011), wide because rest poses
+/// differ.
 struct Anatomy {
   Role role;
-  double torque;
   double swing_deg, twist_deg;
   bool hinge;
 };
 constexpr Anatomy kAnatomy[] = {
-    {Role::kPelvis, 4.0, 45, 35, false},     {Role::kSpine, 4.0, 40, 35, false},
-    {Role::kChest, 4.0, 35, 35, false},      {Role::kNeck, 0.7, 50, 60, false},
-    {Role::kHead, 0.7, 50, 60, false},       {Role::kClavicleL, 1.5, 35, 25, false},
-    {Role::kClavicleR, 1.5, 35, 25, false},  {Role::kUpperArmL, 1.2, 120, 90, false},
-    {Role::kUpperArmR, 1.2, 120, 90, false}, {Role::kForearmL, 1.0, 0, 0, true},
-    {Role::kForearmR, 1.0, 0, 0, true},      {Role::kHandL, 0.25, 70, 85, false},
-    {Role::kHandR, 0.25, 70, 85, false},     {Role::kThighL, 3.3, 110, 50, false},
-    {Role::kThighR, 3.3, 110, 50, false},    {Role::kShinL, 3.5, 0, 0, true},
-    {Role::kShinR, 3.5, 0, 0, true},         {Role::kFootL, 3.3, 55, 35, false},
-    {Role::kFootR, 3.3, 55, 35, false},      {Role::kToesL, 0.35, 60, 10, false},
-    {Role::kToesR, 0.35, 60, 10, false}};
+    {Role::kPelvis, 45, 35, false},    {Role::kSpine, 40, 35, false},      {Role::kChest, 35, 35, false},
+    {Role::kNeck, 50, 60, false},      {Role::kHead, 50, 60, false},       {Role::kClavicleL, 35, 25, false},
+    {Role::kClavicleR, 35, 25, false}, {Role::kUpperArmL, 120, 90, false}, {Role::kUpperArmR, 120, 90, false},
+    {Role::kForearmL, 0, 0, true},     {Role::kForearmR, 0, 0, true},      {Role::kHandL, 70, 85, false},
+    {Role::kHandR, 70, 85, false},     {Role::kThighL, 110, 50, false},    {Role::kThighR, 110, 50, false},
+    {Role::kShinL, 0, 0, true},        {Role::kShinR, 0, 0, true},         {Role::kFootL, 55, 35, false},
+    {Role::kFootR, 55, 35, false},     {Role::kToesL, 60, 10, false},      {Role::kToesR, 60, 10, false}};
 
 const Anatomy* anatomy(Role role) {
   const auto* found = std::find_if(std::begin(kAnatomy), std::end(kAnatomy),
                                    [&](const Anatomy& a) { return a.role == role; });
   return found == std::end(kAnatomy) ? nullptr : found;
+}
+
+/// The published rows, and what the options say of them.
+std::map<std::string, double> all_muscle_rows(const Options& options) {
+  std::map<std::string, double> rows = muscle_rows(options.human);
+  for (const auto& [name, value] : options.muscles) rows[name] = value;
+  return rows;
 }
 
 bool is_hand(Role r) {
@@ -59,9 +61,14 @@ struct Part {
   Vec3<double> direction = Vec3<double>::UnitZ();
   double length = 0;
   Collider shape;
-  double volume = 0;
+  double volume = 0;  ///< of the shape
+  Solid solid;        ///< of the skin; no cells where there is none
+  double mass = 0;    ///< kg
   bool simulated = false;
 };
+
+/// Fewer cells than this (a fingertip's) say less than the fitted shape.
+constexpr int kEnoughCells = 24;
 
 class BodyBuilder {
  public:
@@ -79,6 +86,7 @@ class BodyBuilder {
     gather_vertices();
     for (std::size_t j = 0; j < count; ++j)
       if (parts_[j].simulated) fit_shape(static_cast<int>(j));
+    weigh();
     return assemble(joint_of_rig);
   }
 
@@ -146,7 +154,8 @@ class BodyBuilder {
   }
 
   void gather_vertices() {
-    for (const Mesh& mesh : rig_.meshes)
+    for (const Mesh& mesh : rig_.meshes) {
+      part_of_vertex_.emplace_back();
       for (std::size_t v = 0; v < mesh.positions.size() / 3; ++v) {
         std::size_t main = 0;
         for (std::size_t k = 1; k < 4; ++k)
@@ -154,7 +163,12 @@ class BodyBuilder {
         const int j = owner(mesh.joints[4 * v + main]);
         const Vec3<double> p(mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]);
         parts_[j].vertices.push_back(rig_.joints[j].rest.inverse() * p);
+        part_of_vertex_.back().push_back(j);
       }
+    }
+    const std::vector<Solid> solids =
+        part_solids(rig_.meshes, part_of_vertex_, static_cast<int>(parts_.size()));
+    for (std::size_t j = 0; j < parts_.size(); ++j) parts_[j].solid = solids[j];
   }
 
   /// Towards the simulated children's mean, or along the vertices, or on from the parent.
@@ -259,38 +273,45 @@ class BodyBuilder {
     part.shape.local.translation = part.shape.local.rotation * ((low + high) / 2);
   }
 
-  /// Axis about which the clips bend this joint; anatomy where they hardly do.
-  Vec3<double> hinge_axis(int j, bool knee) const {
-    const int parent = rig_.joints[j].parent;
-    const Quat<double> rest = rig_.joints[parent].rest.rotation.conjugate() * rig_.joints[j].rest.rotation;
+  /// Axis of flexion: across the bone, about which the clips bend this joint; anatomy's where they hardly do.
+  Vec3<double> hinge_axis(int j) const {
+    const Quat<double>& rest = rig_.joints[j].rest.rotation;
+    const Vec3<double>& bone = parts_[j].direction;
+    AnatomicalAxes anatomy;
+    anatomical_axes(roles_[j], rest * bone, rest, anatomy);
+    const bool knee = roles_[j] == Role::kShinL || roles_[j] == Role::kShinR;
+    Vec3<double> axis = knee ? anatomy.axes.col(1) : Vec3<double>(-anatomy.axes.col(1));
     Mat3<double> scatter = Mat3<double>::Zero();
     double widest = 0;
-    for (const Rig::Motion& m : rig_.motions)
-      for (const auto& frame : m.samples) {
-        const Vec3<double> r = rotation_log<double>(rest.conjugate() * frame[j].rotation);
-        scatter += r * r.transpose();
-        widest = std::max(widest, r.norm());
-      }
-    // Bends about the body's left–right axis (knee) or, arms to the side, about the vertical (elbow).
-    const Vec3<double> model_axis = knee ? Vec3<double>::UnitY() : Vec3<double>::UnitZ();
-    Vec3<double> axis = rig_.joints[j].rest.rotation.conjugate() * model_axis;
+    const Quat<double> local_rest = rig_.joints[rig_.joints[j].parent].rest.rotation.conjugate() * rest;
+    each_pose(j, local_rest, [&](const Quat<double>& q) {
+      Vec3<double> r = rotation_log<double>(q);
+      r -= bone * bone.dot(r);  // rolling about the bone is no bending
+      scatter += r * r.transpose();
+      widest = std::max(widest, r.norm());
+    });
     if (widest > 0.35) {
-      const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(scatter);
-      const Vec3<double> main = eigen.eigenvectors().col(2);
+      const Vec3<double> main = Eigen::SelfAdjointEigenSolver<Mat3<double>>(scatter).eigenvectors().col(2);
       axis = main.dot(axis) < 0 ? Vec3<double>(-main) : main;
     }
-    axis -= parts_[j].direction * parts_[j].direction.dot(axis) * 0.5;
-    return axis.normalized();
+    axis -= bone * bone.dot(axis);
+    return (axis.norm() > 0.1 ? axis : Vec3<double>(bone.unitOrthogonal())).normalized();
   }
 
   void set_limits(int j, Joint& joint, double mass, double stature) const {
     const Anatomy* a = anatomy(roles_[j]);
-    // Published strengths scale with mass and stature; other joints hold their own subtree many times over.
-    const double torque =
-        options_.strength * (a ? a->torque * mass * stature / 1.75 : 1.5 * mass * 9.81 * 0.12 * stature);
     const int count = dof_count(joint.type);
-    for (int k = 0; k < count; ++k) joint.dofs[k].torque_minus = joint.dofs[k].torque_plus = torque;
-    for (int k = 0; k < count; ++k) joint.dofs[k].damping = 0.002 * torque;
+    AnatomicalAxes axes;
+    if (const Quat<double>& rest = rig_.joints[j].rest.rotation;
+        anatomical_axes(roles_[j], rest * parts_[j].direction, rest, axes)) {
+      set_muscles(axes, rows_, options_.strength * mass * stature / reference_stature(options_.human), joint);
+    } else {
+      // Joints of no known role hold a tenth of the body at a tenth of its height, and half as much again.
+      const double torque = options_.strength * 1.5 * mass * 9.81 * 0.12 * stature;
+      for (int k = 0; k < count; ++k) joint.dofs[k].torque_minus = joint.dofs[k].torque_plus = torque;
+    }
+    for (int k = 0; k < count; ++k)
+      joint.dofs[k].damping = 0.002 * std::max(joint.dofs[k].torque_minus, joint.dofs[k].torque_plus);
     if (joint.type == JointType::kBall) {
       joint.swing_axis = parts_[j].direction;
       double swing = (a ? a->swing_deg : 75) * kPi / 180, twist = (a ? a->twist_deg : 45) * kPi / 180;
@@ -319,6 +340,64 @@ class BodyBuilder {
     }
   }
 
+  double total_mass() const {
+    return options_.total_mass > 0 ? options_.total_mass
+                                   : mass_from_height(std::max(rig_.height, 0.05), options_.human);
+  }
+
+  bool has_solid(const Part& part) const { return part.solid.cells >= kEnoughCells; }
+
+  /// Masses: volume times density, or for a human without a skin the published shares, shared within a role
+  /// by volume; then scaled to the total.
+  void weigh() {
+    std::map<Role, double> volume_of_role;
+    std::vector<Role> group(parts_.size(), Role::kNone);  // own role, else the nearest ancestor's
+    for (std::size_t j = 0; j < parts_.size(); ++j) {
+      const int parent = rig_.joints[j].parent;
+      group[j] = roles_[j] == Role::kNone && parent >= 0 ? group[parent] : roles_[j];
+      if (parts_[j].simulated) volume_of_role[group[j]] += parts_[j].volume;
+    }
+    const bool human = volume_of_role.count(Role::kThighL) && volume_of_role.count(Role::kUpperArmL) &&
+                       volume_of_role.count(Role::kHead);
+    const bool by_shares = rig_.meshes.empty() && human;
+    double sum = 0;
+    for (std::size_t j = 0; j < parts_.size(); ++j) {
+      Part& part = parts_[j];
+      if (!part.simulated || part.volume <= 0) continue;
+      if (by_shares)
+        part.mass = mass_share(group[j], options_.human) * part.volume / volume_of_role[group[j]];
+      else
+        part.mass = density(group[j]) * (has_solid(part) ? part.solid.volume : part.volume);
+      sum += part.mass;
+    }
+    for (std::size_t j = 0; j < parts_.size() && human; ++j) {
+      const double most = kLargestHeadShare / (1 - kLargestHeadShare) * (sum - parts_[j].mass);
+      if (roles_[j] != Role::kHead || parts_[j].mass <= most) continue;
+      sum += most - parts_[j].mass;
+      parts_[j].mass = most;
+      report_["notes"].push_back("the head would weigh more than 18 % of the body; it weighs that");
+    }
+    for (Part& part : parts_) part.mass *= sum > 0 ? total_mass() / sum : 0;
+    report_["masses_from"] = by_shares             ? "published segment masses"
+                             : rig_.meshes.empty() ? "fitted shapes"
+                                                   : "volume of the skin";
+  }
+
+  /// Centre of mass and inertia in joint axes: of the skin's solid, else of the fitted shape.
+  void set_inertia(int j, Joint& joint) const {
+    const Part& part = parts_[j];
+    Mat3<double> r = part.shape.local.rotation.toRotationMatrix(),
+                 own = solid_inertia(part.shape, joint.mass);
+    joint.center_of_mass = part.shape.local.translation;
+    if (has_solid(part)) {
+      r = rig_.joints[j].rest.rotation.conjugate().toRotationMatrix();
+      own = inertia_of(part.solid, joint.mass);
+      joint.center_of_mass = rig_.joints[j].rest.inverse() * part.solid.center;
+    }
+    joint.inertia = r * own * r.transpose();
+    joint.inertia = 0.5 * (joint.inertia + joint.inertia.transpose()).eval();
+  }
+
   template <class Use>
   void each_pose(int j, const Quat<double>& rest, Use use) const {
     for (const Rig::Motion& m : rig_.motions)
@@ -329,11 +408,8 @@ class BodyBuilder {
     Skeleton s;
     const std::size_t count = rig_.joints.size();
     joint_of_rig.assign(count, -1);
-    double volume = 0;
-    for (const Part& part : parts_)
-      if (part.simulated) volume += part.volume;
     const double stature = std::max(rig_.height, 0.05);
-    const double mass = options_.total_mass > 0 ? options_.total_mass : 22.5 * stature * stature;
+    const double mass = total_mass();
     for (const bool simulated : {true, false})
       for (std::size_t j = 0; j < count; ++j) {
         if (parts_[j].simulated != simulated) continue;
@@ -349,20 +425,14 @@ class BodyBuilder {
         joint.role = roles_[j];
         if (simulated) {
           const Part& part = parts_[j];
-          joint.mass = volume > 0 ? mass * part.volume / volume : 0;
-          if (joint.mass > 0) {
-            joint.center_of_mass = part.shape.local.translation;
-            const Mat3<double> r = part.shape.local.rotation.toRotationMatrix();
-            joint.inertia = r * solid_inertia(part.shape, joint.mass) * r.transpose();
-            joint.inertia = 0.5 * (joint.inertia + joint.inertia.transpose()).eval();
-          }
+          joint.mass = part.mass;
+          if (joint.mass > 0) set_inertia(index, joint);
           const Anatomy* a = anatomy(roles_[j]);
           joint.type = source.parent < 0  ? JointType::kFree
                        : part.volume <= 0 ? JointType::kFixed
                        : a && a->hinge    ? JointType::kRevolute
                                           : JointType::kBall;
-          if (joint.type == JointType::kRevolute)
-            joint.axis = hinge_axis(index, roles_[j] == Role::kShinL || roles_[j] == Role::kShinR);
+          if (joint.type == JointType::kRevolute) joint.axis = hinge_axis(index);
           set_limits(index, joint, mass, stature);
           if (part.volume > 0) {
             Collider c = part.shape;
@@ -389,6 +459,8 @@ class BodyBuilder {
   std::vector<std::vector<int>> children_;
   std::vector<Role> roles_;
   std::vector<Part> parts_;
+  std::vector<std::vector<int>> part_of_vertex_;  ///< [mesh][vertex]
+  std::map<std::string, double> rows_ = all_muscle_rows(options_);
 };
 
 }  // namespace
@@ -410,51 +482,6 @@ Mat3<double> solid_inertia(const Collider& c, double mass) {
 Skeleton build_body(const Rig& rig, const Options& options, std::vector<int>& joint_of_rig,
                     nlohmann::json& report) {
   return BodyBuilder(rig, options, report).build(joint_of_rig);
-}
-
-void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report) {
-  const Tree<double> tree(skeleton);
-  Kinematics<double> kinematics(tree);
-  Motion<double> motion(tree);
-  std::vector<Vec3<double>> force(tree.bodies), moment(tree.bodies);
-  std::vector<double> torque(tree.dofs), peak(tree.dofs, 0.0);
-  std::vector<JointJet<double>> jets(skeleton.joints.size());
-  std::vector<ContactPoint<double>> points;
-  for (const Collider& c : skeleton.colliders)
-    if (c.joint < skeleton.body_count) append_contact_points<double>(c, points);
-  for (const Clip& clip : clips) {
-    double lowest = 1e9;  // the clip's own floor
-    const int frames = std::max(1, static_cast<int>(clip.duration * 60));
-    for (int pass = 0; pass < 2; ++pass)
-      for (int f = 0; f < frames; ++f) {
-        if (!SamplingJob<double>{&clip, f / 60.0, 1, jets}.Run()) continue;
-        inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
-                                  moment);
-        if (pass == 0) {
-          for (const ContactPoint<double>& p : points)
-            lowest = std::min(
-                lowest, (kinematics.origin[p.body] + kinematics.rotation[p.body] * p.local).z() - p.radius);
-          continue;
-        }
-        share_support<double>(tree, kinematics, points, lowest, {}, force, moment);
-        project_wrenches<double>(tree, kinematics, force, moment, torque);
-        for (int d = 0; d < tree.dofs; ++d) peak[d] = std::max(peak[d], std::abs(torque[d]));
-      }
-  }
-  report["muscles"] = nlohmann::json::array();
-  for (int i = 0; i < tree.bodies; ++i) {
-    Joint& joint = skeleton.joints[i];
-    if (joint.type == JointType::kFree || dof_count(joint.type) == 0) continue;
-    double most = 0, limit = 0;
-    for (int k = 0; k < dof_count(joint.type); ++k) {
-      const double needed = peak[tree.first_dof[i] + k];
-      most = std::max(most, needed);
-      joint.dofs[k].torque_minus = std::max(joint.dofs[k].torque_minus, margin * needed);
-      joint.dofs[k].torque_plus = std::max(joint.dofs[k].torque_plus, margin * needed);
-      limit = std::max(limit, joint.dofs[k].torque_plus);
-    }
-    report["muscles"].push_back({{"joint", joint.name}, {"clips_peak_Nm", most}, {"limit_Nm", limit}});
-  }
 }
 
 }  // namespace sinew::convert

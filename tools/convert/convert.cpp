@@ -6,6 +6,7 @@
 
 #include "convert/body.h"
 #include "convert/fit/clip_fit.h"
+#include "convert/muscles.h"
 #include "convert/options.h"
 #include "convert/rig.h"
 #include "convert/urdf_body.h"
@@ -56,12 +57,16 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
     if (Error error = build_urdf(scenes[0], options, asset.skeleton, report))
       return in_file(inputs[0], error.message);
+    if (Error error = override_masses(options, false, asset.skeleton))
+      return in_file(inputs[0], error.message);
   } else {
     Rig rig;
     if (Error error = build_rig(scenes, options, rig, report)) return in_file(inputs[0], error.message);
     std::vector<int> joint_of_rig;
     asset.skeleton = build_body(rig, options, joint_of_rig, report);
     asset.skeleton.name = scenes[0].name;
+    if (Error error = override_masses(options, true, asset.skeleton))
+      return in_file(inputs[0], error.message);
     fit_clips(rig, joint_of_rig, options, asset, report);
     if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
     strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
@@ -73,6 +78,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     for (std::size_t j = 0; j < rig.joints.size(); ++j)
       asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
   }
+  override_limits(options, asset.skeleton);
   if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
   for (const Clip& clip : asset.clips)
     if (Status status = validate(clip); !status)

@@ -1,19 +1,35 @@
 // Conversion options: one JSON object, every key documented by reference_options().
 #pragma once
 
+#include <array>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "convert/convert.h"
+#include "convert/human.h"
 
 namespace sinew::convert {
 
+/// What the user knows better about one joint.
+struct JointOptions {
+  std::optional<double> mass;                   ///< kg
+  std::optional<std::array<double, 2>> torque;  ///< N·m: largest in the negative and positive direction
+  std::optional<std::array<double, 2>> range;   ///< rad, of a hinge
+  std::optional<std::array<double, 2>> twist;   ///< rad, of a ball about its bone
+  std::optional<double> swing;                  ///< rad, of a ball
+};
+
 struct Options {
-  double unit = 0;               ///< m per source unit; 0: from the file, else guessed
-  std::string up;                ///< "x", "y", "z"; empty: from the file, else guessed
-  double total_mass = 0;         ///< kg; 0: from the height
-  double strength = 1;           ///< scales all muscle limits
-  double strength_margin = 1.5;  ///< muscles are at least this much stronger than the clips ask
+  double unit = 0;                             ///< m per source unit; 0: from the file, else guessed
+  std::string up;                              ///< "x", "y", "z"; empty: from the file, else guessed
+  double total_mass = 0;                       ///< kg; 0: from the height
+  Human human;                                 ///< whose published strengths and masses
+  std::map<std::string, double> muscles;       ///< N·m per kg, replaces rows of `muscle_rows`
+  std::map<std::string, JointOptions> joints;  ///< by joint name or role
+  double strength = 1;                         ///< scales all muscle limits
+  double strength_margin = 1.5;                ///< muscles are at least this much stronger than the clips ask
   bool simulate_fingers = false;
   bool free_base = true;  ///< URDF: the root link may move
   bool strict = false;    ///< refuse instead of repairing
@@ -24,5 +40,12 @@ struct Options {
   /// Unknown keys and wrong types are an error that names the key.
   static Error parse(const nlohmann::json& json, Options& out);
 };
+
+/// Gives joints the masses that the options name; the others make up the total (`keep_total`) or stay. An
+/// error names a joint that is not simulated or not there.
+Error override_masses(const Options& options, bool keep_total, Skeleton& skeleton);
+
+/// Torques, ranges, swings and twists that the options name. Comes last: nothing raises them again.
+void override_limits(const Options& options, Skeleton& skeleton);
 
 }  // namespace sinew::convert

@@ -329,6 +329,15 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   }
   for (const import::SourceMesh& mesh : scene.meshes)
     bake_mesh(mesh, scene, world, to_model, joint_of_node, report, rig);
+  // From the sole to the crown, where there is a skin.
+  float low = 1e9f, high = -1e9f;
+  for (const Mesh& mesh : rig.meshes)
+    for (std::size_t v = 2; v < mesh.positions.size(); v += 3) {
+      low = std::min(low, mesh.positions[v]);
+      high = std::max(high, mesh.positions[v]);
+    }
+  rig.height = std::max(rig.height, double(high) - double(low));
+  report["height_m"] = rig.height;
 
   std::set<std::string> taken;
   for (const SourceScene& from : scenes) {

@@ -27,6 +27,8 @@ struct PropFrame {
   Transform<float> world;
 };
 
+constexpr float kHidden = -1000;  ///< m: height of a prop that is not there yet; not drawn
+
 struct Prop {
   std::string name;
   Shape shape = Shape::kSphere;

@@ -55,16 +55,26 @@ class Player {
     for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
   }
 
-  const std::vector<JointJet<T>>& at(double t, const Transform<T>& root_now) {
+  /// `now`: local pose of the character, root in the world.
+  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now) {
     rest(a_);
     bool any = false;
     for (std::size_t i = 0; i < c_.clips.size(); ++i) {
       const ClipUse& use = c_.clips[i];
       if (t < use.start - 1e-9) break;
-      if (i >= begun_) begin(i, root_now);
+      if (i >= begun_) begin(i, now);
       const bool over = i + 1 < c_.clips.size() && t >= c_.clips[i + 1].start + c_.clips[i + 1].blend;
       if (over) continue;
-      const SamplingJob<T> job{&c_.asset->clips[chosen_[i]], (t - use.start) * use.rate, use.rate, b_};
+      if (use.from_pose) {
+        for (std::size_t k = 0; k < a_.size(); ++k) {
+          a_[k] = {};
+          a_[k].rotation = held_[k].rotation;
+          a_[k].translation = held_[k].translation;
+        }
+        any = true;
+      }
+      const SamplingJob<T> job{&c_.asset->clips[chosen_[i]], use.offset + (t - use.start) * use.rate,
+                               use.rate, b_};
       job.Run();
       place_root<T>(places_[i].template cast<T>(), b_[0]);
       const EaseWeight<T> w =
@@ -90,15 +100,16 @@ class Player {
 
   /// Chooses the clip by how the character lies and places it: its first root pose comes to stand where the
   /// character's root is, turned the same way; heights stay.
-  void begin(std::size_t i, const Transform<T>& root_now) {
+  void begin(std::size_t i, std::span<const Transform<T>> pose) {
     begun_ = i + 1;
     const ClipUse& use = c_.clips[i];
-    const Transform<double> now = root_now.template cast<double>();
+    if (use.from_pose) held_.assign(pose.begin(), pose.end());
+    const Transform<double> now = pose[0].template cast<double>();
     const Quat<double> from_rest = now.rotation * c_.asset->skeleton.joints[0].rest.rotation.conjugate();
     const bool prone = (from_rest * Vec3<double>::UnitX()).z() < 0;
     if (prone && use.clip_when_prone >= 0) chosen_[i] = use.clip_when_prone;
     if (!use.align) return;
-    SamplingJob<T>{&c_.asset->clips[chosen_[i]], 0, 1, b_}.Run();
+    SamplingJob<T>{&c_.asset->clips[chosen_[i]], use.offset, 1, b_}.Run();
     const double turn = turn_between(b_[0].rotation.template cast<double>(), now.rotation);
     const Transform<double> turned = upright(Vec3<double>::Zero(), turn);
     Vec3<double> shift = now.translation - turned * b_[0].translation.template cast<double>();
@@ -108,8 +119,9 @@ class Player {
 
   const SceneCharacter& c_;
   std::vector<Transform<double>> places_;
-  std::vector<int> chosen_;  ///< [use] clip
-  std::size_t begun_ = 0;    ///< uses that have started
+  std::vector<int> chosen_;         ///< [use] clip
+  std::size_t begun_ = 0;           ///< uses that have started
+  std::vector<Transform<T>> held_;  ///< [joint] pose in which the last use with from_pose began
   std::vector<JointJet<T>> a_, b_;
 };
 
@@ -164,7 +176,8 @@ class Runner {
       if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
     for (const SceneProp& p : s_.props) {
       PropSettings settings = p.settings;
-      if (p.launch_time > 0) settings.pose.translation = {0, 0, -1000};
+      if (p.launch_time > 0)
+        settings.pose.translation = waiting_place(launched_.size()).template cast<double>();
       if (world_.add_prop(settings, status) < 0) return {"prop '" + p.name + "': " + status.reason};
       recording_.props.push_back(
           {p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
@@ -179,7 +192,7 @@ class Runner {
   convert::Error drive(int c, double t, bool first) {
     const SceneCharacter& source = s_.characters[c];
     Character<T> character = world_.character(c);
-    const Status status = character.set_target(players_[c].at(t, character.model()[0]));
+    const Status status = character.set_target(players_[c].at(t, character.local()));
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     if (first) {
       character.reset();
@@ -192,11 +205,14 @@ class Runner {
     return {};
   }
 
+  /// Where nothing is near that a prop could touch before its launch.
+  static Vec3<T> waiting_place(std::size_t prop) { return {T(0), T(0), T(1000 * (prop + 1))}; }
+
   void launch(double t) {
     for (std::size_t p = 0; p < s_.props.size(); ++p) {
       const SceneProp& prop = s_.props[p];
       if (!launched_[p] && t < prop.launch_time) {
-        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), {T(0), T(0), T(-1000)}}, Vec3<T>::Zero(),
+        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), waiting_place(p)}, Vec3<T>::Zero(),
                         Vec3<T>::Zero());
         continue;
       }
@@ -256,7 +272,7 @@ class Runner {
         const int dofs = dof_count(skeleton.joints[i].type);
         double most = 0;  // hinges show their sign, ball joints the size of their largest component
         for (int k = 0; k < dofs; ++k) {
-          const auto dof = static_cast<std::size_t>(c.first_dof(i) + k);
+          const int dof = c.first_dof(i) + k;
           made.load[i] = std::max(made.load[i], float(c.load()[dof]));
           made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
           most = std::max(most, std::abs(double(c.torque()[dof])));
@@ -293,8 +309,10 @@ class Runner {
       telemetry_.rows.push_back(std::move(row));
       frame.characters.push_back(std::move(made));
     }
-    for (int p = 0; p < world_.prop_count(); ++p)
+    for (int p = 0; p < world_.prop_count(); ++p) {
       frame.props.push_back({world_.prop_pose(p).template cast<float>()});
+      if (!launched_[p]) frame.props.back().world.translation.z() = kHidden;
+    }
     recording_.frames.push_back(std::move(frame));
   }
 

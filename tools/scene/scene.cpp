@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -41,10 +42,11 @@ class Reader {
     if (!(v > 0)) fail(inside(key), "must be positive");
     return v;
   }
-  int count(const char* key, int otherwise, int most) const {
+  int count(const char* key, int otherwise, int least, int most) const {
     const double v = number(key, otherwise);
-    if (v != std::floor(v) || v < 1 || v > most)
-      fail(inside(key), "must be a whole number from 1 to " + std::to_string(most));
+    if (v != std::floor(v) || v < least || v > most)
+      fail(inside(key),
+           "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return static_cast<int>(v);
   }
   double time(const char* key, double otherwise) const {
@@ -167,7 +169,8 @@ SceneCharacter read_character(const json& value, const std::string& where,
   c.yaw = in.number("yaw_deg", 0) * 3.14159265358979323846 / 180;
   const json& clips = in.list("clips");
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    const Reader use(clips[i], in.item("clips", i), {"clip", "start", "blend", "rate", "align"});
+    const Reader use(clips[i], in.item("clips", i),
+                     {"clip", "start", "blend", "rate", "align", "from_pose", "offset"});
     ClipUse made;
     if (!use.at("clip").is_string()) fail(use.inside("clip"), "expected a clip name");
     const std::string name = use.at("clip").get<std::string>();
@@ -180,7 +183,9 @@ SceneCharacter read_character(const json& value, const std::string& where,
     made.start = use.time("start", 0);
     made.blend = use.time("blend", 0.3);
     made.rate = use.number("rate", 1);
+    made.offset = use.time("offset", 0);
     made.align = use.flag("align", false);
+    made.from_pose = use.flag("from_pose", false);
     if (!c.clips.empty() && made.start < c.clips.back().start)
       fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);
@@ -253,14 +258,20 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
   if (in.has("accuracy")) {
-    const Reader a(
-        in.at("accuracy"), "accuracy",
-        {"scheme", "tolerance", "max_iterations", "sink_depth", "stick_speed", "return_time", "precision"});
-    const std::string scheme = a.text("scheme", "bdf2");
-    if (scheme != "bdf1" && scheme != "bdf2") fail("accuracy.scheme", "unknown scheme '" + scheme + "'");
-    s.world.accuracy.scheme = scheme == "bdf1" ? Scheme::kBdf1 : Scheme::kBdf2;
+    const Reader a(in.at("accuracy"), "accuracy",
+                   {"scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
+                    "sink_depth", "stick_speed", "limit_stiffness", "return_time", "precision"});
+    static const std::map<std::string, Scheme> schemes{
+        {"momentum", Scheme::kMomentum}, {"bdf1", Scheme::kBdf1}, {"bdf2", Scheme::kBdf2}};
+    const auto scheme = schemes.find(a.text("scheme", "bdf2"));
+    if (scheme == schemes.end()) fail("accuracy.scheme", "is momentum, bdf1 or bdf2");
+    s.world.accuracy.scheme = scheme->second;
+    s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
+    s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);
+    s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
+    s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);
     s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
-    s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1000);
+    s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1, 1000);
     s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
     s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
     s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);

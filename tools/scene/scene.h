@@ -18,7 +18,9 @@ using Timeline = std::vector<std::pair<double, Value>>;  ///< (time, value), tim
 struct ClipUse {
   int clip = 0;
   double start = 0, blend = 0.3, rate = 1;
-  bool align = false;        ///< begins where the character's root stands and faces then
+  double offset = 0;       ///< s of the clip at `start`
+  bool align = false;      ///< begins where the character's root stands and faces then
+  bool from_pose = false;  ///< blends from the pose in which the character is then, not from the clip before
   int clip_when_prone = -1;  ///< get_up: played instead when the character lies face down at `start`
 };
 
@@ -73,6 +75,6 @@ convert::Error load_scene(const std::string& path, Scene& out);
 
 /// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength
 /// returns.
-Scene demo_scene(std::shared_ptr<const Asset> asset);
+Scene demo_scene(const std::shared_ptr<const Asset>& asset);
 
 }  // namespace sinew::scene

@@ -66,7 +66,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
   std::string csv =
       "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,"
       "penetration_m,kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,"
-      "plotted_limit_Nm";
+      "plotted_limit_Nm,elastic_J,substeps";
   const std::vector<std::string> names = body_names(scene);
   for (const std::string& name : names) csv += ",load_" + field(name);
   csv += '\n';
@@ -78,7 +78,8 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
                        r.report.outer_passes, r.report.factorisations, r.report.converged, r.report.used_bdf2,
                        r.report.contacts, r.report.penetration, r.report.kinetic_energy,
                        r.report.potential_energy, field(skeleton.joints[r.loaded_joint].name), r.load);
-    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f}", r.torque, r.limit, r.plotted_torque, r.plotted_limit);
+    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{}", r.torque, r.limit, r.plotted_torque,
+                       r.plotted_limit, r.report.elastic_energy, r.report.substeps);
     for (const std::string& name : names) {
       const int joint = skeleton.find(name.c_str());
       csv += joint >= 0 && joint < skeleton.body_count ? fmt::format(",{:.4f}", r.loads[joint]) : ",";
@@ -90,7 +91,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
 
 nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry) {
   std::vector<double> playback, solved;
-  int unconverged = 0, most = 0, contacts = 0;
+  int unconverged = 0, most = 0, contacts = 0, substeps = 0;
   double penetration = 0, load = 0;
   std::string loaded;
   for (const TelemetryRow& r : telemetry.rows) {
@@ -98,6 +99,7 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
     unconverged += !r.report.converged;
     most = std::max(most, r.report.unknown_dofs);
     contacts = std::max(contacts, r.report.contacts);
+    substeps = std::max(substeps, r.report.substeps);
     penetration = std::max(penetration, r.report.penetration);
     if (r.load > load) {
       load = r.load;
@@ -113,6 +115,7 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
           {"median_us_solved", median(solved)},
           {"most_unknown_dofs", most},
           {"unconverged_steps", unconverged},
+          {"most_substeps", substeps},
           {"most_contacts", contacts},
           {"deepest_penetration_m", penetration},
           {"largest_load", load},

@@ -5,38 +5,68 @@
 
 namespace sinew {
 
-/// Weights of the `degree` + 1 control points of a span at its local parameter u in [0, 1].
-/// Derivatives are per knot interval: divide by the interval once and twice.
+/// Weights of the `degree` + 1 control points of a span at its local parameter u in [0, 1]; entries beyond
+/// are zero. Derivatives are per knot interval: divide by the interval once and twice.
 template <class T>
 struct BsplineBasis {
-  std::array<T, 6> value{}, first{}, second{};
+  static constexpr int kMaxDegree = 5;
+  std::array<T, kMaxDegree + 1> value{}, first{}, second{};
 
-  /// Cox–de Boor on uniform knots: N_j^d = ((u − j + d) N_{j−1}^{d−1} + (j + 1 − u) N_j^{d−1}) / d, and the
-  /// derivative of N_j^d is N_{j−1}^{d−1} − N_j^{d−1}.
-  static BsplineBasis at(int degree, T u) {
-    BsplineBasis basis;
-    std::array<T, 6> below{}, lower{}, now{};
-    now[0] = T(1);
-    for (int d = 1; d <= degree; ++d) {
-      below = lower;
-      lower = now;
-      for (int j = d; j >= 0; --j) {
-        const T left = j > 0 ? (u - T(j) + T(d)) * lower[j - 1] : T(0);
-        const T right = j < d ? (T(j + 1) - u) * lower[j] : T(0);
-        now[j] = (left + right) / T(d);
+  static BsplineBasis at(int degree, T u);
+};
+
+namespace detail {
+
+/// Coefficients [power][control point] of the basis of one degree, as polynomials in u.
+template <class T>
+struct BsplineMonomials {
+  static constexpr int kPowers = 6, kControls = 8;  ///< controls padded to whole SIMD registers
+  T coefficient[kPowers][kControls] = {};
+
+  /// Cox–de Boor on uniform knots: N_j^d = ((u − j + d) N_{j−1}^{d−1} + (j + 1 − u) N_j^{d−1}) / d.
+  constexpr explicit BsplineMonomials(int degree) {
+    double exact[kPowers][kControls] = {{1}};
+    for (int d = 1; d <= degree; ++d)
+      for (int j = d; j >= 0; --j) {  // downwards: N_{j−1}^{d−1} is still in place
+        double next[kPowers] = {};
+        for (int k = 0; k < d; ++k) {
+          const double left = j > 0 ? exact[k][j - 1] : 0, right = j < d ? exact[k][j] : 0;
+          next[k] += ((d - j) * left + (j + 1) * right) / d;
+          next[k + 1] += (left - right) / d;
+        }
+        for (int k = 0; k <= d; ++k) exact[k][j] = next[k];
       }
-    }
-    const auto entry = [](const std::array<T, 6>& w, int j, int count) {
-      return j >= 0 && j < count ? w[j] : T(0);
-    };
-    for (int j = 0; j <= degree; ++j) {
-      basis.value[j] = now[j];
-      basis.first[j] = entry(lower, j - 1, degree) - entry(lower, j, degree);
-      basis.second[j] =
-          entry(below, j - 2, degree - 1) - 2 * entry(below, j - 1, degree - 1) + entry(below, j, degree - 1);
-    }
-    return basis;
+    for (int k = 0; k < kPowers; ++k)
+      for (int j = 0; j < kControls; ++j) coefficient[k][j] = T(exact[k][j]);
   }
 };
+template <class T>
+inline constexpr BsplineMonomials<T> kBsplineMonomials[] = {BsplineMonomials<T>(0), BsplineMonomials<T>(1),
+                                                            BsplineMonomials<T>(2), BsplineMonomials<T>(3),
+                                                            BsplineMonomials<T>(4), BsplineMonomials<T>(5)};
+
+}  // namespace detail
+
+/// Horner's rule on all control points at once, with both derivatives.
+template <class T>
+BsplineBasis<T> BsplineBasis<T>::at(int degree, T u) {
+  using Monomials = detail::BsplineMonomials<T>;
+  const Monomials& monomials = detail::kBsplineMonomials<T>[degree];
+  T value[Monomials::kControls] = {}, first[Monomials::kControls] = {},
+    half_second[Monomials::kControls] = {};
+  for (int k = degree; k >= 0; --k)
+    for (int j = 0; j < Monomials::kControls; ++j) {
+      half_second[j] = half_second[j] * u + first[j];
+      first[j] = first[j] * u + value[j];
+      value[j] = value[j] * u + monomials.coefficient[k][j];
+    }
+  BsplineBasis basis;
+  for (int j = 0; j <= kMaxDegree; ++j) {
+    basis.value[j] = value[j];
+    basis.first[j] = first[j];
+    basis.second[j] = 2 * half_second[j];
+  }
+  return basis;
+}
 
 }  // namespace sinew

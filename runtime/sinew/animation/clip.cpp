@@ -5,9 +5,9 @@
 namespace sinew {
 namespace {
 
-bool is_finite(const Transform<float>& x) {
-  return x.rotation.coeffs().allFinite() && x.translation.allFinite() &&
-         std::abs(x.rotation.norm() - 1.f) < 1e-3f;
+/// Samplers take constants as they are, so they must be unit to float's rounding.
+bool is_unit(const Quat<float>& q) {
+  return std::abs(q.norm() - 1.f) < 1e-6f;
 }
 
 Status check_group(const Clip& clip, const Clip::Group& group, int index) {
@@ -38,9 +38,12 @@ Status validate(const Clip& clip) {
     return Status::error(Code::kInvalidArgument, "duration is not a time");
   if (clip.joint_count < 0 || clip.constants.size() != std::size_t(clip.joint_count))
     return Status::error(Code::kInvalidArgument, "one constant transform per joint is needed");
-  for (const Transform<float>& constant : clip.constants)
-    if (!is_finite(constant))
-      return Status::error(Code::kNotFinite, "constant transform is not a finite rotation");
+  for (const Transform<float>& constant : clip.constants) {
+    if (!constant.rotation.coeffs().allFinite() || !constant.translation.allFinite())
+      return Status::error(Code::kNotFinite, "constant transform is not finite");
+    if (!is_unit(constant.rotation))
+      return Status::error(Code::kInvalidArgument, "constant rotation is not a unit quaternion");
+  }
   if (!clip.root_step.allFinite()) return Status::error(Code::kNotFinite, "root step is not finite");
   for (const ContactWindow& window : clip.contacts)
     if (window.joint < 0 || window.joint >= clip.joint_count || !(window.begin <= window.end))

@@ -2,11 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "sinew/animation/bspline.h"
+#include "sinew/animation/kernels/kernels.h"
 
 namespace sinew {
 namespace {
+
+using kernels::JetLayout;
+using kernels::PoseLayout;
+using kernels::SplineSpan;
+
+template <class T>
+constexpr bool kLayoutsAgree = sizeof(JointJet<T>) == sizeof(JetLayout<T>) &&
+                               sizeof(Transform<T>) == sizeof(PoseLayout<T>) &&
+                               offsetof(JointJet<T>, omega) == offsetof(JetLayout<T>, omega) &&
+                               offsetof(JointJet<T>, alpha) == offsetof(JetLayout<T>, alpha) &&
+                               offsetof(JointJet<T>, translation) == offsetof(JetLayout<T>, translation) &&
+                               offsetof(JointJet<T>, velocity) == offsetof(JetLayout<T>, velocity) &&
+                               offsetof(JointJet<T>, acceleration) == offsetof(JetLayout<T>, acceleration) &&
+                               offsetof(Transform<T>, translation) == offsetof(PoseLayout<T>, translation);
+static_assert(kLayoutsAgree<float> && kLayoutsAgree<double> && sizeof(Clip::Track) == sizeof(int));
 
 /// Time within the clip and how many whole loops came before it.
 struct Place {
@@ -20,36 +37,45 @@ Place wrapped(const Clip& clip, double time) {
   return {std::clamp(time - loops * clip.duration, 0.0, double(clip.duration)), loops};
 }
 
-/// Weighted sums of one group's control points: p, p', p'' of every track, `Components` floats each.
-template <int Components, class T, class Use>
-void sample_group(const Clip& clip, const Clip::Group& group, double time, double rate, std::size_t joints,
-                  Use use) {
-  using Controls = Eigen::Map<const Eigen::Matrix<float, Components, 1>>;
-  using Sum = Eigen::Matrix<T, Components, 1>;
+/// Control points within reach of `time` and their weights, derivatives scaled by the playback rate.
+template <class T>
+SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, double time, double rate,
+                      std::size_t joints) {
   const double knots = time / group.knot_interval;
   const int spans = clip.loops ? group.control_count : group.control_count - group.degree;
-  const int span = std::clamp(static_cast<int>(knots), 0, spans - 1);
-  BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(std::clamp(knots - span, 0.0, 1.0)));
+  const int first = std::clamp(static_cast<int>(knots), 0, spans - 1);
+  const BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(std::clamp(knots - first, 0.0, 1.0)));
   const T scale = T(rate / group.knot_interval);
-  for (int j = 0; j <= group.degree; ++j) {
-    w.first[j] *= scale;
-    w.second[j] *= scale * scale;
+  const std::size_t stride = (group.rotation ? 4 : 3) * group.tracks.size();
+  SplineSpan<T> span;
+  span.terms = group.degree + 1;
+  for (int t = 0; t < span.terms; ++t) {
+    span.rows[t] = group.controls.data() + stride * ((first + t) % group.control_count);
+    span.value[t] = w.value[t];
+    span.first[t] = scale * w.first[t];
+    span.second[t] = scale * scale * w.second[t];
   }
-  const std::size_t stride = Components * group.tracks.size();
-  const float* rows[6] = {};
-  for (int j = 0; j <= group.degree; ++j)
-    rows[j] = group.controls.data() + stride * ((span + j) % group.control_count);
-  for (std::size_t k = 0; k < group.tracks.size(); ++k) {
-    const std::size_t joint = group.tracks[k].joint;
-    if (joint >= joints) continue;
-    Sum p = Sum::Zero(), dp = Sum::Zero(), ddp = Sum::Zero();
-    for (int j = 0; j <= group.degree; ++j) {
-      const Sum c = Controls(rows[j] + Components * k).template cast<T>();
-      p += w.value[j] * c;
-      dp += w.first[j] * c;
-      ddp += w.second[j] * c;
-    }
-    use(joint, p, dp, ddp);
+  span.joints = &group.tracks.data()->joint;
+  span.tracks = static_cast<int>(group.tracks.size());
+  span.joint_end = static_cast<int>(joints);
+  return span;
+}
+
+/// The kernel of this processor.
+#define SINEW_DISPATCH(call) (kernels::has_avx2() ? kernels::avx2::call : kernels::baseline::call)
+
+/// Samples all groups at a place; `speed` is the playback rate, 0 for a pose that is held.
+template <class T, class Out>
+void sample(const Clip& clip, double time, double speed, std::span<Out> out) {
+  const auto* still = reinterpret_cast<const PoseLayout<float>*>(clip.constants.data());
+  SINEW_DISPATCH(constants(still, static_cast<int>(out.size()), out.data()));
+  for (const Clip::Group& group : clip.groups) {
+    if (group.tracks.empty()) continue;
+    const SplineSpan<T> span = span_at<T>(clip, group, time, speed, out.size());
+    if (group.rotation)
+      SINEW_DISPATCH(rotations(span, out.data()));
+    else
+      SINEW_DISPATCH(translations(span, out.data()));
   }
 }
 
@@ -68,44 +94,25 @@ Status SamplingJob<T>::Validate() const {
 template <class T>
 Status SamplingJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
-  const std::size_t count = std::min(jets.size(), std::size_t(clip->joint_count));
-  for (std::size_t i = 0; i < count; ++i) {
-    jets[i] = {};
-    jets[i].rotation = clip->constants[i].rotation.template cast<T>().normalized();
-    jets[i].translation = clip->constants[i].translation.template cast<T>();
-  }
+  const std::span<JointJet<T>> moving = jets.first(std::min(jets.size(), std::size_t(clip->joint_count)));
+  const std::span<Transform<T>> still = poses.first(std::min(poses.size(), std::size_t(clip->joint_count)));
   const Place place = wrapped(*clip, time);
   const bool held = !clip->loops && (time < 0 || time > clip->duration);  // a clamped pose stands still
   const double speed = held ? 0.0 : rate;
-  for (const Clip::Group& group : clip->groups) {
-    if (group.rotation) {
-      using Vec4 = Eigen::Matrix<T, 4, 1>;
-      sample_group<4, T>(*clip, group, place.time, speed, count,
-                         [&](std::size_t joint, const Vec4& p, const Vec4& dp, const Vec4& ddp) {
-                           // 2·Im(p̄ p')/n; any common scale of the controls cancels.
-                           const T inverse = T(1) / p.squaredNorm();
-                           const auto twice_imaginary = [&](const Vec4& d) {
-                             const Vec3<T> a = p.template head<3>(), b = d.template head<3>();
-                             return Vec3<T>((T(2) * inverse) * (p[3] * b - d[3] * a - a.cross(b)));
-                           };
-                           JointJet<T>& jet = jets[joint];
-                           jet.rotation.coeffs() = p * std::sqrt(inverse);
-                           jet.omega = twice_imaginary(dp);
-                           jet.alpha = twice_imaginary(ddp) - jet.omega * (T(2) * inverse * p.dot(dp));
-                         });
-    } else {
-      sample_group<3, T>(*clip, group, place.time, speed, count,
-                         [&](std::size_t joint, const Vec3<T>& p, const Vec3<T>& dp, const Vec3<T>& ddp) {
-                           jets[joint].translation = p;
-                           jets[joint].velocity = dp;
-                           jets[joint].acceleration = ddp;
-                         });
-    }
-  }
-  if (count > 0 && clip->loops && clip->duration > 0) {
+  if (!moving.empty())
+    sample<T>(*clip, place.time, speed,
+              std::span(reinterpret_cast<JetLayout<T>*>(moving.data()), moving.size()));
+  if (!still.empty())
+    sample<T>(*clip, place.time, speed,
+              std::span(reinterpret_cast<PoseLayout<T>*>(still.data()), still.size()));
+  if (clip->loops && clip->duration > 0) {
     const Vec3<double> step = clip->root_step.template cast<double>();
-    jets[0].translation += (step * (place.loops + place.time / clip->duration)).template cast<T>();
-    jets[0].velocity += (step * (speed / clip->duration)).template cast<T>();
+    const Vec3<T> shift = (step * (place.loops + place.time / clip->duration)).template cast<T>();
+    if (!still.empty()) still[0].translation += shift;
+    if (!moving.empty()) {
+      moving[0].translation += shift;
+      moving[0].velocity += (step * (speed / clip->duration)).template cast<T>();
+    }
   }
   return {};
 }

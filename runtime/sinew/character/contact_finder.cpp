@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
+constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -31,7 +32,9 @@ void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
     Bound b;
     b.center = s.problem.kinematics.origin[body] + s.problem.kinematics.rotation[body] * s.bound_center[c];
     b.radius = s.bound_radius[c];
-    b.reach = T(kMargin) + h * (s.history.velocity[body].norm() + T(5) * h);
+    const T arm = (b.center - s.problem.kinematics.center[body]).norm() + b.radius;
+    b.reach = T(kMargin) +
+              h * (s.history.velocity[body].norm() + s.history.rotation_rate[body].norm() * arm + T(5) * h);
     for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
       b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
     bounds_.push_back(b);
@@ -46,7 +49,8 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.local_a = point.local;
   c.half_axis_a = point.half_axis;
   c.radius = point.radius;
-  c.stiffness = states_[n]->contact_stiffness(*world_);
+  c.restitution = point.restitution;
+  c.stiffness = states_[n]->contact_stiffness(*world_, heaviest_);
   return c;
 }
 
@@ -55,10 +59,48 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
+  remember(c);
+  if (c.fresh) stiffen_for_impact(c);
+  contacts_.push_back(c);
+}
+
+/// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
+/// stiffer its offset takes up the difference in depth: neither gives energy.
+template <class T>
+void ContactFinder<T>::remember(Contact<T>& c) const {
   const auto found = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
                                       [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
-  if (found != lagged_.end() && found->id == c.id) c.lagged_normal_force = found->force;
-  contacts_.push_back(c);
+  if (found == lagged_.end() || found->id != c.id) return;
+  c.fresh = false;
+  c.lagged_normal_force = found->force;
+  c.offset = found->offset;
+  if (found->stiffness < c.stiffness)
+    c.offset += ContactLaw<T>::depth(found->stiffness, found->force) -
+                ContactLaw<T>::depth(c.stiffness, found->force);
+  c.stiffness = std::max(c.stiffness, found->stiffness);
+  c.gap += c.offset;
+}
+
+/// Velocity of a body's material point at the beginning of the step, m/s.
+template <class T>
+Vec3<T> ContactFinder<T>::speed(int n, int body, const Vec3<T>& point) const {
+  const CharacterState<T>& s = *states_[n];
+  const Mat3<T> spin = s.history.rotation_rate[body] * s.history.rotation[body].transpose();
+  return s.history.velocity[body] + spin * (point - s.problem.kinematics.center[body]);
+}
+
+/// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
+template <class T>
+void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
+  Vec3<T> closing = speed(c.tree_a, c.body_a, c.point);
+  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth);
+  if (c.tree_b >= 0) {
+    closing -= speed(c.tree_b, c.body_b, c.point);
+    mass = std::min(mass, T(states_[c.tree_b]->total_mass));
+  }
+  if (!c.plane) thickness = std::min(thickness, c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x());
+  const T approach = -closing.dot(c.normal);
+  if (approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * approach / (h_ * thickness));
 }
 
 template <class T>
@@ -67,14 +109,14 @@ void ContactFinder<T>::meet_static(int n, std::span<const Collider> obstacles) {
   const T ground = T(world_->ground_height) - common_origin_.z();
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
     const Bound& b = bounds_[first_bound_[n] + static_cast<int>(collider)];
-    if (!b.moved) continue;
-    if (world_->ground && b.center.z() - b.radius - ground < b.reach)
+    if (b.moved && world_->ground && b.center.z() - b.radius - ground < b.reach)
       for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
         if (!s.points[k].meets_plane()) continue;
         Contact<T> c = contact_of(n, s.points[k]);
         c.plane = true;
         c.plane_height = ground;
         c.friction = s.points[k].friction * T(world_->ground_friction);
+        c.restitution = std::max(c.restitution, T(world_->ground_restitution));
         c.id = contact_id(indices_[n], k, -1, -1);
         add(c, b.reach);
       }
@@ -93,6 +135,7 @@ void ContactFinder<T>::meet_static(int n, std::span<const Collider> obstacles) {
         c.size = obstacle.size.template cast<T>();
         c.shape_pose = pose;
         c.friction = std::sqrt(s.points[k].friction * T(obstacle.friction));
+        c.restitution = std::max(c.restitution, T(obstacle.restitution));
         c.id = contact_id(indices_[n], k, -1, static_cast<int>(o));
         add(c, b.reach);
       }
@@ -119,8 +162,9 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
     c.shape = shape.shape;
     c.size = shape.size.template cast<T>();
     c.shape_pose = shape.local.template cast<T>();
-    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_));
+    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, heaviest_));
     c.friction = std::sqrt(point.friction * T(shape.friction));
+    c.restitution = std::max(c.restitution, T(shape.restitution));
     c.id = contact_id(indices_[n], k, indices_[m], other);
     add(c, reach);
   }
@@ -146,6 +190,9 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, std::sp
   indices_ = indices;
   lagged_ = lagged;
   common_origin_ = common_origin;
+  h_ = h;
+  heaviest_ = T(0);
+  for (const CharacterState<T>* s : states) heaviest_ = std::max(heaviest_, T(s->total_mass));
   contacts_.clear();
   bounds_.clear();
   first_bound_.clear();

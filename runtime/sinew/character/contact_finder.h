@@ -8,11 +8,13 @@
 
 namespace sinew {
 
-/// A contact's normal force, remembered for the friction of the next step.
+/// What a loaded contact hands on to the next step: its normal force, for friction, and how stiff it was.
 template <class T>
 struct LaggedForce {
   std::uint64_t id = 0;
-  T force = T(0);
+  T force = T(0);      ///< N
+  T stiffness = T(0);  ///< N/m
+  T offset = T(0);     ///< m, see Contact::offset
 };
 
 template <class T>
@@ -41,6 +43,9 @@ class ContactFinder {
   void meet_tree(int n, int m);
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
+  void remember(Contact<T>& contact) const;
+  void stiffen_for_impact(Contact<T>& contact) const;
+  Vec3<T> speed(int n, int body, const Vec3<T>& point) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
 
   const WorldSettings* world_ = nullptr;
@@ -48,6 +53,7 @@ class ContactFinder {
   std::span<const int> indices_;
   std::span<const LaggedForce<T>> lagged_;
   Vec3<T> common_origin_ = Vec3<T>::Zero();
+  T h_ = T(0), heaviest_ = T(0);  ///< s; kg
   std::vector<Contact<T>> contacts_;
   std::vector<Bound> bounds_;     ///< all colliders of all states
   std::vector<int> first_bound_;  ///< [state]

@@ -15,6 +15,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       local(s.joints.size()),
       model(s.joints.size()),
       rate(s.body_count),
+      rate_before(s.body_count),
       deviation(s.body_count),
       joint_strength(s.body_count, T(1)),
       torque(tree.dofs, T(0)),
@@ -25,6 +26,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       history(tree.bodies),
       motion(tree),
       wanted(tree.bodies) {
+  total_mass = skeleton.total_mass();
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
@@ -119,6 +121,15 @@ void CharacterState<T>::refresh_limits() {
 }
 
 template <class T>
+void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
+  const Totals sum = totals<T>(tree, history, gravity);
+  report.kinetic_energy = sum.kinetic_energy;
+  report.potential_energy = sum.potential_energy;
+  report.momentum = sum.momentum;
+  report.angular_momentum = sum.angular_momentum;
+}
+
+template <class T>
 void CharacterState<T>::update_model() {
   for (std::size_t i = 0; i < local.size(); ++i) {
     const int parent = skeleton.joints[i].parent;
@@ -155,6 +166,7 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
+  rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
@@ -165,6 +177,14 @@ bool CharacterState<T>::undisturbed() const {
   if (is_prop) return false;
   return std::all_of(deviation.begin(), deviation.end(),
                      [](const Deviation<T>& d) { return d.on_animation && !d.released; });
+}
+
+template <class T>
+bool CharacterState<T>::fully_driven() const {
+  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.first_dof[1] : 0;
+  for (int dof = first; dof < tree.dofs; ++dof)
+    if (!(problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0))) return false;
+  return true;
 }
 
 template <class T>

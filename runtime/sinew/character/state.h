@@ -26,16 +26,19 @@ struct CharacterState {
   Tree<T> tree;
   CharacterSettings settings;
   bool is_prop = false;
+  double total_mass = 0;  ///< kg
 
   std::vector<JointJet<T>> target,
-      target_before;                       ///< [joint] what the animation wants now, and wanted last step
-  std::vector<Transform<T>> local, model;  ///< [joint]
-  std::vector<std::array<T, 6>> rate;      ///< [body] joint speed over the last step, as joint_offset
-  std::vector<Deviation<T>> deviation;     ///< [body]
-  std::vector<T> joint_strength;           ///< [body]
-  std::vector<T> torque, load, limit;      ///< [dof]
-  std::vector<std::uint8_t> unknown;       ///< [dof]
-  std::vector<ExternalForce<T>> impulses;  ///< N·s, waiting for the next step
+      target_before;                          ///< [joint] what the animation wants now, and wanted last step
+  std::vector<Transform<T>> local, model;     ///< [joint]
+  std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
+  std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
+  T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
+  std::vector<Deviation<T>> deviation;        ///< [body]
+  std::vector<T> joint_strength;              ///< [body]
+  std::vector<T> torque, load, limit;         ///< [dof]
+  std::vector<std::uint8_t> unknown;          ///< [dof]
+  std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
   History<T> history;
@@ -55,17 +58,23 @@ struct CharacterState {
 
   CharacterState(const Skeleton& s, const CharacterSettings& c);
 
-  /// N/m of one contact point: the whole weight sinks it by the accuracy's depth.
-  T contact_stiffness(const WorldSettings& world) const {
-    return T(skeleton.total_mass() * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
+  /// N/m of one contact point: the weight of the heaviest that it may have to bear (kg, of those near, at
+  /// most a hundred times its own) sinks it by the accuracy's depth.
+  T contact_stiffness(const WorldSettings& world, T heaviest) const {
+    const double bears = std::clamp(double(heaviest), total_mass, 100 * total_mass);
+    return T(bears * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
   }
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
+  /// Energies and momenta of the history into the report.
+  void report_totals(const Vec3<double>& gravity);
   /// Model transforms of all joints from the local ones.
   void update_model();
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
   bool undisturbed() const;
+  /// Something holds every joint: without that there is nothing to play.
+  bool fully_driven() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
   void choose_self_pairs();

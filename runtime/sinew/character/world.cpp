@@ -24,6 +24,7 @@ struct World<T>::Impl {
   void reserve();
   bool play(CharacterState<T>& state, T h);
   bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
+  bool near_obstacle(const CharacterState<T>& state, T h) const;
   void step_once(T h);
 };
 
@@ -115,6 +116,7 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   collider.shape = prop.shape;
   collider.size = prop.size;
   collider.friction = prop.friction;
+  collider.restitution = prop.restitution;
   body.colliders.push_back(collider);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
   if (status && !(prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
@@ -193,6 +195,17 @@ bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b
   return (a.model[0].translation - b.model[0].translation).norm() < reach;
 }
 
+/// Whether an obstacle may be in the way of the animation.
+template <class T>
+bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
+  if (!s.settings.ground_contact) return false;
+  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
+  return std::any_of(obstacles.begin(), obstacles.end(), [&](const Collider& o) {
+    const Vec3<double> center = s.model[0].translation.template cast<double>();
+    return signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance < double(reach);
+  });
+}
+
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
 /// they can't.
 template <class T>
@@ -226,23 +239,19 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Transform<T> before = s.local[i];
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
-    s.rate[i] = joint_offset<T>(s.tree, i, before, s.local[i]).value;
+    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
     for (T& r : s.rate[i]) r /= h;
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
   advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
+  s.rate_step = T(0);
   s.contact_signature = s.limit_signature = 0;
   s.steps_unchanged = 0;
   s.report = {};
   s.report.dofs = s.tree.dofs;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    s.report.kinetic_energy += 0.5 * double(s.tree.mass[i] * s.motion.velocity[i].squaredNorm() +
-                                            s.motion.omega[i].dot(s.history.momentum[i]));
-    s.report.potential_energy -=
-        double(s.tree.mass[i]) * settings.gravity.dot(s.history.center[i].template cast<double>());
-  }
+  s.report_totals(settings.gravity);
   return true;
 }
 
@@ -269,7 +278,10 @@ void World<T>::Impl::step_once(T h) {
         member_indices.push_back(i);
       }
     if (members.empty()) continue;
-    if (members.size() == 1 && members[0]->undisturbed() && play(*members[0], h)) continue;
+    CharacterState<T>& first = *members[0];
+    if (members.size() == 1 && first.fully_driven() && first.undisturbed() && !near_obstacle(first, h) &&
+        play(first, h))
+      continue;
     stepper.step(settings, obstacles, h, members, member_indices, lagged, lagged_new);
   }
   std::sort(lagged_new.begin(), lagged_new.end(),
@@ -285,6 +297,7 @@ template <class T>
 Status World<T>::step(T h) {
   if (!std::isfinite(h)) return Status::error(Code::kNotFinite, "step is not finite");
   if (h <= T(0)) return Status::error(Code::kInvalidArgument, "step must be positive");
+  if (h < T(1e-5)) return Status::error(Code::kOutOfRange, "step below 1e-5 s");
   if (h > T(0.25)) return Status::error(Code::kOutOfRange, "step above 0.25 s");
   impl_->step_once(h);
   return {};

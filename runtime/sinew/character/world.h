@@ -50,10 +50,12 @@ struct CharacterReport {
   int held = 0;      ///< trees that were stopped where they stood: no pose could be found
   bool converged = true;
   bool used_bdf2 = false;
-  double kinetic_energy = 0;    ///< J
-  double potential_energy = 0;  ///< J, gravity
-  double elastic_energy = 0;    ///< J, stored in contacts and joint limits
-  double penetration = 0;       ///< m, deepest contact
+  double kinetic_energy = 0;                             ///< J
+  double potential_energy = 0;                           ///< J, gravity
+  double elastic_energy = 0;                             ///< J, stored in contacts and joint limits
+  Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
+  Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
+  double penetration = 0;                                ///< m, deepest contact
 };
 
 /// One-body tree: a ball, a box.
@@ -62,6 +64,7 @@ struct PropSettings {
   Vec3<double> size = Vec3<double>::Constant(0.1);  ///< as Collider::size
   double mass = 1;
   double friction = 0.6;
+  double restitution = 0;  ///< see Collider::restitution
   Transform<double> pose;
   Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
@@ -72,7 +75,8 @@ struct WorldSettings {
   Vec3<double> gravity{0, 0, -9.81};
   double ground_height = 0;
   bool ground = true;
-  double ground_friction = 1.0;  ///< multiplies the collider's
+  double ground_friction = 1.0;   ///< multiplies the collider's
+  double ground_restitution = 0;  ///< see Collider::restitution
 };
 
 template <class T>
@@ -135,7 +139,8 @@ class World {
                 const Vec3<T>& angular_velocity);
   const CharacterReport& prop_report(int index) const;
 
-  /// Advances by h seconds (0 < h ≤ 0.25). Allocates nothing, throws nothing. On an error nothing has moved.
+  /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
+  /// Allocates nothing, throws nothing. On an error nothing has moved.
   Status step(T h);
 
  private:

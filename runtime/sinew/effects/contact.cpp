@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace sinew {
+namespace {
+
+constexpr double kCornerShare = 0.05;   ///< rounding of a box's corners, of its smallest half extent
+constexpr double kCornerRadius = 0.01;  ///< m, at most
+
+}  // namespace
 
 template <class T>
 SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point) {
@@ -49,6 +55,7 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
     point.half_axis = (collider.local.rotation * Vec3<double>(0, 0, half)).template cast<T>();
     point.radius = T(radius);
     point.friction = T(collider.friction);
+    point.restitution = T(collider.restitution);
     point.collider = index;
     out.push_back(point);
   };
@@ -67,11 +74,16 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
         add(PointKind::kInner, {0, 0, s.z() * (2.0 * n / (inner + 1) - 1)}, s.x(), 0);
       break;
     }
-    case Shape::kBox:
+    case Shape::kBox: {
+      // Rounded: a corner that stands exactly above another box's edge stays on its face.
+      const double round = std::min(kCornerShare * s.minCoeff(), kCornerRadius);
+      const Vec3<double> in = s.array() - round;
       for (int corner = 0; corner < 8; ++corner)
         add(PointKind::kCorner,
-            {corner & 1 ? s.x() : -s.x(), corner & 2 ? s.y() : -s.y(), corner & 4 ? s.z() : -s.z()}, 0, 0);
+            {corner & 1 ? in.x() : -in.x(), corner & 2 ? in.y() : -in.y(), corner & 4 ? in.z() : -in.z()},
+            round, 0);
       break;
+    }
   }
 }
 
@@ -130,7 +142,7 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.point = at(&a, c.body_a, c.local_a);
   if (c.plane) {
     c.normal = Vec3<T>::UnitZ();
-    c.gap = c.point.z() - c.plane_height - c.radius;
+    c.gap = c.point.z() - c.plane_height - c.radius + c.offset;
     c.bends = false;
   } else {
     const Mat3<T> rotation =
@@ -147,7 +159,7 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
       c.point += along * axis;
     }
     c.normal = rotation * d.normal;
-    c.gap = d.distance - c.radius;
+    c.gap = d.distance - c.radius + c.offset;
     c.bends = d.curvature > T(0);
     if (c.bends) {
       const Vec3<T> straight = rotation * d.straight;
@@ -165,7 +177,7 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
 template <class T>
 void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   measure(a, b, c);
-  const Vec3<T> touch = c.point - (c.radius + c.gap / 2) * c.normal;
+  const Vec3<T> touch = c.point - (c.radius + (c.gap - c.offset) / 2) * c.normal;
   c.material_a = a.rotation[c.body_a].transpose() * (touch - a.origin[c.body_a]);
   c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;
   const Vec3<T> tangent = c.normal.unitOrthogonal();

@@ -46,6 +46,7 @@ struct ContactPoint {
   Vec3<T> half_axis = Vec3<T>::Zero();  ///< kAxis: from the centre to one end
   T radius = T(0);                      ///< m
   T friction = T(0.8);
+  T restitution = T(0);
   int collider = 0;  ///< that it belongs to, within its skeleton
 
   bool meets_plane() const { return kind == PointKind::kTip || kind == PointKind::kCorner; }
@@ -76,6 +77,9 @@ struct Contact {
   T stiffness = T(1e5);          ///< N/m
   T friction = T(0.8);           ///< μ
   T lagged_normal_force = T(0);  ///< λ, N
+  T restitution = T(0);          ///< of a bounce: impulse of the release by that of the compression
+  T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
+  bool fresh = true;             ///< bore nothing after the last step
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
           material_b = Vec3<T>::Zero();  ///< body axes (static: from common origin)
@@ -106,6 +110,10 @@ struct ContactLaw {
     const T p = -gap;
     if (p <= T(0)) return T(0);
     return p < width ? k * p * p / (2 * width) : k * (p - width / 2);
+  }
+  /// How deep a force sinks: the inverse of force(k, −depth).
+  static T depth(T k, T force) {
+    return force < k * width / 2 ? std::sqrt(2 * width * force / k) : force / k + width / 2;
   }
   static T curvature(T k, T gap) {
     const T p = -gap;

@@ -23,6 +23,11 @@ template <class T>
 JointOffset<T> joint_offset(const Tree<T>& tree, int body, const Transform<T>& reference,
                             const Transform<T>& local);
 
+/// Only the offsets.
+template <class T>
+std::array<T, 6> joint_offset_value(const Tree<T>& tree, int body, const Transform<T>& reference,
+                                    const Transform<T>& local);
+
 /// The transform whose offset from `reference` is `offset`; inverse of joint_offset.
 template <class T>
 Transform<T> at_offset(const Tree<T>& tree, int body, const Transform<T>& reference,
@@ -36,6 +41,8 @@ Transform<T> rebased(const Tree<T>& tree, int body, const Transform<T>& referenc
 
 #define SINEW_COORDINATE_INSTANCES(prefix, T)                                                           \
   prefix JointOffset<T> joint_offset<T>(const Tree<T>&, int, const Transform<T>&, const Transform<T>&); \
+  prefix std::array<T, 6> joint_offset_value<T>(const Tree<T>&, int, const Transform<T>&,               \
+                                                const Transform<T>&);                                   \
   prefix Transform<T> at_offset<T>(const Tree<T>&, int, const Transform<T>&, const std::array<T, 6>&);  \
   prefix Transform<T> rebased<T>(const Tree<T>&, int, const Transform<T>&, const Transform<T>&);
 SINEW_COORDINATE_INSTANCES(extern template, float)

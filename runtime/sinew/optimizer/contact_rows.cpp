@@ -48,44 +48,38 @@ void ContactRows<T>::reserve(int contacts) {
 }
 
 template <class T>
-typename ContactRows<T>::Side ContactRows<T>::add_side(const TreeProblem<T>& p, const Contact<T>& c, int leaf,
-                                                       const Vec3<T>& material, T sign, int above,
-                                                       const Unknowns& unknowns) {
+typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int leaf, const Vec3<T>& material,
+                                                       T sign, int above, const TreePattern& pattern,
+                                                       const PathAxes<T>& axes) {
   Side side;
-  side.first = static_cast<int>(unknown_.size());
   if (leaf < 0 || leaf == above) return side;
-  const TreePattern& pattern = unknowns.pattern;
-  side.depth = above < 0 ? 0 : pattern.depth[above] + 1;
-  side.count = pattern.depth[leaf] + 1 - side.depth;
-  const std::size_t size = unknown_.size() + TreePattern::padded(side.count);
-  if (size > unknown_.capacity()) {  // full: this side stands still in the inner problem
-    side.count = 0;
-    return side;
-  }
+  const int whole = pattern.depth[leaf] + 1;
+  const std::size_t begin = unknown_.size(), size = begin + TreePattern::padded(whole);
+  if (size > unknown_.capacity()) return side;  // full: this side stands still in the inner problem
   unknown_.resize(size);
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->resize(size);
+  // What moves both sides alike, up to `above`, is left out.
+  side.depth = above < 0 ? 0 : pattern.depth[above] + 1;
+  side.first = static_cast<int>(begin) + side.depth;
+  side.count = whole - side.depth;
+  for (int k = leaf, e = static_cast<int>(begin) + whole - 1; e >= side.first; k = pattern.parent[k], --e)
+    unknown_[e] = k;
   // A unit force along each direction, and its moment about the common origin: n·(v + w × x) = n·v + (x ×
   // n)·w.
-  const Vec3<T> normal = sign * c.normal, first = sign * c.frame.col(0), second = sign * c.frame.col(1);
-  const Vec3<T> normal_moment = c.point.cross(normal), first_moment = material.cross(first),
-                second_moment = material.cross(second);
-  for (int k = leaf, e = side.first + side.count - 1; e >= side.first; k = pattern.parent[k], --e) {
-    const Vec3<T>& w = p.kinematics.w[unknowns.dof[k]];
-    const Vec3<T>& v = p.kinematics.v[unknowns.dof[k]];
-    unknown_[e] = k;
-    gap_[e] = normal.dot(v) + normal_moment.dot(w);
-    slip_[0][e] = first.dot(v) + first_moment.dot(w);
-    slip_[1][e] = second.dot(v) + second_moment.dot(w);
-    if (!c.bends) continue;
-    const Vec3<T> moved = sign * (v + w.cross(c.point));
-    for (int a = 0; a < 3; ++a) move_[a][e] = moved[a];
-  }
+  const auto project = [&](const Vec3<T>& direction, const Vec3<T>& at, std::vector<T>& out) {
+    axes.project(leaf, direction, at.cross(direction), whole - 1, out.data() + begin);
+  };
+  project(sign * c.normal, c.point, gap_);
+  project(sign * c.frame.col(0), material, slip_[0]);
+  project(sign * c.frame.col(1), material, slip_[1]);
+  if (c.bends)
+    for (int a = 0; a < 3; ++a) project(sign * Vec3<T>::Unit(a), c.point, move_[a]);
   return side;
 }
 
 template <class T>
 void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<const Contact<T>> contacts,
-                             const Unknowns& unknowns, T near, T stick) {
+                             const Unknowns& unknowns, const PathAxes<T>& axes, T near, T stick) {
   rows_.clear();
   unknown_.clear();
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->clear();
@@ -105,9 +99,9 @@ void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<c
     const int leaf_b = c.tree_b < 0 ? -1 : unknown_above(*trees[c.tree_b], c.body_b, unknowns);
     // What moves both sides alike moves neither gap nor slip.
     const int shared = c.tree_a == c.tree_b ? common_ancestor(unknowns.pattern, leaf_a, leaf_b) : -1;
-    row.side[0] = add_side(*trees[c.tree_a], c, leaf_a, c.material_point, T(1), shared, unknowns);
+    row.side[0] = add_side(c, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);
     if (c.tree_b >= 0)
-      row.side[1] = add_side(*trees[c.tree_b], c, leaf_b, c.material_point_b, T(-1), shared, unknowns);
+      row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
     if (row.side[0].count + row.side[1].count == 0) continue;
     const T force = ContactLaw<T>::force(c.stiffness, c.gap);
     row.bends = force > T(0) && c.bends;

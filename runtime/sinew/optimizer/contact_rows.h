@@ -21,7 +21,7 @@ class ContactRows {
 
   /// Linearises all contacts nearer than `near` (m) about the present kinematics of `trees`.
   void collect(std::span<TreeProblem<T>* const> trees, std::span<const Contact<T>> contacts,
-               const Unknowns& unknowns, T near, T stick);
+               const Unknowns& unknowns, const PathAxes<T>& axes, T near, T stick);
   bool empty() const { return rows_.empty(); }
   /// Some contact has unknowns on both sides.
   bool coupled() const { return coupled_; }
@@ -68,8 +68,8 @@ class ContactRows {
     bool zero() const { return normal <= T(0) && slip11 <= T(0) && slip22 <= T(0); }
   };
 
-  Side add_side(const TreeProblem<T>& tree, const Contact<T>& contact, int body, const Vec3<T>& material,
-                T sign, int above, const Unknowns& unknowns);
+  Side add_side(const Contact<T>& contact, int leaf, const Vec3<T>& material, T sign, int above,
+                const TreePattern& pattern, const PathAxes<T>& axes);
   Block block(const Row& row) const;
 
   std::vector<Row> rows_;

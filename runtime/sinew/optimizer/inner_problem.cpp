@@ -30,6 +30,7 @@ void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
   turn_.reserve(bodies);
   slide_.reserve(bodies);
   unknowns_.reserve(dofs);
+  axes_.reserve(dofs);
   smooth_.reserve(dofs);
   factor_.reserve(dofs);
   contact_rows_.reserve(contacts);
@@ -51,7 +52,10 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
 template <class T>
 void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric) {
   geometric_ = geometric;
-  contact_rows_.collect(trees_, contacts, unknowns_, T(kNear), settings_->stick);
+  axes_.clear();
+  for (const TreeProblem<T>* p : trees_)
+    axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
+  contact_rows_.collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
   joint_rows_.clear();
   for (TreeProblem<T>* p : trees_)
     for (const JointRow<T>& row : p->rows)
@@ -85,8 +89,8 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
         }
       }
     }
-    assemble_tree_matrix<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, geometric,
-                            smooth_);
+    assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
+                            geometric, smooth_);
     if (geometric) add_joint_geometry(*p);
   }
   if (geometric) contact_rows_.add_bending(smooth_);
@@ -190,6 +194,7 @@ bool InnerProblem<T>::newton_step() {
         factor_.row(rows.unknown + i)[unknowns_.pattern.depth[rows.unknown + j]] +=
             curvature * row.gradient[i] * row.gradient[j];
   }
+  factor_.raise_diagonal(sizeof(T) == 4 ? T(1e-6) : T(1e-10));
   ++factorisations;
   if (!factor_.factorise()) return false;
   if (contact_rows_.coupled()) return conjugate_gradients();
@@ -229,6 +234,14 @@ bool InnerProblem<T>::conjugate_gradients() {
   return true;
 }
 
+/// Length of the step that the last factor would take now (m): small where the step before met no new kink.
+template <class T>
+double InnerProblem<T>::remaining_length() {
+  for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
+  factor_.solve(residual_);
+  return double(displacement(residual_));
+}
+
 template <class T>
 InnerReport InnerProblem<T>::minimise(T tolerance) {
   InnerReport report;
@@ -265,8 +278,10 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     }
     contact_rows_.move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
-    if (last) break;
+    // Without rows the model is quadratic: solved.
+    if (last || (contact_rows_.empty() && joint_rows_.empty())) break;
     add_row_gradient(inner_gradient_);
+    if (!contact_rows_.coupled() && remaining_length() < kShrink * report.first_length) break;
   }
   report.solved = true;
   return report;

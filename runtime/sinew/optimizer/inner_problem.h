@@ -71,12 +71,14 @@ class InnerProblem {
   T exact_line_search(T quadratic, T linear) const;
   bool newton_step();
   bool conjugate_gradients();
+  double remaining_length();
   void multiply_smooth(std::span<const T> x, std::span<T> y) const;
   void multiply_full(std::span<const T> x, std::span<T> y) const;
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
   Unknowns unknowns_;
+  PathAxes<T> axes_;
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;

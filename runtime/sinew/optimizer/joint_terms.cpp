@@ -114,6 +114,8 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
       bounded = bounded || p.law.lower[dof] > T(-kUnlimited) || p.law.upper[dof] < T(kUnlimited);
     }
     boxed = boxed && bounded;
+    const bool coned = p.law.swing_limit[i] >= T(0);
+    if (!muscles && !passive && !boxed && !coned) continue;
     const auto offset = [&](bool needed, const Transform<T>& reference) {
       return needed ? joint_offset<T>(tree, i, reference, p.local[i]) : JointOffset<T>{};
     };
@@ -158,7 +160,7 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
             p.law.lower[dof] > T(-kUnlimited) ? p.law.lower[dof] - q : T(kUnlimited), row, p.rows);
       }
     }
-    if (p.law.swing_limit[i] >= T(0)) append_cone(p, i, settings.limit_stiffness, p.rows);
+    if (coned) append_cone(p, i, settings.limit_stiffness, p.rows);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 namespace sinew {
 
@@ -41,11 +42,17 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
     x.setZero();
     return true;
   }
-  for (int iteration = 0; iteration < 12; ++iteration) {
+  Mat3<T> inverse = Mat3<T>::Zero();
+  T last = std::numeric_limits<T>::infinity();
+  for (int iteration = 0; iteration < 20; ++iteration) {
     const Vec3<T> carried = rotation_exp<T>(-x) * l;
     const Vec3<T> error = inertia * (k1 * x - k2 * before) / h - carried;
-    const Mat3<T> jacobian = inertia * (k1 / h) - skew(carried) * right_jacobian(x);
-    Vec3<T> step = jacobian.inverse() * error;
+    // The Jacobian of the first iterate serves until it stops to pay.
+    const T size = error.norm();
+    if (iteration == 0 || size > T(0.2) * last)
+      inverse = (inertia * (k1 / h) - skew(carried) * right_jacobian(x)).inverse();
+    last = size;
+    Vec3<T> step = inverse * error;
     if (!step.allFinite()) return false;
     if (const T length = step.norm(); length > T(0.7)) step *= T(0.7) / length;
     x -= step;
@@ -122,6 +129,7 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
     history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * torque[i];
   }
+  history.scheme = prediction.scheme;
   history.step_before = h;
 }
 
@@ -140,7 +148,33 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
     history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = r * (tree.inertia[i] * (r.transpose() * motion.omega[i]));
   }
+  history.scheme = Scheme::kBdf2;
   history.step_before = h;
+}
+
+template <class T>
+Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity) {
+  Totals sum;
+  double mass = 0;
+  Vec3<double> first = Vec3<double>::Zero(), about_origin = Vec3<double>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const double m = double(tree.mass[i]);
+    const Vec3<double> center = history.center[i].template cast<double>();
+    const Vec3<double> velocity = history.velocity[i].template cast<double>();
+    const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
+    const Mat3<T>& rate = history.rotation_rate[i];
+    const T turning = history.scheme == Scheme::kBdf1
+                          ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
+                          : spin.dot(tree.inverse_inertia[i] * spin);
+    sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
+    sum.potential_energy -= m * gravity.dot(center);
+    sum.momentum += m * velocity;
+    about_origin += m * center.cross(velocity) + history.momentum[i].template cast<double>();
+    mass += m;
+    first += m * center;
+  }
+  if (mass > 0) sum.angular_momentum = about_origin - first.cross(sum.momentum) / mass;
+  return sum;
 }
 
 SINEW_SCHEME_INSTANCES(template, float)

@@ -28,6 +28,7 @@ struct History {
   std::vector<Mat3<T>> rotation, rotation_before;
   std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
   std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
+  Scheme scheme = Scheme::kBdf2;                   ///< that led here
   T step_before = T(0);                            ///< s between before and now; 0: no earlier state
 
   explicit History(int bodies);
@@ -65,12 +66,26 @@ template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
                      const Vec3<T>& common_origin, History<T>& history);
 
+/// Sums over a tree, of the momenta that the schemes carry.
+struct Totals {
+  double kinetic_energy = 0, potential_energy = 0;       ///< J; gravity, from the world's origin
+  Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
+  Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the tree's centre of mass
+};
+
+/// The kinetic energy is the one that the scheme dissipates. bdf2: ½m|ċ|² + ½L·I⁻¹L of the carried momentum,
+/// which torque-free flight keeps; a difference of rotations would wobble by h²|ω|² around it. bdf1: ½ṘP:Ṙ
+/// of the difference of rotations.
+template <class T>
+Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
+
 #define SINEW_SCHEME_INSTANCES(prefix, T)                                                                   \
   prefix struct History<T>;                                                                                 \
   prefix struct Prediction<T>;                                                                              \
   prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<T>&, Prediction<T>&);     \
   prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                        \
                          std::span<const Vec3<T>>, T, const Vec3<T>&, History<T>&);                         \
+  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                          \
   prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&, \
                                  History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)

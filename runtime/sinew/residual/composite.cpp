@@ -39,8 +39,9 @@ Vec3<T> geometric_column(const Composite<T>& c, const Vec3<T>& w, const Vec3<T>&
 }  // namespace
 
 template <class T>
-void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, std::span<Composite<T>> bodies,
-                          const Unknowns& unknowns, int first, bool geometric, TreeMatrix<T>& out) {
+void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, const PathAxes<T>& axes,
+                          std::span<Composite<T>> bodies, const Unknowns& unknowns, int first, bool geometric,
+                          TreeMatrix<T>& out) {
   const TreePattern& pattern = unknowns.pattern;
   for (int i = tree.bodies - 1; i >= 0; --i) {
     const Composite<T>& c = bodies[i];
@@ -51,25 +52,17 @@ void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, std::sp
       const Vec3<T> force = c.mass * kin.v[d] + kin.w[d].cross(c.first);
       const Vec3<T> moment = c.rotational * kin.w[d] + c.first.cross(kin.v[d]);
       const Vec3<T> turned = geometric ? geometric_column(c, kin.w[d], kin.v[d]) : Vec3<T>(Vec3<T>::Zero());
-      const Vec3<T> whole = moment + turned;
+      const int depth = pattern.depth[k];
       T* path = out.row(k);
-      int position = pattern.depth[k];
-      int l = k;
-      for (; l >= 0 && tree.dof_body[unknowns.dof[l]] == i; l = pattern.parent[l], --position) {
+      axes.project(k, force, moment + turned, depth, path);
+      if (!geometric || !one_rotation_vector) continue;
+      // One rotation vector: neither axis acts first.
+      int position = depth;
+      for (int l = k; l >= 0 && tree.dof_body[unknowns.dof[l]] == i; l = pattern.parent[l], --position) {
         const int e = unknowns.dof[l];
-        T value = kin.w[e].dot(moment) + kin.v[e].dot(force);
-        if (geometric && one_rotation_vector && kin.w[d].squaredNorm() > T(0)) {
-          // One rotation vector: neither axis acts first.
-          if (kin.w[e].squaredNorm() > T(0))
-            value += T(0.5) * (kin.w[e].dot(turned) + kin.w[d].dot(geometric_column(c, kin.w[e], kin.v[e])));
-        } else {
-          value += kin.w[e].dot(turned);
-        }
-        path[position] = value;
-      }
-      for (; l >= 0; l = pattern.parent[l], --position) {
-        const int e = unknowns.dof[l];
-        path[position] = kin.w[e].dot(whole) + kin.v[e].dot(force);
+        if (kin.w[d].isZero(T(0)) || kin.w[e].isZero(T(0))) continue;
+        path[position] +=
+            T(0.5) * (kin.w[d].dot(geometric_column(c, kin.w[e], kin.v[e])) - kin.w[e].dot(turned));
       }
     }
     if (const int p = tree.parent[i]; p >= 0) bodies[p] += bodies[i];

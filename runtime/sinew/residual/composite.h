@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "sinew/residual/path_axes.h"
 #include "sinew/residual/tree.h"
 #include "sinew/residual/tree_factor.h"
 
@@ -65,16 +66,16 @@ int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unk
 ///     w_l · (S w_k + v_k × F + ½ w_k × G),
 /// which is Σ f·(w_l × u_k(x)) over the forces of the subtree: the exact second derivative together with K.
 /// `bodies` [body] is overwritten by subtree sums; `first` is what append_unknowns answered; only this tree's
-/// rows of `out` are written. O(unknowns · depth).
+/// rows of `out` are written; `axes` holds the paths of all unknowns. O(unknowns · depth).
 template <class T>
-void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kinematics,
+void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kinematics, const PathAxes<T>& axes,
                           std::span<Composite<T>> bodies, const Unknowns& unknowns, int first, bool geometric,
                           TreeMatrix<T>& out);
 
-#define SINEW_COMPOSITE_INSTANCES(prefix, T)                                                         \
-  prefix int append_unknowns<T>(const Tree<T>&, std::span<const std::uint8_t>, Unknowns&);           \
-  prefix void assemble_tree_matrix<T>(const Tree<T>&, const Kinematics<T>&, std::span<Composite<T>>, \
-                                      const Unknowns&, int, bool, TreeMatrix<T>&);
+#define SINEW_COMPOSITE_INSTANCES(prefix, T)                                                    \
+  prefix int append_unknowns<T>(const Tree<T>&, std::span<const std::uint8_t>, Unknowns&);      \
+  prefix void assemble_tree_matrix<T>(const Tree<T>&, const Kinematics<T>&, const PathAxes<T>&, \
+                                      std::span<Composite<T>>, const Unknowns&, int, bool, TreeMatrix<T>&);
 SINEW_COMPOSITE_INSTANCES(extern template, float)
 SINEW_COMPOSITE_INSTANCES(extern template, double)
 

@@ -84,6 +84,7 @@ DynamicsResult evaluate_dynamics(const Skeleton& skeleton, const std::vector<Joi
   Kinematics<double> kinematics(tree);
   Motion<double> motion(tree);
   std::vector<JointJet<double>> jets;
+  jets.reserve(tree.bodies);
   for (int i = 0; i < tree.bodies; ++i) jets.push_back(joint_jet(skeleton.joints[i], states[i]));
 
   DynamicsResult result;
@@ -105,7 +106,9 @@ DynamicsResult evaluate_dynamics(const Skeleton& skeleton, const std::vector<Joi
   append_unknowns<double>(tree, std::vector<std::uint8_t>(tree.dofs, 1), all);
   TreeMatrix<double> matrix(all.pattern);
   matrix.set_zero();
-  assemble_tree_matrix<double>(tree, kinematics, bodies, all, 0, false, matrix);
+  PathAxes<double> axes;
+  axes.append(tree, kinematics, all, 0);
+  assemble_tree_matrix<double>(tree, kinematics, axes, bodies, all, 0, false, matrix);
   result.mass_matrix = Eigen::MatrixXd::Zero(tree.dofs, tree.dofs);
   for (int k = 0; k < tree.dofs; ++k)
     for (int l = k; l >= 0; l = all.pattern.parent[l])

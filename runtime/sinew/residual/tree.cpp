@@ -1,6 +1,20 @@
 #include "sinew/residual/tree.h"
 
+#include <Eigen/Eigenvalues>
+
 namespace sinew {
+
+namespace {
+
+Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Mat3<double>> axes(inertia);
+  Vec3<double> inverse = Vec3<double>::Zero();
+  for (int a = 0; a < 3; ++a)
+    if (axes.eigenvalues()[a] > 1e-9 * axes.eigenvalues()[2]) inverse[a] = 1 / axes.eigenvalues()[a];
+  return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+}
+
+}  // namespace
 
 template <class T>
 Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
@@ -17,6 +31,7 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     inertia.push_back(joint.inertia.cast<T>());
     second_moment.push_back(
         (0.5 * joint.inertia.trace() * Mat3<double>::Identity() - joint.inertia).cast<T>());
+    inverse_inertia.push_back(pseudo_inverse(joint.inertia).cast<T>());
     int above = -1;  // the last degree of freedom on the way down to this joint
     for (int p = joint.parent; p >= 0 && above < 0; p = skeleton.joints[p].parent)
       if (sinew::dof_count(skeleton.joints[p].type) > 0)

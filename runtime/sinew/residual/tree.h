@@ -33,6 +33,8 @@ struct Tree {
   std::vector<Mat3<T>> inertia;         ///< [body] about the centre of mass, joint axes
   std::vector<Mat3<T>> second_moment;   ///< [body] P = ½ tr(I)·1 − I
 
+  std::vector<Mat3<T>> inverse_inertia;  ///< [body] pseudo-inverse: a thin rod's is zero along its axis
+
   explicit Tree(const Skeleton& skeleton);
   int dof_count(int body) const { return first_dof[body + 1] - first_dof[body]; }
 };

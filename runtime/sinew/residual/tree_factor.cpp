@@ -26,6 +26,12 @@ int TreePattern::add(int above) {
 }
 
 template <class T>
+void TreeMatrix<T>::raise_diagonal(T share) {
+  const TreePattern& p = *pattern_;
+  for (int k = 0; k < p.size; ++k) row(k)[p.depth[k]] *= T(1) + share;
+}
+
+template <class T>
 void TreeMatrix<T>::multiply(std::span<const T> x, std::span<T> y) const {
   const TreePattern& p = *pattern_;
   for (int k = 0; k < p.size; ++k) y[k] = T(0);

@@ -47,6 +47,9 @@ class TreeMatrix {
   std::vector<T>& values() { return values_; }
   const std::vector<T>& values() const { return values_; }
 
+  /// Diagonal × (1 + share): a pivot that is all rounding (a massless link's spin between two ball joints
+  /// moves nothing) becomes one of the right size.
+  void raise_diagonal(T share);
   /// y = H·x.
   void multiply(std::span<const T> x, std::span<T> y) const;
   /// Replaces H by its factor L. False (and a half-finished factor) when H is not positive definite.

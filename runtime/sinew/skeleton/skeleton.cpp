@@ -43,7 +43,7 @@ bool is_finite(const Transform<double>& x) {
 /// Second moment P = ½ tr(I)·1 − I positive semidefinite, up to rounding: a body with this inertia can exist.
 bool can_exist(const Mat3<double>& inertia) {
   const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(inertia, Eigen::EigenvaluesOnly);
-  const Vec3<double> principal = eigen.eigenvalues();  // ascending
+  const Vec3<double>& principal = eigen.eigenvalues();  // ascending
   const double slack = 1e-9 * principal[2];
   return principal[0] >= -slack && principal[0] + principal[1] >= principal[2] - slack;
 }
@@ -109,8 +109,7 @@ Status validate(const Skeleton& skeleton) {
     if (subtree[i] <= 0 && dof_count(skeleton.joints[i].type) > 0)
       return Status::error(Code::kInvalidArgument, "joint moves no mass", i);
   }
-  for (std::size_t k = 0; k < skeleton.colliders.size(); ++k) {
-    const Collider& collider = skeleton.colliders[k];
+  for (const Collider& collider : skeleton.colliders) {
     if (collider.joint < 0 || collider.joint >= count)
       return Status::error(Code::kInvalidArgument, "collider on a joint that does not exist", collider.joint);
     if (!is_finite(collider.local) || !collider.size.allFinite() || collider.size.minCoeff() < 0 ||

@@ -50,6 +50,7 @@ struct Collider {
   Vec3<double> size = Vec3<double>::Constant(0.05);  ///< sphere: x = radius; capsule: x = radius, z = half
                                                      ///< length of the segment; box: half extents
   double friction = 0.8;
+  double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'
 };
 
 /// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a

@@ -1,0 +1,115 @@
+// A fixed number of scalars that behave as one: the scalar type of the SIMD kernels.
+//
+// Include from kernel translation units only. Everything here has internal linkage, so that code compiled for
+// a wider instruction set can never be picked by the linker for a machine that lacks it.
+#pragma once
+
+#include <utility>
+
+namespace sinew {
+namespace {
+
+/// N scalars in GCC's and Clang's portable vector type. Every operation is the exact IEEE operation on each
+/// lane, in the order written (kernels are compiled without contraction): results depend neither on N nor on
+/// the machine.
+template <class T, int N>
+struct Pack {
+  using Scalar = T;
+  using Vector [[gnu::vector_size(N * sizeof(T))]] = T;
+  static constexpr int kLanes = N;
+  Vector v;
+
+  Pack() = default;
+  Pack(Vector x) : v(x) {}
+  static Pack all(T x) {
+    Pack same;
+    for (int i = 0; i < N; ++i) same.v[i] = x;
+    return same;
+  }
+  template <class U>
+  static Pack load(const U* from) {
+    using Source [[gnu::vector_size(N * sizeof(U))]] = U;
+    Source x;
+    __builtin_memcpy(&x, from, sizeof(x));
+    return __builtin_convertvector(x, Vector);
+  }
+  friend Pack operator+(const Pack& a, const Pack& b) { return a.v + b.v; }
+  friend Pack operator-(const Pack& a, const Pack& b) { return a.v - b.v; }
+  friend Pack operator*(const Pack& a, const Pack& b) { return a.v * b.v; }
+  friend Pack operator/(const Pack& a, const Pack& b) { return a.v / b.v; }
+  friend Pack operator-(const Pack& a) { return -a.v; }
+  friend Pack operator*(T s, const Pack& a) { return s * a.v; }
+  friend Pack sqrt(const Pack& a) {
+    Pack x;
+    for (int i = 0; i < N; ++i) {
+      if constexpr (sizeof(T) == sizeof(float))
+        x.v[i] = __builtin_sqrtf(a.v[i]);
+      else
+        x.v[i] = __builtin_sqrt(a.v[i]);
+    }
+    return x;
+  }
+};
+
+/// Calls f with the constants 0 … N − 1.
+template <int N, class F>
+[[gnu::always_inline]] inline void for_each_index(F f) {
+  [&]<int... I>(std::integer_sequence<int, I...>) {
+    (f(std::integral_constant<int, I>()), ...);
+  }
+  (std::make_integer_sequence<int, N>());
+}
+
+/// `Count` lanes from lane `First` on.
+template <int First, int Count, class T, int N>
+void store(const Pack<T, N>& x, T* to) {
+  [&]<int... I>(std::integer_sequence<int, I...>) {
+    const auto some = __builtin_shufflevector(x.v, x.v, (First + I)...);
+    __builtin_memcpy(to, &some, sizeof(some));
+  }
+  (std::make_integer_sequence<int, Count>());
+}
+
+/// Shuffle within every four lanes of two packs: lane i of the result is lane index(i) of `a`, or, from N on,
+/// of `b`.
+template <class P, class Index>
+P shuffle(const P& a, const P& b, Index) {
+  return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return P(__builtin_shufflevector(
+        a.v, b.v, (I / 4 * 4 + Index::from(I % 4) + (Index::second(I % 4) ? P::kLanes : 0))...));
+  }
+  (std::make_integer_sequence<int, P::kLanes>());
+}
+template <int From>
+struct Interleaved {  // a₀ b₀ a₁ b₁
+  static constexpr int from(int i) { return From + i / 2; }
+  static constexpr bool second(int i) { return i % 2 == 1; }
+};
+template <int From>
+struct Joined {  // a₀ a₁ b₀ b₁
+  static constexpr int from(int i) { return From + i % 2; }
+  static constexpr bool second(int i) { return i >= 2; }
+};
+template <class P>
+P interleave_low(const P& a, const P& b) {
+  return shuffle(a, b, Interleaved<0>());
+}
+template <class P>
+P interleave_high(const P& a, const P& b) {
+  return shuffle(a, b, Interleaved<2>());
+}
+
+/// Transposes every 4×4 block of the 4×N matrix `m`: lane 4g + k of row c swaps with lane 4g + c of row k.
+/// Its own inverse. Eight shuffles.
+template <class P>
+void transpose(P (&m)[4]) {
+  const P low01 = interleave_low(m[0], m[1]), high01 = interleave_high(m[0], m[1]);
+  const P low23 = interleave_low(m[2], m[3]), high23 = interleave_high(m[2], m[3]);
+  m[0] = shuffle(low01, low23, Joined<0>());
+  m[1] = shuffle(low01, low23, Joined<2>());
+  m[2] = shuffle(high01, high23, Joined<0>());
+  m[3] = shuffle(high01, high23, Joined<2>());
+}
+
+}  // namespace
+}  // namespace sinew

@@ -1,0 +1,47 @@
+// DASSL: BDF of order 1–5 on residuals F(t, y, y') = 0, variable step, fixed leading coefficient.
+//
+// Source: Brenan, Campbell & Petzold, "Numerical Solution of Initial-Value Problems in Differential-Algebraic
+// Equations", 1989, chapter 5, routine DDASTP: modified divided differences φ of the solution, coefficients
+// ψ, α, β, γ, σ; Newton's method with an old matrix scaled by 2/(1 + c_j/c_old); errors at k−2 … k+1.
+#pragma once
+
+#include <array>
+
+#include "sinew/multibody/integrator.h"
+
+namespace sinew::multibody {
+
+class Dassl : public Integrator {
+ public:
+  Dassl(System& system, double t0, const Vector& y0, double end, const IntegratorSettings& settings);
+
+  std::string step() override;
+  double time() const override { return t_; }
+  double last_step() const override { return h_old_; }
+  const Vector& state() const override { return y_; }
+  Vector at(double t) const override;
+  int order() const override { return k_old_; }
+
+ private:
+  static constexpr int kMaxOrder = 5;
+  using Coefficients = std::array<double, kMaxOrder + 3>;  // indices from 1, as in the book
+
+  std::string first_step();
+  void coefficients();
+  bool correct(double t, Vector& y, Vector& yp, Vector& e);
+  void restore();
+  void choose_next(const Vector& e, double error_k, double error_below, int next);
+
+  System* system_;
+  IntegratorSettings settings_;
+  double end_;
+  double t_, h_ = 0, h_old_ = 0;
+  double c_ = 0, c_factored_ = 0, error_factor_ = 0, rate_bound_ = 100;
+  int k_ = 1, k_old_ = 0, same_steps_ = 0, order_change_ = 0;
+  bool started_ = false, first_phase_ = true, need_tangent_ = true;
+  Coefficients psi_{}, alpha_{}, beta_{}, gamma_{}, sigma_{};
+  std::array<Vector, kMaxOrder + 3> phi_;
+  Vector y_, residual_;
+};
+
+}  // namespace sinew::multibody

@@ -1,0 +1,90 @@
+// The equations of motion of a mechanism in the formulations of the paper, as a System that integrators take.
+//
+// The state is y = (q, q') of ALL tree coordinates. In a closed mechanism only the independent ones count:
+// every evaluation first replaces the dependent positions and rates by what the loops say (index 2: rates on
+// their manifold; positions too), so the right-hand side is smooth however often the independent coordinates
+// are re-chosen, and a re-choice restarts nothing. Re-choosing a null-space basis without this cost 84 678 steps
+// on the Bricard mechanism where projection needs hundreds (research/integrators-and-references.md).
+#pragma once
+
+#include <string>
+
+#include "sinew/multibody/articulated.h"
+#include "sinew/multibody/semi_recursive.h"
+#include "sinew/multibody/system.h"
+#include "sinew/multibody/velocity_transformation.h"
+
+namespace sinew::multibody {
+
+enum class Formulation {
+  kDtr,  ///< derivatives by articulated inertias; open chains
+  kDsr,  ///< derivatives by accumulated inertias; with loops DSR-Rz
+  kRr,   ///< residuals; with loops RR-Rz
+};
+enum class Tangent {
+  kNumeric,   ///< JN: differences
+  kAnalytic,  ///< JF: equations 76–85
+};
+
+struct EvaluationCounts {
+  long derivatives = 0, residuals = 0;  ///< including those for numeric tangents
+  long tangents = 0, factorisations = 0;
+};
+
+class Equations : public System {
+ public:
+  Equations(const Model& model, Formulation formulation, Tangent tangent);
+
+  /// Start of the mechanism: closes the loops from the file's q0 and checks the rates against them. Returns
+  /// what is wrong, naming the loop, or "".
+  std::string start(Vector& y);
+
+  int size() const override { return 2 * n_; }
+  bool derivative(double t, const Vector& y, Vector& yp) override;
+  bool residual(double t, const Vector& y, const Vector& yp, Vector& r) override;
+  bool tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) override;
+  bool factorise(double c) override;
+  void solve(Vector& r) override;
+  bool accept(double t, Vector& y) override;
+
+  /// State with loops closed to rounding, for output. False when they do not close.
+  bool close(Vector& y);
+  /// Motion at the last evaluated or closed state.
+  const BodyMotion& motion() const { return motion_; }
+  const Model& model() const { return *model_; }
+  const VelocityTransformation& transformation() const { return rz_; }
+  const EvaluationCounts& counts() const { return counts_; }
+  /// Largest gap that `accept` found before closing, and after (m).
+  double largest_gap() const { return largest_gap_; }
+
+ private:
+  bool prepare(double t, const Vector& y);
+  bool accelerations(double t, const Vector& y, Vector& qdd);
+  bool independent_residual(double t, const Vector& y, const Vector& qdd, Vector& out);
+  bool numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable);
+  bool analytic_tangent(double t, const Vector& y);
+
+  const Model* model_;
+  Formulation formulation_;
+  Tangent tangent_kind_;
+  int n_;
+  BodyMotion motion_;
+  AppliedForces applied_;
+  VelocityTransformation rz_;
+  ArticulatedInertia articulated_;
+  SemiRecursive semi_recursive_;
+  RecursiveResidual recursive_residual_;
+  EvaluationCounts counts_;
+
+  Vector q_, qd_, qdd_, bias_, force_, reduced_;
+  Matrix mass_, reduced_mass_;
+  Eigen::LLT<Matrix> mass_factor_;
+
+  // Tangent parts in independent coordinates: −∂Q/∂q, −∂Q/∂q' and the mass (identity for derivatives).
+  Matrix stiffness_, damping_, inertia_, iteration_;
+  Eigen::PartialPivLU<Matrix> factor_;
+  double c_ = 0;
+  double largest_gap_ = 0;
+};
+
+}  // namespace sinew::multibody

@@ -1,0 +1,127 @@
+#include "sinew/multibody/velocity_transformation.h"
+
+#include <algorithm>
+
+namespace sinew::multibody {
+namespace {
+
+/// Relative singular value below which the loops are taken to say nothing: a position error of 1e-10 m then
+/// moves the dependent coordinates by less than 1e-3.
+constexpr double kSingular = 1e-7;
+constexpr int kMaxIterations = 12;
+
+}  // namespace
+
+VelocityTransformation::VelocityTransformation(const Model& model)
+    : model_(&model),
+      jacobian_(Matrix::Zero(model.loop_rows, model.size())),
+      phi_(Vector::Zero(model.loop_rows)),
+      zero_(Vector::Zero(model.size())) {
+  for (int i = 0; i < model.size(); ++i) independent_.push_back(i);
+}
+
+bool VelocityTransformation::choose(const BodyMotion& motion) {
+  closure_jacobian(*model_, motion, jacobian_);
+  Eigen::ColPivHouseholderQR<Matrix> pivoted(jacobian_.rows(), jacobian_.cols());
+  pivoted.setThreshold(kSingular);
+  pivoted.compute(jacobian_);
+  // Passing through a singular position the rank drops for a moment: keep the larger set of dependent ones.
+  if (pivoted.rank() < static_cast<Eigen::Index>(dependent_.size())) return false;
+  std::vector<int> chosen;
+  for (Eigen::Index i = 0; i < pivoted.rank(); ++i)
+    chosen.push_back(static_cast<int>(pivoted.colsPermutation().indices()[i]));
+  std::sort(chosen.begin(), chosen.end());
+  if (chosen == dependent_) return false;
+  dependent_ = chosen;
+  independent_.clear();
+  for (int i = 0; i < model_->size(); ++i)
+    if (!std::binary_search(dependent_.begin(), dependent_.end(), i)) independent_.push_back(i);
+  const Eigen::Index nd = static_cast<Eigen::Index>(dependent_.size()), nf = freedom();
+  by_dependent_.resize(jacobian_.rows(), nd);
+  by_independent_.resize(jacobian_.rows(), nf);
+  rates_.resize(nd, nf);
+  factor_ = Eigen::CompleteOrthogonalDecomposition<Matrix>(jacobian_.rows(), nd);
+  factor_.setThreshold(kSingular);
+  rz_ = Matrix::Zero(model_->size(), nf);
+  for (Eigen::Index c = 0; c < nf; ++c) rz_(independent_[c], c) = 1;
+  split(jacobian_);
+  return true;
+}
+
+void VelocityTransformation::split(const Matrix& jacobian) {
+  for (std::size_t i = 0; i < dependent_.size(); ++i)
+    by_dependent_.col(i) = jacobian.col(dependent_[i]);
+  for (std::size_t i = 0; i < independent_.size(); ++i)
+    by_independent_.col(i) = jacobian.col(independent_[i]);
+  factor_.compute(by_dependent_);
+}
+
+bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& motion, double tolerance) {
+  double moved = 1;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    move_to(*model_, q, motion);
+    if (model_->loop_rows == 0) return true;
+    closure(*model_, motion, phi_);
+    if (!phi_.allFinite()) return false;
+    if (moved > 1e-8) {  // below, the factor of the last place serves: its error is of second order
+      closure_jacobian(*model_, motion, jacobian_);
+      split(jacobian_);
+    }
+    if (phi_.cwiseAbs().maxCoeff() <= tolerance) {
+      rates_ = -factor_.solve(by_independent_);
+      for (std::size_t d = 0; d < dependent_.size(); ++d)
+        rz_.row(dependent_[d]) = rates_.row(d);
+      return true;
+    }
+    const Vector step = factor_.solve(phi_);
+    moved = step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
+    if (!(moved < 1)) return false;  // another assembly of the loop, or none
+    for (std::size_t d = 0; d < dependent_.size(); ++d) q[dependent_[d]] -= step[d];
+  }
+  return false;
+}
+
+void VelocityTransformation::close_rates(Eigen::Ref<Vector> qd) const {
+  if (trivial()) return;
+  const Vector step = factor_.solve(jacobian_ * qd);
+  for (std::size_t d = 0; d < dependent_.size(); ++d) qd[dependent_[d]] -= step[d];
+}
+
+void VelocityTransformation::bias(BodyMotion& motion, Vector& bias) {
+  bias.setZero();
+  if (trivial()) return;
+  accelerate(*model_, zero_, motion);
+  closure_acceleration(*model_, motion, phi_);
+  const Vector step = factor_.solve(phi_);
+  for (std::size_t d = 0; d < dependent_.size(); ++d) bias[dependent_[d]] = -step[d];
+}
+
+void VelocityTransformation::expand(const Vector& bias, Eigen::Ref<Vector> qdd) const {
+  if (trivial()) return;
+  Vector independent(freedom());
+  for (int i = 0; i < freedom(); ++i) independent[i] = qdd[independent_[i]];
+  qdd.noalias() = rz_ * independent;
+  qdd += bias;
+}
+
+void VelocityTransformation::reduce(const Vector& force, Vector& out) const {
+  if (trivial())
+    out = force;
+  else
+    out.noalias() = rz_.transpose() * force;
+}
+
+void VelocityTransformation::reduce(const Matrix& a, Matrix& out) const {
+  if (trivial())
+    out = a;
+  else
+    out.noalias() = rz_.transpose() * (a * rz_);
+}
+
+Gap VelocityTransformation::gap(const BodyMotion& motion) {
+  if (model_->loop_rows == 0) return {};
+  closure(*model_, motion, phi_);
+  return worst_gap(*model_, phi_);
+}
+
+}  // namespace sinew::multibody

@@ -1,0 +1,63 @@
+// The second velocity transformation q' = Rz·q'_i of a closed mechanism: which coordinates are independent, and
+// how the others follow (equations 37–46).
+//
+// The independent coordinates come from a pivoted factorisation of the loop Jacobian Φ_q. The others are found
+// from the loops by least squares, so redundant equations (Bricard: 5 of rank 4) do no harm, and with small
+// singular values cut off, so that a mechanism passing through a singular position keeps what the integrator
+// predicts for the directions that the loops leave undetermined there. Least squares are solved by orthogonal
+// factorisation where the paper solves the normal equations: half the digits are lost by squaring.
+#pragma once
+
+#include "sinew/multibody/loop_closure.h"
+
+namespace sinew::multibody {
+
+class VelocityTransformation {
+ public:
+  explicit VelocityTransformation(const Model& model);
+
+  const std::vector<int>& independent() const { return independent_; }
+  const std::vector<int>& dependent() const { return dependent_; }
+  int freedom() const { return static_cast<int>(independent_.size()); }
+  bool trivial() const { return dependent_.empty(); }
+  /// ∂q_d/∂q_i [dependent×independent].
+  const Matrix& dependent_rates() const { return rates_; }
+
+  /// Chooses independent coordinates at the poses of `motion`: those that leave the dependent ones best
+  /// determined. True when the choice differs from the present one.
+  bool choose(const BodyMotion& motion);
+  /// How badly determined the dependent coordinates are: largest |∂q_d/∂q_i|.
+  double growth() const { return trivial() ? 0 : rates_.cwiseAbs().maxCoeff(); }
+
+  /// Solves the loops for the dependent coordinates of q by Newton from where they are; sets the poses of
+  /// `motion` and factorises Φ_q there. False when the loops cannot be closed from here.
+  /// Closed means |Φ| ≤ `tolerance` (m).
+  bool close_positions(Eigen::Ref<Vector> q, BodyMotion& motion, double tolerance);
+  /// Replaces the dependent rates by what the independent ones imply.
+  void close_rates(Eigen::Ref<Vector> qd) const;
+  /// Dependent accelerations at zero independent ones (equation 38): poses and rates must be set; fills
+  /// `bias` [N] with zeros for the independent coordinates and overwrites the accelerations of `motion`.
+  void bias(BodyMotion& motion, Vector& bias);
+
+  /// q'' = Rz·(independent part of qdd) + bias, in place.
+  void expand(const Vector& bias, Eigen::Ref<Vector> qdd) const;
+  /// Rzᵀ·force [independent].
+  void reduce(const Vector& force, Vector& out) const;
+  /// Rzᵀ·A·Rz [independent×independent].
+  void reduce(const Matrix& a, Matrix& out) const;
+
+  /// Loops' errors at the poses of `motion`.
+  Gap gap(const BodyMotion& motion);
+
+ private:
+  void split(const Matrix& jacobian);
+
+  const Model* model_;
+  std::vector<int> independent_, dependent_;
+  Matrix jacobian_, by_dependent_, by_independent_, rates_;
+  Matrix rz_;  ///< [N×independent]
+  Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
+  Vector phi_, zero_;
+};
+
+}  // namespace sinew::multibody

@@ -1,0 +1,63 @@
+#include "cli/mechanism.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/files.h"
+
+namespace sinew::cli {
+
+using convert::Error;
+
+void add_mechanism_options(CLI::App& app, mechanism::SimulateOptions& o) {
+  const std::string group = "Mechanisms";
+  app.add_option("--formulation", o.formulation)
+      ->check(CLI::IsMember(mechanism::formulation_names()))
+      ->group(group);
+  app.add_option("--integrator", o.integrator)
+      ->check(CLI::IsMember(mechanism::integrator_names()))
+      ->group(group);
+  app.add_option("--rtol", o.rtol, "relative tolerance")->check(CLI::Range(1e-16, 1.0))->group(group);
+  app.add_option("--atol", o.atol, "absolute tolerance")->check(CLI::Range(1e-16, 1.0))->group(group);
+  app.add_option("--step", o.fixed_step, "step of bdf1 and bdf2, s")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--max-step", o.max_step, "longest step, s")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--t-end", o.t_end, "simulated time, s (the file's)")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--samples", o.intervals, "rows of the table after the first (50)")
+      ->check(CLI::Range(1, 10000000))
+      ->group(group);
+  app.add_option("--at", o.instants, "instants of the rows instead, s")->group(group);
+}
+
+bool is_mechanism_file(const std::string& path) {
+  nlohmann::json file;
+  return !read_json(path, file) && mechanism::is_mechanism(file);
+}
+
+Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& options,
+                    const std::string& output, bool json_output) {
+  multibody::Mechanism description;
+  if (const std::string fault = mechanism::load_mechanism(path, description); !fault.empty()) return {fault};
+  const multibody::Model model(description);
+  const double t_end = options.t_end > 0 ? options.t_end : description.t_end;
+  const auto bar = progress_bar("simulate");
+  const auto progress = [&](double t) {
+    if (bar) bar(static_cast<int>(1000 * std::min(t, t_end) / t_end), 1000);
+  };
+  multibody::SimulationResult result;
+  const std::string why = mechanism::simulate_mechanism(model, options, progress, result);
+  if (!why.empty() && result.samples.empty()) return {path + ": " + why};
+  const nlohmann::json summary = mechanism::telemetry(model, options, result);
+  const bool as_json = std::filesystem::path(output).extension() == ".json";
+  if (Error error =
+          write_atomically(output, as_json ? summary.dump(2) + "\n" : mechanism::samples_csv(model, result)))
+    return error;
+  if (json_output)
+    std::puts(summary.dump().c_str());
+  else
+    std::printf("%s: %zu rows, %ld steps, %.3g s of CPU time, loops closed to %.1e m\n", output.c_str(),
+                result.samples.size(), result.steps.steps, result.seconds,
+                summary["closure_error_m"].get<double>());
+  return why.empty() ? Error{} : Error{path + ": " + why};
+}
+
+}  // namespace sinew::cli
