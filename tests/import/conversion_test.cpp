@@ -1,9 +1,14 @@
 // Traps that show only when a file is converted: units, axes, control bones, mesh and clips in several files.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "convert/convert.h"
 #include "reading.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/io/asset.h"
 #include "sinew/skeleton/skeleton.h"
+#include "skinned_leg.h"
 
 namespace sinew::convert {
 namespace {
@@ -60,7 +65,7 @@ TEST_F(SharedAsset, ClipsOfOneLibraryGetOneUnit) {  // traps 1 and 4: three BVH,
 TEST_F(SharedAsset, FoxInCentimetresIsAFox) {  // trap 1: glTF means metres, the file has 61 of them
   const Converted fox = convert_shared({"gltf/fox.glb"});
   EXPECT_EQ(fox.unit(), 0.01);
-  EXPECT_NEAR(fox.height(), 0.61, 0.01);
+  EXPECT_NEAR(fox.height(), 0.79, 0.01);  // from its mesh's bounds, ears included
 }
 
 TEST_F(SharedAsset, LargeCharacterInMetresStaysLarge) {
@@ -126,6 +131,7 @@ TEST_F(SharedAsset, WhatIsOddInAUrdfIsSaid) {
   EXPECT_THAT(romeo, NotesSay("moves no mass"));                  // trap 38
   const Converted panda = convert_shared({"urdf/panda.urdf"});
   EXPECT_THAT(panda, NotesSay("zero is outside its limits"));  // trap 42
+  EXPECT_THAT(panda, NotesSay("links have meshes only"));      // trap 49
   const Converted quadruped = convert_shared({"urdf/bullet_quadruped.urdf"});
   EXPECT_THAT(quadruped, NotesSay("is locked"));  // trap 43
   const Converted humanoid = convert_shared({"urdf/bullet_humanoid.urdf"});
@@ -146,6 +152,92 @@ TEST(Conversion, FarPropDoesNotChangeTheUnit) {  // trap 34
   ASSERT_EQ(made.error, "");
   EXPECT_EQ(made.unit(), 1);
   EXPECT_EQ(made.report["unit"]["from"], "file");
+}
+
+using import::test::kick_keys;
+using import::test::kicking_leg;
+using import::test::set_buffer;
+using import::test::skinned;
+
+Converted convert_gltf(const nlohmann::json& gltf) {
+  const Scratch scratch;
+  Converted made = convert({scratch.write("a.gltf", gltf.dump()).string()});
+  EXPECT_EQ(made.error, "");
+  return made;
+}
+
+int joint_named(const Converted& made, const std::string& name) {
+  const auto& joints = made.asset.skeleton.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].name == name) return static_cast<int>(j);
+  return -1;
+}
+
+TEST(Conversion, NodeBetweenTwoBonesBecomesAJoint) {  // trap 8
+  nlohmann::json gltf = skinned({0.5f, 0.5f, 0, 0}, {0});
+  const std::size_t between = gltf["nodes"].size();
+  gltf["nodes"].push_back({{"name", "between"}, {"translation", {0, -0.25, 0}}, {"children", {1}}});
+  gltf["nodes"][0]["children"] = {between};
+  const Converted made = convert_gltf(gltf);
+  const int joint = joint_named(made, "between");
+  ASSERT_GE(joint, 0);
+  EXPECT_EQ(made.asset.skeleton.joints[joint_named(made, "leg")].parent, joint);
+  EXPECT_NEAR(made.asset.skeleton.joints[joint].rest.translation.norm(), 0.25, 1e-6);  // floats
+}
+
+TEST(Conversion, RigidPropFollowsTheJointItHangsOn) {  // trap 13
+  nlohmann::json gltf = skinned({1, 0, 0, 0}, {0});
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["meshes"][1]["name"] = "hat";
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("JOINTS_0");
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  gltf["nodes"].push_back({{"name", "hat"}, {"mesh", 1}});
+  gltf["nodes"][1]["children"] = {gltf["nodes"].size() - 1};
+  const Converted made = convert_gltf(gltf);
+  const auto hat = std::find_if(made.asset.meshes.begin(), made.asset.meshes.end(),
+                                [](const Mesh& m) { return m.name == "hat"; });
+  ASSERT_NE(hat, made.asset.meshes.end());
+  EXPECT_EQ(hat->joints[0], joint_named(made, "leg"));
+  EXPECT_EQ(hat->weights[0], 1);
+  EXPECT_NEAR(hat->positions[2], 0.5, 1e-6);  // the leg's place, in floats
+}
+
+TEST(Conversion, SkinIsBakedWhereItsBindMatricesPutItAtRest) {      // trap 29
+  const Converted made = convert_gltf(skinned({1, 0, 0, 0}, {1}));  // bound 1 m along X from where it rests
+  ASSERT_EQ(made.asset.meshes.size(), 1u);
+  const auto& at = made.asset.meshes[0].positions;  // of the corner at 0: hip (0, 1, 0) less (1, 0, 0), Y up
+  EXPECT_NEAR(at[0], 0, 1e-6);                      // floats
+  EXPECT_NEAR(at[1], -1, 1e-6);
+  EXPECT_NEAR(at[2], 1, 1e-6);
+}
+
+TEST(Conversion, NegatedQuaternionIsTheSameKey) {  // trap 24
+  nlohmann::json gltf = kicking_leg();
+  const Converted plain = convert_gltf(gltf);
+  std::vector<float> keys = kick_keys();
+  for (std::size_t k = 7; k < 11; ++k) keys[k] = -keys[k];  // the second of three
+  set_buffer(gltf, keys);
+  EXPECT_EQ(write_asset(convert_gltf(gltf).asset), write_asset(plain.asset));
+}
+
+TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
+  nlohmann::json gltf = kicking_leg();
+  std::vector<float> values = kick_keys();
+  const std::size_t places =
+      import::test::append(gltf, values, {0, -0.5f, 0, 0, -0.6f, 0, 0, -0.5f, 0}, "VEC3", 3);
+  auto& kick = gltf["animations"][0];
+  kick["channels"].push_back(kick["channels"][0]);
+  kick["channels"][1]["target"]["node"] = 0;  // without a skin, a joint is what moves
+  kick["samplers"].push_back({{"input", 0}, {"output", places}});
+  kick["channels"].push_back({{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}});
+  set_buffer(gltf, values);
+  const Converted made = convert_gltf(gltf);
+  ASSERT_EQ(made.asset.clips.size(), 1u);
+  std::vector<JointJet<float>> jets(made.asset.skeleton.joints.size());
+  ASSERT_TRUE((SamplingJob<float>{&made.asset.clips[0], 0.5, 1, jets}.Run().ok()));
+  const auto leg = static_cast<std::size_t>(joint_named(made, "leg"));
+  EXPECT_NEAR(jets[leg].translation.norm(), 0.6, 1.1e-3);  // the curve's budget is 1 mm
+  EXPECT_THAT(made, NotesSay("1 joints change their distance to the parent, by up to 100 mm"));
 }
 
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {

@@ -253,6 +253,24 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
   rig.meshes.push_back(std::move(mesh));
 }
 
+/// Joints other than the root whose distance to their parent changes by more than 1 mm over the motion, and
+/// the largest change, m.
+std::pair<int, double> stretch(const Rig::Motion& motion) {
+  int count = 0;
+  double largest = 0;
+  for (std::size_t j = 1; j < motion.samples.front().size(); ++j) {
+    double low = 1e300, high = 0;
+    for (const auto& frame : motion.samples) {
+      const double length = frame[j].translation.norm();
+      low = std::min(low, length);
+      high = std::max(high, length);
+    }
+    count += high - low > 1e-3;
+    largest = std::max(largest, high - low);
+  }
+  return {count, largest};
+}
+
 /// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
 /// rest).
 Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
@@ -281,6 +299,11 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
     }
     motion.samples.push_back(std::move(local));
   }
+  if (const auto [count, largest] = stretch(motion); count > 0)
+    report["notes"].push_back("clip '" + clip.name + "': " + std::to_string(count) +
+                              " joints change their distance to the parent, by up to " +
+                              std::to_string(std::lround(1e3 * largest)) +
+                              " mm; physics follows the clip there");
   // A loop comes back to its first pose, the root's place aside.
   double turned = 0;
   for (std::size_t j = 0; j < rig.joints.size(); ++j)
