@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "convert/convert.h"
 #include "reading.h"
@@ -237,7 +238,7 @@ TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
   ASSERT_TRUE((SamplingJob<float>{&made.asset.clips[0], 0.5, 1, jets}.Run().ok()));
   const auto leg = static_cast<std::size_t>(joint_named(made, "leg"));
   EXPECT_NEAR(jets[leg].translation.norm(), 0.6, 1.1e-3);  // the curve's budget is 1 mm
-  EXPECT_THAT(made, NotesSay("1 joints change their distance to the parent, by up to 100 mm"));
+  EXPECT_THAT(made, NotesSay("1 joint changes its distance to the parent, by up to 100 mm"));
 }
 
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {
@@ -245,6 +246,37 @@ TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {
   const std::string file = scratch.write("Läufer 1.bvh", "HIERARCHY").string();
   const Converted made = convert({file});
   EXPECT_EQ(made.error.rfind(file + ": ", 0), 0u) << made.error;
+}
+
+TEST(Conversion, NamesInLatin1BecomeUtf8) {
+  std::string bvh = import::test::walking_bvh();
+  bvh.replace(bvh.find("hip"), 3,
+              "H\xFC"
+              "fte");
+  const Scratch scratch;
+  const Converted made = convert({scratch.write("l\xE4uft.bvh", bvh).string()});
+  ASSERT_EQ(made.error, "");
+  EXPECT_EQ(made.report["name"], "läuft");
+  EXPECT_EQ(made.asset.skeleton.joints[0].name, "Hüfte");
+}
+
+TEST(Conversion, WhatLeavesTheSpaceOfFloatsIsRefused) {
+  const Scratch scratch;
+  const std::string file = scratch.write("a.bvh", import::test::walking_bvh()).string();
+  for (const double unit : {1e300, std::nan(""), -1.0})
+    EXPECT_THAT(convert({file}, {{"unit", unit}}).error, testing::HasSubstr("option 'unit'"));
+  EXPECT_THAT(convert({file}, {{"unit", 1e5}}).error, testing::HasSubstr("10 km from the origin"));
+  const std::string far =
+      scratch
+          .write("b.bvh", import::test::short_bvh("Frames: 2\nFrame Time: 0.02\n0 90 0 0 0 0 0 0 "
+                                                  "0\n1e30 90 0 0 0 0 0 90 0\n"))
+          .string();
+  EXPECT_THAT(convert({far}).error, testing::HasSubstr("clip 'Motion'"));
+  nlohmann::json gltf = kicking_leg();
+  set_buffer(gltf, {0, 0.5f, 1e8f, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  gltf["accessors"][0]["max"] = {1e8};
+  EXPECT_THAT(convert({scratch.write("c.gltf", gltf.dump()).string()}).error,
+              testing::HasSubstr("clip 'kick' is too long"));
 }
 
 TEST(Conversion, SceneWithoutJointsIsRefusedInWords) {  // trap 37

@@ -271,13 +271,39 @@ std::pair<int, double> stretch(const Rig::Motion& motion) {
   return {count, largest};
 }
 
+constexpr double kMostSamples = 3e7;  ///< joints × frames of a clip: an hour of motion capture, 2 GB
+
+/// A character's reach, m: beyond it floats cannot hold millimetres.
+constexpr double kFarthest = 1e4;
+
+/// Where a mesh or motion leaves the space that floats can hold, if it does.
+std::string fault_in_size(const Rig& rig) {
+  const auto beyond = [](double x) { return !(std::abs(x) <= kFarthest); };
+  const std::string where = " is more than 10 km from the origin; is the unit right?";
+  for (const Rig::Joint& joint : rig.joints)
+    if (beyond(joint.rest.translation.norm())) return "joint '" + joint.name + "'" + where;
+  for (const Mesh& mesh : rig.meshes)
+    if (std::any_of(mesh.positions.begin(), mesh.positions.end(), [&](float x) { return beyond(double(x)); }))
+      return "mesh '" + mesh.name + "'" + where;
+  for (const Rig::Motion& motion : rig.motions)
+    for (const auto& frame : motion.samples)
+      for (std::size_t j = 0; j < frame.size(); ++j)
+        if (beyond(frame[j].translation.norm()))
+          return "clip '" + motion.name + "': joint '" + rig.joints[j].name + "'" + where;
+  return {};
+}
+
+double sampling_rate(const SourceClip& clip) {
+  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+}
+
 /// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
 /// rest).
 Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
                    const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
-  motion.sample_rate = std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+  motion.sample_rate = sampling_rate(clip);
   const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
   if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
   bool scaled = false;
@@ -300,10 +326,10 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
     motion.samples.push_back(std::move(local));
   }
   if (const auto [count, largest] = stretch(motion); count > 0)
-    report["notes"].push_back("clip '" + clip.name + "': " + std::to_string(count) +
-                              " joints change their distance to the parent, by up to " +
-                              std::to_string(std::lround(1e3 * largest)) +
-                              " mm; physics follows the clip there");
+    report["notes"].push_back(
+        "clip '" + clip.name + "': " + std::to_string(count) +
+        (count == 1 ? " joint changes its" : " joints change their") + " distance to the parent, by up to " +
+        std::to_string(std::lround(1e3 * largest)) + " mm; physics follows the clip there");
   // A loop comes back to its first pose, the root's place aside.
   double turned = 0;
   for (std::size_t j = 0; j < rig.joints.size(); ++j)
@@ -392,6 +418,8 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       if (!options.clips.empty() &&
           std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end())
         continue;
+      if (clip.duration * sampling_rate(clip) * double(rig.joints.size()) > kMostSamples)
+        return {"clip '" + clip.name + "' is too long to convert: " + std::to_string(clip.duration) + " s"};
       Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";
@@ -400,6 +428,7 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   }
   for (const std::string& wanted : options.clips)
     if (!taken.count(wanted)) return {"it has no clip '" + wanted + "'"};
+  if (const std::string fault = fault_in_size(rig); !fault.empty()) return {fault};
   out = std::move(rig);
   return {};
 }
