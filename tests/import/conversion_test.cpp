@@ -203,6 +203,20 @@ TEST(Conversion, RigidPropFollowsTheJointItHangsOn) {  // trap 13
   EXPECT_NEAR(hat->positions[2], 0.5, 1e-6);  // the leg's place, in floats
 }
 
+TEST(Conversion, MeshThatHangsOnNoJointIsLeftOut) {  // trap 34
+  nlohmann::json gltf = skinned({1, 0, 0, 0}, {0});
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["meshes"][1]["name"] = "floor";
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("JOINTS_0");
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  gltf["nodes"].push_back({{"name", "floor"}, {"mesh", 1}, {"translation", {0, 13, 0}}});
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
+  const Converted made = convert_gltf(gltf);
+  EXPECT_EQ(made.asset.meshes.size(), 1u);
+  EXPECT_LT(made.height(), 3);
+  EXPECT_THAT(made, NotesSay("mesh 'floor' hangs on no joint; left out"));
+}
+
 TEST(Conversion, SkinIsBakedWhereItsBindMatricesPutItAtRest) {      // trap 29
   const Converted made = convert_gltf(skinned({1, 0, 0, 0}, {1}));  // bound 1 m along X from where it rests
   ASSERT_EQ(made.asset.meshes.size(), 1u);

@@ -180,6 +180,14 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& joints, const
 void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world,
                const Matrix& to_model, const std::map<int, int>& joint_of_node, nlohmann::json& report,
                Rig& rig) {
+  // What carries vertices without weights: the nearest joint above the mesh's node.
+  int carrier = in.node;
+  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
+  if (carrier < 0 && in.bones.empty()) {
+    report["notes"].push_back("mesh '" + in.name + "' hangs on no joint; left out");
+    return;
+  }
+  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
   Mesh mesh;
   mesh.name = in.name;
   mesh.material = in.material;
@@ -190,10 +198,6 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
   for (std::size_t b = 0; b < in.bones.size(); ++b)
     for (const auto& [v, w] : in.bones[b].weights)
       if (w > 0 && joint_of_node.count(in.bones[b].node)) influences[v].push_back({w, static_cast<int>(b)});
-  // What carries vertices without weights: the nearest joint above the mesh's node.
-  int carrier = in.node;
-  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
-  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
   int repaired = 0, unweighted = 0, reduced = 0;
   const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
   for (std::size_t v = 0; v < vertices; ++v) {
