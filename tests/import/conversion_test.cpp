@@ -19,23 +19,29 @@ using import::test::Scratch;
 
 struct Converted {
   Asset asset;
-  nlohmann::json report;
   std::string error;
-  double unit() const { return report["unit"]["meters_per_unit"]; }
-  double height() const { return report["height_m"]; }
+  double unit = 0, height = 0;  ///< m
+  std::string unit_from, up, name;
+  std::vector<std::string> notes;
 };
 
 Converted convert(const std::vector<std::string>& inputs, const nlohmann::json& options = {}) {
   Converted made;
-  made.error = convert_files(inputs, options, made.asset, made.report).message;
+  nlohmann::json report;
+  made.error = convert_files(inputs, options, made.asset, report).message;
+  if (!made.error.empty()) return made;
+  made.name = report["name"];
+  made.notes = report["notes"].get<std::vector<std::string>>();
+  if (!report.contains("unit")) return made;  // a URDF's is known
+  made.unit = report["unit"]["meters_per_unit"];
+  made.unit_from = report["unit"]["from"];
+  made.up = report["up"]["axis"];
+  made.height = report["height_m"];
   return made;
 }
 
 MATCHER_P(NotesSay, text, "") {
-  *result_listener << arg.report["notes"].dump();
-  for (const auto& note : arg.report["notes"])
-    if (note.template get<std::string>().find(text) != std::string::npos) return true;
-  return false;
+  return testing::ExplainMatchResult(testing::Contains(testing::HasSubstr(text)), arg.notes, result_listener);
 }
 
 class SharedAsset : public testing::Test {
@@ -45,6 +51,7 @@ class SharedAsset : public testing::Test {
   }
   Converted convert_shared(const std::vector<std::string>& names, const nlohmann::json& options = {}) const {
     std::vector<std::string> inputs;
+    inputs.reserve(names.size());
     for (const std::string& name : names) inputs.push_back((root_ / name).string());
     Converted made = convert(inputs, options);
     EXPECT_EQ(made.error, "");
@@ -57,37 +64,37 @@ constexpr double kCmuUnit = 0.056444;  ///< m, by the library's own notes
 
 TEST_F(SharedAsset, ClipsOfOneLibraryGetOneUnit) {  // traps 1 and 4: three BVH, and FBX that say centimetres
   for (const char* name : {"bvh/cmu_12_01_walk.bvh", "bvh/cmu_01_01_jumps.bvh", "bvh/cmu_13_26.bvh"})
-    EXPECT_EQ(convert_shared({name}).unit(), kCmuUnit) << name;
+    EXPECT_EQ(convert_shared({name}).unit, kCmuUnit) << name;
   for (const char* name :
        {"fbx/cmu_49_08_cartwheel.fbx", "fbx/cmu_09_11_run.fbx"})  // under a node scaled by 100
-    EXPECT_DOUBLE_EQ(convert_shared({name}).unit(), kCmuUnit / 100) << name;
+    EXPECT_DOUBLE_EQ(convert_shared({name}).unit, kCmuUnit / 100) << name;
 }
 
 TEST_F(SharedAsset, FoxInCentimetresIsAFox) {  // trap 1: glTF means metres, the file has 61 of them
   const Converted fox = convert_shared({"gltf/fox.glb"});
-  EXPECT_EQ(fox.unit(), 0.01);
-  EXPECT_NEAR(fox.height(), 0.79, 0.01);  // from its mesh's bounds, ears included
+  EXPECT_EQ(fox.unit, 0.01);
+  EXPECT_NEAR(fox.height, 0.79, 0.01);  // from its mesh's bounds, ears included
 }
 
 TEST_F(SharedAsset, LargeCharacterInMetresStaysLarge) {
-  EXPECT_EQ(convert_shared({"gltf/quaternius_robot.glb"}).unit(), 1);
+  EXPECT_EQ(convert_shared({"gltf/quaternius_robot.glb"}).unit, 1);
 }
 
 TEST_F(SharedAsset, OptionBeatsFileAndGuess) {
-  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}, {{"unit", 0.05}}).unit(), 0.05);
-  EXPECT_EQ(convert_shared({"gltf/cesium_man.gltf"}, {{"unit", 1.5}}).unit(), 1.5);
+  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}, {{"unit", 0.05}}).unit, 0.05);
+  EXPECT_EQ(convert_shared({"gltf/cesium_man.gltf"}, {{"unit", 1.5}}).unit, 1.5);
 }
 
 TEST_F(SharedAsset, UpAxisComesFromTheFirstFrame) {  // trap 2
-  EXPECT_EQ(convert_shared({"bvh/fair_jumping.bvh"}).report["up"]["axis"], "z");
-  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}).report["up"]["axis"], "y");
+  EXPECT_EQ(convert_shared({"bvh/fair_jumping.bvh"}).up, "z");
+  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}).up, "y");
 }
 
 TEST_F(SharedAsset,
        StarOfBonesAtRestIsMeasuredWhereItStands) {  // trap 3: 20 units high at rest, 154 in frame 0
   const Converted dancer = convert_shared({"bvh/jesse_dance.bvh"});
-  EXPECT_EQ(dancer.unit(), 0.01);
-  EXPECT_GT(dancer.height(), 1.4);
+  EXPECT_EQ(dancer.unit, 0.01);
+  EXPECT_GT(dancer.height, 1.4);
 }
 
 TEST_F(SharedAsset, ControlBonesGetNoBody) {  // trap 12
@@ -151,8 +158,8 @@ TEST(Conversion, FarPropDoesNotChangeTheUnit) {  // trap 34
   const Scratch scratch;
   const Converted made = convert({scratch.write("a.gltf", gltf.dump()).string()});
   ASSERT_EQ(made.error, "");
-  EXPECT_EQ(made.unit(), 1);
-  EXPECT_EQ(made.report["unit"]["from"], "file");
+  EXPECT_EQ(made.unit, 1);
+  EXPECT_EQ(made.unit_from, "file");
 }
 
 using import::test::kick_keys;
@@ -213,7 +220,7 @@ TEST(Conversion, MeshThatHangsOnNoJointIsLeftOut) {  // trap 34
   gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
   const Converted made = convert_gltf(gltf);
   EXPECT_EQ(made.asset.meshes.size(), 1u);
-  EXPECT_LT(made.height(), 3);
+  EXPECT_LT(made.height, 3);
   EXPECT_THAT(made, NotesSay("mesh 'floor' hangs on no joint; left out"));
 }
 
@@ -270,7 +277,7 @@ TEST(Conversion, NamesInLatin1BecomeUtf8) {
   const Scratch scratch;
   const Converted made = convert({scratch.write("l\xE4uft.bvh", bvh).string()});
   ASSERT_EQ(made.error, "");
-  EXPECT_EQ(made.report["name"], "läuft");
+  EXPECT_EQ(made.name, "läuft");
   EXPECT_EQ(made.asset.skeleton.joints[0].name, "Hüfte");
 }
 
