@@ -11,6 +11,7 @@ namespace sinew::import::test {
 namespace {
 
 constexpr int kMutations = 200;
+constexpr int kConversions = 10;  ///< of those that can be read; they take their time under the sanitizer
 constexpr unsigned kSeed = 5489;
 
 struct Seed {
@@ -59,7 +60,7 @@ TEST_P(Mutation, GivesASoundSceneOrOneLine) {
   ReadLimits limits;  // processor time for a reader that turns in place: others take a hundredth of it
   limits.cpu_seconds = 10;
   limits.wall_seconds = 3600;
-  int read_well = 0, converted = 0;
+  int read_well = 0;
   const Scratch scratch;
   for (int k = 0; k < kMutations; ++k) {
     const auto file = scratch.write(GetParam().file, mutated(content, random));
@@ -68,13 +69,13 @@ TEST_P(Mutation, GivesASoundSceneOrOneLine) {
     read_well += outcome.ok;
     if (outcome.ok) {
       ASSERT_EQ(fault_in(outcome.scene), "");
+      if (read_well > kConversions) continue;
       Asset asset;
       nlohmann::json report;
       if (const auto refused = convert::convert_files({file.string()}, {}, asset, report)) {
         ASSERT_EQ(refused.message.find('\n'), std::string::npos) << refused.message;
         ASSERT_EQ(refused.message.rfind(file.string() + ": ", 0), 0u) << refused.message;
       } else {
-        ++converted;
         ASSERT_TRUE(validate(asset.skeleton).ok());
         Asset back;
         ASSERT_TRUE(read_asset(write_asset(asset), back).ok());
@@ -87,8 +88,7 @@ TEST_P(Mutation, GivesASoundSceneOrOneLine) {
     }
   }
   EXPECT_LT(read_well, kMutations);  // else nothing was damaged
-  std::printf("%s: %d read, of them %d converted; %d refused\n", GetParam().name, read_well, converted,
-              kMutations - read_well);
+  std::printf("%s: %d read, %d refused\n", GetParam().name, read_well, kMutations - read_well);
 }
 
 std::string model(const char* path) {
