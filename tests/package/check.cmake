@@ -1,14 +1,28 @@
+# The embedding lines of the README become a program: its includes, then a draw() that ends the game after a second, then
+# the lines themselves.
 file(REMOVE_RECURSE ${WORK})
+file(READ ${README} readme)
+string(REGEX MATCH "```cpp\n(#include[^`]*)```" found "${readme}")
+if(NOT found)
+  message(FATAL_ERROR "${README} holds no embedding lines")
+endif()
+set(block "${CMAKE_MATCH_1}")
+string(REGEX MATCHALL "#include[^\n]*\n" includes "${block}")
+string(REGEX REPLACE "#include[^\n]*\n" "" lines "${block}")
+string(CONCAT program ${includes} "#include \"draw.h\"\nint main() {\n" "${lines}" "  return 1;  // nothing was drawn\n}\n")
+file(WRITE ${WORK}/embedding.cpp "${program}")
+configure_file(${ASSET} ${WORK}/hero.sinew COPYONLY)
 set(sanitize "")
 if(FLAGS)
   set(sanitize -DCMAKE_CXX_FLAGS=-fsanitize=address,undefined)
 endif()
 foreach(command
     "${CMAKE_COMMAND};--install;${BUILD};--prefix;${WORK}/prefix"
-    "${CMAKE_COMMAND};-G;Ninja;-S;${OUTSIDE};-B;${WORK}/build;-DCMAKE_PREFIX_PATH=${WORK}/prefix;-DCMAKE_BUILD_TYPE=Release;${sanitize}"
+    "${CMAKE_COMMAND};-G;Ninja;-S;${OUTSIDE};-B;${WORK}/build;-DCMAKE_PREFIX_PATH=${WORK}/prefix;-DCMAKE_BUILD_TYPE=Release;-DEMBEDDING=${WORK}/embedding.cpp;${sanitize}"
     "${CMAKE_COMMAND};--build;${WORK}/build"
-    "${WORK}/build/outside")
-  execute_process(COMMAND ${command} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
+    "${WORK}/build/outside"
+    "${WORK}/build/embedding")
+  execute_process(COMMAND ${command} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "${command}\n${out}\n${err}")
   endif()

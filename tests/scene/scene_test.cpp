@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "scene/run.h"
@@ -154,6 +155,19 @@ TEST(Scene, GroupStrengthSlackensOnlyItsSubtree) {
   EXPECT_GT(frame.unknown_dofs, 0);
 }
 
+TEST(Scene, SelfCollisionIsSwitchedPerCharacter) {
+  const auto most_contacts = [](const std::string& flag) {
+    const Result r = run(R"(, "clips": [{"clip": "stand"}], "strength": [[0, 0]], "root": [[0, "free"]],
+                            "self_collision": )" +
+                             flag,
+                         "", 3);
+    int most = 0;
+    for (const TelemetryRow& row : r.telemetry.rows) most = std::max(most, row.report.contacts);
+    return most;
+  };
+  EXPECT_NE(most_contacts("true"), most_contacts("false"));
+}
+
 TEST(Scene, PushIsSpreadOverItsDurationAndGivesItsImpulse) {
   const std::string floating = R"(, "ground": false, "gravity": [0, 0, 0], "pushes": [{"time": 0.2, )"
                                R"("duration": 0.25, "joint": "pelvis", "impulse": [0, 75, 0]}])";
@@ -205,6 +219,58 @@ TEST(Scene, SubstepsAreSolvedAndReported) {
   }
 }
 
+/// Keys in `code` marks of the README's table: those of its row `name`, or all first columns for the top
+/// level.
+std::set<std::string> documented(const std::string& name) {
+  std::ifstream readme(SINEW_SOURCE_DIR "/tools/scene/README.md");
+  std::set<std::string> keys;
+  for (std::string line; std::getline(readme, line);) {
+    if (line.rfind("| `", 0) != 0) continue;
+    const std::size_t middle = line.find(" | ");
+    const std::string head = line.substr(0, middle);
+    if (!name.empty() && head != "| `" + name + "`") continue;
+    const std::string cell = name.empty() ? head : line.substr(middle);
+    for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at)) {
+      const std::size_t end = cell.find('`', at + 1);
+      if (const std::string key = cell.substr(at + 1, end - at - 1); key.find('.') == std::string::npos)
+        keys.insert(key);
+      at = end + 1;
+    }
+  }
+  return keys;
+}
+
+TEST(SceneFile, EveryKnownKeyIsDocumentedAndEveryDocumentedKeyIsKnown) {
+  const auto known = [](const std::string& scene) {
+    Scene unused;
+    const std::string message = load_scene(written("keys.json", scene), unused).message;
+    const std::string lead = "unknown key 'x', known are: ";
+    const std::size_t begin = message.find(lead);
+    std::set<std::string> keys;
+    EXPECT_NE(begin, std::string::npos) << message;
+    if (begin == std::string::npos) return keys;
+    std::istringstream list(message.substr(begin + lead.size(), message.rfind(" (") - begin - lead.size()));
+    for (std::string key; std::getline(list >> std::ws, key, ',');) keys.insert(key);
+    return keys;
+  };
+  const std::string hero = R"("characters": [{"asset": ")" + kAsset + "\"";
+  EXPECT_EQ(known(R"({"x": 0})"), documented(""));
+  EXPECT_EQ(known(R"({"accuracy": {"x": 0}})"), documented("accuracy"));
+  EXPECT_EQ(known(R"({"characters": [{"x": 0}]})"), documented("characters"));
+  auto clips = documented("characters[].clips");
+  for (const char* name : {"get_up", "get_up_supine", "get_up_prone"})
+    EXPECT_EQ(clips.erase(name), 1u);  // names of clips, not keys
+  EXPECT_EQ(known("{" + hero + R"(, "clips": [{"x": 0}]}]})"), clips);
+  EXPECT_EQ(known("{" + hero + R"(, "group_strength": [{"x": 0}]}]})"),
+            documented("characters[].group_strength"));
+  const std::string world = "{" + hero + "}], ";
+  EXPECT_EQ(known(world + R"("props": [{"x": 0}]})"), documented("props"));
+  EXPECT_EQ(known(world + R"("props": [{"throw_at": {"x": 0}}]})"), documented("props[].throw_at"));
+  EXPECT_EQ(known(world + R"("obstacles": [{"x": 0}]})"), documented("obstacles"));
+  EXPECT_EQ(known(world + R"("pushes": [{"x": 0}]})"), documented("pushes"));
+  EXPECT_EQ(known(world + R"("camera": {"x": 0}})"), documented("camera"));
+}
+
 TEST(Telemetry, EveryRowHasOneFieldPerColumnWhateverNamesSay) {
   const Result r = run(R"(, "name": "a,\"b\nc", "clips": [{"clip": "walk"}])", "", 0.2);
   std::istringstream csv(telemetry_csv(r.scene, r.telemetry));
@@ -251,6 +317,26 @@ TEST(DemoScene, RunsOnAModelWithoutClipsAndRoles) {
   for (const Frame& frame : recording.frames)
     for (const auto& x : frame.characters[0].model) ASSERT_TRUE(x.translation.allFinite()) << frame.time;
   EXPECT_EQ(recording.frames.back().characters[0].unknown_dofs, 0) << "back in its rest pose";
+}
+
+TEST(DemoScene, OwnCharacterGetsUpAlthoughItIsHeldByLessThanItsWeight) {
+  auto asset = std::make_shared<Asset>();
+  ASSERT_TRUE(load_asset(kAsset.c_str(), *asset));
+  const Scene scene = demo_scene(asset);
+  const SceneCharacter& c = scene.characters[0];
+  ASSERT_LT(c.settings.root_force, 0.7 * 9.81 * asset->skeleton.total_mass());
+  Recording recording;
+  Telemetry telemetry;
+  const convert::Error ran = run_scene(scene, recording, telemetry, {});
+  ASSERT_FALSE(ran) << ran.message;
+  float least = 1e9f;
+  for (const Frame& frame : recording.frames)
+    least = std::min(least, frame.characters[0].model[0].translation.z());
+  const CharacterFrame &first = recording.frames.front().characters[0],
+                       &last = recording.frames.back().characters[0];
+  EXPECT_LT(least, 0.25f) << "it lay";
+  EXPECT_NEAR(last.model[0].translation.z(), first.model[0].translation.z(), 0.1);
+  EXPECT_EQ(last.unknown_dofs, 0) << "and plays again";
 }
 
 TEST(DemoScene, MotionCaptureFallsAndReturnsToItsClip) {

@@ -8,6 +8,7 @@
 #include "cli/evaluate.h"
 #include "cli/files.h"
 #include "cli/mechanism.h"
+#include "cli/study.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -239,8 +240,8 @@ int main(int argc, char** argv) try {
   evaluate.source.add(*e);
 
   SimulateCommand simulate;
-  auto* s =
-      app.add_subcommand("simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
+  auto* s = app.add_subcommand(
+      "simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
@@ -268,6 +269,16 @@ int main(int argc, char** argv) try {
   r->add_flag("--json", render.json_output);
   render.source.add(*r);
 
+  cli::StabilityCommand stability;
+  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
+  study->require_subcommand(1);
+  auto* hard = study->add_subcommand(
+      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
+  hard->add_option("--case", stability.only, "run one case");
+  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
+  hard->add_flag("--json", stability.json_output);
+
   try {
     app.parse(argc, argv);
     if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0))
@@ -284,6 +295,8 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (s->parsed())
     error = simulate.run();
+  else if (hard->parsed())
+    error = stability.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -91,7 +91,6 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
     return body.body_count / 2;
   };
   s.title = body.name;
-  s.duration = 12;
   SceneCharacter c;
   c.asset = asset;
   c.name = body.name;
@@ -116,14 +115,19 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   up.rate = 1;
   up.from_pose = false;
   c.clips.push_back(up);
+  double stands = up.start;  // s
   if (own_way >= 0) {
-    const double end = up.start + double(asset->clips[own_way].duration) - 0.1;
-    c.clips.push_back({.clip = stand, .start = end, .blend = 0.3, .align = true});
+    stands += double(asset->clips[own_way].duration) - 0.1;
+    c.clips.push_back({.clip = stand, .start = stands, .blend = 0.3, .align = true});
   }
   c.strength = {{0, 1}, {4.9, 1}, {5.0, 0}, {7.4, 0}, {8.6, 1}};
-  c.root = {{0, RootDrive::kKinematic}, {5.0, RootDrive::kFree}, {7.4, RootDrive::kAssisted}};
-  c.settings.root_force = 30 * mass;
-  c.settings.root_torque = 8 * mass * height;
+  c.root = {{0, RootDrive::kKinematic},
+            {5.0, RootDrive::kFree},
+            {7.4, RootDrive::kAssisted},
+            {stands + 0.3, RootDrive::kKinematic}};
+  // Less than the weight: while it gets up, the ground has to carry it.
+  c.settings.root_force = 6 * mass;
+  c.settings.root_torque = 1.3 * mass * height;
   s.characters.push_back(c);
   SceneProp ball;
   ball.name = "ball";
@@ -143,10 +147,11 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   ball.from = {2.4, -1.6, 1.0};
   ball.launch_time = 4.75;
   s.props.push_back(ball);
+  s.duration = std::max(12.0, stands + 2);
   s.captions = {
       {0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"},
       {3.8, "back on the animation"},    {5.0, "a harder hit: the strength is gone"},
-      {7.4, "strength returns"},         {9.6, "playback again"}};
+      {7.4, "strength returns"},         {stands + 0.3, "playback again"}};
   s.camera.follow_character = 0;
   s.plotted_joint = body_at({Role::kUpperArmL, Role::kChest});
   return s;

@@ -26,8 +26,10 @@ class Reader {
       : value_(value), where_(std::move(where)) {
     if (!value.is_object()) fail(where_, "expected an object");
     const std::set<std::string> known(keys.begin(), keys.end());
+    std::string list;
+    for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
     for (const auto& [key, v] : value.items())
-      if (!known.count(key)) fail(where_, "unknown key '" + key + "'");
+      if (!known.count(key)) fail(where_, "unknown key '" + key + "', known are: " + list);
   }
   bool has(const char* key) const { return value_.contains(key); }
   const json& at(const char* key) const {
@@ -154,7 +156,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
   const Reader in(value, where,
                   {"asset", "name", "position", "yaw_deg", "clips", "strength", "group_strength", "root",
-                   "root_force", "root_torque", "ground_contact", "options"});
+                   "root_force", "root_torque", "ground_contact", "self_collision", "options"});
   SceneCharacter c;
   if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
   std::filesystem::path path = in.at("asset").get<std::string>();
@@ -204,6 +206,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
   c.settings.root_force = in.time("root_force", c.settings.root_force);
   c.settings.root_torque = in.time("root_torque", c.settings.root_torque);
   c.settings.ground_contact = in.flag("ground_contact", true);
+  c.settings.self_collision = in.flag("self_collision", false);
   c.asset = asset;
   return c;
 }
