@@ -46,6 +46,7 @@ struct Rig {
   bool ground = false;
   float ground_height = 0;  ///< m
   float support_reach = 0;  ///< m, as SupportSettings
+  float support_lean = 0;
 };
 
 struct Batch {

@@ -215,17 +215,30 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
   const auto lift = [&](const Standing<P>& s) {
     return largest(zero, s.share * (l0 + (l1 * s.place.y - l2 * s.place.x)));
   };
-  P carried = zero;
-  for (int i = 0; i < rig.body_count; ++i)
-    if (near(rig.bodies[i], scratch.placed[i]))
-      for (int k = 0; k < rig.bodies[i].point_count; ++k)
-        carried = carried + lift(scratch.standing[rig.bodies[i].first_point + k]);
+  P carried = zero, x_carried = zero, y_carried = zero, farthest = zero;
+  for (int i = 0; i < rig.body_count; ++i) {
+    if (!near(rig.bodies[i], scratch.placed[i])) continue;
+    for (int k = 0; k < rig.bodies[i].point_count; ++k) {
+      const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
+      const P up = lift(s);
+      carried = carried + up;
+      x_carried = x_carried + up * s.place.x;
+      y_carried = y_carried + up * s.place.y;
+      const P away = s.place.x * s.place.x + s.place.y * s.place.y;
+      farthest = where_negative(-up, largest(farthest, away), farthest);
+    }
+  }
   // Lanes that fall, fly or stand on nothing keep their wrenches.
   P scale = total.z / carried * smallest(one, 5 * sum);
   for (const P& needed : {total.z, sum - P::all(1e-3f), carried})
     scale = where_negative(-needed, scale, zero);
+  // Level forces: friction's share, and the lean towards the root about its mean.
   const P level = one / largest(total.z, sqrt(total.x * total.x + total.y * total.y));
-  const Vec<P> direction{level * total.x, level * total.y, one};
+  const P slope = one / largest(-ground, P::all(1e-3f));
+  const P steepest = largest(slope * sqrt(farthest), P::all(1e-6f));
+  const P lean = slope * smallest(one, P::all(rig.support_lean) / steepest);
+  const P x_push = level * total.x + lean * (x_carried / carried),
+          y_push = level * total.y + lean * (y_carried / carried);
   for (int i = 0; i < rig.body_count; ++i) {
     const Placed<P>& placed = scratch.placed[i];
     if (!near(rig.bodies[i], placed)) continue;
@@ -233,8 +246,8 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
     for (int k = 0; k < rig.bodies[i].point_count; ++k) {
       const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
       const P up = where_equal(scale, 0, zero, scale * lift(s));
-      const Vec<P> push{where_equal(up, 0, zero, up * direction.x),
-                        where_equal(up, 0, zero, up * direction.y), up};
+      const Vec<P> push{where_equal(up, 0, zero, up * (x_push - lean * s.place.x)),
+                        where_equal(up, 0, zero, up * (y_push - lean * s.place.y)), up};
       force = force + push;
       moment = moment + cross(s.place - placed.origin, push);
     }
