@@ -39,10 +39,14 @@ void draw(SDL_Renderer* renderer, const sinew::Character<float>& hero,
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: game_loop ASSET.sinew [FRAMES]\n");
+    return 2;
+  }
   sinew::Asset asset;
-  const sinew::Status loaded = sinew::load_asset(argc > 1 ? argv[1] : "", asset);
+  const sinew::Status loaded = sinew::load_asset(argv[1], asset);
   if (!loaded || asset.clips.empty()) {
-    std::fprintf(stderr, "game_loop: %s\n", loaded ? "the asset has no clip" : loaded.reason);
+    std::fprintf(stderr, "game_loop: %s: %s\n", argv[1], loaded ? "the asset has no clip" : loaded.reason);
     return 1;
   }
   const int last_frame = argc > 2 ? std::atoi(argv[2]) : -1;

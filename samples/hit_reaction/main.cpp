@@ -7,13 +7,17 @@
 #include <cstdlib>
 
 int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: hit_reaction ASSET.sinew [IMPULSE]\n");
+    return 2;
+  }
   sinew::Asset asset;
-  const sinew::Status loaded = sinew::load_asset(argc > 1 ? argv[1] : "", asset);
+  const sinew::Status loaded = sinew::load_asset(argv[1], asset);
   if (!loaded || asset.clips.empty()) {
-    std::fprintf(stderr, "hit_reaction: %s\n", loaded ? "the asset has no clip" : loaded.reason);
+    std::fprintf(stderr, "hit_reaction: %s: %s\n", argv[1], loaded ? "the asset has no clip" : loaded.reason);
     return 1;
   }
-  const float impulse = argc > 2 ? static_cast<float>(std::atof(argv[2])) : 40.f;
+  const float impulse = argc > 2 ? static_cast<float>(std::atof(argv[2])) : 90.f;
   sinew::Status status;
   sinew::World<float> world({});
   sinew::Character<float> hero = world.character(world.add_character(asset.skeleton, {}, status));

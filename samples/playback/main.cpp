@@ -7,10 +7,14 @@
 #include <cstdlib>
 
 int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: playback ASSET.sinew [SECONDS]\n");
+    return 2;
+  }
   sinew::Asset asset;
-  const sinew::Status loaded = sinew::load_asset(argc > 1 ? argv[1] : "", asset);
+  const sinew::Status loaded = sinew::load_asset(argv[1], asset);
   if (!loaded || asset.clips.empty()) {
-    std::fprintf(stderr, "playback: %s\n", loaded ? "the asset has no clip" : loaded.reason);
+    std::fprintf(stderr, "playback: %s: %s\n", argv[1], loaded ? "the asset has no clip" : loaded.reason);
     return 1;
   }
   const double seconds = argc > 2 ? std::atof(argv[2]) : 2;

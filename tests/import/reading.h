@@ -39,7 +39,7 @@ class Scratch {
   ~Scratch() { std::filesystem::remove_all(directory_); }
   std::filesystem::path path(const std::string& name) const { return directory_ / name; }
   std::filesystem::path write(const std::string& name, const std::string& content) const {
-    auto file = path(name);
+    std::filesystem::path file = path(name);
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << content;
     return file;
