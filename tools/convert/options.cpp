@@ -186,7 +186,7 @@ Error override_masses(const Options& options, bool keep_total, Skeleton& skeleto
   std::vector<std::uint8_t> given(skeleton.joints.size(), 0);
   double fixed = 0, others = 0;
   for (const auto& [name, o] : options.joints) {
-    const bool found = each_named(name, skeleton, [&](Joint& joint) {
+    const bool found = each_named(name, skeleton, [&, &o = o](Joint& joint) {
       if (!o.mass || joint.mass <= 0) return;
       joint.inertia *= *o.mass / joint.mass;
       joint.mass = *o.mass;

@@ -20,7 +20,7 @@ bool repair_inertia(Mat3<double>& inertia) {
   m = m.cwiseMax(floor);
   if (m[2] > m[0] + m[1]) m[0] = m[2] - m[1];
   if (before[0] >= -1e-12 * m[2] && before[0] + before[1] >= before[2] * (1 - 1e-9)) return false;
-  const Mat3<double> axes = eigen.eigenvectors();
+  const Mat3<double>& axes = eigen.eigenvectors();
   inertia = axes * m.asDiagonal() * axes.transpose();
   inertia = 0.5 * (inertia + inertia.transpose()).eval();
   return true;
