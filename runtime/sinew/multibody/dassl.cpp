@@ -150,8 +150,7 @@ std::string Dassl::step() {
       const double here = (k + 1) * error_k, lower = k * error_below;
       bool drop = k == 2 && lower <= 0.5 * here;
       if (k > 2) {
-        const double two_below =
-            (k - 1) * sigma_[k - 1] * weighted_norm(phi_[k] + below, y_, settings_);
+        const double two_below = (k - 1) * sigma_[k - 1] * weighted_norm(phi_[k] + below, y_, settings_);
         drop = std::max(lower, two_below) <= here;
       }
       if (drop) next = k - 1, estimate = error_below;
