@@ -8,6 +8,7 @@
 #include "cli/evaluate.h"
 #include "cli/files.h"
 #include "cli/mechanism.h"
+#include "cli/memory.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -82,6 +83,8 @@ struct InfoCommand {
     json colliders = asset.skeleton.colliders.size();
     report["colliders"] = colliders;
     report["meshes"] = asset.meshes.size();
+    const json memory = cli::memory_of(asset);
+    report["memory_bytes"] = memory;
     json clips = json::array();
     for (const sinew::Clip& c : asset.clips)
       clips.push_back({{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}});
@@ -89,9 +92,21 @@ struct InfoCommand {
     if (json_output)
       std::puts(report.dump().c_str());
     else
-      std::printf("%scolliders %zu, meshes %zu\n", sinew::convert::report_text(report).c_str(),
-                  asset.skeleton.colliders.size(), asset.meshes.size());
+      std::printf("%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(report).c_str(),
+                  asset.skeleton.colliders.size(), asset.meshes.size(), memory_text(memory).c_str());
     return {};
+  }
+
+ private:
+  static std::string memory_text(const json& bytes) {
+    if (bytes.is_null()) return "";
+    const auto kilobytes = [&](const char* key) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.1f kB", bytes[key].get<double>() / 1000);
+      return std::string(text);
+    };
+    return "memory: per rig " + kilobytes("skeleton") + " and clips of " + kilobytes("clips") +
+           "; per character " + kilobytes("character") + ", snapshot at most " + kilobytes("snapshot") + "\n";
   }
 };
 
@@ -239,8 +254,8 @@ int main(int argc, char** argv) try {
   evaluate.source.add(*e);
 
   SimulateCommand simulate;
-  auto* s =
-      app.add_subcommand("simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
+  auto* s = app.add_subcommand(
+      "simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
   s->add_option("scene", simulate.scene_file)->required();
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");

@@ -1,6 +1,6 @@
 #include "sinew/multibody/simulation.h"
 
-#include <time.h>
+#include <ctime>
 
 #include <cmath>
 
