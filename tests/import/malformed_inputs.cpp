@@ -94,6 +94,15 @@ void add_gltf(std::vector<Malformed>& all) {
   add("CutOff", kicking_leg().dump().substr(0, 300), "JSON is damaged at byte 30[01]");
   add("NumberTooLarge", R"({"asset":{"version":"2.0"},"scene":0,"nodes":[{"scale":[1e999,1,1]}]})",
       "glTF structure is wrong|JSON is damaged");
+  add("VersionOne", gltf([](Json& g) { g["asset"]["version"] = "1.0"; }),
+      "glTF version .1.0.; only 2 can be read");
+  add("NeedsDraco", gltf([](Json& g) { g["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+      "needs the extension KHR_draco_mesh_compression");
+  add("TimesFall", gltf([](Json& g) {
+        set_buffer(g, {0, 0.5f, 0.25f, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+      }),
+      "assimp: .*mRotationKeys");
+  add("HugeBuffer", gltf([](Json& g) { g["buffers"][0]["byteLength"] = 1000000000000; }), "assimp: ");
   add("NoScene", R"({"asset":{"version":"2.0"}})", "assimp: ");
 
   const auto add_glb = [&](const char* name, const std::string& content, const char* cause) {
@@ -156,6 +165,13 @@ void add_xml_and_fbx(std::vector<Malformed>& all) {
   add("ColladaNanMatrix", "a.dae",
       collada("<node id=\"n\" name=\"n\"><matrix>nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix></node>"),
       "node 'n' has a transform that is not finite|assimp: ");
+  for (const auto& [name, list] : {std::pair("ColladaIndexIsText", "<p>0 1 x</p>"),
+                                   std::pair("ColladaIndexIsSigned", "<p\n>0 1 -2</p>")})
+    add(name, "a.dae", collada("<node id=\"n\"/>") + list, "holds something that is no number");
+  add("ColladaUtf16", "a.dae", std::string("\xFF\xFE<\0C\0O\0", 8), "UTF-16 text; save it as UTF-8");
+  add("FbxOld", "a.fbx",
+      "; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 6100\n}\n",
+      "assimp: .*(version|FBX)");
   add("FbxOnlyMagic", "a.fbx", std::string("Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0", 27), "assimp: ");
   add("FbxTextNested", "a.fbx", "; FBX 7.4.0 project file\n" + repeated("A: {\n", 200000),
       "assimp: |nested too deeply");
@@ -221,6 +237,11 @@ void add_urdf(std::vector<Malformed>& all) {
   add("TwoRoots", "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/></robot>", "[Tt]wo root");
   add("NoLinks", "<robot name=\"r\"></robot>", "link");
   add("CutOff", short_urdf(knee(limit)).substr(0, 120), ".");
+  add("EntitiesInEntities",
+      "<?xml version=\"1.0\"?><!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b "
+      "\"&a;&a;&a;&a;&a;&a;&a;&a;\">]>"
+      "<robot name=\"&b;\"><link name=\"&b;\"/><link name=\"a\"/></robot>",
+      ".");
   add("NegativeBox",
       short_urdf(knee(limit), "<collision><geometry><box size=\"-1 1 1\"/></geometry></collision>"),
       "link 'a' has a shape without a proper size");

@@ -1,6 +1,7 @@
 // Damaged, hostile and nonsensical files of every format, made on the spot.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ struct Malformed {
   std::string content;
   std::string cause;  ///< regular expression that the message must match
 };
+
+/// Keeps the content out of test names.
+inline void PrintTo(const Malformed& one, std::ostream* out) {
+  *out << one.file;
+}
 
 /// All must be refused.
 const std::vector<Malformed>& malformed_inputs();

@@ -1,4 +1,4 @@
-// Whatever is wrong with a file comes back as one line that says so, soon, and changes nothing.
+// Whatever is wrong with a file comes back as one line that says so, and changes nothing.
 #include <sys/stat.h>
 
 #include <regex>
@@ -9,8 +9,6 @@
 namespace sinew::import::test {
 namespace {
 
-constexpr double kSoon = 20;  ///< s; the slowest takes under 1 s alone on one core
-
 class MalformedInput : public testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedInput, IsRefusedInOneLineThatNamesTheCause) {
@@ -19,9 +17,7 @@ TEST_P(MalformedInput, IsRefusedInOneLineThatNamesTheCause) {
   SourceScene scene;
   scene.name = "as it was";
   std::string error;
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_FALSE(read_source(file.string(), {}, scene, error));
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kSoon);
   EXPECT_TRUE(std::regex_search(error, std::regex(GetParam().cause))) << "error: " << error;
   EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   EXPECT_EQ(scene.name, "as it was");

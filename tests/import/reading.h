@@ -103,6 +103,19 @@ inline std::string base64(const std::vector<float>& values) {
   return text;
 }
 
+/// Appends values to what will be the document's only buffer; returns the accessor that reads them.
+inline std::size_t append(nlohmann::json& gltf, std::vector<float>& values, const std::vector<float>& more,
+                          const char* type, int count, int component_type = 5126) {
+  const std::size_t view = gltf["bufferViews"].size(), accessor = gltf["accessors"].size();
+  gltf["bufferViews"].push_back({{"buffer", 0},
+                                 {"byteOffset", values.size() * sizeof(float)},
+                                 {"byteLength", more.size() * sizeof(float)}});
+  gltf["accessors"].push_back(
+      {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
+  values.insert(values.end(), more.begin(), more.end());
+  return accessor;
+}
+
 /// Puts `values` into the document's only buffer.
 inline void set_buffer(nlohmann::json& gltf, const std::vector<float>& values) {
   gltf["buffers"][0] = {{"byteLength", values.size() * sizeof(float)},
@@ -114,10 +127,14 @@ inline std::vector<float> kick_keys() {
   return {0, 0.5f, 1, 0, 0, 0, 1, 0.38268343f, 0, 0, 0.92387953f, 0.70710678f, 0, 0, 0.70710678f};
 }
 
-/// The same, then the corners of with_triangle().
+/// Corners of the triangle of with_triangle().
+inline std::vector<float> corners() {
+  return {0, 0, 0, 1, 0, 0, 0, 1, 0};
+}
+
 inline std::vector<float> kick_keys_and_corners() {
   std::vector<float> values = kick_keys();
-  values.insert(values.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  for (const float x : corners()) values.push_back(x);
   return values;
 }
 
@@ -139,15 +156,10 @@ inline nlohmann::json kicking_leg() {
 
 /// The same, with a triangle on the node `carrier`.
 inline nlohmann::json with_triangle(nlohmann::json gltf, int carrier) {
-  set_buffer(gltf, kick_keys_and_corners());
-  const std::size_t view = gltf["bufferViews"].size(), accessor = gltf["accessors"].size();
-  gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 36}});
-  gltf["accessors"].push_back({{"bufferView", view},
-                               {"componentType", 5126},
-                               {"count", 3},
-                               {"type", "VEC3"},
-                               {"min", {0, 0, 0}},
-                               {"max", {1, 1, 0}}});
+  std::vector<float> values = kick_keys();
+  const std::size_t accessor = append(gltf, values, corners(), "VEC3", 3);
+  gltf["accessors"][accessor].update({{"min", {0, 0, 0}}, {"max", {1, 1, 0}}});
+  set_buffer(gltf, values);
   gltf["meshes"] = nlohmann::json::parse(R"([{"name": "skirt", "primitives": [{"attributes": {}}]}])");
   gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = accessor;
   gltf["nodes"][carrier]["mesh"] = 0;

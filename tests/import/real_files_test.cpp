@@ -62,6 +62,10 @@ struct Known {
   double length;  ///< of all clips together, s
 };
 
+void PrintTo(const Known& known, std::ostream* out) {
+  *out << known.file;
+}
+
 class KnownFile : public testing::TestWithParam<Known> {};
 
 TEST_P(KnownFile, HoldsWhatWasCountedInIt) {
@@ -99,6 +103,14 @@ INSTANTIATE_TEST_SUITE_P(
           name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
       return name;
     });
+
+TEST(RealFiles, FbxSaysItsUnitAndUpAxis) {  // trap 5
+  if (!fs::exists(kModels)) GTEST_SKIP() << "assimp-testmodels are not installed";
+  const Outcome outcome = read(kModels / "FBX/huesitos.fbx");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(outcome.scene.meters_per_unit, 0.01);
+  EXPECT_EQ(outcome.scene.up_axis, 1);
+}
 
 TEST(RealFiles, MassOfRomeoIsTheSumOfItsLinks) {
   const fs::path file = kAssets / "urdf/romeo.urdf";

@@ -53,6 +53,10 @@ struct Attempt {
   long (*act)();
 };
 
+void PrintTo(const Attempt& attempt, std::ostream* out) {
+  *out << attempt.name;
+}
+
 class Forbidden : public testing::TestWithParam<Attempt> {};
 
 TEST_P(Forbidden, EndsTheReader) {
@@ -159,7 +163,7 @@ TEST(Sandbox, EndsWorkByTheClockOnTheWall) {
 TEST(Sandbox, EndsWorkByProcessorTime) {
   ReadLimits limits;
   limits.cpu_seconds = 0;  // one second is the least that the system can limit to
-  const auto start = std::chrono::steady_clock::now();
+  limits.wall_seconds = 3600;
   const Result result = run(
       [](const OpenFile&) {
         work_forever();
@@ -168,18 +172,19 @@ TEST(Sandbox, EndsWorkByProcessorTime) {
       limits);
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.error, "the reader ran out of time");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::duration<double>(limits.wall_seconds / 2));
 }
 
 TEST(Sandbox, EndsAReaderThatClosesItsPipeAndGoesOn) {
-  const auto start = std::chrono::steady_clock::now();
-  const Result result = run([](const OpenFile&) {
-    for (int d = 3; d < 16; ++d) close(d);
-    work_forever();
-    return std::string();
-  });
-  EXPECT_FALSE(result.ok);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  ReadLimits limits;
+  limits.cpu_seconds = limits.wall_seconds = 3600;
+  const Result result = run(
+      [](const OpenFile&) {
+        for (int d = 3; d < 16; ++d) close(d);
+        work_forever();
+        return std::string();
+      },
+      limits);
+  EXPECT_FALSE(result.ok);  // at once: else the test itself runs out of time
 }
 
 TEST(Sandbox, CutsAnAnswerThatIsTooLarge) {

@@ -105,6 +105,10 @@ struct Fault {
   void (*apply)(SourceScene&);
 };
 
+void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << fault.name;
+}
+
 class SceneFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(SceneFault, IsFound) {

@@ -130,24 +130,52 @@ TEST(Gltf, SayingTheSameInGlbGivesTheSame) {
   EXPECT_EQ(binary.scene.clips[0].channels[0].rotation_times, text.scene.clips[0].channels[0].rotation_times);
 }
 
-TEST(Gltf, MissingTextureIsNoted) {
-  Json gltf = with_triangle(kicking_leg(), 0);
-  gltf["images"] = {{{"uri", "skin.png"}}};
-  gltf["textures"] = {{{"source", 0}}};
-  gltf["materials"] = Json::parse(
-      R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [0.5, 0.25, 1, 1]}}])");
-  gltf["meshes"][0]["primitives"][0]["material"] = 0;
-  const Scratch scratch;
-  const auto file = scratch.write("a.gltf", gltf.dump());
-  Outcome outcome = read(file);
+TEST(Gltf, CurvesThatAreReadAsLinesAreNoted) {
+  Json gltf = kicking_leg();
+  gltf["animations"][0]["samplers"][0]["interpolation"] = "STEP";
+  const Outcome outcome = read_gltf(gltf);
   ASSERT_TRUE(outcome.ok) << outcome.error;
-  EXPECT_THAT(outcome.scene.notes, testing::Contains("texture 'skin.png' not found; left out"));
-  scratch.write("skin.png", "encoded");
-  outcome = read(file);
+  EXPECT_THAT(outcome.scene.notes, testing::Contains("animation 0: 1 stepped curves read as lines"));
+}
+
+TEST(Gltf, RateIsThatOfTheChannelWithTheClosestKeys) {  // trap 20
+  Json gltf = kicking_leg();
+  std::vector<float> values = kick_keys();
+  const std::size_t times = append(gltf, values, {0, 1}, "SCALAR", 2);
+  gltf["accessors"][times].update({{"min", {0}}, {"max", {1}}});
+  const std::size_t places = append(gltf, values, {0, 0, 0, 0, 1, 0}, "VEC3", 2);
+  gltf["animations"][0]["samplers"].push_back({{"input", times}, {"output", places}});
+  gltf["animations"][0]["channels"].push_back(
+      {{"sampler", 1}, {"target", {{"node", 0}, {"path", "translation"}}}});
+  set_buffer(gltf, values);
+  const Outcome outcome = read_gltf(gltf);
   ASSERT_TRUE(outcome.ok) << outcome.error;
-  const SourceMaterial& material = outcome.scene.materials[outcome.scene.meshes[0].material];
-  EXPECT_EQ(std::string(material.texture.begin(), material.texture.end()), "encoded");
-  EXPECT_EQ(material.base_color[1], 0.25f);
+  EXPECT_DOUBLE_EQ(outcome.scene.clips[0].key_rate, 2);
+}
+
+TEST(Gltf, RotationKeysAreBroughtToLengthOne) {  // trap 25
+  Json gltf = kicking_leg();
+  set_buffer(gltf, {0, 0.5f, 1, 0, 0, 0, 2, 0.5f, 0, 0, 0, 0, 0, 0, 1});
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  for (const Eigen::Quaterniond& q : outcome.scene.clips[0].channels[0].rotations)
+    EXPECT_NEAR(q.norm(), 1, 1e-12);
+}
+
+TEST(Gltf, MirrorsAndUnevenScalesStayInTheNodes) {  // traps 30 and 31
+  Json gltf = kicking_leg();
+  gltf["nodes"][1]["scale"] = {-1, 2, 3};
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  const Eigen::Matrix4d& local = outcome.scene.nodes[index_of(outcome.scene, "leg")].local;
+  EXPECT_EQ(local.diagonal(), Eigen::Vector4d(-1, 2, 3, 1));
+}
+
+TEST(Gltf, ExtensionThatOnlyTouchesTheLooksIsNoObstacle) {
+  Json gltf = kicking_leg();
+  gltf["extensionsRequired"] = {"KHR_texture_transform"};
+  const Outcome outcome = read_gltf(gltf);
+  EXPECT_TRUE(outcome.ok) << outcome.error;
 }
 
 TEST(Bvh, JointsAreBonesAndEndSitesAreNot) {
@@ -185,6 +213,66 @@ TEST(Bvh, ChannelsTurnInTheOrderOfTheFile) {
   FAIL() << "the leg has no channel";
 }
 
+TEST(Bvh, RotationsMayComeBeforePositionsAndInAnyOrder) {  // trap 22
+  const Outcome outcome = read_content(
+      "a.bvh",
+      "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 6 Yrotation Xrotation Zrotation Xposition Zposition "
+      "Yposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n90 90 0 1 3 2\n");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  const SourceChannel& hip = outcome.scene.clips[0].channels[0];
+  EXPECT_EQ(hip.positions[0], Eigen::Vector3d(1, 2, 3));
+  const Eigen::Quaterniond expected = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()) *
+                                      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX());
+  EXPECT_LT(hip.rotations[0].angularDistance(expected), 1e-6);  // assimp's floats
+}
+
+TEST(Bvh, FramesBeyondTheirStatedNumberAreNotRead) {  // trap 21
+  const Outcome outcome = read_content(
+      "a.bvh",
+      short_bvh("Frames: 2\nFrame Time: 0.5\n0 90 0 0 0 0 0 0 0\n1 90 0 0 0 0 0 0 0\n2 90 0 0 0 0 0 0 0\n"));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_DOUBLE_EQ(outcome.scene.clips[0].duration, 0.5);
+}
+
+TEST(Bvh, AnglesThatWrapAreTheSameRotation) {  // trap 23
+  const Outcome outcome = read_content(
+      "a.bvh", short_bvh("Frames: 2\nFrame Time: 0.02\n0 0 0 0 0 0 179 0 0\n0 0 0 0 0 0 -181 0 0\n"));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  for (const SourceChannel& c : outcome.scene.clips[0].channels)
+    for (const Eigen::Quaterniond& q : c.rotations)
+      EXPECT_LT(q.angularDistance(c.rotations[0]), 1e-6);  // assimp's floats
+}
+
+TEST(Bvh, JointsOfLengthZeroStay) {  // trap 9
+  const Outcome outcome = read_content(
+      "a.bvh",
+      "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT "
+      "LHipJoint\n{\nOFFSET 0 "
+      "0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n}\nMOTION\nFrames: "
+      "1\nFrame Time: 0.1\n0 0 0 0 0 0\n");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_TRUE(outcome.scene.nodes[index_of(outcome.scene, "LHipJoint")].is_bone);
+}
+
+TEST(Collada, UnitAndUpAxisAreInTheRoot) {  // trap 6
+  const Outcome outcome = read_content(
+      "a.dae",
+      "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+      "version=\"1.4.1\">"
+      "<asset><unit meter=\"0.5\"/><up_axis>Z_UP</up_axis></asset><library_visual_scenes><visual_scene "
+      "id=\"s\">"
+      "<node id=\"n\" name=\"n\"><translate>0 0 4</translate></node></visual_scene></library_visual_scenes>"
+      "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>");
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  const SourceScene& scene = outcome.scene;
+  EXPECT_EQ(scene.meters_per_unit, 1);
+  EXPECT_EQ(scene.up_axis, 1);
+  EXPECT_TRUE(scene.meshes.empty());
+  Eigen::Vector4d place(0, 0, 0, 1);
+  for (int n = index_of(scene, "n"); n >= 0; n = scene.nodes[n].parent) place = scene.nodes[n].local * place;
+  EXPECT_TRUE(place.isApprox(Eigen::Vector4d(0, 2, 0, 1), 1e-6)) << place.transpose();  // floats
+}
+
 TEST(Urdf, JointIsReadWithAllThatItSays) {
   const Outcome outcome = read_content(
       "a.urdf",
@@ -206,6 +294,40 @@ TEST(Urdf, JointIsReadWithAllThatItSays) {
   EXPECT_EQ(link.effort, 10);
   EXPECT_EQ(link.damping, 0.1);
   EXPECT_EQ(link.friction, 0.2);
+}
+
+TEST(Urdf, ContinuousJointHasNoLimitsAndNoneAreMadeUp) {  // trap 41
+  const Outcome outcome = read_content("a.urdf", short_urdf(knee("", "continuous")));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(outcome.scene.links[1].type, JointType::kRevolute);
+  EXPECT_FALSE(outcome.scene.links[1].has_limits);
+}
+
+TEST(Urdf, LockedJointAndEffortOfZeroAreRead) {  // traps 40 and 43
+  const Outcome outcome = read_content(
+      "a.urdf", short_urdf(knee("<limit lower=\"0.5\" upper=\"0.5\" effort=\"0\" velocity=\"0\"/>")));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_TRUE(outcome.scene.links[1].has_limits);
+  EXPECT_EQ(outcome.scene.links[1].lower, outcome.scene.links[1].upper);
+  EXPECT_EQ(outcome.scene.links[1].effort, 0);
+}
+
+TEST(Urdf, FloatingJointIsFree) {  // trap 46
+  const Outcome outcome = read_content("a.urdf", short_urdf(knee("", "floating")));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(outcome.scene.links[1].type, JointType::kFree);
+}
+
+TEST(Urdf, MimicNamesItsJoint) {  // trap 44
+  const std::string other =
+      std::string(
+          "<link name=\"c\"/><joint name=\"toe\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/>") +
+      kGoodLimit + "<mimic joint=\"knee\" multiplier=\"0.5\" offset=\"0.1\"/></joint>";
+  const Outcome outcome = read_content("a.urdf", short_urdf(knee(kGoodLimit) + other));
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(outcome.scene.links[2].mimic_joint, "knee");
+  EXPECT_EQ(outcome.scene.links[2].mimic_multiplier, 0.5);
+  EXPECT_EQ(outcome.scene.links[2].mimic_offset, 0.1);
 }
 
 TEST(Urdf, ShapeThatUrdfdomDropsIsNoted) {  // trap 47
@@ -245,6 +367,19 @@ TEST(Format, IsFoundByContentAndNotByExtension) {
   const Outcome outcome = read_content("a.fbx", walking_bvh());
   EXPECT_TRUE(outcome.ok) << outcome.error;
   EXPECT_EQ(outcome.scene.format, "bvh");
+}
+
+TEST(Format, FileNamesOfAnyBytesAreOpened) {
+  for (const char* name :
+       {"a b.bvh", "Läufer 走.bvh", "L\xe4ufer.bvh", "-o.bvh", "a\nb.bvh"}) {  // the third: Latin-1
+    const Outcome outcome = read_content(name, walking_bvh());
+    EXPECT_TRUE(outcome.ok) << name << ": " << outcome.error;
+  }
+}
+
+TEST(Format, ByteOrderMarkOfUtf8IsSkipped) {
+  const Outcome outcome = read_content("a.urdf", "\xEF\xBB\xBF" + short_urdf(knee(kGoodLimit)));
+  EXPECT_TRUE(outcome.ok) << outcome.error;
 }
 
 }  // namespace

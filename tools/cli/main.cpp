@@ -9,6 +9,7 @@
 #include "cli/files.h"
 #include "cli/mechanism.h"
 #include "cli/memory.h"
+#include "cli/study.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -283,6 +284,16 @@ int main(int argc, char** argv) try {
   r->add_flag("--json", render.json_output);
   render.source.add(*r);
 
+  cli::StabilityCommand stability;
+  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
+  study->require_subcommand(1);
+  auto* hard = study->add_subcommand(
+      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
+  hard->add_option("--case", stability.only, "run one case");
+  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
+  hard->add_flag("--json", stability.json_output);
+
   try {
     app.parse(argc, argv);
     if (c->parsed() && !convert.reference && (inputs->count() == 0 || out->count() == 0))
@@ -299,6 +310,8 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (s->parsed())
     error = simulate.run();
+  else if (hard->parsed())
+    error = stability.run();
   else
     error = render.run();
   if (!error) return 0;

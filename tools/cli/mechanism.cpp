@@ -19,9 +19,13 @@ void add_mechanism_options(CLI::App& app, mechanism::SimulateOptions& o) {
       ->group(group);
   app.add_option("--rtol", o.rtol, "relative tolerance")->check(CLI::Range(1e-16, 1.0))->group(group);
   app.add_option("--atol", o.atol, "absolute tolerance")->check(CLI::Range(1e-16, 1.0))->group(group);
-  app.add_option("--step", o.fixed_step, "step of bdf1 and bdf2, s")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--step", o.fixed_step, "step of bdf1 and bdf2, s")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
   app.add_option("--max-step", o.max_step, "longest step, s")->check(CLI::PositiveNumber)->group(group);
-  app.add_option("--t-end", o.t_end, "simulated time, s (the file's)")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--t-end", o.t_end, "simulated time, s (the file's)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
   app.add_option("--samples", o.intervals, "rows of the table after the first (50)")
       ->check(CLI::Range(1, 10000000))
       ->group(group);

@@ -173,11 +173,12 @@ Error override_masses(const Options& options, bool keep_total, Skeleton& skeleto
   const double total = skeleton.total_mass();
   std::vector<std::uint8_t> given(skeleton.joints.size(), 0);
   double fixed = 0, others = 0;
-  for (const auto& [name, o] : options.joints) {
+  for (const auto& [name, of_joint] : options.joints) {
+    const auto& mass = of_joint.mass;
     const bool found = each_named(name, skeleton, [&](Joint& joint) {
-      if (!o.mass || joint.mass <= 0) return;
-      joint.inertia *= *o.mass / joint.mass;
-      joint.mass = *o.mass;
+      if (!mass || joint.mass <= 0) return;
+      joint.inertia *= *mass / joint.mass;
+      joint.mass = *mass;
       given[static_cast<std::size_t>(&joint - skeleton.joints.data())] = 1;
     });
     if (!found) return {"option 'joints': it has no simulated joint or role '" + name + "'"};

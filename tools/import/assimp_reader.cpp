@@ -73,7 +73,9 @@ SourceScene read_with_assimp(const std::string& content, const std::string& form
   if (!scene) fail(importer.GetErrorString());
   if (!scene->mRootNode) throw std::runtime_error("it has no nodes");
   const auto texture = [files](const std::string& path) { return read_texture(*files, path); };
-  return SceneBuilder(*scene, format, std::move(original_names), texture, limits).build();
+  SourceScene out = SceneBuilder(*scene, format, std::move(original_names), texture, limits).build();
+  out.notes.insert(out.notes.end(), gltf.notes.begin(), gltf.notes.end());
+  return out;
 }
 
 }  // namespace sinew::import

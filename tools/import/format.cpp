@@ -37,6 +37,22 @@ void check_bvh(const std::string& content, const ReadLimits& limits) {
   if (!(step > 0 && step < 1e6)) throw std::runtime_error("its frame time is not a positive number");
 }
 
+bool is_space(char c) {
+  return std::isspace(static_cast<unsigned char>(c));
+}
+
+/// assimp 5.2.5 turns in place for ever, taking memory, where an index in a <p> is no number.
+void check_index_lists(const std::string& content) {
+  for (std::size_t at = content.find("<p"); at != std::string::npos; at = content.find("<p", at)) {
+    at += 2;
+    if (at == content.size() || (content[at] != '>' && !is_space(content[at]))) continue;
+    at = std::min(content.find('>', at), content.size() - 1);
+    while (++at < content.size() && content[at] != '<')
+      if (!std::isdigit(static_cast<unsigned char>(content[at])) && !is_space(content[at]))
+        throw std::runtime_error("a list of indices holds something that is no number");
+  }
+}
+
 void check_xml_nesting(const std::string& content) {
   int depth = 0;
   std::size_t at = content.find('<');
@@ -92,6 +108,7 @@ void check_shape(const std::string& content, const std::string& format, const Re
   if (format == "bvh") check_bvh(content, limits);
   if (format == "gltf") check_json_nesting(content);
   if (format == "urdf" || format == "dae") check_xml_nesting(content);
+  if (format == "dae") check_index_lists(content);
 }
 
 }  // namespace sinew::import

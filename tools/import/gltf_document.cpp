@@ -41,6 +41,26 @@ std::size_t json_length(const std::string& content) {
   return length;
 }
 
+void check_version(const Json& document) {
+  const Json& asset = document.at("asset");
+  if (!asset.contains("version")) return;  // assimp's message will do
+  const Json& version = asset.at("version");
+  if (!version.is_string() || version.get<std::string>().rfind("2.", 0) != 0)
+    throw std::runtime_error("glTF version " + version.dump() + "; only 2 can be read");
+}
+
+/// What is required may still only touch the looks.
+void check_extensions(const Json& document) {
+  if (!document.contains("extensionsRequired")) return;
+  for (const Json& extension : document.at("extensionsRequired")) {
+    const std::string name = extension.get<std::string>();
+    bool looks = false;
+    for (const char* prefix : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"})
+      looks = looks || name.rfind(prefix, 0) == 0;
+    if (!looks) throw std::runtime_error("it needs the extension " + name + ", which cannot be read");
+  }
+}
+
 std::size_t index_in(const Json& owner, const char* key, std::size_t count, const std::string& where) {
   const Json& value = owner.at(key);
   if (!value.is_number_unsigned() || value.get<std::size_t>() >= count)
@@ -104,6 +124,18 @@ void check_animation(const Json& document, const Json& animation, const std::str
   }
 }
 
+/// assimp 5.2.5 reads every curve as straight lines between its keys.
+void note_curves(const Json& animation, const std::string& where, std::vector<std::string>& notes) {
+  int steps = 0, cubics = 0;
+  for (const Json& sampler : animation.at("samplers")) {
+    const std::string interpolation = sampler.value("interpolation", "LINEAR");
+    steps += interpolation == "STEP";
+    cubics += interpolation == "CUBICSPLINE";
+  }
+  if (steps > 0) notes.push_back(where + ": " + std::to_string(steps) + " stepped curves read as lines");
+  if (cubics > 0) notes.push_back(where + ": " + std::to_string(cubics) + " cubic curves read as lines");
+}
+
 /// "my%20skin.png" → "my skin.png"; assimp 5.2.5 asks for the name as it stands.
 std::string percent_decoded(const std::string& uri) {
   std::string out;
@@ -132,6 +164,8 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
   const std::string_view text(content.data() + begin, length);
   check_json_nesting(text);
   Json document = Json::parse(text);
+  check_version(document);
+  check_extensions(document);
   GltfDocument out;
   if (document.contains("nodes")) {
     Json& nodes = document.at("nodes");
@@ -143,8 +177,11 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
   }
   if (document.contains("animations")) {
     const Json& animations = document.at("animations");
-    for (std::size_t a = 0; a < animations.size(); ++a)
-      check_animation(document, animations[a], "animation " + std::to_string(a));
+    for (std::size_t a = 0; a < animations.size(); ++a) {
+      const std::string where = "animation " + std::to_string(a);
+      check_animation(document, animations[a], where);
+      note_curves(animations[a], where, out.notes);
+    }
   }
   decode_uris(document);
   out.content = document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -171,7 +208,8 @@ GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLim
   } catch (const Json::parse_error& e) {
     throw std::runtime_error("its JSON is damaged at byte " + std::to_string(e.byte));
   } catch (const Json::exception& e) {
-    throw std::runtime_error(std::string("its glTF structure is wrong: ") + e.what());
+    const std::string what = e.what();  // "[json.exception.…] cannot use …"
+    throw std::runtime_error("its glTF structure is wrong: " + what.substr(what.find("] ") + 2));
   }
 }
 

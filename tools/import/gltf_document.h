@@ -12,13 +12,15 @@ namespace sinew::import {
 struct GltfDocument {
   std::string content;                  ///< the file again, node k named node_tag(k)
   std::vector<std::string> node_names;  ///< as in the file, perhaps empty or repeated
+  std::vector<std::string> notes;       ///< what assimp is known to leave out, one clause each
 };
 
 /// Name that node k goes by between here and SceneBuilder, and keeps when the file gives it none.
 std::string node_tag(std::size_t k);
 
-/// Throws std::runtime_error with one clause: damaged JSON or GLB chunks, nodes with two parents, in a loop
-/// or too deep, channels and samplers that point nowhere, key times and values that differ in number.
+/// Throws std::runtime_error with one clause: another version, extensions that it cannot do without, damaged
+/// JSON or GLB chunks, nodes with two parents, in a loop or too deep, channels and samplers that point
+/// nowhere, key times and values that differ in number.
 GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLimits& limits);
 
 }  // namespace sinew::import

@@ -65,7 +65,8 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
   }
   const std::string format = detect_format(content);
   if (format.empty()) {
-    error = "not a glTF, FBX, BVH, COLLADA or URDF file";
+    const bool wide = content.rfind("\xFF\xFE", 0) == 0 || content.rfind("\xFE\xFF", 0) == 0;
+    error = wide ? "UTF-16 text; save it as UTF-8" : "not a glTF, FBX, BVH, COLLADA or URDF file";
     return false;
   }
   const auto broker = [&](const std::string& name) { return open_beside(path, name, limits.max_file_bytes); };

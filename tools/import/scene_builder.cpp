@@ -25,7 +25,7 @@ Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
 }
 
 Eigen::Quaterniond value_of(const aiQuaternion& q) {
-  return {double(q.w), double(q.x), double(q.y), double(q.z)};
+  return Eigen::Quaterniond(double(q.w), double(q.x), double(q.y), double(q.z)).normalized();
 }
 
 Eigen::Vector3d value_of(const aiVector3D& v) {
@@ -70,6 +70,11 @@ double key_rate(SourceClip& clip) {
     rate = std::max(rate, 1 / *middle);
   });
   return rate;
+}
+
+bool is_png_or_jpeg(const std::vector<std::uint8_t>& bytes) {
+  const std::string start(bytes.begin(), bytes.begin() + std::min<std::ptrdiff_t>(4, std::ssize(bytes)));
+  return start == "\x89PNG" || start.rfind("\xFF\xD8\xFF", 0) == 0;
 }
 
 }  // namespace
@@ -198,8 +203,13 @@ void SceneBuilder::collect_materials() {
     if (m.GetTexture(aiTextureType_BASE_COLOR, 0, &path) == aiReturn_SUCCESS ||
         m.GetTexture(aiTextureType_DIFFUSE, 0, &path) == aiReturn_SUCCESS) {
       material.texture = texture_bytes(path.C_Str());
-      if (material.texture.empty())
-        out_.notes.push_back(std::string("texture '") + path.C_Str() + "' not found; left out");
+      const std::string texture = std::string("texture '") + path.C_Str() + "' ";
+      if (material.texture.empty()) {
+        out_.notes.push_back(texture + "not found; left out");
+      } else if (!is_png_or_jpeg(material.texture)) {
+        out_.notes.push_back(texture + "is neither PNG nor JPEG; left out");
+        material.texture.clear();
+      }
     }
     out_.materials.push_back(std::move(material));
   }
@@ -215,6 +225,9 @@ void SceneBuilder::collect_mesh(const aiMesh& in, int node) {
     if (in.mNormals) mesh.normals.push_back({in.mNormals[v].x, in.mNormals[v].y, in.mNormals[v].z});
     if (in.mTextureCoords[0]) mesh.uvs.push_back({in.mTextureCoords[0][v].x, 1 - in.mTextureCoords[0][v].y});
   }
+  if (in.mNumAnimMeshes > 0)
+    out_.notes.push_back("mesh '" + mesh.name + "': " + std::to_string(in.mNumAnimMeshes) +
+                         " morph targets left out");
   for (unsigned f = 0; f < in.mNumFaces; ++f)
     if (in.mFaces[f].mNumIndices == 3)
       for (unsigned k = 0; k < 3; ++k) mesh.indices.push_back(in.mFaces[f].mIndices[k]);

@@ -166,8 +166,9 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
     for (auto child = open.link->child_links.rbegin(); child != open.link->child_links.rend(); ++child)
       stack.push_back({*child, index, open.depth + 1});
   }
-  if (scene.links.size() != model->links_.size())
-    throw std::runtime_error("some links hang in a loop and not on the root");
+  for (const auto& [name, link] : model->links_)
+    if (!seen.count(name))
+      throw std::runtime_error("link '" + name + "' hangs in a loop and not on the root");
   for (const SourceUrdfLink& l : scene.links)
     if (!l.mimic_joint.empty() && !model->getJoint(l.mimic_joint))
       throw std::runtime_error("joint '" + l.joint_name + "' mimics '" + l.mimic_joint +

@@ -19,7 +19,9 @@ using multibody::Pulse;
 using multibody::SpringMode;
 using nlohmann::json;
 
-[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what);
+}
 
 /// One element of the file with its name for messages.
 class Reader {

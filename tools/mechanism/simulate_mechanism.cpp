@@ -90,8 +90,8 @@ nlohmann::json telemetry(const multibody::Model& model, const SimulateOptions& o
   for (const multibody::Sample& s : r.samples) {
     const multibody::Sample& first = r.samples.front();
     closure = std::max(closure, s.closure);
-    imbalance = std::max(imbalance,
-                         std::abs(s.kinetic + s.potential - first.kinetic - first.potential - s.work));
+    imbalance =
+        std::max(imbalance, std::abs(s.kinetic + s.potential - first.kinetic - first.potential - s.work));
   }
   nlohmann::json out = {
       {"mechanism", model.mechanism().name},

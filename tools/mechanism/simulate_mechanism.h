@@ -6,14 +6,14 @@
 namespace sinew::mechanism {
 
 struct SimulateOptions {
-  std::string formulation = "RR-JF";     ///< see formulation_names
-  std::string integrator = "ode15sR";    ///< see integrator_names
+  std::string formulation = "RR-JF";   ///< see formulation_names
+  std::string integrator = "ode15sR";  ///< see integrator_names
   double rtol = 1e-5, atol = 1e-5;
-  double max_step = 0;                   ///< s; 0: none but the file's profiles
-  double fixed_step = 1e-3;              ///< s; bdf1 and bdf2
-  double t_end = 0;                      ///< s; 0: the file's
-  int intervals = 50;                    ///< equally spaced samples, unless `instants` are given
-  std::vector<double> instants;          ///< s
+  double max_step = 0;           ///< s; 0: none but the file's profiles
+  double fixed_step = 1e-3;      ///< s; bdf1 and bdf2
+  double t_end = 0;              ///< s; 0: the file's
+  int intervals = 50;            ///< equally spaced samples, unless `instants` are given
+  std::vector<double> instants;  ///< s
 };
 
 /// What --formulation and --integrator accept. "-Rz" may be left out: loops decide.

@@ -81,26 +81,18 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.gap += c.offset;
 }
 
-/// Velocity of a body's material point at the beginning of the step, m/s.
-template <class T>
-Vec3<T> ContactFinder<T>::speed(int n, int body, const Vec3<T>& point) const {
-  const CharacterState<T>& s = *states_[n];
-  const Mat3<T> spin = s.history.rotation_rate[body] * s.history.rotation[body].transpose();
-  return s.history.velocity[body] + spin * (point - s.problem.kinematics.center[body]);
-}
-
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
-  Vec3<T> closing = speed(c.tree_a, c.body_a, c.point);
+  Vec3<T> closing = states_[c.tree_a]->point_velocity(c.body_a, c.point);
   T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth);
   if (c.tree_b >= 0) {
-    closing -= speed(c.tree_b, c.body_b, c.point);
+    closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
   }
   if (!c.plane) thickness = std::min(thickness, c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x());
-  const T approach = -closing.dot(c.normal);
-  if (approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * approach / (h_ * thickness));
+  c.approach = -closing.dot(c.normal);
+  if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (h_ * thickness));
 }
 
 template <class T>

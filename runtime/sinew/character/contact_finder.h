@@ -45,7 +45,6 @@ class ContactFinder {
   void add(Contact<T>& contact, T reach);
   void remember(Contact<T>& contact) const;
   void stiffen_for_impact(Contact<T>& contact) const;
-  Vec3<T> speed(int n, int body, const Vec3<T>& point) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
 
   const WorldSettings* world_ = nullptr;

@@ -62,6 +62,8 @@ void meet_cuts(CharacterState<T>& s, T h) {
 template <class T>
 void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
   problems_.reserve(trees);
+  free_share_.reserve(trees);
+  bounce_.reserve(trees, dofs, bodies);
   finder_.reserve(contacts, colliders);
   lagged_.reserve(contacts);
   solver_.reserve(dofs, bodies, contacts);
@@ -122,9 +124,10 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
 }
 
 /// Driven joints start at their target, the others go on as they moved; where contacts stay as they are, with
-/// the change of their speed too (flight: 2.4 passes instead of 3.4).
+/// the change of their speed too (flight: 2.4 passes instead of 3.4); by a share of that where it would pass
+/// through something.
 template <class T>
-void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
+void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     TreeProblem<T>& p = s.problem;
@@ -147,7 +150,7 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h) {
     std::array<T, 6> moved{};
     const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
     for (int k = 0; k < count; ++k)
-      moved[k] = h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
+      moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
   }
 }
@@ -158,10 +161,7 @@ template <class T>
 bool IslandStepper<T>::contacts_unchanged(const WorldSettings& world, T h, int tree) const {
   std::uint64_t signature = 0;
   const auto speed = [&](int t, int body, const Vec3<T>& x) {
-    const CharacterState<T>& s = *states_[t];
-    const Mat3<T> spin = s.history.rotation_rate[body] * s.history.rotation[body].transpose();
-    return Vec3<T>(s.history.velocity[body] + spin * (x - s.problem.kinematics.center[body]) +
-                   h * world.gravity.template cast<T>());
+    return Vec3<T>(states_[t]->point_velocity(body, x) + h * world.gravity.template cast<T>());
   };
   for (const Contact<T>& c : contacts_) {
     if (c.tree_a != tree && c.tree_b != tree) continue;
@@ -320,6 +320,9 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
     contacts_ = finder_.find(world, obstacles_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
+      sweep<T>(states_, contacts_, settings_.common_origin, h, free_share_);
+      for (std::size_t n = 0; n < states_.size(); ++n)
+        if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
       second = world.accuracy.scheme == Scheme::kBdf2;
       for (std::size_t n = 0; n < states_.size() && second; ++n)
         second = states_[n]->steps_unchanged >= kUnchangedSteps &&
@@ -358,11 +361,14 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
+  const bool may_bounce = Bounce<T>::possible(contacts_);
+  const double budget = may_bounce ? Bounce<T>::energy(states_, world_->gravity) : 0;
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     if (!settled(s)) hold(s);
     finish(s, static_cast<int>(n), *world_, h);
   }
+  if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
   lagged_.clear();
   for (const Contact<T>& c : contacts_)
     if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
@@ -421,6 +427,7 @@ void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider
   indices_ = indices;
   frame_ = h;
   lagged_.assign(lagged.begin(), lagged.end());
+  free_share_.assign(states.size(), T(1));
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   total_ = {};

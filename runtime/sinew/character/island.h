@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "sinew/character/bounce.h"
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/sweep.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
@@ -32,7 +34,7 @@ class IslandStepper {
   void choose_targets(CharacterState<T>& state, const WorldSettings& world, T h);
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
-  void first_guess(CharacterState<T>& state, T h);
+  void first_guess(CharacterState<T>& state, T h, T share = T(1));
   void predict_all(Scheme scheme, T h);
   std::uint64_t touching(int tree) const;
   std::uint64_t bearing(int tree) const;
@@ -53,6 +55,8 @@ class IslandStepper {
   StepSettings<T> settings_;
   std::vector<TreeProblem<T>*> problems_;
   ContactFinder<T> finder_;
+  Bounce<T> bounce_;
+  std::vector<T> free_share_;  ///< [tree] see sweep()
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
 };

@@ -23,6 +23,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       limit(tree.dofs, T(0)),
       unknown(tree.dofs, 0),
       problem(tree, skeleton),
+      guessed(tree),
       history(tree.bodies),
       motion(tree),
       wanted(tree.bodies) {

@@ -41,6 +41,7 @@ struct CharacterState {
   std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
+  Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;
   std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
@@ -66,6 +67,11 @@ struct CharacterState {
   }
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
+  /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.
+  Vec3<T> point_velocity(int body, const Vec3<T>& point) const {
+    const Mat3<T> spin = history.rotation_rate[body] * history.rotation[body].transpose();
+    return history.velocity[body] + spin * (point - problem.kinematics.center[body]);
+  }
   /// Energies and momenta of the history into the report.
   void report_totals(const Vec3<double>& gravity);
   /// Model transforms of all joints from the local ones.

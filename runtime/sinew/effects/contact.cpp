@@ -183,6 +183,7 @@ void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   const Vec3<T> tangent = c.normal.unitOrthogonal();
   c.frame << tangent, c.normal.cross(tangent), c.normal;
   measure(a, b, c);
+  c.start_gap = c.gap;
 }
 
 SINEW_CONTACT_INSTANCES(template, float)

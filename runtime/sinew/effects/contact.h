@@ -80,6 +80,8 @@ struct Contact {
   T restitution = T(0);          ///< of a bounce: impulse of the release by that of the compression
   T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
   bool fresh = true;             ///< bore nothing after the last step
+  T start_gap = T(0);            ///< when the step began, m
+  T approach = T(0);             ///< closing speed then (fresh ones only), m/s
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
           material_b = Vec3<T>::Zero();  ///< body axes (static: from common origin)

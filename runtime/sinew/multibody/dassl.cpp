@@ -125,11 +125,12 @@ std::string Dassl::step() {
   if (!started_)
     if (std::string why = first_step(); !why.empty()) return why;
   if (settings_.max_step > 0) h_ = std::min(h_, settings_.max_step);
+  if (100 * kRound * weighted_norm(y_, y_, settings_) > 1) return stopped(t_, kTooAccurate);
   Vector y(y_.size()), yp(y_.size()), e(y_.size());
   int error_failures = 0, newton_failures = 0;
   for (;;) {
     if (h_ < 4 * kRound * std::abs(t_) || error_failures + newton_failures > 60)
-      return stopped(t_, "the tolerance cannot be reached: the step needed is below the resolution of time");
+      return stopped(t_, kStepTooSmall);
     coefficients();
     const int k = k_;
     if (!correct(t_ + h_, y, yp, e)) {

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kClosed = 1e-10;        ///< m, in an evaluation; outputs are closed to kClosedOutput
 constexpr double kClosedOutput = 1e-13;  ///< m
-constexpr double kWorstGrowth = 5;       ///< |∂q_d/∂q_i| from which other independent coordinates are tried
+constexpr double kNearby = 0.5;          ///< rad or m that start coordinates may be moved to close loops
+constexpr double kWorstGrowth = 5;  ///< |∂q_d/∂q_i| from which other independent coordinates are tried
 
 std::string text(double x) {
   char buffer[32];
@@ -50,9 +51,12 @@ std::string Equations::start(Vector& y) {
   const Gap asked = rz_.gap(motion_);
   rz_.choose(motion_);
   const auto loop_name = [&](int i) { return "loop '" + mechanism.loops[i].name + "'"; };
-  if (!rz_.close_positions(y.head(n_), motion_, kClosedOutput))
+  const Vector asked_q = y.head(n_);
+  if (!rz_.close_positions(y.head(n_), motion_, kClosedOutput) ||
+      (y.head(n_) - asked_q).cwiseAbs().maxCoeff() > kNearby)
     return loop_name(asked.loop) + " cannot be assembled: gap of " + text(asked.size) +
-           " m at the start coordinates, and no position nearby closes it";
+           " m at the start coordinates, and no position within " + text(kNearby) +
+           " rad or m of them closes it";
   rz_.choose(motion_);
   rz_.close_positions(y.head(n_), motion_, kClosedOutput);
   Matrix jacobian(model_->loop_rows, n_);
@@ -60,7 +64,8 @@ std::string Equations::start(Vector& y) {
   const Vector speed = jacobian * y.tail(n_);
   const Gap opening = worst_gap(*model_, speed);
   if (!(opening.size <= 1e-6 * std::max(1.0, y.tail(n_).cwiseAbs().maxCoeff())))
-    return loop_name(opening.loop) + " is torn apart by the initial velocities at " + text(opening.size) + " m/s";
+    return loop_name(opening.loop) + " is torn apart by the initial velocities at " + text(opening.size) +
+           " m/s";
   rz_.close_rates(y.tail(n_));
   return {};
 }
@@ -133,8 +138,7 @@ bool Equations::residual(double t, const Vector& y, const Vector& yp, Vector& r)
     r.tail(n_) = reduced_;
   } else {
     r.tail(n_) = yp.tail(n_) - qdd_;
-    for (int i = 0; i < rz_.freedom(); ++i)
-      r[n_ + rz_.independent()[i]] = reduced_[i];
+    for (int i = 0; i < rz_.freedom(); ++i) r[n_ + rz_.independent()[i]] = reduced_[i];
   }
   return true;
 }
@@ -220,7 +224,8 @@ void Equations::solve(Vector& r) {
   second -= stiffness_ * first / c_;
   const Vector rate = factor_.solve(second);
   if (!rz_.trivial()) {
-    // Dependent rows: q'_d follows Rz q'_i, and the independent residual has already taken its share of q''_d.
+    // Dependent rows: q'_d follows Rz q'_i, and the independent residual has already taken its share of
+    // q''_d.
     const Vector followed = rz_.dependent_rates() * rate;
     const Vector shared = rz_.dependent_rates() * acceleration;
     for (std::size_t d = 0; d < rz_.dependent().size(); ++d) {

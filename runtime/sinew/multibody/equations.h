@@ -3,8 +3,8 @@
 // The state is y = (q, q') of ALL tree coordinates. In a closed mechanism only the independent ones count:
 // every evaluation first replaces the dependent positions and rates by what the loops say (index 2: rates on
 // their manifold; positions too), so the right-hand side is smooth however often the independent coordinates
-// are re-chosen, and a re-choice restarts nothing. Re-choosing a null-space basis without this cost 84 678 steps
-// on the Bricard mechanism where projection needs hundreds (research/integrators-and-references.md).
+// are re-chosen, and a re-choice restarts nothing. Re-choosing a null-space basis without this cost 84 678
+// steps on the Bricard mechanism where projection needs hundreds (research/integrators-and-references.md).
 #pragma once
 
 #include <string>

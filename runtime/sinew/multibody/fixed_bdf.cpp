@@ -18,7 +18,8 @@ std::string FixedBdf::step() {
   const bool second = order_ == 2 && counts_.steps > 0;
   if (counts_.steps == 0) {
     rate_.resize(y_.size());
-    if (!system_->derivative(t_, y_, rate_)) return stopped(t_, "the equations cannot be evaluated at the start");
+    if (!system_->derivative(t_, y_, rate_))
+      return stopped(t_, "the equations cannot be evaluated at the start");
   }
   const double t = t0_ + h * static_cast<double>(counts_.steps + 1);
   const double c = (second ? 1.5 : 1.0) / h;

@@ -5,8 +5,8 @@
 
 namespace sinew::multibody {
 
-/// y1' = (y1 − y0)/h, or (3y1 − 4y0 + y−1)/2h from the second step on; each step solved by Newton's method until
-/// the correction is below a hundredth of the tolerance. No error control: the step is the accuracy.
+/// y1' = (y1 − y0)/h, or (3y1 − 4y0 + y−1)/2h from the second step on; each step solved by Newton's method
+/// until the correction is below a hundredth of the tolerance. No error control: the step is the accuracy.
 class FixedBdf : public Integrator {
  public:
   FixedBdf(System& system, double t0, const Vector& y0, int order, const IntegratorSettings& settings);

@@ -34,9 +34,7 @@ struct Sensitivity {
   template <class Block>
   void scatter(const Block& block, Matrix& into) const {
     for (std::size_t c = 0; c < coordinate.size(); ++c)
-      for (std::size_t r = 0; r < coordinate.size(); ++r)
-        into(coordinate[r], coordinate[c]) +=
-            block(r, c);
+      for (std::size_t r = 0; r < coordinate.size(); ++r) into(coordinate[r], coordinate[c]) += block(r, c);
   }
 };
 

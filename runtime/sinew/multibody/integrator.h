@@ -16,10 +16,10 @@ struct IntegratorSettings {
 };
 
 struct StepCounts {
-  long steps = 0;             ///< accepted
-  long error_failures = 0;    ///< steps repeated because of their error
+  long steps = 0;           ///< accepted
+  long error_failures = 0;  ///< steps repeated because of their error
   long newton_iterations = 0;
-  long newton_failures = 0;   ///< steps repeated because Newton's method did not converge
+  long newton_failures = 0;  ///< steps repeated because Newton's method did not converge
 };
 
 /// A method that has been started at a state and walks on. `step` answers "" or why it cannot go on.
@@ -27,11 +27,11 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string step() = 0;
-  virtual double time() const = 0;             ///< end of the last accepted step
-  virtual double last_step() const = 0;        ///< its length
-  virtual const Vector& state() const = 0;     ///< y there
-  virtual Vector at(double t) const = 0;       ///< y inside (or just outside) the last step
-  virtual int order() const = 0;               ///< of the last step
+  virtual double time() const = 0;          ///< end of the last accepted step
+  virtual double last_step() const = 0;     ///< its length
+  virtual const Vector& state() const = 0;  ///< y there
+  virtual Vector at(double t) const = 0;    ///< y inside (or just outside) the last step
+  virtual int order() const = 0;            ///< of the last step
   /// True once the method suspects that its step is limited by stability, not accuracy.
   virtual bool looks_stiff() const { return false; }
   const StepCounts& counts() const { return counts_; }
@@ -49,15 +49,19 @@ enum class Method {
   kBdf2,     ///< second-order BDF, fixed step
 };
 
-/// `system` must outlive the integrator. y0 at t0; y' there is asked of the system. `end` only scales the first
-/// step.
+/// `system` must outlive the integrator. y0 at t0; y' there is asked of the system. `end` only scales the
+/// first step.
 std::unique_ptr<Integrator> start(Method method, System& system, double t0, const Vector& y0, double end,
                                   const IntegratorSettings& settings);
 
 /// √(mean((x/(atol + rtol·|scale|))²)): ≤ 1 is accurate enough.
 double weighted_norm(const Vector& x, const Vector& scale, const IntegratorSettings& settings);
 
-/// "at t = …: reason", the form in which every method says why it stops.
+constexpr const char* kTooAccurate = "the tolerance is below what double precision can resolve";
+constexpr const char* kStepTooSmall =
+    "the tolerance cannot be reached: the step needed is below the resolution of time";
+
+/// "stopped at t = … s: reason", the form in which every method says why it stops.
 std::string stopped(double t, const char* reason);
 
 }  // namespace sinew::multibody

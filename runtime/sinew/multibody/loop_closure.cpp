@@ -64,8 +64,7 @@ void closure_jacobian(const Model& model, const BodyMotion& m, Matrix& jacobian)
 void closure_acceleration(const Model& model, const BodyMotion& m, Eigen::Ref<Vector> out) {
   for (const LoopModel& l : model.loops) {
     const Vec3<double> a = position_of(m, l.a), b = position_of(m, l.b);
-    const Vec3<double> acceleration =
-        acceleration_at(m, l.b.body, b) - acceleration_at(m, l.a.body, a);
+    const Vec3<double> acceleration = acceleration_at(m, l.b.body, b) - acceleration_at(m, l.a.body, a);
     if (l.type == LoopType::kDistance) {
       const Vec3<double> rate = velocity_at(m, l.b.body, b) - velocity_at(m, l.a.body, a);
       out[l.first_row] = (rate.squaredNorm() + (b - a).dot(acceleration)) / l.length;
@@ -80,8 +79,7 @@ void closure_acceleration(const Model& model, const BodyMotion& m, Eigen::Ref<Ve
       for (int k = 0; k < 2; ++k) {
         const Vec3<double> rate = wa.cross(d.normal[k]);
         const Vec3<double> bend = alpha_of(m, l.a.body).cross(d.normal[k]) + wa.cross(rate);
-        out[l.first_row + 3 + k] =
-            bend.dot(d.axis) + 2 * rate.dot(axis_rate) + d.normal[k].dot(axis_bend);
+        out[l.first_row + 3 + k] = bend.dot(d.axis) + 2 * rate.dot(axis_rate) + d.normal[k].dot(axis_bend);
       }
     }
   }

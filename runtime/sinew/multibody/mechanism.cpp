@@ -25,11 +25,17 @@ double pulses_rate(const std::vector<Pulse>& pulses, double t) {
 
 namespace {
 
-std::string quoted(const std::string& kind, const std::string& name) { return kind + " '" + name + "'"; }
+std::string quoted(const std::string& kind, const std::string& name) {
+  return kind + " '" + name + "'";
+}
 
-bool finite(const Vec3<double>& v) { return v.allFinite(); }
+bool finite(const Vec3<double>& v) {
+  return v.allFinite();
+}
 
-bool is_unit(const Vec3<double>& v) { return std::abs(v.norm() - 1) < 1e-6; }
+bool is_unit(const Vec3<double>& v) {
+  return std::abs(v.norm() - 1) < 1e-6;
+}
 
 std::string body_fault(const Body& b) {
   const std::string who = quoted("body", b.name);
@@ -135,7 +141,8 @@ std::string force_fault(const Mechanism& m, const Force& f) {
   if (f.type == ForceType::kSpringDamper && f.body_a == f.body_b) return who + " joins a body to itself";
   if (f.type == ForceType::kSpringDamper && (f.point_b - f.point_a).norm() < 1e-9)
     return who + " has points that coincide: its direction is undefined";
-  const bool directed = f.type == ForceType::kContactPlane || (f.type == ForceType::kTyre && f.c_lateral != 0);
+  const bool directed =
+      f.type == ForceType::kContactPlane || (f.type == ForceType::kTyre && f.c_lateral != 0);
   if (directed && !is_unit(f.direction)) return who + " has a direction that is not of length 1";
   if (!(f.eps > 0)) return who + " has an eps that is not positive";
   for (const Pulse& p : f.road)

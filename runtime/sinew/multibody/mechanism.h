@@ -1,8 +1,9 @@
-// A mechanism as its file describes it: bodies, joints that hang them together as a tree, loops that close it,
-// forces. Plain data; `fault_of` says what is wrong with it, `Model` (model.h) is what the formulations use.
+// A mechanism as its file describes it: bodies, joints that hang them together as a tree, loops that close
+// it, forces. Plain data; `fault_of` says what is wrong with it, `Model` (model.h) is what the formulations
+// use.
 //
-// Positions, directions and inertias are world axes in the assembled (reference) configuration, in which every
-// joint coordinate is 0. SI units.
+// Positions, directions and inertias are world axes in the assembled (reference) configuration, in which
+// every joint coordinate is 0. SI units.
 #pragma once
 
 #include <string>

@@ -18,8 +18,7 @@ Skeleton skeleton_of(const Mechanism& m) {
     j.source_joint = from.name;
     j.type = from.type;
     j.parent = from.parent == kGround ? -1 : joint_of[from.parent];
-    const Vec3<double> above =
-        j.parent < 0 ? Vec3<double>(Vec3<double>::Zero()) : m.joints[j.parent].anchor;
+    const Vec3<double> above = j.parent < 0 ? Vec3<double>(Vec3<double>::Zero()) : m.joints[j.parent].anchor;
     j.rest.translation = from.anchor - above;
     j.axis = from.axis.normalized();
     j.mass = body.mass;
@@ -56,7 +55,8 @@ Model::Model(const Mechanism& mechanism) : tree(skeleton_of(mechanism)), mechani
     ForceModel& force = forces.emplace_back();
     force.law = f;
     force.a = attach(f.body_a, f.point_a);
-    force.b = attach(f.type == ForceType::kAnchorSpring ? kGround : f.body_b, f.point_b);
+    const bool two_bodies = f.type == ForceType::kSpringDamper || f.type == ForceType::kContactPlane;
+    force.b = attach(two_bodies ? f.body_b : kGround, f.point_b);
     force.direction = f.direction;
     force.path = path_between(force.a.body, force.b.body);
     note_profile(f.road);

@@ -23,9 +23,9 @@ struct LoopModel {
   LoopType type;
   int first_row;
   BodyPoint a, b;
-  Vec3<double> axis_b;              ///< revolute: in body b
-  Vec3<double> normal_a[2];         ///< revolute: two directions normal to the axis, in body a
-  double length = 0;                ///< distance
+  Vec3<double> axis_b;       ///< revolute: in body b
+  Vec3<double> normal_a[2];  ///< revolute: two directions normal to the axis, in body a
+  double length = 0;         ///< distance
   Path path;
 };
 

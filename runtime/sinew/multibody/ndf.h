@@ -1,9 +1,9 @@
 // ode15s and ode15sR: numerical differentiation formulas of order 1–5 with quasi-constant step.
 //
-// Source: Shampine & Reichelt, "The MATLAB ODE Suite", SIAM J. Sci. Comput. 18 (1997): backward differences of
-// the solution at a constant step, rescaled by a triangular matrix when the step changes; κ shrinks the error
-// constant. Formulated on F(t, y, y') = 0 with y' = (α_k d + ψ)/h, d the correction of the prediction, so the
-// same code serves derivatives (ode15s: F = y' − f) and residuals (ode15sR, section 3.3 of the paper).
+// Source: Shampine & Reichelt, "The MATLAB ODE Suite", SIAM J. Sci. Comput. 18 (1997): backward differences
+// of the solution at a constant step, rescaled by a triangular matrix when the step changes; κ shrinks the
+// error constant. Formulated on F(t, y, y') = 0 with y' = (α_k d + ψ)/h, d the correction of the prediction,
+// so the same code serves derivatives (ode15s: F = y' − f) and residuals (ode15sR, section 3.3 of the paper).
 #pragma once
 
 #include <array>

@@ -9,15 +9,15 @@ namespace {
 
 constexpr double kRound = std::numeric_limits<double>::epsilon();
 /// |γ*_k|: error coefficients of the Adams–Moulton formulas of constant step.
-constexpr double kErrorConstant[] = {0,       0.5,     0.0833,  0.0417,  0.0264,  0.0188,  0.0143,
-                                     0.0114,  0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
-constexpr const char* kTooAccurate = "the tolerance is below what double precision can resolve";
+constexpr double kErrorConstant[] = {0,      0.5,     0.0833,  0.0417,  0.0264,  0.0188,  0.0143,
+                                     0.0114, 0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
+constexpr int kStiffSteps = 50;  ///< so many steps of order 4 or less in a row: stability limits them
 constexpr const char* kNoEvaluation = "the equations cannot be evaluated near the present state";
-constexpr const char* kStepTooSmall = "the step needed is below the resolution of time";
 
 }  // namespace
 
-ShampineGordon::ShampineGordon(System& system, double t0, const Vector& y0, const IntegratorSettings& settings)
+ShampineGordon::ShampineGordon(System& system, double t0, const Vector& y0,
+                               const IntegratorSettings& settings)
     : system_(&system),
       settings_(settings),
       eps_(std::max(settings.rtol, settings.atol)),
@@ -149,6 +149,7 @@ std::string ShampineGordon::step() {
     for (int i = 1; i <= k; ++i) phi_[i] += phi_[k + 1];
     ++counts_.steps;
     low_order_steps_ = k <= 4 ? low_order_steps_ + 1 : 0;
+    stiff_ = stiff_ || low_order_steps_ >= kStiffSteps;
     choose_next(error_k, error_below, next);
     return {};
   }

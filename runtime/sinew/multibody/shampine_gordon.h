@@ -1,8 +1,9 @@
 // DE: Adams–Bashforth–Moulton PECE of variable order 1–12 and variable step, with local extrapolation.
 //
-// Source: Shampine & Gordon, "Computer Solution of Ordinary Differential Equations: The Initial Value Problem",
-// 1975, routines STEP and INTRP: modified divided differences φ, coefficients ψ, α, β, σ, g; the error test on
-// the extrapolated formula; order from the estimates at k−2, k−1, k, k+1; step halved or doubled.
+// Source: Shampine & Gordon, "Computer Solution of Ordinary Differential Equations: The Initial Value
+// Problem", 1975, routines STEP and INTRP: modified divided differences φ, coefficients ψ, α, β, σ, g; the
+// error test on the extrapolated formula; order from the estimates at k−2, k−1, k, k+1; step halved or
+// doubled.
 #pragma once
 
 #include <array>
@@ -21,7 +22,7 @@ class ShampineGordon : public Integrator {
   const Vector& state() const override { return y_; }
   Vector at(double t) const override;
   int order() const override { return k_old_; }
-  bool looks_stiff() const override { return low_order_steps_ >= 50; }
+  bool looks_stiff() const override { return stiff_; }
 
  private:
   static constexpr int kMaxOrder = 12;
@@ -39,7 +40,7 @@ class ShampineGordon : public Integrator {
   double eps_;  ///< the larger of the tolerances; the weights carry their ratio
   double t_, h_ = 0, h_old_ = 0;
   int k_ = 1, k_old_ = 0, same_steps_ = 0;
-  bool starting_ = true, first_phase_ = true;
+  bool starting_ = true, first_phase_ = true, stiff_ = false;
   int low_order_steps_ = 0;
   Coefficients psi_{}, alpha_{}, beta_{}, sigma_{}, v_{}, w_{}, g_{};
   std::array<Vector, kMaxOrder + 3> phi_;

@@ -31,8 +31,10 @@ Sample sample_at(Equations& equations, double t, Vector y, double work) {
   return s;
 }
 
-/// Work of the non-conservative forces over the last step, by Gauss–Legendre quadrature of order 6.
+/// Work of the non-conservative forces from `from` to `to` inside the last step, by Gauss–Legendre quadrature
+/// of order 6.
 double work_over(Equations& equations, const Integrator& integrator, double from, double to) {
+  if (!(to > from)) return 0;
   const double node = std::sqrt(0.6), middle = 0.5 * (from + to), half = 0.5 * (to - from);
   const Model& model = equations.model();
   const Eigen::Index n = model.size();
@@ -75,31 +77,42 @@ SimulationResult simulate(const Model& model, const SimulationSettings& settings
   if (!result.stopped.empty()) return result;
   const double t_end = settings.t_end > 0 ? settings.t_end : model.mechanism().t_end;
   IntegratorSettings chosen = settings.integrator;
-  // A step longer than a bump of the road could pass it unseen: the error estimate samples only the step's end.
+  // A step longer than a bump of the road could pass it unseen: the error estimate samples only the step's
+  // end.
   if (model.shortest_profile > 0 && (chosen.max_step <= 0 || chosen.max_step > model.shortest_profile))
     chosen.max_step = model.shortest_profile;
 
-  double measured = 0, work = 0;
+  double measured = 0, work = 0, worked_until = 0;
   double begin = cpu_seconds();
   auto integrator = start(settings.method, equations, 0, y0, t_end, chosen);
   std::size_t next = 0;
-  const auto emit_until = [&](double t) {
+  const auto work_until = [&](double t) {
+    if (settings.energy) work += work_over(equations, *integrator, worked_until, t);
+    worked_until = t;
+  };
+  const auto emit = [&](double t) {
+    work_until(t);
+    result.samples.push_back(sample_at(equations, t, integrator->at(t), work));
+  };
+  // Sampling and the energy balance are not the integration's time.
+  const auto look = [&] {
     measured += cpu_seconds() - begin;
-    for (; next < settings.output.size() && settings.output[next] <= t; ++next)
-      result.samples.push_back(
-          sample_at(equations, settings.output[next], integrator->at(settings.output[next]), work));
+    for (; next < settings.output.size() && settings.output[next] <= integrator->time(); ++next)
+      emit(settings.output[next]);
+    work_until(integrator->time());
     begin = cpu_seconds();
   };
-  emit_until(0);
+  look();
   while (integrator->time() < t_end) {
-    const double before = integrator->time();
     result.stopped = integrator->step();
     if (!result.stopped.empty()) break;
-    if (settings.energy) work += work_over(equations, *integrator, before, integrator->time());
     if (progress) progress(integrator->time());
-    if (next < settings.output.size() && settings.output[next] <= integrator->time()) emit_until(integrator->time());
+    if (settings.energy || (next < settings.output.size() && settings.output[next] <= integrator->time()))
+      look();
   }
   result.seconds = measured + cpu_seconds() - begin;
+  if (!result.stopped.empty() && (result.samples.empty() || result.samples.back().t < integrator->time()))
+    emit(integrator->time());
   result.steps = integrator->counts();
   result.evaluations = equations.counts();
   result.looks_stiff = integrator->looks_stiff();

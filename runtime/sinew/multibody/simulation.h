@@ -15,7 +15,7 @@ struct SimulationSettings {
   IntegratorSettings integrator;
   double t_end = 0;            ///< s; 0: the file's
   std::vector<double> output;  ///< instants to sample, ascending
-  bool energy = false;         ///< also integrate the power of what is not conservative (a few % of the time)
+  bool energy = false;         ///< also integrate the power of what is not conservative
 };
 
 /// "" or why this formulation and this integrator do not go together for this mechanism.
@@ -25,8 +25,8 @@ struct Sample {
   double t = 0;
   Vector y;  ///< q, q'; loops closed to rounding
   double kinetic = 0, potential = 0;
-  double closure = 0;      ///< largest loop error in y, m
-  double work = 0;         ///< J since the start of what `potential` leaves out; only with `energy`
+  double closure = 0;  ///< largest loop error in y, m
+  double work = 0;     ///< J since the start of what `potential` leaves out; only with `energy`
   std::vector<Vec3<double>> points;
 };
 
@@ -39,8 +39,9 @@ struct SimulationResult {
   bool looks_stiff = false;
 };
 
-/// A mechanism that cannot be started (Equations::start) is reported as `stopped`, without samples.
-/// `progress` is called with the time reached now and then; it may be empty.
+/// A mechanism that cannot be started (Equations::start) is reported as `stopped`, without samples. An
+/// integration that ends early keeps the samples until then and adds the last state reached. `progress` is
+/// called with the time reached now and then; it may be empty.
 SimulationResult simulate(const Model& model, const SimulationSettings& settings,
                           const std::function<void(double)>& progress = {});
 

@@ -7,8 +7,9 @@ namespace sinew::multibody {
 
 using Vector = Eigen::VectorXd;
 
-/// y' = f(t, y), or F(t, y, y') = 0. Functions that answer bool say false where the system cannot be evaluated
-/// (a loop that does not close, a number that is not finite): the integrator then tries a shorter step.
+/// y' = f(t, y), or F(t, y, y') = 0. Functions that answer bool say false where the system cannot be
+/// evaluated (a loop that does not close, a number that is not finite): the integrator then tries a shorter
+/// step.
 class System {
  public:
   virtual ~System() = default;
@@ -24,8 +25,8 @@ class System {
   /// Solves with that factor in place: r → δ.
   virtual void solve(Vector& r) = 0;
 
-  /// Called with each accepted state; may correct y (drift of dependent coordinates). True: the meaning of the
-  /// tangent's parts has changed, evaluate it anew.
+  /// Called with each accepted state; may correct y (drift of dependent coordinates). True: the meaning of
+  /// the tangent's parts has changed, evaluate it anew.
   virtual bool accept(double, Vector&) { return false; }
 };
 

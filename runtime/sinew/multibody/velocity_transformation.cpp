@@ -1,6 +1,7 @@
 #include "sinew/multibody/velocity_transformation.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace sinew::multibody {
 namespace {
@@ -8,6 +9,9 @@ namespace {
 /// Relative singular value below which the loops are taken to say nothing: a position error of 1e-10 m then
 /// moves the dependent coordinates by less than 1e-3.
 constexpr double kSingular = 1e-7;
+constexpr double kWeak = 1e-2;       ///< relative singular value below which loops are closed to rounding
+constexpr double kRounding = 1e-16;  ///< m
+constexpr double kFarthestMove = 1;  ///< rad or m, in one iteration
 constexpr int kMaxIterations = 12;
 
 }  // namespace
@@ -49,15 +53,16 @@ bool VelocityTransformation::choose(const BodyMotion& motion) {
 }
 
 void VelocityTransformation::split(const Matrix& jacobian) {
-  for (std::size_t i = 0; i < dependent_.size(); ++i)
-    by_dependent_.col(i) = jacobian.col(dependent_[i]);
+  for (std::size_t i = 0; i < dependent_.size(); ++i) by_dependent_.col(i) = jacobian.col(dependent_[i]);
   for (std::size_t i = 0; i < independent_.size(); ++i)
     by_independent_.col(i) = jacobian.col(independent_[i]);
   factor_.compute(by_dependent_);
+  const auto pivots = factor_.matrixQTZ().diagonal().cwiseAbs();
+  conditioning_ = pivots.size() == 0 ? 1 : pivots.minCoeff() / pivots.maxCoeff();
 }
 
 bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& motion, double tolerance) {
-  double moved = 1;
+  double moved = 1, best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaxIterations; ++i) {
     move_to(*model_, q, motion);
     if (model_->loop_rows == 0) return true;
@@ -67,15 +72,20 @@ bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& m
       closure_jacobian(*model_, motion, jacobian_);
       split(jacobian_);
     }
-    if (phi_.cwiseAbs().maxCoeff() <= tolerance) {
+    const double open = phi_.cwiseAbs().maxCoeff();
+    // Near a singular position a gap is magnified by 1/σ in positions and by 1/σ³ in accelerations: close it
+    // to rounding there, that is until it shrinks no more.
+    const bool closed =
+        open <= tolerance && (conditioning_ > kWeak || open <= kRounding || open > 0.1 * best);
+    if (closed) {
       rates_ = -factor_.solve(by_independent_);
-      for (std::size_t d = 0; d < dependent_.size(); ++d)
-        rz_.row(dependent_[d]) = rates_.row(d);
+      for (std::size_t d = 0; d < dependent_.size(); ++d) rz_.row(dependent_[d]) = rates_.row(d);
       return true;
     }
+    best = std::min(best, open);
     const Vector step = factor_.solve(phi_);
     moved = step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
-    if (!(moved < 1)) return false;  // another assembly of the loop, or none
+    if (!(moved < kFarthestMove)) return false;  // another assembly of the loop, or none
     for (std::size_t d = 0; d < dependent_.size(); ++d) q[dependent_[d]] -= step[d];
   }
   return false;

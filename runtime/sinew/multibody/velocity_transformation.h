@@ -1,11 +1,11 @@
-// The second velocity transformation q' = Rz·q'_i of a closed mechanism: which coordinates are independent, and
-// how the others follow (equations 37–46).
+// The second velocity transformation q' = Rz·q'_i of a closed mechanism: which coordinates are independent,
+// and how the others follow (equations 37–46).
 //
-// The independent coordinates come from a pivoted factorisation of the loop Jacobian Φ_q. The others are found
-// from the loops by least squares, so redundant equations (Bricard: 5 of rank 4) do no harm, and with small
-// singular values cut off, so that a mechanism passing through a singular position keeps what the integrator
-// predicts for the directions that the loops leave undetermined there. Least squares are solved by orthogonal
-// factorisation where the paper solves the normal equations: half the digits are lost by squaring.
+// The independent coordinates come from a pivoted factorisation of the loop Jacobian Φ_q. The others are
+// found from the loops by least squares, so redundant equations (Bricard: 5 of rank 4) do no harm, and with
+// small singular values cut off, so that a mechanism passing through a singular position keeps what the
+// integrator predicts for the directions that the loops leave undetermined there. Least squares are solved by
+// orthogonal factorisation where the paper solves the normal equations: half the digits are lost by squaring.
 #pragma once
 
 #include "sinew/multibody/loop_closure.h"
@@ -57,6 +57,7 @@ class VelocityTransformation {
   Matrix jacobian_, by_dependent_, by_independent_, rates_;
   Matrix rz_;  ///< [N×independent]
   Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
+  double conditioning_ = 1;  ///< smallest over largest pivot of the factor
   Vector phi_, zero_;
 };
 

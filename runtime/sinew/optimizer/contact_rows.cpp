@@ -16,18 +16,6 @@ inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b,
     for (int j = block; j < block + TreePattern::kBlock; ++j) path[j] += a * x[j] + b * y[j] + c * z[j];
 }
 
-/// The last degree of freedom at or above a body that is an unknown, as an unknown; −1 where nothing moves
-/// it.
-template <class T>
-int unknown_above(const TreeProblem<T>& p, int body, const Unknowns& unknowns) {
-  const Tree<T>& tree = *p.tree;
-  int dof = -1;
-  for (int i = body; i >= 0 && dof < 0; i = tree.parent[i])
-    if (tree.dof_count(i) > 0) dof = tree.first_dof[i + 1] - 1;
-  while (dof >= 0 && unknowns.of_dof[p.first_unknown_map + dof] < 0) dof = tree.dof_parent[dof];
-  return dof < 0 ? -1 : unknowns.of_dof[p.first_unknown_map + dof];
-}
-
 int common_ancestor(const TreePattern& pattern, int a, int b) {
   while (a != b) {
     if (a < 0 || b < 0) return -1;
@@ -95,8 +83,11 @@ void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<c
     row.gap = c.gap;
     row.slip[0] = c.slip[0];
     row.slip[1] = c.slip[1];
-    const int leaf_a = unknown_above(*trees[c.tree_a], c.body_a, unknowns);
-    const int leaf_b = c.tree_b < 0 ? -1 : unknown_above(*trees[c.tree_b], c.body_b, unknowns);
+    const auto leaf = [&](int tree, int body) {
+      return tree < 0 ? -1
+                      : unknown_above<T>(*trees[tree]->tree, body, unknowns, trees[tree]->first_unknown_map);
+    };
+    const int leaf_a = leaf(c.tree_a, c.body_a), leaf_b = leaf(c.tree_b, c.body_b);
     // What moves both sides alike moves neither gap nor slip.
     const int shared = c.tree_a == c.tree_b ? common_ancestor(unknowns.pattern, leaf_a, leaf_b) : -1;
     row.side[0] = add_side(c, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);

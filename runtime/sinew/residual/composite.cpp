@@ -28,6 +28,15 @@ int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unk
   return first;
 }
 
+template <class T>
+int unknown_above(const Tree<T>& tree, int body, const Unknowns& unknowns, int first) {
+  int dof = -1;
+  for (int i = body; i >= 0 && dof < 0; i = tree.parent[i])
+    if (tree.dof_count(i) > 0) dof = tree.first_dof[i + 1] - 1;
+  while (dof >= 0 && unknowns.of_dof[first + dof] < 0) dof = tree.dof_parent[dof];
+  return dof < 0 ? -1 : unknowns.of_dof[first + dof];
+}
+
 namespace {
 
 /// Second derivative of the pose: l acts on what k moves.

@@ -61,6 +61,11 @@ struct Unknowns {
 template <class T>
 int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unknowns& out);
 
+/// The last unknown at or above a body, of the tree whose part of `of_dof` begins at `first`; −1 where
+/// nothing moves it.
+template <class T>
+int unknown_above(const Tree<T>& tree, int body, const Unknowns& unknowns, int first);
+
 /// Composite-body recursion (leaves → root): H_kl = S_lᵀ C_k S_k for l on the path of k, C_k the sum over k's
 /// subtree. With `geometric`, adds what the turning of the motion axes contributes,
 ///     w_l · (S w_k + v_k × F + ½ w_k × G),
@@ -74,6 +79,7 @@ void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kinematics, 
 
 #define SINEW_COMPOSITE_INSTANCES(prefix, T)                                                    \
   prefix int append_unknowns<T>(const Tree<T>&, std::span<const std::uint8_t>, Unknowns&);      \
+  prefix int unknown_above<T>(const Tree<T>&, int, const Unknowns&, int);                       \
   prefix void assemble_tree_matrix<T>(const Tree<T>&, const Kinematics<T>&, const PathAxes<T>&, \
                                       std::span<Composite<T>>, const Unknowns&, int, bool, TreeMatrix<T>&);
 SINEW_COMPOSITE_INSTANCES(extern template, float)

@@ -1,0 +1,173 @@
+// Impacts: restitution, fast bodies and thin walls, loads on light bodies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "sinew/character/world.h"
+
+namespace sinew {
+namespace {
+
+using V = Vec3<double>;
+
+template <class T>
+struct Props {
+  World<T> world;
+
+  explicit Props(const WorldSettings& settings = {}) : world(settings) {}
+  int add(const PropSettings& prop) {
+    Status status;
+    const int index = world.add_prop(prop, status);
+    EXPECT_GE(index, 0) << status.reason;
+    return index;
+  }
+  double height(int prop) const { return double(world.prop_pose(prop).translation.z()); }
+  double energy() const {
+    double sum = 0;
+    for (int n = 0; n < world.prop_count(); ++n) {
+      const CharacterReport& r = world.prop_report(n);
+      sum += r.kinetic_energy + r.potential_energy + r.elastic_energy;
+    }
+    return sum;
+  }
+};
+
+PropSettings ball(double radius, double mass, const V& position, const V& velocity = V::Zero()) {
+  PropSettings p;
+  p.size = V::Constant(radius);
+  p.mass = mass;
+  p.pose.translation = position;
+  p.velocity = velocity;
+  return p;
+}
+
+WorldSettings weightless() {
+  WorldSettings settings;
+  settings.gravity = V::Zero();
+  settings.ground = false;
+  return settings;
+}
+
+template <class T>
+class Impact : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Impact, Scalars);
+
+// The figure: 0.25 ± 0.02 of the height with e = 0.5, and no step that gains energy. The tolerance of
+// a step's energy is what float positions resolve: 1 kg · g · 1e-6 m.
+TYPED_TEST(Impact, BallReturnsToEsSquareOfItsHeight) {
+  using T = TypeParam;
+  for (const double h : {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+    Props<T> scene;
+    PropSettings settings = ball(0.1, 1, {0, 0, 1.1});
+    settings.restitution = 0.5;
+    scene.add(settings);
+    ASSERT_TRUE(scene.world.step(T(h)).ok());
+    double highest = 0, last = scene.energy();
+    bool fell = false;
+    for (double t = h; t < 1.2; t += h) {
+      ASSERT_TRUE(scene.world.step(T(h)).ok());
+      fell = fell || scene.height(0) < 0.15;
+      if (fell) highest = std::max(highest, scene.height(0) - 0.1);
+      EXPECT_LE(scene.energy(), last + 1e-4) << "h " << h << " at " << t;
+      last = scene.energy();
+    }
+    EXPECT_NEAR(highest, 0.25, 0.02) << "h " << h;
+  }
+}
+
+TYPED_TEST(Impact, BallWithoutRestitutionStays) {
+  using T = TypeParam;
+  Props<T> scene;
+  scene.add(ball(0.1, 1, {0, 0, 1.1}));
+  double highest = 0;
+  for (int n = 0; n < 120; ++n) {
+    ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
+    if (n > 40) highest = std::max(highest, scene.height(0) - 0.1);
+  }
+  EXPECT_LT(highest, 0.01);
+}
+
+TYPED_TEST(Impact, HeadOnBallsPartByHalfTheirSpeedAndKeepMomentum) {
+  using T = TypeParam;
+  Props<T> scene(weightless());
+  PropSettings one = ball(0.1, 1, {-0.5, 0, 0}, {2, 0, 0}), two = ball(0.1, 3, {0.5, 0, 0}, {-1, 0, 0});
+  one.restitution = two.restitution = 0.5;
+  scene.add(one);
+  scene.add(two);
+  for (int n = 0; n < 60; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
+  const double v1 = double(scene.world.prop_velocity(0).x()), v2 = double(scene.world.prop_velocity(1).x());
+  EXPECT_NEAR(v1 + 3 * v2, -1, 1e-4);
+  EXPECT_NEAR(v2 - v1, 1.5, 0.02);
+}
+
+TYPED_TEST(Impact, NothingPassesAThinWall) {
+  using T = TypeParam;
+  for (const double speed : {10.0, 40.0, 200.0, 900.0})
+    for (const double radius : {0.005, 0.05})
+      for (const double h : {1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+        Props<T> scene(weightless());
+        Collider wall;
+        wall.shape = Shape::kBox;
+        wall.size = {0.005, 2, 2};
+        ASSERT_TRUE(scene.world.add_obstacle(wall).ok());
+        // Starts at a fraction of a step that differs from case to case.
+        scene.add(ball(radius, 1, {-1 - 0.37 * speed * h, 0.1, 0.2}, {speed, 0, 0}));
+        double furthest = -10;
+        for (int n = 0; n < 200 && furthest < -0.5 * radius; ++n) {
+          ASSERT_TRUE(scene.world.step(T(h)).ok());
+          furthest = std::max(furthest, double(scene.world.prop_pose(0).translation.x()));
+        }
+        for (int n = 0; n < 20; ++n) {
+          ASSERT_TRUE(scene.world.step(T(h)).ok());
+          furthest = std::max(furthest, double(scene.world.prop_pose(0).translation.x()));
+        }
+        EXPECT_GT(furthest, -0.1 - radius) << "arrived";
+        EXPECT_LT(furthest, 0.0) << "speed " << speed << " radius " << radius << " h " << h;
+      }
+}
+
+TYPED_TEST(Impact, FastBallsDoNotPassEachOther) {
+  using T = TypeParam;
+  Props<T> scene(weightless());
+  scene.add(ball(0.05, 1, {-3, 0, 0}, {40, 0, 0}));
+  scene.add(ball(0.05, 1, {3, 0, 0}, {-40, 0, 0}));
+  for (int n = 0; n < 30; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
+  EXPECT_LT(scene.world.prop_pose(0).translation.x(), scene.world.prop_pose(1).translation.x());
+}
+
+TYPED_TEST(Impact, LightCubeBearsAHundredTimesItsWeight) {
+  using T = TypeParam;
+  Props<T> scene;
+  PropSettings cube;
+  cube.shape = Shape::kBox;
+  cube.size = V::Constant(0.1);
+  cube.mass = 1;
+  cube.pose.translation = {0, 0, 0.1};
+  scene.add(cube);
+  cube.size = V::Constant(0.15);
+  cube.mass = 100;
+  cube.pose.translation = {0.01, 0, 0.45};
+  scene.add(cube);
+  for (int n = 0; n < 180; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
+  EXPECT_GT(scene.height(0), 0.099);  // sink depth 0.5 mm, twice for two layers
+  EXPECT_GT(scene.height(1), 0.348);
+}
+
+TYPED_TEST(Impact, AlignedTowerStands) {
+  using T = TypeParam;
+  Props<T> scene;
+  PropSettings cube;
+  cube.shape = Shape::kBox;
+  cube.size = V::Constant(0.1);
+  for (int n = 0; n < 5; ++n) {
+    cube.pose.translation = {0, 0, 0.1 + 0.2 * n};
+    scene.add(cube);
+  }
+  for (int n = 0; n < 300; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
+  EXPECT_NEAR(scene.height(4), 0.9, 0.01);
+}
+
+}  // namespace
+}  // namespace sinew

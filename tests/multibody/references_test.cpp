@@ -1,0 +1,209 @@
+// Trajectories against the references in ../shared/mechanisms/reference (ten digits and more, independent
+// routes).
+#include "mechanisms.h"
+
+namespace sinew::multibody {
+namespace {
+
+struct Reference {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+Reference reference_of(const std::string& name) {
+  std::ifstream file(kShared + "reference/" + name + ".csv");
+  Reference table;
+  std::string line, cell;
+  std::getline(file, line);
+  for (std::stringstream cells(line); std::getline(cells, cell, ',');) table.columns.push_back(cell);
+  while (std::getline(file, line)) {
+    std::vector<double>& row = table.rows.emplace_back();
+    for (std::stringstream cells(line); std::getline(cells, cell, ',');)
+      row.push_back(std::atof(cell.c_str()));
+  }
+  return table;
+}
+
+struct Deviation {
+  double q = 0, u = 0, point = 0;  ///< max |difference|/(1 + |value|) over all instants and coordinates
+  double drift = 0;                ///< of kinetic + potential energy, J
+  double closure = 0;              ///< m
+  long steps = 0;
+};
+
+/// Joint coordinates and rates that the table has, by name; `nfourbar_2` has the rocker only.
+Deviation deviation(const std::string& name, Formulation formulation, Tangent tangent, Method method,
+                    double tolerance) {
+  const Reference reference = reference_of(name);
+  const Mechanism mechanism = loaded(kShared + name + ".json");
+  const Model model(mechanism);
+  SimulationSettings settings;
+  settings.formulation = formulation;
+  settings.tangent = tangent;
+  settings.method = method;
+  settings.integrator.rtol = settings.integrator.atol = tolerance;
+  for (const auto& row : reference.rows) settings.output.push_back(row[0]);
+  const SimulationResult run = simulate(model, settings);
+  EXPECT_EQ(run.stopped, "") << name;
+  EXPECT_EQ(run.samples.size(), reference.rows.size()) << name;
+  Deviation worst;
+  worst.steps = run.steps.steps;
+  const auto relative = [](double x, double is) { return std::abs(x - is) / (1 + std::abs(is)); };
+  int compared = 0;
+  for (std::size_t c = 1; c < reference.columns.size(); ++c) {
+    const std::string kind = reference.columns[c].substr(0, 2);
+    std::string of = reference.columns[c].substr(2);
+    if (of == "rocker_angle") of = mechanism.joints[0].name;  // nfourbar_2
+    for (std::size_t s = 0; s < run.samples.size(); ++s) {
+      const Sample& sample = run.samples[s];
+      const double is = reference.rows[s][c];
+      for (int i = 0; i < model.size(); ++i) {
+        if (mechanism.joints[i].name != of) continue;
+        if (kind == "q:") worst.q = std::max(worst.q, relative(sample.y[i], is)), ++compared;
+        if (kind == "u:") worst.u = std::max(worst.u, relative(sample.y[model.size() + i], is));
+      }
+      for (std::size_t p = 0; p < mechanism.points.size(); ++p)
+        if (mechanism.points[p].name == of && kind[0] >= 'x' && kind[0] <= 'z')
+          worst.point = std::max(worst.point, relative(sample.points[p][kind[0] - 'x'], is));
+    }
+  }
+  EXPECT_GT(compared, 0) << name;
+  for (const Sample& s : run.samples) {
+    worst.closure = std::max(worst.closure, s.closure);
+    const Sample& first = run.samples.front();
+    worst.drift = std::max(worst.drift, std::abs(s.kinetic + s.potential - first.kinetic - first.potential));
+  }
+  return worst;
+}
+
+struct Case {
+  const char* name;
+  /// Allowed deviation of positions and of rates in units of the tolerance: how much the mechanism amplifies
+  /// an error until its end (section 3 of the research notes), and how many steps' local errors add up.
+  double q_factor, u_factor;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
+
+class References : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (!have_shared()) GTEST_SKIP() << kNoShared;
+  }
+  void expect_agreement(Formulation formulation, Tangent tangent, Method method) const {
+    for (const double tolerance : {1e-6, 1e-9}) {
+      const Case& c = GetParam();
+      const Deviation d = deviation(c.name, formulation, tangent, method, tolerance);
+      EXPECT_LT(d.q, c.q_factor * tolerance) << c.name << " at " << tolerance;
+      EXPECT_LT(d.u, c.u_factor * tolerance) << c.name << " at " << tolerance;
+      EXPECT_LT(d.point, c.q_factor * tolerance) << c.name << " at " << tolerance;
+      EXPECT_LT(d.closure, 1e-8) << c.name;
+    }
+  }
+};
+
+TEST_P(References, ShampineGordonOnDerivatives) {
+  expect_agreement(Formulation::kDsr, Tangent::kNumeric, Method::kDe);
+}
+TEST_P(References, Ode15sOnDerivatives) {
+  expect_agreement(Formulation::kDsr, Tangent::kAnalytic, Method::kOde15s);
+}
+TEST_P(References, Ode15sROnResidualsWithAnalyticTangent) {
+  expect_agreement(Formulation::kRr, Tangent::kAnalytic, Method::kOde15sR);
+}
+TEST_P(References, Ode15sROnResidualsWithNumericTangent) {
+  expect_agreement(Formulation::kRr, Tangent::kNumeric, Method::kOde15sR);
+}
+TEST_P(References, DasslOnResiduals) {
+  expect_agreement(Formulation::kRr, Tangent::kAnalytic, Method::kDassl);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mechanisms, References,
+                         testing::Values(Case{"fivebar_pendulum", 1e4, 1e5}, Case{"fivebar_planar", 1e5, 1e5},
+                                         Case{"driver_nonstiff", 1e2, 1e4}, Case{"driver_stiff", 1e2, 1e3},
+                                         Case{"driver_nonstiff_hands", 1e2, 1e4},
+                                         Case{"driver_stiff_hands", 1e2, 1e3}, Case{"bricard", 1e3, 1e3},
+                                         Case{"bricard_slender", 1e3, 1e3}, Case{"suspension_5ps", 1e2, 1e3},
+                                         Case{"suspension_mfs", 1e2, 1e3}, Case{"slider_crank", 1e5, 1e5},
+                                         Case{"nfourbar_2", 1e4, 1e5}),
+                         [](const auto& given) { return std::string(given.param.name); });
+
+TEST(Reference, ArticulatedInertiasReachTheDigitsOfTheTables) {
+  if (!have_shared()) GTEST_SKIP() << kNoShared;
+  // At 1e-13 what is left is rounding amplified by the motion: 14 × angles for the five-bar, 1.5 for the
+  // driver.
+  for (const char* name : {"fivebar_pendulum", "driver_nonstiff"}) {
+    const Deviation d = deviation(name, Formulation::kDtr, Tangent::kNumeric, Method::kDe, 1e-13);
+    EXPECT_LT(d.q, 1e-10) << name;
+  }
+}
+
+TEST(Reference, BricardKeepsEnergyAndClosureInHundredsOfSteps) {
+  if (!have_shared()) GTEST_SKIP() << kNoShared;
+  for (const auto& [formulation, tangent, method] :
+       {std::tuple{Formulation::kDsr, Tangent::kNumeric, Method::kDe},
+        {Formulation::kRr, Tangent::kAnalytic, Method::kOde15sR},
+        {Formulation::kRr, Tangent::kNumeric, Method::kOde15sR}}) {
+    const Deviation d = deviation("bricard", formulation, tangent, method, 1e-5);
+    EXPECT_LT(d.drift, 1e-3);    // J
+    EXPECT_LT(d.closure, 1e-8);  // m
+    EXPECT_LT(d.steps, 1000);
+  }
+}
+
+TEST(Reference, FixedStepSchemesConvergeToTheReference) {
+  if (!have_shared()) GTEST_SKIP() << kNoShared;
+  for (const char* name : {"driver_stiff", "bricard"}) {
+    const Reference reference = reference_of(name);
+    const Model model(loaded(kShared + name + ".json"));
+    double error[2];
+    for (int i = 0; i < 2; ++i) {
+      SimulationSettings settings;
+      settings.method = Method::kBdf2;
+      settings.t_end = settings.output.emplace_back(reference.rows[10][0]);
+      settings.integrator.rtol = settings.integrator.atol = 1e-8;
+      settings.integrator.fixed_step = settings.t_end / (i == 0 ? 500 : 1000);
+      const SimulationResult run = simulate(model, settings);
+      ASSERT_EQ(run.stopped, "");
+      error[i] = 0;
+      for (int k = 0; k < model.size(); ++k)
+        error[i] = std::max(error[i], std::abs(run.samples.back().y[k] - reference.rows[10][1 + k]));
+    }
+    EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.3) << name;
+  }
+}
+
+TEST(Reference, FourBarPassesItsDeadPointsOverAndOver) {
+  // Started at rest above its horizontal stretch, the own four-bar swings through positions in which other
+  // coordinates must become independent; energy and closure hold throughout.
+  const Model model(loaded(kOwn + "four_bar.json"));
+  SimulationSettings settings;
+  settings.integrator.rtol = settings.integrator.atol = 1e-8;
+  settings.output = instants(2, 40);
+  const SimulationResult run = simulate(model, settings);
+  ASSERT_EQ(run.stopped, "");
+  for (const Sample& s : run.samples) {
+    EXPECT_LT(s.closure, 1e-10);
+    EXPECT_NEAR(s.kinetic + s.potential, run.samples.front().potential, 1e-4);  // 1e4 tolerances
+  }
+}
+
+TEST(Reference, EnergyBalanceHoldsWithEveryForceElement) {
+  const Model model(loaded(kOwn + "chain.json"));
+  SimulationSettings settings;
+  settings.integrator.rtol = settings.integrator.atol = 1e-8;
+  settings.output = instants(1, 20);
+  settings.energy = true;
+  const SimulationResult run = simulate(model, settings);
+  ASSERT_EQ(run.stopped, "");
+  EXPECT_LT(run.samples.back().work, -0.1);  // the dampers have taken something
+  for (const Sample& s : run.samples) {
+    const Sample& first = run.samples.front();
+    EXPECT_NEAR(s.kinetic + s.potential - s.work, first.kinetic + first.potential, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace sinew::multibody

@@ -1,0 +1,17 @@
+// `sinew study`: the evidence, as tables, CSV, JSON and pictures.
+#pragma once
+
+#include <string>
+
+#include "convert/convert.h"
+
+namespace sinew::cli {
+
+struct StabilityCommand {
+  std::string directory = "out/study", only;
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
+}  // namespace sinew::cli

@@ -1,0 +1,240 @@
+// Rows 49–51: bodies that are moved by the animation, and characters that are put elsewhere.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/skeleton/rotation.h"
+#include "study/bodies.h"
+#include "study/hard_case.h"
+#include "study/humanoid.h"
+
+namespace sinew::study {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A driven box: follows its jets whatever it takes.
+template <class T>
+struct DrivenBox {
+  std::vector<JointJet<T>> jets;
+  int index = -1;
+
+  DrivenBox(Stage<T>& stage, const Vec3<double>& size, const Vec3<double>& at,
+            const Vec3<double>& velocity = Vec3<double>::Zero()) {
+    const Skeleton body = box_body(1000, size, 1);
+    jets = rest_jets<T>(body);
+    jets[0].translation = at.template cast<T>();
+    jets[0].velocity = velocity.template cast<T>();
+    CharacterSettings driven;
+    driven.ground_contact = false;
+    index = stage.add(body, driven, jets);
+  }
+  void move(Stage<T>& stage, const Vec3<double>& to, const Vec3<double>& velocity, double yaw = 0,
+            double rate = 0) {
+    jets[0].translation = to.template cast<T>();
+    jets[0].velocity = velocity.template cast<T>();
+    jets[0].rotation = Quat<T>(Eigen::AngleAxis<T>(T(yaw), Vec3<T>::UnitZ()));
+    jets[0].omega = Vec3<T>(0, 0, T(rate));
+    stage.character(index).set_target(jets);
+  }
+};
+
+template <class T>
+Verdict piston(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  stage.add_obstacle(obstacle_box({1.5, 0, 1}, {0.5, 2, 1}));  // face at x = 1
+  add_thrown_humanoid(stage, 0, 0, 1);
+  // Pushes from behind towards the wall until 1 cm is left, waits, goes back.
+  DrivenBox<T> box(stage, {0.2, 2, 2}, {-0.6, 0, 1});
+  const double reach = 0.99 - 0.1, start = -0.6, there = reach - start;
+  double fastest = 0;
+  std::vector<Vec3<T>> last;
+  stage.run(2 * there + 3, t.h, [&](double time) {
+    const auto model = stage.character(0).model();
+    if (!last.empty())
+      for (std::size_t i = 0; i < last.size(); ++i)
+        fastest = std::max(fastest, double((model[i].translation - last[i]).norm()) / t.h);
+    last.clear();
+    for (const Transform<T>& joint : model) last.push_back(joint.translation);
+    const double now = time + t.h;
+    const double way = now < there ? now : now < there + 1 ? there : std::max(0.0, 2 * there + 1 - now);
+    const double speed = now < there ? 1 : now < there + 1 ? 0 : now < 2 * there + 1 ? -1 : 0;
+    box.move(stage, {start + way, 0, 1}, {speed, 0, 0});
+  });
+  Verdict v(stage.measured());
+  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
+  // Falling from standing reaches 5 m/s by itself: the piston must not throw.
+  v.at_most("largest speed of a joint (m/s)", fastest, 8);
+  v.at_most("kinetic energy at the end (J)", stage.character(0).report().kinetic_energy, 5);
+  return v;
+}
+
+template <class T>
+Vec3<double> riding_place(Stage<T>& stage, int platform, int rider) {
+  const Transform<double> base = stage.character(platform).model()[0].template cast<double>();
+  return base.inverse() * stage.character(rider).model()[0].translation.template cast<double>();
+}
+
+double level(const Vec3<double>& way) {
+  return std::hypot(way.x(), way.y());
+}
+
+template <class T>
+Verdict moving_platform(const Trial& t) {
+  WorldSettings settings;
+  settings.ground = false;
+  Stage<T> stage(settings);
+  DrivenBox<T> platform(stage, {6, 6, 0.2}, {0, 0, -0.1}, {5, 0, 0});
+  const Skeleton body = box_body(5, {0.4, 0.4, 0.1}, 1);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[0].translation = Vec3<T>(0, 0, T(0.05));
+  jets[0].velocity = Vec3<T>(5, 0, 0);
+  const int rider = stage.add(body, limp(), jets);
+  double x = 0, slip = 0, rise = 0;
+  const auto ride = [&](double speed, double seconds, const auto& after) {
+    stage.run(seconds, t.h, [&](double time) {
+      if (time > 0) after();
+      x += speed * t.h;
+      platform.move(stage, {x, 0, -0.1}, {speed, 0, 0});
+    });
+  };
+  ride(5, 2, [&] { slip = std::max(slip, level(riding_place(stage, platform.index, rider))); });
+  ride(0, 3, [&] { rise = std::max(rise, riding_place(stage, platform.index, rider).z() - 0.15); });
+  const double slid = riding_place(stage, platform.index, rider).x();
+  Verdict v(stage.measured());
+  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
+  v.at_most("slip at constant speed (m)", slip, 0.01);
+  v.at_most("rise when the platform stops in one frame (m)", rise, 0.01);
+  v.at_most("way to stop off v^2/(2 mu g), share", std::abs(slid / (25 / (2 * 9.81)) - 1), 0.1);
+  return v;
+}
+
+template <class T>
+Verdict turning_platform(const Trial& t) {
+  WorldSettings settings;
+  settings.ground = false;
+  Stage<T> stage(settings);
+  DrivenBox<T> platform(stage, {4, 4, 0.2}, {0, 0, -0.1});
+  const Skeleton body = box_body(5, {0.4, 0.4, 0.1}, 1);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[0].translation = Vec3<T>(T(0.5), 0, T(0.05));
+  const int rider = stage.add(body, limp(), jets);
+  double slip = 0;
+  stage.run(5, t.h, [&](double time) {
+    if (time > 0)
+      slip = std::max(slip, level(riding_place(stage, platform.index, rider) - Vec3<double>(0.5, 0, 0.15)));
+    // Up to 2 rad/s in a second: 2 m/s² outwards, a fifth of what friction holds.
+    const double now = time + t.h, yaw = now < 1 ? now * now : 1 + 2 * (now - 1);
+    platform.move(stage, {0, 0, -0.1}, Vec3<double>::Zero(), yaw, now < 1 ? 2 * now : 2);
+  });
+  Verdict v(stage.measured());
+  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
+  v.at_most("slip (m)", slip, 0.01);
+  return v;
+}
+
+/// Largest joint speed (rad/s) in the two seconds after the figure was put 1 km away and turned round.
+template <class T>
+double speed_after_jump(bool declared, const Trial& t, Measurement& measured) {
+  Stage<T> stage(WorldSettings{});
+  const Skeleton body = humanoid();
+  stage.add(body, {});
+  stage.character(0).set_strength(body.find("upperarm_l"), T(0));  // a limp arm swings on
+  stage.run(1, t.h);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[0].translation.x() += T(1000);
+  jets[0].rotation = Quat<T>(Eigen::AngleAxis<T>(T(kPi / 2), Vec3<T>::UnitZ()));
+  stage.character(0).set_target(jets);
+  if (declared) stage.character(0).reset();
+  stage.forget();
+  double fastest = 0;
+  std::vector<Transform<T>> last(stage.character(0).local().begin(), stage.character(0).local().end());
+  stage.run(2, t.h, [&](double) {
+    const auto local = stage.character(0).local();
+    for (std::size_t i = 1; i < last.size(); ++i)
+      fastest = std::max(fastest, double(last[i].rotation.angularDistance(local[i].rotation)) / t.h);
+    last.assign(local.begin(), local.end());
+  });
+  measured.merge(stage.measured());
+  return fastest;
+}
+
+template <class T>
+Verdict teleport(const Trial& t) {
+  Measurement measured, ignored;
+  const double declared = speed_after_jump<T>(true, t, measured);
+  const double undeclared = speed_after_jump<T>(false, t, ignored);
+  Verdict v(measured);
+  v.general();
+  v.require(ignored.finite, "NaN after an undeclared jump");
+  v.at_most("joint speed after a declared jump (rad/s)", declared, 1);
+  v.at_most("joint speed after an undeclared jump (rad/s)", undeclared, 4);
+  return v;
+}
+
+template <class T>
+Verdict animation_cut(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  const Skeleton body = humanoid();
+  stage.add(body, {});
+  stage.run(0.5, t.h);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  const int arm = body.find("upperarm_l");
+  bend(body, jets, arm, {kPi, 0, 0});  // from hanging to upright in one frame
+  stage.character(0).set_target(jets);
+  stage.forget();
+  double torque = 0;
+  stage.run(3, t.h, [&](double) {
+    for (int k = 0; k < 3; ++k)
+      torque = std::max(torque,
+                        std::abs(double(stage.character(0).torque()[stage.character(0).first_dof(arm) + k])));
+  });
+  Verdict v(stage.measured());
+  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
+  v.at_most("torque (N m)", torque, 70 * (1 + 1e-5));
+  v.require(stage.character(0).on_animation(), "not on the animation after 3 s");
+  return v;
+}
+
+}  // namespace
+
+std::vector<HardCase> actuation_cases() {
+  return {
+      {"piston",
+       "49",
+       "godot#29256",
+       "finite, not thrown, at rest after the piston has gone",
+       {1.0 / 60},
+       piston<float>,
+       piston<double>},
+      {"moving_platform",
+       "50",
+       "box2d#117",
+       "slips below 1 cm; slides by theory when it stops",
+       {1.0 / 60},
+       moving_platform<float>,
+       moving_platform<double>},
+      {"turning_platform",
+       "50",
+       "box2d#117",
+       "slips below 1 cm",
+       {1.0 / 60},
+       turning_platform<float>,
+       turning_platform<double>},
+      {"teleport",
+       "51",
+       "VPhysics-Jolt#276",
+       "joint speeds below 4 rad/s, declared or not",
+       {1.0 / 60},
+       teleport<float>,
+       teleport<double>},
+      {"animation_cut",
+       "51",
+       "issue 3",
+       "torque within limits; back on the animation",
+       {1.0 / 60},
+       animation_cut<float>,
+       animation_cut<double>},
+  };
+}
+
+}  // namespace sinew::study

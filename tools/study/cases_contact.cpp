@@ -1,0 +1,425 @@
+// Rows 31–33, 37–44 and the figures of single figures on the floor.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/skeleton/rotation.h"
+#include "study/bodies.h"
+#include "study/hard_case.h"
+#include "study/humanoid.h"
+
+namespace sinew::study {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+template <class T>
+Vec3<double> place(Stage<T>& stage, int character = 0) {
+  return stage.character(character).model()[0].translation.template cast<double>();
+}
+
+/// Adds a body at a place with a velocity.
+template <class T>
+int add_at(Stage<T>& stage, const Skeleton& body, const Vec3<double>& at,
+           const Vec3<double>& velocity = Vec3<double>::Zero(),
+           const Quat<double>& turned = Quat<double>::Identity()) {
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[0].translation = at.template cast<T>();
+  jets[0].velocity = velocity.template cast<T>();
+  jets[0].rotation = turned.template cast<T>();
+  return stage.add(body, limp(), jets);
+}
+
+template <class T>
+Verdict foot_on_slope(const Trial& t) {
+  WorldSettings settings;
+  settings.gravity = 9.81 * Vec3<double>(std::sin(20 * kPi / 180), 0, -std::cos(20 * kPi / 180));
+  Stage<T> stage(settings);
+  add_at(stage, box_body(5, {0.26, 0.09, 0.06}, 0.5), {0, 0, 0.03});
+  stage.run(1, t.h);
+  const double start = place(stage).x(), lasting = t.lasting(60, 10);
+  stage.run(lasting, t.h);
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("creep (m/s)", (place(stage).x() - start) / lasting, 3e-3);
+  return v;
+}
+
+template <class T>
+Verdict sliding_cube(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  add_at(stage, box_body(1, {0.1, 0.1, 0.1}, 0.5), {0, 0, 0.05}, {6, 0, 0});
+  double lift = 0;
+  stage.run(3, t.h, [&](double) { lift = std::max(lift, place(stage).z() - 0.05); });
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("lift (m)", lift, 1e-3);
+  v.at_most("way to stop off v^2/(2 mu g), share", std::abs(place(stage).x() / (36 / (2 * 0.5 * 9.81)) - 1),
+            0.02);
+  return v;
+}
+
+template <class T>
+Verdict rolling_balls(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  add_at(stage, box_body(10, {4, 4, 0.2}, 0.4), {0, 0, 0.1});
+  const Skeleton ball = ball_body(1, 0.1, 1.6);  // with the plate's 0.4: 0.8
+  for (int i = 0; i < 25; ++i) add_at(stage, ball, {-1 + 0.5 * (i % 5), -1 + 0.5 * (i / 5), 0.3});
+  stage.run(0.5, t.h);
+  const Vec3<double> diagonal = Vec3<double>(1, 1, 0).normalized();
+  const double seconds = 1;
+  Vec3<double> plate_before = place(stage), ball_before = place(stage, 13);
+  stage.run(seconds, t.h, [&](double) {
+    stage.push(0, 0, place(stage), diagonal * 150 * t.h);
+    plate_before = place(stage), ball_before = place(stage, 13);
+  });
+  // The plate drags on the floor under everything's weight; a ball without slip takes 2/7 of its
+  // acceleration.
+  const double a = (150 - 0.4 * 35 * 9.81) / (10 + 25 * 2.0 / 7);
+  const double plate = (place(stage) - plate_before).norm() / t.h,
+               rolling = (place(stage, 13) - ball_before).norm() / t.h;
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("plate's speed off theory, share", std::abs(plate / (a * (seconds - t.h / 2)) - 1), 0.01);
+  v.at_most("ball's speed off theory, share", std::abs(rolling / (a * 2 / 7 * (seconds - t.h / 2)) - 1),
+            0.01);
+  return v;
+}
+
+template <class T>
+Verdict hand_in_crease(const Trial& t) {
+  WorldSettings settings;
+  Stage<T> stage(settings);
+  for (const double side : {1.0, -1.0}) {  // two walls that meet at 60°
+    Collider wall = obstacle_box(Vec3<double>::Zero(), {1, 0.05, 1});
+    const Quat<double> turn(Eigen::AngleAxisd(side * kPi / 6, Vec3<double>::UnitZ()));
+    wall.local.rotation = turn;
+    wall.local.translation = turn * Vec3<double>(0.9, side * 0.05, 0);
+    stage.add_obstacle(wall);
+  }
+  add_at(stage, ball_body(1, 0.05), {0.3, 0.005, 0.06});
+  double squares = 0;
+  int counted = 0;
+  Vec3<double> before = place(stage);
+  stage.run(6, t.h, [&](double time) {
+    stage.push(0, 0, place(stage), Vec3<double>(-20, 0, 0) * t.h);
+    if (time > 3) squares += ((place(stage) - before) / t.h).squaredNorm(), ++counted;
+    before = place(stage);
+  });
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("rms speed (m/s)", std::sqrt(squares / counted), 1e-3);
+  return v;
+}
+
+template <class T>
+Verdict foot_at_an_edge(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  stage.add_obstacle(obstacle_box({0, 0, 0.5}, {0.5, 0.5, 0.5}));
+  add_at(stage, ball_body(1, 0.04), {0.4995, 0, 1.04});
+  stage.run(0.2, t.h);
+  const Vec3<double> moved = place(stage) - Vec3<double>(0.4995, 0, 1.04);
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("lateral way over 1 % of g t^2/2", std::hypot(moved.x(), moved.y()), 0.01 * 9.81 * 0.04 / 2);
+  v.at_most("drop (m)", -moved.z(), 2e-3);
+  return v;
+}
+
+template <class T>
+Verdict coplanar_tiles(const Trial& t) {
+  WorldSettings settings;
+  settings.ground = false;
+  Stage<T> stage(settings);
+  for (int i = 0; i < 48; ++i) stage.add_obstacle(obstacle_box({0.25 * i, 0, -0.5}, {0.125, 0.5, 0.5}, 0.05));
+  add_at(stage, box_body(1, {0.2, 0.2, 0.1}, 0.05), {0.2, 0, 0.05}, {5, 0, 0});
+  double fastest = 0, before = 0.05;
+  stage.run(2, t.h, [&](double time) {
+    const double z = place(stage).z();
+    if (time > 0.2) fastest = std::max(fastest, std::abs(z - before) / t.h);
+    before = z;
+  });
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("vertical speed (m/s)", fastest, 0.01);
+  v.at_least("way (m)", place(stage).x(), 8);
+  return v;
+}
+
+/// A ball shot at a wall `thickness` thick whose near face is at x = 0; how far it ever got beyond that face.
+template <class T>
+double beyond_wall(double radius, double mass, double speed, double thickness, const Trial& t,
+                   Measurement& measured) {
+  double most = -1;
+  for (const double start : {0.5, 0.73, 1.11, 2.0}) {  // so that frames fall differently on the impact
+    Stage<T> stage(weightless());
+    stage.add_obstacle(obstacle_box({thickness / 2, 0, 0}, {thickness / 2, 1, 1}));
+    PropSettings ball;
+    ball.mass = mass;
+    ball.size = Vec3<double>::Constant(radius);
+    ball.pose.translation = {-start, 0, 0};
+    ball.velocity = {speed, 0, 0};
+    stage.add_prop(ball);
+    stage.run(0.25, t.h);
+    most = std::max(most, double(stage.world().prop_pose(0).translation.x()));
+    measured.merge(stage.measured());
+  }
+  return most;
+}
+
+template <class T>
+Verdict thrown_at_thin_wall(const Trial& t) {
+  Measurement measured;
+  const double beyond = beyond_wall<T>(0.05, 1, 40, 0.01, t, measured);
+  Verdict v(measured);
+  v.general();
+  v.at_most("centre beyond the wall's face (m)", beyond, 0);
+  return v;
+}
+
+template <class T>
+Verdict bullet(const Trial& t) {
+  Measurement measured;
+  const double beyond = beyond_wall<T>(0.005, 0.01, 900, 0.005, t, measured);
+  Verdict v(measured);
+  v.general();
+  v.at_most("centre beyond the plate's face (m)", beyond, 0);
+  return v;
+}
+
+template <class T>
+Verdict spawned_in_floor(const Trial& t) {
+  Stage<T> stage(WorldSettings{});
+  add_at(stage, box_body(5, {0.4, 0.4, 0.4}), {0, 0, 0});
+  double fastest = 0, before = 0;
+  stage.run(4, t.h, [&](double) {
+    fastest = std::max(fastest, (place(stage).z() - before) / t.h);
+    before = place(stage).z();
+  });
+  Verdict v(stage.measured());
+  v.require(v.measured().finite, "NaN or infinity");
+  v.at_most("exit speed (m/s)", fastest, 0.5);
+  v.at_least("height at the end (m)", place(stage).z(), 0.19);
+  return v;
+}
+
+/// Limp figures that may touch themselves: neighbours that overlap at rest are no contact.
+template <class T>
+Verdict adjacent_limb_overlap(const Trial& t) {
+  Measurement measured;
+  CharacterSettings touching = limp();
+  touching.self_collision = true;
+  double moved = 0;
+  for (unsigned seed = 0; seed <= (t.quick ? 2u : 10u); ++seed) {
+    Stage<T> stage(seed == 0 ? weightless() : WorldSettings{});
+    Skeleton body = humanoid();
+    make_frictionless(body);
+    std::vector<JointJet<T>> jets = rest_jets<T>(body);
+    if (seed > 0) jets[0].translation.z() += T(0.5), randomise_speeds(body, jets, 3, seed);
+    stage.add(body, touching, jets);
+    const std::vector<Transform<T>> before(stage.character(0).model().begin(),
+                                           stage.character(0).model().end());
+    stage.run(2, t.h);
+    for (std::size_t i = 0; seed == 0 && i < before.size(); ++i)
+      moved =
+          std::max(moved, double((before[i].translation - stage.character(0).model()[i].translation).norm()));
+    measured.merge(stage.measured());
+  }
+  Verdict v(measured);
+  v.general();
+  v.at_most("moved out of the rest pose by itself (m)", moved, 1e-5);
+  return v;
+}
+
+template <class T>
+Verdict contact_on_and_off(const Trial& t) {
+  Measurement measured;
+  double fastest = 0;
+  for (const T off : {std::nextafter(T(0.1), T(0)), T(0.1), std::nextafter(T(0.1), T(1))}) {
+    Stage<T> stage(WorldSettings{});
+    add_at(stage, ball_body(1, 0.1), {0, 0, double(off)});
+    double before = double(off);
+    stage.run(5, t.h, [&](double time) {
+      if (time > 0.5) fastest = std::max(fastest, std::abs(place(stage).z() - before) / t.h);
+      before = place(stage).z();
+    });
+    measured.merge(stage.measured());
+  }
+  Verdict v(measured);
+  v.general();
+  v.require(v.measured().solved > 0, "was not simulated");
+  v.at_most("speed (m/s)", fastest, 1e-3);
+  return v;
+}
+
+template <class T>
+Verdict painleve_rod(const Trial& t) {
+  Skeleton rod = free_body(1, {1.0 / 12, 1.0 / 12, 1e-4});
+  Collider& c = rod.colliders.emplace_back();
+  c.shape = Shape::kCapsule;
+  c.size = {0.01, 0.01, 0.5};
+  c.friction = 1.5;
+  Stage<T> stage(WorldSettings{});
+  const Quat<double> tilted(Eigen::AngleAxisd(-kPi / 4, Vec3<double>::UnitY()));
+  add_at(stage, rod, {0, 0, 0.5 * std::sqrt(0.5) + 0.01}, {5, 0, 0}, tilted);
+  stage.run(3, t.h);
+  Verdict v(stage.measured());
+  v.general();
+  return v;
+}
+
+/// Limp falls with many seeds, for energy and counts.
+template <class T>
+Measurement limp_falls(const Trial& t, Scheme scheme) {
+  Measurement measured;
+  const int seeds = t.quick ? 6 : 40;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    WorldSettings settings;
+    settings.accuracy.scheme = scheme;
+    Stage<T> stage(settings);
+    add_thrown_humanoid(stage, 0.8, 3, static_cast<unsigned>(seed));
+    stage.run(3, t.h);
+    measured.merge(stage.measured());
+  }
+  return measured;
+}
+
+template <class T, Scheme scheme>
+Verdict limp_fall(const Trial& t) {
+  Verdict v(limp_falls<T>(t, scheme));
+  v.general();
+  return v;
+}
+
+template <class T>
+Verdict limp_fall_counts(const Trial& t) {
+  Verdict v(limp_falls<T>(t, Scheme::kBdf2));
+  const Measurement& m = v.measured();
+  const bool sixty = t.h < 0.02;
+  if (sixty) v.at_most("mean passes", m.mean_passes(), 2);
+  v.at_most("99th percentile of passes", m.passes_percentile(0.99), sixty ? 7 : 10);
+  if (sixty) v.at_most("mean factorisations", m.mean_factorisations(), 3.7);
+  if (sixty) v.at_most("share of unconverged steps", m.unconverged_share(), 1e-4);
+  return v;
+}
+
+}  // namespace
+
+std::vector<HardCase> contact_cases() {
+  const char* restitution = "not supported: restitution";
+  const std::vector<double> every{1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30, 1.0 / 15};
+  return {
+      {"foot_on_slope",
+       "31",
+       "mujoco#3328; newton#3943",
+       "creep below 3 mm/s at 20 deg, mu 0.5",
+       {1.0 / 60},
+       foot_on_slope<float>,
+       foot_on_slope<double>},
+      {"sliding_cube",
+       "32",
+       "Genesis PR #3126",
+       "lifts below 1 mm, stops within 2 % of theory",
+       {1.0 / 60, 1.0 / 30},
+       sliding_cube<float>,
+       sliding_cube<double>},
+      {"rolling_balls",
+       "33",
+       "SimBenchmark rolling",
+       "speeds within 1 % of theory",
+       {1.0 / 60},
+       rolling_balls<float>,
+       rolling_balls<double>},
+      {"bounce_1",
+       "35",
+       "SimBenchmark bouncing",
+       "height within 2 %, never above 100.5 %",
+       {},
+       nullptr,
+       nullptr,
+       restitution},
+      {"bounce_half",
+       "figure",
+       "issue 3",
+       "returns to 0.25 +- 0.02 of its height",
+       {},
+       nullptr,
+       nullptr,
+       restitution},
+      {"hand_in_crease",
+       "37",
+       "sbox-issues#1359",
+       "rms speed below 1 mm/s",
+       {1.0 / 60},
+       hand_in_crease<float>,
+       hand_in_crease<double>},
+      {"foot_at_an_edge",
+       "38",
+       "JoltPhysics#717",
+       "lateral impulse below 1 % of the normal one",
+       {1.0 / 60},
+       foot_at_an_edge<float>,
+       foot_at_an_edge<double>},
+      {"coplanar_tiles",
+       "39",
+       "godot#102544; JoltPhysics#1922",
+       "vertical speed below 1 cm/s",
+       {1.0 / 60},
+       coplanar_tiles<float>,
+       coplanar_tiles<double>},
+      {"thrown_at_thin_wall",
+       "figure",
+       "issue 3",
+       "40 m/s never through 1 cm",
+       {1.0 / 60, 1.0 / 30},
+       thrown_at_thin_wall<float>,
+       thrown_at_thin_wall<double>},
+      {"bullet",
+       "40",
+       "Jolt MotionQualityLinearCastTests",
+       "900 m/s never through 5 mm",
+       {1.0 / 60},
+       bullet<float>,
+       bullet<double>},
+      {"spawned_in_floor",
+       "41",
+       "shock2quest PR #277",
+       "leaves at 0.5 m/s at most",
+       {1.0 / 60},
+       spawned_in_floor<float>,
+       spawned_in_floor<double>},
+      {"adjacent_limb_overlap",
+       "42",
+       "shock2quest PR #283",
+       "filtered; no energy",
+       {1.0 / 60},
+       adjacent_limb_overlap<float>,
+       adjacent_limb_overlap<double>},
+      {"contact_on_and_off",
+       "43",
+       "NVIDIA PhysX#365",
+       "speed below 1 mm/s",
+       {1.0 / 60},
+       contact_on_and_off<float>,
+       contact_on_and_off<double>},
+      {"painleve_rod",
+       "44",
+       "drake examples/rod2d",
+       "finite, no energy gained",
+       {1.0 / 60, 1.0 / 30},
+       painleve_rod<float>,
+       painleve_rod<double>},
+      {"limp_fall_bdf1", "figure", "DESIGN section 3.1", "no energy gained from 1/240 to 1/15 s", every,
+       limp_fall<float, Scheme::kBdf1>, limp_fall<double, Scheme::kBdf1>},
+      {"limp_fall_bdf2", "figure", "DESIGN section 3.1", "no energy gained from 1/240 to 1/15 s", every,
+       limp_fall<float, Scheme::kBdf2>, limp_fall<double, Scheme::kBdf2>},
+      {"limp_fall_counts",
+       "figure",
+       "issue 3",
+       "passes and factorisations of the prototype",
+       {1.0 / 60, 1.0 / 30},
+       limp_fall_counts<float>,
+       limp_fall_counts<double>},
+  };
+}
+
+}  // namespace sinew::study

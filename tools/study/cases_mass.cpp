@@ -1,0 +1,448 @@
+// Rows 13–30: masses, stiffness, chains, redundancy.
+#include <cmath>
+
+#include "sinew/skeleton/rotation.h"
+#include "study/bodies.h"
+#include "study/hard_case.h"
+#include "study/humanoid.h"
+
+namespace sinew::study {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+WorldSettings airborne() {
+  WorldSettings settings;
+  settings.ground = false;
+  return settings;
+}
+
+/// Lets a chain go horizontally.
+template <class T>
+Stage<T> hanging_out(const Skeleton& body) {
+  Stage<T> stage(airborne());
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  bend(body, jets, 0, {0, -kPi / 2, 0});
+  stage.add(body, limp(), jets);
+  return stage;
+}
+
+template <class T>
+Verdict rope_with_heavy_tip(const Trial& t) {
+  Skeleton rope = chain({20, JointType::kBall, JointType::kBall, 0.1, 0.1, 0.1, 0.01});
+  rope.joints.back().mass = 100;
+  rope.joints.back().inertia *= 1000;
+  Stage<T> stage = hanging_out<T>(rope);
+  stage.run(t.lasting(10, 3), t.h);
+  Verdict v(stage.measured());
+  v.general();
+  return v;
+}
+
+template <class T, bool heavy_end>
+Verdict mass_ratio_1000(const Trial& t) {
+  ChainShape shape;
+  (heavy_end ? shape.last_mass : shape.first_mass) = 1000;
+  Stage<T> stage = hanging_out<T>(chain(shape));
+  stage.run(t.lasting(10, 5), t.h);
+  Verdict v(stage.measured());
+  v.general();
+  return v;
+}
+
+template <class T>
+Verdict whip(const Trial& t) {
+  Stage<T> stage(airborne());
+  Skeleton body = chain({10, JointType::kRevolute, JointType::kRevolute, 0.2, 1, 0.001, 0.01});
+  body.joints[0].dofs[0].torque_minus = body.joints[0].dofs[0].torque_plus = 1e9;
+  CharacterSettings driven;
+  driven.root = RootDrive::kFree;  // its hinge follows the target with all the strength it needs
+  stage.add(body, driven);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  stage.run(3, t.h, [&](double time) {
+    const double now = time + t.h, angle = 10 * std::min(now, 0.3);
+    bend(body, jets, 0, {0, angle, 0});
+    jets[0].omega = Vec3<T>(0, now < 0.3 ? T(10) : T(0), 0);
+    stage.character(0).set_target(jets);
+  });
+  Verdict v(stage.measured());
+  v.general();
+  return v;
+}
+
+/// Feet of `mass` kg under a standing figure whose chest weighs 300 kg; its pelvis after 5 s.
+template <class T>
+Vec3<double> heavy_torso(double mass, double h, Measurement& measured) {
+  Stage<T> stage(WorldSettings{});
+  Skeleton body = humanoid();
+  Joint& chest = body.joints[0];
+  chest.inertia *= 300 / chest.mass;
+  chest.mass = 300;
+  for (const char* foot : {"foot_l", "foot_r"}) {
+    Joint& joint = body.joints[body.find(foot)];
+    joint.inertia *= mass / joint.mass;
+    joint.mass = mass;
+  }
+  CharacterSettings strong;
+  strong.root = RootDrive::kFree;
+  strong.strength = 8;
+  stage.add(body, strong);
+  stage.run(5, h);
+  measured.merge(stage.measured());
+  return stage.character(0).model()[1].translation.template cast<double>();
+}
+
+template <class T>
+Verdict light_foot(const Trial& t) {
+  Measurement measured, ignored;
+  double apart = 0, most = 0;
+  for (const double mass : {0.001, 0.03, 1.0}) {
+    Measurement one;
+    const Vec3<double> found = heavy_torso<T>(mass, t.h, one);
+    most = std::max(most, one.mean_passes());
+    measured.merge(one);
+    if (sizeof(T) == 4) apart = std::max(apart, (found - heavy_torso<double>(mass, t.h, ignored)).norm());
+  }
+  Verdict v(measured);
+  v.general();
+  v.at_most("float off double (m)", apart, 1e-2);
+  v.at_most("mean passes", most, 4);
+  return v;
+}
+
+/// A hinge of inertia `inertia` (kg·m²) on a driven root, with a handle 10 cm from its axis.
+Skeleton lever(double inertia, double torque, double damping = 0) {
+  Skeleton s = free_body(10, Vec3<double>::Constant(1));
+  Joint foot = s.joints[0];
+  foot.name = "foot";
+  foot.parent = 0;
+  foot.type = JointType::kRevolute;
+  foot.axis = Vec3<double>::UnitY();
+  foot.mass = inertia;  // so that the radius of gyration is 1 m at most
+  foot.inertia = Vec3<double>::Constant(inertia).asDiagonal();
+  foot.dofs[0].torque_minus = foot.dofs[0].torque_plus = torque;
+  foot.dofs[0].damping = damping;
+  s.joints.push_back(foot);
+  s.body_count = 2;
+  return s;
+}
+
+template <class T>
+double hinge_angle(Stage<T>& stage) {
+  const Quat<double> q = stage.character(0).local()[1].rotation.template cast<double>();
+  return 2 * std::atan2(q.y(), q.w());
+}
+
+template <class T>
+Verdict tiny_foot(const Trial& t) {
+  Measurement measured;
+  double turned = 0;
+  for (const double torque : {300.0, 0.0}) {
+    Stage<T> stage(weightless());
+    stage.add(lever(1e-3, torque), {});
+    stage.run(1, t.h, [&](double) {
+      const Transform<double> foot = stage.character(0).model()[1].template cast<double>();
+      stage.push(0, 1, foot * Vec3<double>(0.1, 0, 0), Vec3<double>(0, 0, 2000) * t.h);
+      if (torque > 0) turned = std::max(turned, std::abs(hinge_angle(stage)));
+    });
+    measured.merge(stage.measured());
+  }
+  Verdict v(measured);
+  v.general();
+  v.at_most("foot with a muscle turned (rad)", turned, 5 * kPi / 180);
+  return v;
+}
+
+/// Where a damped lever that a constant force turns comes to rest: α·h² = `ratio` at step h, taken in
+/// `parts`.
+template <class T>
+double settled(double ratio, double h, int parts, Measurement& measured) {
+  const double inertia = 0.01, alpha = ratio / (h * h), force = alpha * inertia / 0.1;
+  WorldSettings settings = weightless();
+  Stage<T> stage(settings);
+  const Skeleton body = lever(inertia, 0, 0.4 * std::sqrt(alpha) * inertia);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  bend(body, jets, 1, {0, kPi / 6, 0});
+  stage.add(body, {}, jets);
+  const double fine = h / parts;
+  stage.run(2, fine, [&](double) {
+    const Transform<double> foot = stage.character(0).model()[1].template cast<double>();
+    stage.push(0, 1, foot * Vec3<double>(0.1, 0, 0), Vec3<double>(force, 0, 0) * fine);
+  });
+  measured.merge(stage.measured());
+  return hinge_angle(stage);
+}
+
+template <class T>
+Verdict far_root(const Trial& t) {
+  Measurement measured, ignored;
+  double apart = 0;
+  for (const double ratio : {0.5, 1.0, 2.0, 4.0, 8.0})
+    apart =
+        std::max(apart, std::abs(settled<T>(ratio, t.h, 1, measured) - settled<T>(ratio, t.h, 16, ignored)));
+  Verdict v(measured);
+  v.general();
+  v.at_most("off the angle with 16 substeps (rad)", apart, 2 * kPi / 180);
+  return v;
+}
+
+template <class T>
+Verdict hand_of_no_inertia(const Trial& t) {
+  Stage<T> stage(weightless());
+  const Skeleton body = lever(1e-6, 0, 0.1);
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[1].omega = Vec3<T>(0, 10, 0);
+  stage.add(body, {}, jets);
+  double last = 0, before = 1e9;
+  bool monotone = true;
+  stage.run(1, t.h, [&](double time) {
+    const double angle = hinge_angle(stage), moved = angle - last;
+    if (time > 0) monotone = monotone && moved >= -1e-6 && moved <= before + 1e-6;
+    if (time > 0) before = moved;
+    last = angle;
+  });
+  Verdict v(stage.measured());
+  v.general();
+  v.at_least("angle turned (rad)", last, 1e-6);
+  v.require(monotone, "the hinge's speed does not fall monotonically");
+  return v;
+}
+
+template <class T>
+Verdict stiff_servo(const Trial& t) {
+  WorldSettings settings = weightless();
+  settings.accuracy.return_time = t.h / 30;  // ωₙ·h = 30
+  Stage<T> stage(settings);
+  stage.add(lever(0.05, 20), {});
+  stage.push(0, 1, {0.1, 0, 0}, {0, 0, 10});
+  double most = 0, under = 0, excess = 0;
+  stage.run(3, t.h, [&](double) {
+    const double angle = -hinge_angle(stage);
+    most = std::max(most, angle);
+    under = std::min(under, angle);
+    for (const T torque : stage.character(0).torque().subspan(6))
+      excess = std::max(excess, std::abs(double(torque)));
+  });
+  Verdict v(stage.measured());
+  v.sound();
+  v.at_least("excursion (rad)", most, 0.02);
+  v.at_most("overshoot, share of the excursion", -under / most, 0.05);
+  v.at_most("torque (N m)", excess, 20 * (1 + 1e-5));
+  v.at_most("angle after 3 s (rad)", std::abs(hinge_angle(stage)), 1e-3);
+  return v;
+}
+
+template <class T>
+Verdict massless_inner_link(const Trial& t) {
+  Skeleton body = chain({3, JointType::kBall, JointType::kFree, 0.3});
+  body.joints[1].mass = 0;
+  body.joints[1].inertia.setZero();
+  Stage<T> stage(weightless());
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  randomise_speeds(body, jets, 3, 3);
+  stage.add(body, limp(), jets);
+  stage.run(3, t.h);
+  body.joints[2].mass = 0;
+  body.joints[2].inertia.setZero();
+  Status status;
+  World<T> other((WorldSettings()));
+  other.add_character(body, limp(), status);
+  Verdict v(stage.measured());
+  v.general();
+  v.require(!status.ok() && status.index >= 0, "a joint that moves no mass is not refused by its index");
+  return v;
+}
+
+template <class T>
+Verdict contact_stiffness_sweep(const Trial& t) {
+  Measurement measured;
+  double fewest = 1e9, most = 0;
+  for (const double sink : {0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {  // 7e3 … 7e9 N/m
+    WorldSettings settings;
+    settings.accuracy.sink_depth = sink;
+    Stage<T> stage(settings);
+    add_thrown_humanoid(stage, 0.2, 1, 3);
+    stage.run(t.lasting(4, 2), t.h);
+    fewest = std::min(fewest, stage.measured().mean_passes());
+    most = std::max(most, stage.measured().mean_passes());
+    measured.merge(stage.measured());
+  }
+  Verdict v(measured);
+  v.general();
+  v.at_most("mean passes, most over fewest", most / fewest, 2);
+  return v;
+}
+
+/// Height of a box that rests on n×n points.
+template <class T>
+double resting_height(int n, double h, Measurement& measured) {
+  Skeleton body = free_body(10, box_inertia(10, {0.4, 0.4, 0.2}));
+  for (int i = 0; i < n * n; ++i) {
+    Collider& c = body.colliders.emplace_back();
+    c.size = Vec3<double>::Constant(0.01);
+    c.local.translation = {-0.2 + 0.4 * (i % n) / (n - 1), -0.2 + 0.4 * (i / n) / (n - 1), -0.09};
+  }
+  Stage<T> stage(WorldSettings{});
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  jets[0].translation.z() = T(0.1);
+  stage.add(body, limp(), jets);
+  stage.run(2, h);
+  measured.merge(stage.measured());
+  return double(stage.character(0).model()[0].translation.z());
+}
+
+template <class T>
+Verdict coplanar_contacts(const Trial& t) {
+  Measurement measured;
+  const double four = resting_height<T>(2, t.h, measured), sixteen = resting_height<T>(4, t.h, measured),
+               many = resting_height<T>(8, t.h, measured);
+  Verdict v(measured);
+  v.general();
+  v.at_most("heights apart (m)", std::max({four, sixteen, many}) - std::min({four, sixteen, many}), 1e-4);
+  return v;
+}
+
+template <class T>
+Verdict limits_that_meet(const Trial& t) {
+  Stage<T> stage(airborne());
+  Skeleton body = chain({3, JointType::kRevolute, JointType::kRevolute, 0.4});
+  body.joints[1].dofs[0].lower = body.joints[1].dofs[0].upper = 0.3;
+  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  bend(body, jets, 0, {0, -1, 0});
+  bend(body, jets, 1, {0, 0.3, 0});
+  stage.add(body, limp(), jets);
+  double off = 0;
+  stage.run(5, t.h, [&](double) {
+    const Quat<double> q = stage.character(0).local()[1].rotation.template cast<double>();
+    off = std::max(off, std::abs(2 * std::atan2(q.y(), q.w()) - 0.3));
+  });
+  body.joints[1].dofs[0].lower = 0.3 + kPi / 180;
+  Status status;
+  World<T> other((WorldSettings()));
+  other.add_character(body, limp(), status);
+  Verdict v(stage.measured());
+  v.general();
+  v.at_most("off the only angle allowed (rad)", off, 0.05);
+  v.require(status.index == 1, "limits that cross are not refused by the joint's index");
+  return v;
+}
+
+}  // namespace
+
+std::vector<HardCase> mass_cases() {
+  const char* loops = "not supported: loop closures in the runtime's step";
+  return {
+      {"rope_with_heavy_tip",
+       "13",
+       "JoltPhysics#1392; o3de#2610",
+       "general",
+       {1.0 / 60, 1.0 / 30},
+       rope_with_heavy_tip<float>,
+       rope_with_heavy_tip<double>},
+      {"mass_ratio_1000_to_1",
+       "figure",
+       "DESIGN section 9",
+       "general",
+       {1.0 / 60, 1.0 / 30, 1.0 / 10},
+       mass_ratio_1000<float, false>,
+       mass_ratio_1000<double, false>},
+      {"mass_ratio_1_to_1000",
+       "figure",
+       "DESIGN section 9",
+       "general",
+       {1.0 / 60, 1.0 / 30, 1.0 / 10},
+       mass_ratio_1000<float, true>,
+       mass_ratio_1000<double, true>},
+      {"whip",
+       "14",
+       "research 1.3",
+       "no more energy than the base puts in",
+       {1.0 / 60, 1.0 / 30},
+       whip<float>,
+       whip<double>},
+      {"light_foot_under_300_kg",
+       "17",
+       "research 1.8",
+       "float as double to 1 cm, mean passes at most 4",
+       {1.0 / 60},
+       light_foot<float>,
+       light_foot<double>},
+      {"tiny_foot_2_kN",
+       "18",
+       "seed talk, limitations",
+       "with a muscle no flip; without, no energy gained",
+       {1.0 / 60},
+       tiny_foot<float>,
+       tiny_foot<double>},
+      {"far_root_sweep",
+       "19",
+       "research 1.2",
+       "settles where 16 substeps settle, to 2 deg",
+       {1.0 / 60},
+       far_root<float>,
+       far_root<double>},
+      {"hand_of_no_inertia",
+       "20",
+       "sr-ros-interface PR #200; brax#329",
+       "its speed decays monotonically",
+       {1.0 / 60},
+       hand_of_no_inertia<float>,
+       hand_of_no_inertia<double>},
+      {"stiff_servo",
+       "21",
+       "mujoco#3443; DESIGN section 9",
+       "overshoot below 5 %, torque within its limit",
+       {1.0 / 60, 1.0 / 30},
+       stiff_servo<float>,
+       stiff_servo<double>},
+      {"massless_links",
+       "22",
+       "mujoco DegenerateInertia",
+       "inner link without mass runs; a leaf is refused",
+       {1.0 / 60},
+       massless_inner_link<float>,
+       massless_inner_link<double>},
+      {"contact_stiffness_sweep",
+       "23",
+       "research 1.7",
+       "mean passes vary by less than 2",
+       {1.0 / 60},
+       contact_stiffness_sweep<float>,
+       contact_stiffness_sweep<double>},
+      {"bricard_loop", "24", "seed paper", "closure below 0.5 mm", {}, nullptr, nullptr, loops},
+      {"n_four_bar",
+       "25",
+       "MBSbenchmarksInOpenSim A02",
+       "no spike at the dead point",
+       {},
+       nullptr,
+       nullptr,
+       loops},
+      {"singular_four_bar", "26", "mujoco#172; EXUDYN#39", "finite forces", {}, nullptr, nullptr, loops},
+      {"hands_on_a_wheel", "27", "seed paper", "closure below 0.5 mm for 60 s", {}, nullptr, nullptr, loops},
+      {"weld_declared_thrice",
+       "28",
+       "seed talk; arXiv 1905.10828",
+       "motion as with one",
+       {},
+       nullptr,
+       nullptr,
+       loops},
+      {"coplanar_contacts",
+       "29",
+       "research 1.7",
+       "4, 16, 64 points rest at the same height to 0.1 mm",
+       {1.0 / 60},
+       coplanar_contacts<float>,
+       coplanar_contacts<double>},
+      {"limits_that_meet",
+       "30",
+       "o3de PR #5510",
+       "holds the one angle; crossed limits are refused",
+       {1.0 / 60},
+       limits_that_meet<float>,
+       limits_that_meet<double>},
+  };
+}
+
+}  // namespace sinew::study

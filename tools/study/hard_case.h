@@ -1,0 +1,72 @@
+// A hard case: set-up, pass criterion, and what is measured while it runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/stage.h"
+
+namespace sinew::study {
+
+/// One run of a case.
+struct Trial {
+  double h = 1.0 / 60;
+  bool quick = false;  ///< shortened, for the test suite
+  /// Length of a run, s: the catalogue's, or a shorter one in quick trials.
+  double lasting(double full, double shortened) const { return quick ? shortened : full; }
+};
+
+/// Collects the requirements of a case; the first that fails is the reason reported.
+class Verdict {
+ public:
+  explicit Verdict(const Measurement& measured) : measured_(measured) {}
+
+  /// `what` names the quantity, the figure reached and the bound.
+  void require(bool holds, const std::string& what) {
+    if (!holds && reason_.empty()) reason_ = what;
+  }
+  void at_most(const char* what, double value, double bound);
+  void at_least(const char* what, double value, double bound);
+  /// Not refused, finite, joints closed, at most 0.1 % of the steps unconverged.
+  void sound();
+  /// The catalogue's conditions G: sound, and no energy without work (1e-3 of the largest kinetic energy
+  /// met). Only where nothing is driven: the work of muscles and driven bodies is booked to first order in h.
+  void general();
+
+  bool passed() const { return reason_.empty(); }
+  const std::string& reason() const { return reason_; }
+  const Measurement& measured() const { return measured_; }
+
+ private:
+  Measurement measured_;
+  std::string reason_;
+};
+
+using Run = Verdict (*)(const Trial&);
+
+struct HardCase {
+  const char* name;
+  const char* row;        ///< of the catalogue (research/hard-cases-and-solvers.md section 2), or "figure"
+  const char* source;     ///< who documented the failure
+  const char* criterion;  ///< beside the general conditions
+  std::vector<double> steps;  ///< h, s
+  Run in_float = nullptr;     ///< null with in_double: the runtime cannot do this yet
+  Run in_double = nullptr;
+  const char* unsupported = "";  ///< what is missing
+};
+
+/// The catalogue, in its order.
+std::vector<HardCase> hard_cases();
+
+std::vector<HardCase> rotation_cases();
+std::vector<HardCase> mass_cases();
+std::vector<HardCase> contact_cases();
+std::vector<HardCase> pile_cases();
+std::vector<HardCase> muscle_cases();
+std::vector<HardCase> actuation_cases();
+std::vector<HardCase> input_cases();
+
+/// Why a case is known to fail today, or nullptr. The one list: known_failures.cpp.
+const char* known_failure(const std::string& case_name);
+
+}  // namespace sinew::study

@@ -1,0 +1,74 @@
+// The one list of cases that fail today. The study prints them as failed, the test asserts that they still
+// fail: whoever mends one must take it out here.
+#include <algorithm>
+#include <iterator>
+
+#include "study/hard_case.h"
+
+namespace sinew::study {
+namespace {
+
+struct KnownFailure {
+  const char* name;
+  const char* why;
+};
+
+constexpr const char* kWobble = "bdf2's kinetic energy swings about the true one";
+constexpr const char* kPlayed = "a limp body whose residual happens to be 0 is played, not simulated";
+constexpr const char* kFloat = "float: translations of the root lose their digits";
+constexpr const char* kMissing = "not supported";
+
+constexpr KnownFailure kKnownFailures[] = {
+    {"slender_rod_240_rad_s", "float gains 0.7 % of 27 kJ in 10 s"},
+    {"hour_of_spin", kPlayed},
+    {"symmetric_top", kWobble},
+    {"free_flight_1_rad_s", kWobble},
+    {"free_flight_3_rad_s", kWobble},
+    {"free_flight_10_rad_s", kWobble},
+    {"free_flight_30_rad_s", kWobble},
+    {"orthogonal_hinges", kPlayed},
+    {"rope_with_heavy_tip", "does not converge in float, gains energy in double"},
+    {"stiff_servo", "a return time far below the step overshoots"},
+    {"massless_links", "the Hessian has no floor on a freedom that moves no mass"},
+    {"bricard_loop", kMissing},
+    {"n_four_bar", kMissing},
+    {"singular_four_bar", kMissing},
+    {"hands_on_a_wheel", kMissing},
+    {"weld_declared_thrice", kMissing},
+    {"coplanar_contacts", "stiffness is per point, not per patch"},
+    {"foot_on_slope", "stick speed of 1 cm/s creeps"},
+    {"sliding_cube", "first order in the step where it stops"},
+    {"bounce_1", kMissing},
+    {"bounce_half", kMissing},
+    {"thrown_at_thin_wall", "no continuous detection"},
+    {"bullet", "no continuous detection"},
+    {"spawned_in_floor", "thrown out in double, played in float"},
+    {"adjacent_limb_overlap", "neighbours push each other out of the rest pose by 0.2 mm"},
+    {"limp_fall_counts", "more passes than the prototype"},
+    {"ball_pile", "contact as stiff as the lighter body's weight asks"},
+    {"figures_in_a_pile", "energy gained between figures"},
+    {"colliding_figures", "energy gained between figures"},
+    {"tumbling_box", "energy rises on edges"},
+    {"figure_on_stairs", "energy rises on edges"},
+    {"several_muscles_on_a_joint", kMissing},
+    {"ellipsoidal_limit", kMissing},
+    {"pushed_figure", "99th percentile of passes 9, not 8"},
+    {"baked_limbs", kMissing},
+    {"piston", "throws the figure in float"},
+    {"teleport", "an undeclared jump is an impact"},
+    {"zero_negative_tiny_step", "steps of 1 ns do not converge in float"},
+    {"10_km_from_origin", kFloat},
+    {"100_km_from_origin", kFloat},
+    {"save_and_restore", kMissing},
+    {"random_trees", "energy gained with masses 1e8 : 1"},
+};
+
+}  // namespace
+
+const char* known_failure(const std::string& name) {
+  const auto known = std::find_if(std::begin(kKnownFailures), std::end(kKnownFailures),
+                                  [&](const KnownFailure& k) { return name == k.name; });
+  return known == std::end(kKnownFailures) ? nullptr : known->why;
+}
+
+}  // namespace sinew::study

@@ -1,0 +1,142 @@
+#include "study/random_trees.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "sinew/skeleton/rotation.h"
+#include "study/bodies.h"
+
+namespace sinew::study {
+namespace {
+
+constexpr int kSteps = 100;
+constexpr int kMostDofs = 60;
+
+/// Uniform and normal numbers that are the same on every platform (the standard's distributions are not).
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * (double(engine_() >> 11) * 0x1p-53); }
+  int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
+  Vec3<double> vector(double scale) {
+    return {uniform(-scale, scale), uniform(-scale, scale), uniform(-scale, scale)};
+  }
+  Vec3<double> unit() {
+    for (;;) {
+      const Vec3<double> v = vector(1);
+      if (v.norm() > 0.1 && v.norm() <= 1) return v.normalized();
+    }
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace
+
+Skeleton random_tree(std::uint64_t seed) {
+  Dice dice(seed);
+  const int wanted = 1 + dice.below(kMostDofs);
+  constexpr JointType kinds[] = {JointType::kRevolute,  JointType::kRevolute,  JointType::kBall,
+                                 JointType::kUniversal, JointType::kPrismatic, JointType::kFixed};
+  Skeleton s;
+  s.name = "tree " + std::to_string(seed);
+  int dofs = 0;
+  while (dofs < wanted) {
+    const int i = static_cast<int>(s.joints.size());
+    Joint joint;
+    joint.name = "joint" + std::to_string(i);
+    joint.parent = i == 0 ? -1 : std::max(0, i - 1 - dice.below(3));
+    joint.type = i == 0 && wanted >= 6 ? JointType::kFree : kinds[dice.below(i == 0 ? 3 : 6)];
+    if (dofs + dof_count(joint.type) > wanted) joint.type = JointType::kRevolute;
+    dofs += dof_count(joint.type);
+    joint.axis = dice.unit();
+    joint.axis2 = joint.axis.unitOrthogonal();
+    joint.rest.translation = dice.vector(0.3);
+    joint.rest.rotation = rotation_exp<double>(dice.vector(1.5));
+    joint.mass = std::pow(10, dice.uniform(-4, 4));
+    joint.center_of_mass = dice.vector(0.1);
+    const Vec3<double> extent(dice.uniform(0.02, 0.3), dice.uniform(0.02, 0.3), dice.uniform(0.02, 0.3));
+    const Mat3<double> axes = rotation_exp<double>(dice.vector(1.5)).toRotationMatrix();
+    const Mat3<double> inertia = axes * box_inertia(joint.mass, extent).asDiagonal() * axes.transpose();
+    joint.inertia = 0.5 * (inertia + inertia.transpose());
+    s.joints.push_back(joint);
+    if (dice.below(2)) {
+      Collider& c = s.colliders.emplace_back();
+      c.joint = i;
+      c.shape = dice.below(2) ? Shape::kSphere : Shape::kCapsule;
+      c.size = {dice.uniform(0.02, 0.1), 0.05, dice.uniform(0.02, 0.15)};
+      c.friction = dice.uniform(0, 1);
+    }
+  }
+  s.body_count = static_cast<int>(s.joints.size());
+  make_frictionless(s);
+  return s;
+}
+
+template <class T>
+std::string fault_of_tree(std::uint64_t seed, Measurement& measured) {
+  const Skeleton tree = random_tree(seed);
+  Dice dice(~seed);
+  WorldSettings settings;
+  settings.accuracy.scheme = dice.below(2) ? Scheme::kBdf2 : Scheme::kBdf1;
+  const double h = 1 / dice.uniform(30, 240);
+  Stage<T> stage(settings);
+  std::vector<JointJet<T>> jets = rest_jets<T>(tree);
+  randomise_speeds(tree, jets, dice.uniform(0, 5), static_cast<unsigned>(seed));
+  jets[0].translation.z() += T(1);
+  stage.add(tree, limp(), jets);
+  for (int n = 0; n < kSteps && stage.step(h); ++n) {
+  }
+  const Measurement& m = stage.measured();
+  measured.merge(m);
+  char what[160] = "";
+  if (!m.refused.empty())
+    std::snprintf(what, sizeof what, "refused: %s", m.refused.c_str());
+  else if (!m.finite)
+    std::snprintf(what, sizeof what, "NaN or infinity");
+  else if (m.joint_gap > 1e-4)  // float's rounding at the end of a chain that has fallen 15 m
+    std::snprintf(what, sizeof what, "joint gap %.2g m", m.joint_gap);
+  else if (m.energy_gain > 1e-3 * m.kinetic_most + 1e-6)
+    std::snprintf(what, sizeof what, "gains %.3g J of %.3g J at h = 1/%.0f s", m.energy_gain, m.kinetic_most,
+                  1 / h);
+  return what;
+}
+
+template <class T>
+RandomTreesReport run_random_trees(std::uint64_t first, int count, int threads) {
+  struct Fault {
+    std::uint64_t seed;
+    std::string what;
+  };
+  std::vector<Measurement> measured(static_cast<std::size_t>(threads));
+  std::vector<std::vector<Fault>> faults(static_cast<std::size_t>(threads));
+  std::vector<std::thread> pool;
+  for (int worker = 0; worker < threads; ++worker)
+    pool.emplace_back([&, worker] {
+      for (std::uint64_t seed = first + std::uint64_t(worker); seed < first + std::uint64_t(count);
+           seed += std::uint64_t(threads))
+        if (std::string what = fault_of_tree<T>(seed, measured[worker]); !what.empty())
+          faults[worker].push_back({seed, what});
+    });
+  for (std::thread& thread : pool) thread.join();
+  RandomTreesReport report;
+  report.count = count;
+  std::vector<Fault> all;
+  for (int worker = 0; worker < threads; ++worker) {
+    report.measured.merge(measured[worker]);
+    all.insert(all.end(), faults[worker].begin(), faults[worker].end());
+  }
+  std::sort(all.begin(), all.end(), [](const Fault& a, const Fault& b) { return a.seed < b.seed; });
+  for (const Fault& f : all) report.faults.push_back("seed " + std::to_string(f.seed) + ": " + f.what);
+  return report;
+}
+
+template std::string fault_of_tree<float>(std::uint64_t, Measurement&);
+template std::string fault_of_tree<double>(std::uint64_t, Measurement&);
+template RandomTreesReport run_random_trees<float>(std::uint64_t, int, int);
+template RandomTreesReport run_random_trees<double>(std::uint64_t, int, int);
+
+}  // namespace sinew::study

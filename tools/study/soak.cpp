@@ -1,0 +1,95 @@
+#include "study/soak.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "study/bodies.h"
+#include "study/humanoid.h"
+
+namespace sinew::study {
+namespace {
+
+constexpr int kCharacters = 20;
+
+/// What happens to one character in one frame: mostly nothing.
+template <class T>
+void disturb(Character<T> c, std::vector<JointJet<T>>& jets, int index, std::mt19937_64& random) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * (double(random() >> 11) * 0x1p-53);
+  };
+  const std::uint64_t event = random() % 600;
+  const int joint = static_cast<int>(random() % jets.size());
+  if (event < 6) {
+    const Vec3<T> impulse(T(uniform(-60, 60)), T(uniform(-60, 60)), T(uniform(-30, 30)));
+    c.apply_impulse(joint, c.model()[joint].translation, impulse);
+  } else if (event < 8) {
+    c.set_strength(T(uniform(0, 2)));
+  } else if (event < 10) {
+    c.set_strength(joint, T(uniform(0, 1)));
+  } else if (event < 12) {
+    c.set_root_drive(event == 10 ? RootDrive::kFree : RootDrive::kAssisted);
+  } else if (event < 13) {
+    jets[0].translation =
+        Vec3<T>(T(4 * (index % 5) + uniform(-1, 1)), T(4 * (index / 5) + uniform(-1, 1)), T(1.42));
+    c.set_root_drive(RootDrive::kKinematic);
+    c.set_target(jets);
+    c.reset();
+  }
+}
+
+}  // namespace
+
+template <class T>
+SoakReport soak(double seconds, double h, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  World<T> world((WorldSettings()));
+  const Skeleton body = humanoid();
+  std::vector<std::vector<JointJet<T>>> jets(kCharacters, rest_jets<T>(body));
+  for (int i = 0; i < kCharacters; ++i) {
+    Status status;
+    jets[i][0].translation += Vec3<T>(T(4 * (i % 5)), T(4 * (i / 5)), T(0));
+    world.add_character(body, {}, status);
+    world.character(i).set_target(jets[i]);
+    world.character(i).reset();
+  }
+  SoakReport report;
+  report.frames = static_cast<int>(seconds / h + 0.5);
+  std::vector<float> times;
+  times.reserve(static_cast<std::size_t>(report.frames));
+  Measurement& m = report.measured;
+  long heap_start = 0;
+  for (int frame = 0; frame < report.frames; ++frame) {
+    for (int i = 0; i < kCharacters; ++i) disturb(world.character(i), jets[i], i, random);
+    const auto begin = std::chrono::steady_clock::now();
+    world.step(T(h));
+    times.push_back(
+        std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    ++m.steps;
+    m.microseconds += double(times.back());
+    bool finite = true;
+    for (int i = 0; i < kCharacters; ++i) {
+      const Character<T> c = world.character(i);
+      for (const Transform<T>& joint : c.model())
+        finite = finite && joint.translation.allFinite() && joint.rotation.coeffs().allFinite();
+      const CharacterReport& r = c.report();
+      if (r.unknown_dofs > 0) m.count(r);
+      m.penetration = std::max(m.penetration, r.penetration);
+    }
+    report.not_finite += !finite;
+    m.finite = m.finite && finite;
+    if (frame == static_cast<int>(1 / h)) heap_start = static_cast<long>(mallinfo2().uordblks);
+  }
+  report.heap_growth = static_cast<long>(mallinfo2().uordblks) - heap_start;
+  std::sort(times.begin(), times.end());
+  report.median_us = double(times[times.size() / 2]);
+  report.p999_us = double(times[static_cast<std::size_t>(double(times.size() - 1) * 0.999)]);
+  return report;
+}
+
+template SoakReport soak<float>(double, double, std::uint64_t);
+template SoakReport soak<double>(double, double, std::uint64_t);
+
+}  // namespace sinew::study

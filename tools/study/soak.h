@@ -1,0 +1,21 @@
+// Endurance: twenty characters that are pushed, teleported, weakened and woken, for as long as you like.
+#pragma once
+
+#include <cstdint>
+
+#include "study/stage.h"
+
+namespace sinew::study {
+
+struct SoakReport {
+  int frames = 0;
+  int not_finite = 0;                 ///< frames in which any joint was NaN or infinite
+  long heap_growth = 0;               ///< bytes in use at the end over those after the first second
+  double median_us = 0, p999_us = 0;  ///< of a frame
+  Measurement measured;               ///< counts of passes and unconverged steps
+};
+
+template <class T>
+SoakReport soak(double seconds, double h, std::uint64_t seed);
+
+}  // namespace sinew::study

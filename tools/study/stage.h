@@ -1,0 +1,118 @@
+// A world under observation: steps it and keeps the books on energy, joints, contacts and solver.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/character/world.h"
+#include "sinew/residual/tree.h"
+
+namespace sinew::study {
+
+/// What a run showed. Energies in J, lengths in m.
+struct Measurement {
+  int steps = 0;
+  bool finite = true;
+  double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
+  double energy_gain = 0;  ///< most that the total ever stood above start plus work put in
+  double worst_rise = 0;   ///< largest rise in one step beyond the work of that step
+  double work = 0;         ///< put in by pushes, muscles and driven roots
+  double joint_gap = 0;    ///< between the two halves of any joint
+  double penetration = 0;  ///< deepest contact
+  int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
+  int solved = 0;
+  long passes = 0, factorisations = 0;
+  int most_passes = 0, most_factorisations = 0;
+  std::array<int, 256> pass_histogram{};  ///< solved steps by their number of passes (the last: or more)
+  double microseconds = 0;                ///< of all steps together
+  std::string refused;                    ///< reason of the step that the world refused, or empty
+
+  double mean_passes() const { return solved ? double(passes) / solved : 0; }
+  double mean_factorisations() const { return solved ? double(factorisations) / solved : 0; }
+  double unconverged_share() const { return solved ? double(unconverged) / solved : 0; }
+  int passes_percentile(double share) const;
+  /// Counts one solved step of a character or prop.
+  void count(const CharacterReport& report);
+  void merge(const Measurement& other);  ///< sums of counts, worst of the rest
+};
+
+template <class T>
+class Stage {
+ public:
+  explicit Stage(const WorldSettings& settings);
+
+  /// Adds a character that starts in the state of `jets` (its rest pose where empty) and keeps it as target.
+  /// Returns its index; a refusal ends the run (`measured().refused`).
+  int add(const Skeleton& skeleton, const CharacterSettings& settings,
+          const std::vector<JointJet<T>>& jets = {});
+  int add_prop(const PropSettings& settings);
+  void add_obstacle(const Collider& obstacle);
+
+  /// Impulse (N·s) at a world point of a joint during the next step; its work is booked.
+  void push(int character, int joint, const Vec3<double>& point, const Vec3<double>& impulse);
+  /// The state has been set from outside (teleport, reset): the books start afresh at the next step.
+  void forget() { fresh_ = true; }
+
+  bool step(double h);
+  /// Steps for `seconds`, calling before(t) ahead of each step.
+  template <class Before>
+  void run(double seconds, double h, Before before) {
+    const int count = static_cast<int>(seconds / h + 0.5);
+    for (int n = 0; n < count; ++n) {
+      before(n * h);
+      if (!step(h)) return;
+    }
+  }
+  void run(double seconds, double h) {
+    run(seconds, h, [](double) {});
+  }
+
+  World<T>& world() { return *world_; }
+  Character<T> character(int index) { return world_->character(index); }
+  const Measurement& measured() const { return m_; }
+  const WorldSettings& settings() const { return settings_; }
+  Vec3<double> center_of_mass(int character);
+  double kinetic() const { return kinetic_; }  ///< J, after the last step
+
+ private:
+  struct Member {
+    Tree<T> tree;
+    std::vector<Transform<T>> local;  ///< before the step
+  };
+  struct Push {
+    int character, joint;
+    Vec3<double> local, before, impulse;
+  };
+
+  double work_of_pushes(double h);
+  double work_of_muscles();
+  void measure_gaps(int index);
+  void book(const CharacterReport& report);
+
+  WorldSettings settings_;
+  std::unique_ptr<World<T>> world_;
+  std::vector<std::unique_ptr<Member>> members_;
+  std::vector<Push> pushes_;
+  Measurement m_;
+  double base_ = 0;  ///< energy at the start
+  double energy_ = 0, kinetic_ = 0;
+  bool fresh_ = false;
+};
+
+/// Kinetic and potential energy (J) of a skeleton in the state of `jets`.
+struct Energy {
+  double kinetic = 0, potential = 0;
+};
+template <class T>
+Energy energy_of(const Skeleton& skeleton, const std::vector<JointJet<T>>& jets, const Vec3<double>& gravity);
+
+/// The rest pose at rest.
+template <class T>
+std::vector<JointJet<T>> rest_jets(const Skeleton& skeleton);
+
+extern template class Stage<float>;
+extern template class Stage<double>;
+
+}  // namespace sinew::study

@@ -1,0 +1,36 @@
+#include <cstdio>
+
+#include "study/hard_case.h"
+
+namespace sinew::study {
+namespace {
+
+std::string compared(const char* what, double value, const char* relation, double bound) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%s %.3g, %s %.3g wanted", what, value, relation, bound);
+  return text;
+}
+
+}  // namespace
+
+void Verdict::at_most(const char* what, double value, double bound) {
+  require(value <= bound, compared(what, value, "at most", bound));
+}
+
+void Verdict::at_least(const char* what, double value, double bound) {
+  require(value >= bound, compared(what, value, "at least", bound));
+}
+
+void Verdict::sound() {
+  require(measured_.refused.empty(), "refused: " + measured_.refused);
+  require(measured_.finite, "NaN or infinity");
+  at_most("joint gap (m)", measured_.joint_gap, 1e-5);  // float's rounding some 10 m from the origin
+  at_most("share of unconverged steps", measured_.unconverged_share(), 1e-3);
+}
+
+void Verdict::general() {
+  sound();
+  at_most("energy without work (J)", measured_.energy_gain, 1e-3 * measured_.kinetic_most + 1e-6);
+}
+
+}  // namespace sinew::study
