@@ -22,6 +22,11 @@ constexpr int kRate = 60;          // steps per second
 constexpr double kSpacing = 2.6;   // m; nearer ones would be solved together
 constexpr double kHitEvery = 0.1;  // s
 
+/// Of a grid about as deep as wide.
+int columns_of(int count) {
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
+}
+
 /// The same place of a row-by-row grid whose rows walk side by side, and the same moment of the walk, every
 /// run.
 struct Walker {
@@ -30,14 +35,14 @@ struct Walker {
 };
 
 std::vector<Walker> arranged(int count, float duration) {
-  const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
+  const int columns = columns_of(count);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> phase(0, duration);
   std::vector<Walker> walkers;
   for (int n = 0; n < count; ++n) {
+    const int row = n / columns, column = n % columns;
     Walker& w = walkers.emplace_back();
-    w.place.translation =
-        sinew::Vec3<double>(-kSpacing * (n / columns), kSpacing * (n % columns), 0).cast<float>();
+    w.place.translation = sinew::Vec3<double>(-kSpacing * row, kSpacing * column, 0).cast<float>();
     w.phase = phase(random);
   }
   return walkers;
@@ -77,6 +82,12 @@ int run(const char* file, const char* output, int count, double seconds) {
   recording.title = "Crowd";
   recording.frame_rate = kRate;
   recording.characters.assign(static_cast<std::size_t>(count), asset);
+  // Walks backwards before the middle of the first row.
+  const float middle = walkers[static_cast<std::size_t>(columns_of(count) / 2)].place.translation.y();
+  recording.camera.eye = {9.f, middle - 4.f, 3.2f};
+  recording.camera.target = {-2.f, middle, 0.4f};
+  recording.camera.follow_character = columns_of(count) / 2;
+  recording.camera.frame_automatically = false;
   std::vector<sinew::JointJet<float>> jets(asset->skeleton.joints.size());
   std::vector<double> microseconds;
   std::mt19937 random(2);

@@ -1,6 +1,4 @@
 // A snapshot is everything: a world restored from one goes on as the world that it was taken of, to the bit.
-#include <cstring>
-
 #include "character/scenes.h"
 #include "sinew/character/recording.h"
 
@@ -63,16 +61,14 @@ std::vector<std::byte> saved(const World<T>& world) {
 
 template <class T>
 bool same_pose(World<T>& a, World<T>& b) {
-  const auto bits = [](std::span<const Transform<T>> x, std::span<const Transform<T>> y) {
-    bool same = true;
+  const auto same = [](std::span<const Transform<T>> x, std::span<const Transform<T>> y) {
+    bool all = true;
     for (std::size_t i = 0; i < x.size(); ++i)
-      same = same &&
-             std::memcmp(x[i].rotation.coeffs().data(), y[i].rotation.coeffs().data(), 4 * sizeof(T)) == 0 &&
-             std::memcmp(x[i].translation.data(), y[i].translation.data(), 3 * sizeof(T)) == 0;
-    return same;
+      all = all && x[i].rotation.coeffs() == y[i].rotation.coeffs() && x[i].translation == y[i].translation;
+    return all;
   };
   const Transform<T> ball_a = a.prop_pose(0), ball_b = b.prop_pose(0);
-  return bits(a.character(0).model(), b.character(0).model()) && bits({&ball_a, 1}, {&ball_b, 1});
+  return same(a.character(0).model(), b.character(0).model()) && same({&ball_a, 1}, {&ball_b, 1});
 }
 
 template <class T>

@@ -14,7 +14,7 @@ bool same_bits(const Values& a, const Values& b) {
 /// body → world as the step computes it from the local pose.
 template <class T>
 Mat3<T> rotation_of(const CharacterState<T>& s, int body, const Mat3<T>* parent) {
-  const Mat3<T> relative = s.local[body].rotation.toRotationMatrix();
+  Mat3<T> relative = s.local[body].rotation.toRotationMatrix();
   if (!parent) return relative;
   Mat3<T> product;
   product.noalias() = *parent * relative;

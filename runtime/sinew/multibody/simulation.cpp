@@ -1,8 +1,7 @@
 #include "sinew/multibody/simulation.h"
 
-#include <ctime>
-
 #include <cmath>
+#include <ctime>
 
 namespace sinew::multibody {
 namespace {
