@@ -1,14 +1,19 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; quiet, and quick when everything is there.
-# Usage: tools/setup.sh [--tests]
+# Usage: tools/setup.sh [--tests] [--peers]     --peers: for -DSINEW_PEERS=ON, several hundred MB
 set -euo pipefail
 
 packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flatbuffers-compiler
   libassimp-dev liburdfdom-dev libosmesa6-dev libgl-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libcairo2-dev libpng-dev libjpeg62-turbo-dev
-  libseccomp-dev libsdl2-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg assimp-testmodels)
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
+  libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
+  assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev ccache clang-format clang-tidy)
-[ "${1:-}" = --tests ] && packages+=("${tests[@]}")
+peers=(libsimbody-dev libsundials-dev libboost-dev)
+for option in "$@"; do
+  [ "$option" = --tests ] && packages+=("${tests[@]}")
+  [ "$option" = --peers ] && packages+=("${peers[@]}")
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from balance import floor_forces, pelvis_shift, points, waves
-from motion import ANKLE, AT, BALL, HEEL, RATE, Motion, X, Y, Z, blurred, exp, log, smoothest, turn
+from balance import GRAVITY, floor_forces, pelvis_shift, points, waves
+from motion import ANKLE, BALL, HEEL, RATE, Motion, X, Y, Z, exp, log, smoothest, turn
 
 FINE = 4  # frames computed per frame kept
 SOFT = 4.0  # degrees over which the toes' bend comes to its end
@@ -37,11 +37,11 @@ class Gait:
 
 
 WALK = Gait(
-    frames=64, stride=1.36, stance=0.61, width=0.10, splay=6, pelvis=(0.932, -0.0155, -0.006),
-    pitch=[(0, 16), (0.08, 0), (0.34, 0), (0.45, -7), (0.50, -17), (0.55, -34), (0.60, -58)], toes=40,
-    swing={"thigh": [(0.72, 10), (0.89, 26.5)], "shin": [(0.725, 60), (0.9, 17)], "foot": [(0.66, -19), (0.85, 4)], "toes": [(0.8, 12)]},
+    frames=64, stride=1.36, stance=0.61, width=0.10, splay=6, pelvis=(0.93, -0.0155, -0.006),
+    pitch=[(-0.04, 22), (0, 16.5), (0.04, 6), (0.08, 0), (0.34, 0), (0.45, -7), (0.50, -16), (0.55, -34), (0.60, -58)], toes=40,
+    swing={"thigh": [(0.72, 10), (0.89, 26.5)], "shin": [(0.725, 60), (0.9, 17)], "foot": [(0.66, -19), (0.85, 3), (0.94, 2)], "toes": [(0.8, 12)]},
     lean=2.5, turn=(3.7, 2.1), drop=(1.9, 2.1), thorax=(-3.0, -1.7), arm=(-6, 17, 7, 27, 11),
-    pressure=[(0.0, -0.03), (0.12, 0.05), (0.5, 0.148), (0.61, 0.17)])
+    pressure=[(0.0, -0.02), (0.12, 0.065), (0.5, 0.155), (0.61, 0.17)])
 RUN = Gait(
     frames=42, stride=2.25, stance=0.345, width=0.05, splay=5, pelvis=(0.896, 0.0, 0.0),
     pitch=[(0, 9), (0.06, 0), (0.13, 0), (0.20, -6), (0.24, -12), (0.28, -21), (0.32, -36), (0.345, -47)], toes=30,
@@ -55,7 +55,8 @@ def roll(g, phase):
     """The standing foot: pitch, bend of the toes, and the ankle relative to where the flat foot's ankle is (forward) and the floor (up)."""
     n = g.frames * FINE
     grid = np.arange(-n // 8, n)  # a little before the contact, so that the foot arrives moving
-    flat = (grid >= g.pitch[1][0] * n) & (grid <= g.pitch[2][0] * n)
+    zeros = [p for p, v in g.pitch if not v]
+    flat = (grid >= zeros[0] * n) & (grid <= zeros[1] * n)
     track = smoothest(flat, np.zeros(len(grid)), [(p * n - grid[0], v) for p, v in g.pitch if v])
     pitch = np.interp(phase * n, grid, track)
     # The toes lie flat until they can bend no further; then the foot rolls over their tips.
@@ -102,7 +103,7 @@ def upper_body(m, g, phase):
             spine_twist=wave(g.thorax) - wave(g.turn), neck=-g.lean, head_twist=-wave(g.thorax))
     for tail, back in (("_r", c), ("_l", -c)):  # the arm goes back as its leg comes forward
         mean, swing, out, elbow, bend = g.arm
-        m.arm(tail, mean - swing * back, out, elbow - bend * back, wrist=5)
+        m.arm(tail, mean - swing * back, out, elbow - bend * back, wrist=-6)
 
 
 def target_pressure(g, phase):
@@ -128,41 +129,39 @@ def target_pressure(g, phase):
 
 
 def make(name, g):
-    """The pelvis path is found by turns: build the motion, see where the floor would have to push, shift."""
+    """The pelvis' path is found by turns: build the motion, see where the floor would have to push, shift."""
     n = g.frames * FINE
     phase = np.arange(n) / n
     seconds, travel = g.frames / RATE, np.array([0, 0, g.stride])
     target, share, touching = target_pressure(g, phase)
-    root = np.stack([np.zeros(n), g.pelvis[0] + g.pelvis[1] * np.cos(4 * np.pi * phase) + g.pelvis[2] * np.sin(4 * np.pi * phase), g.stride * (phase - 0.25) + 0.03 + 0.016 * np.sin(4 * np.pi * phase)], axis=1)
-    basis = waves(n, 6)
+    bob, surge = 4 * np.pi * phase, g.stride * (phase - 0.25) + 0.03
+    root = np.stack([np.zeros(n), g.pelvis[0] + g.pelvis[1] * np.cos(bob) + g.pelvis[2] * np.sin(bob), surge + 0.016 * np.sin(bob)], axis=1)
+    basis, weight = waves(n, 6), np.where(touching, 1.0, 0.0)
     for k in range(14):
         m = Motion(n)
         m.root = root
         upper_body(m, g, phase)
-        beyond = [leg(m, g, tail, phase) for tail in ("_l", "_r")]
+        short = max(np.max(leg(m, g, tail, phase)) for tail in ("_l", "_r"))
+        if k == 13:
+            break
         if g.flight:  # the body's height follows from the floor's force
             masses, paths = points(m)
-            wanted = -np.fft.fft((share - 1) * 9.81) / np.maximum(1e-9, (2 * np.pi * np.fft.fftfreq(n, seconds / n)) ** 2)
+            wanted = -np.fft.fft((share - 1) * GRAVITY) / np.maximum(1e-9, (2 * np.pi * np.fft.fftfreq(n, seconds / n)) ** 2)
             wanted[0] = 0
             height = np.tensordot(masses, paths, 1)[:, 1]
             root = root + [[0, 0.7 * d, 0] for d in np.fft.ifft(wanted).real - (height - height.mean())]
-        report(name, m, g, seconds, travel, target, touching, beyond)
-        weight = np.where(touching, 1.0, 0.0)
         root = root + 0.7 * pelvis_shift(m, seconds, travel, basis, weight, target, 1.0 - weight if g.flight else None)
-    report(name, m, g, seconds, travel, target, touching, beyond)
+    force, at = floor_forces(m, seconds, travel)
+    loaded = touching & (force[:, 1] > 0.2)
+    off = np.linalg.norm((at - target)[loaded][:, [0, 2]], axis=1)
+    print(f"{name}: the floor bears {force[:, 1].min():.2f} to {force[:, 1].max():.2f} of the weight, {1000 * np.sqrt(np.mean(off ** 2)):.0f} mm rms from where "
+          f"it should; legs {1000 * short:.0f} mm too short at most")
     keep = np.arange(0, n, FINE)
     out = Motion(g.frames + 1)
     out.local = {j: np.concatenate([r[keep], r[:1]]) for j, r in m.local.items()}
     out.root = np.concatenate([m.root[keep], m.root[:1] + travel])
     out.root[:, 2] -= out.root[0, 2]
     return out.clip(name)
-
-
-def report(name, m, g, seconds, travel, target, touching, beyond):
-    force, at = floor_forces(m, seconds, travel)
-    off = np.linalg.norm((at - target)[touching][:, [0, 2]], axis=1)
-    print(f"{name}: floor {force[:, 1].min():.2f}–{force[:, 1].max():.2f} of the weight, fore-aft {force[:, 2].min():.2f}–{force[:, 2].max():.2f}, "
-          f"acts {1000 * np.sqrt(np.mean(off ** 2)):.0f} mm rms from where it should, legs {1000 * np.max(beyond):.0f} mm too short at {np.argmax(beyond[1]) / m.frames:.2f}, pelvis {m.root[:, 1].min():.3f}–{m.root[:, 1].max():.3f} m")
 
 
 def walk():

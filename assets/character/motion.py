@@ -54,6 +54,14 @@ def quaternion(m):
     return q
 
 
+def rotation_of(q):
+    """Quaternions x y z w → matrices."""
+    x, y, z, w = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
+    return np.stack([np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], 1),
+                     np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], 1),
+                     np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], 1)], 1)
+
+
 def smoothest(fixed, values, keys=(), periodic=False):
     """The curve of least jerk through `values` [frame][…] where `fixed` [frame] and, nearly, through `keys` (frame, value)."""
     n = len(fixed)
@@ -78,12 +86,6 @@ def smoothest(fixed, values, keys=(), periodic=False):
     return out.reshape(values.shape)
 
 
-def blurred(values, width):
-    """Periodic Gaussian blur; `width`: standard deviation in samples."""
-    k = np.fft.rfftfreq(len(values))
-    return np.fft.irfft(np.fft.rfft(values, axis=0) * np.exp(-2 * (np.pi * k * width) ** 2), len(values), axis=0)
-
-
 class Motion:
     """Local rotations of all joints and the root's path, frame by frame."""
 
@@ -101,15 +103,17 @@ class Motion:
         for name in ("neck", "head"):
             self.local[name] = turn(Y, 0.5 * (head_twist + zero)) @ turn(X, 0.5 * (neck + zero))
 
-    def arm(self, tail, flexion, abduction, elbow, wrist=0, twist=0):
+    def arm(self, tail, flexion, abduction, elbow, wrist=0, twist=0, pronation=0):
+        """The palm faces the thigh; `wrist` extends the hand (its back towards the forearm) after the pronation."""
         sign = 1 if tail == "_l" else -1
         zero = np.zeros(self.frames)
         hang = turn(Z, sign * (abduction - 45 + zero))
         bone = AT["forearm" + tail] - AT["upperarm" + tail]
-        self.local["upperarm" + tail] = turn(X, -(flexion + zero)) @ hang @ turn(bone / np.linalg.norm(bone), zero + twist)
+        bone = bone / np.linalg.norm(bone)
+        self.local["upperarm" + tail] = turn(X, -(flexion + zero)) @ hang @ turn(bone, sign * (twist + zero))
         axis = turn(Z, sign * 45.0)[0] @ X  # the elbow's axis points left when the arm hangs
         self.local["forearm" + tail] = turn(axis, -(elbow + zero))
-        self.local["hand" + tail] = turn(axis, -(wrist + zero))
+        self.local["hand" + tail] = turn(bone, sign * (pronation + zero)) @ turn(Z, sign * (wrist + zero))
 
     def leg(self, tail, hip, knee, ankle=0, adduction=0, rotation=0, toes=0):
         sign = 1 if tail == "_l" else -1

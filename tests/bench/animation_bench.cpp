@@ -1,10 +1,15 @@
-// What sampling costs: nanoseconds per pose and per joint, sequential playback against random seek.
+// What the animation jobs cost: nanoseconds per pose and per joint; for sampling, sequential playback against
+// random seek.
 #include <benchmark/benchmark.h>
 
 #include <vector>
 
 #include "fixtures/clips.h"
+#include "sinew/animation/blending_job.h"
+#include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/animation/skinning_job.h"
 
 namespace sinew {
 namespace {
@@ -62,6 +67,77 @@ void random_seek(benchmark::State& state) {
   per_joint(state);
 }
 
+/// Layers: a whole-body mix of two, or a base with a masked override, or a base with an additive layer.
+void blend(benchmark::State& state, BlendMode mode, bool masked) {
+  const Clip clip = fixtures::random_clip({});
+  std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
+  (void)SamplingJob<float>{&clip, 1, 1, a}.Run();
+  (void)SamplingJob<float>{&clip, 3, 1, b}.Run();
+  std::vector<float> mask(kJoints, 0.5f);
+  const std::span<const float> weights = masked ? std::span<const float>(mask) : std::span<const float>();
+  const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}, weights, mode}};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(BlendingJob<float>{layers, {}, out}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
+void model_pose(benchmark::State& state) {
+  const Clip clip = fixtures::random_clip({});
+  std::vector<Transform<float>> poses(kJoints), model(kJoints);
+  std::vector<int> parents(kJoints);
+  for (int i = 0; i < kJoints; ++i) parents[i] = i % 5 == 0 ? i - 5 : i - 1;
+  parents[0] = -1;
+  (void)SamplingJob<float>{&clip, 1, 1, {}, poses}.Run();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(ModelPoseJob<float>{parents, {}, poses, {}, model}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
+/// A limb at the end of a chain of eight joints.
+void two_bone(benchmark::State& state) {
+  const Clip clip = fixtures::random_clip({});
+  std::vector<JointJet<float>> sampled(kJoints), jets(kJoints);
+  const std::vector<int> parents = {-1, 0, 1, 2, 3, 4, 5, 6};
+  (void)SamplingJob<float>{&clip, 1, 1, sampled}.Run();
+  const MovingTransform<float> end = model_motion<float>(sampled, parents, 7);
+  for (auto _ : state) {
+    jets = sampled;
+    TwoBoneJob<float> job{parents, std::span(jets).first(8), 5, 6, 7};
+    job.target = end.translation * 0.95f;
+    benchmark::DoNotOptimize(job.Run());
+    benchmark::ClobberMemory();
+  }
+}
+
+void skinning(benchmark::State& state) {
+  constexpr int kVertices = 10000;
+  const std::vector<SkinMatrix> palette(
+      kJoints, {{Eigen::Vector4f::UnitX(), Eigen::Vector4f::UnitY(), Eigen::Vector4f::UnitZ()},
+                Eigen::Vector4f::Zero()});
+  std::vector<std::uint16_t> joints(4 * kVertices);
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = std::uint16_t(i * 7 / 100 % kJoints);
+  const std::vector<float> weights(4 * kVertices, 0.25f), positions(3 * kVertices, 0.6f);
+  std::vector<float> out(3 * kVertices), normals(3 * kVertices);
+  for (auto _ : state) {
+    const SkinningJob job{palette, 4, joints, weights, positions, positions, out, normals};
+    benchmark::DoNotOptimize(job.Run());
+    benchmark::ClobberMemory();
+  }
+  state.counters["per vertex"] = benchmark::Counter(
+      kVertices, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(model_pose);
+BENCHMARK(two_bone);
+BENCHMARK(skinning);
+BENCHMARK_CAPTURE(blend, mix, BlendMode::kMix, false);
+BENCHMARK_CAPTURE(blend, mix_masked, BlendMode::kMix, true);
+BENCHMARK_CAPTURE(blend, override_masked, BlendMode::kOverride, true);
+BENCHMARK_CAPTURE(blend, additive, BlendMode::kAdditive, false);
 BENCHMARK(sequential<float>)->ArgName("degree")->Arg(3)->Arg(5);
 BENCHMARK(poses_only)->ArgName("degree")->Arg(3)->Arg(5);
 BENCHMARK(random_seek<float>)->ArgName("degree")->Arg(3)->Arg(5);

@@ -1,45 +1,11 @@
-// A step takes no memory from the heap. This executable replaces operator new by one that counts.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+// A step takes no memory from the heap.
 #include "character/scenes.h"
-
-namespace {
-
-std::atomic<long> allocations{0};
-
-void* counted(std::size_t bytes, std::size_t alignment) {
-  ++allocations;
-  // aligned_alloc wants a multiple of the alignment.
-  void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) std::abort();
-  return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-  return counted(bytes, alignof(std::max_align_t));
-}
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return counted(bytes, std::size_t(alignment));
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
+#include "fixtures/counting_new.h"
 
 namespace sinew {
 namespace {
+
+using fixtures::allocations;
 
 TEST(Allocation, CounterCounts) {
   const long before = allocations;

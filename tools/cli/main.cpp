@@ -10,6 +10,7 @@
 #include "cli/mechanism.h"
 #include "cli/memory.h"
 #include "cli/study.h"
+#include "cli/tables.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/run.h"
@@ -272,8 +273,13 @@ int main(int argc, char** argv) try {
   r->add_option("--size", render.size, "WIDTHxHEIGHT, even (1280x720)");
   r->add_option("--fps", render.options.fps)->check(CLI::Range(1.0, 240.0));
   r->add_option("--samples", render.options.samples, "multisampling, 1 or 4")->check(CLI::IsMember({1, 4}));
+  r->add_option("--quality", render.options.quality, "full (ambient occlusion, softer shadows) or fast")
+      ->check(CLI::IsMember({"full", "fast"}));
+  r->add_option("--start", render.options.start, "first moment shown, s; the moment of a single .png")
+      ->check(CLI::NonNegativeNumber);
   r->add_option("--theme", render.options.theme)->check(CLI::IsMember({"dark", "light"}));
-  r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes"}));
+  r->add_option("--background", render.options.background, "RRGGBB instead of the theme's sky");
+  r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes", "both"}));
   r->add_flag("--turntable", render.options.turntable);
   r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")
       ->check(CLI::Range(1, 100000));
@@ -293,6 +299,18 @@ int main(int argc, char** argv) try {
   hard->add_option("--case", stability.only, "run one case");
   hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
   hard->add_flag("--json", stability.json_output);
+  cli::TablesCommand tables;
+  auto* paper = study->add_subcommand("tables",
+                                      "formulations and integrators of the reference family\nExample: sinew "
+                                      "study tables --quick -o out/study");
+  cli::add_options(*paper, tables);
+  cli::AccuracyCommand accuracy;
+  auto* cost = study->add_subcommand(
+      "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
+  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
+  cost->add_option("--scene", accuracy.only, "tumbling, drop, stack or tracking");
+  cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
+  cost->add_flag("--json", accuracy.json_output);
 
   try {
     app.parse(argc, argv);
@@ -312,6 +330,10 @@ int main(int argc, char** argv) try {
     error = simulate.run();
   else if (hard->parsed())
     error = stability.run();
+  else if (paper->parsed())
+    error = tables.run();
+  else if (cost->parsed())
+    error = accuracy.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -4,14 +4,51 @@
 #include <filesystem>
 
 #include "cli/files.h"
+#include "study/accuracy.h"
+#include "study/maps.h"
 #include "study/study.h"
 
 namespace sinew::cli {
+namespace {
 
-convert::Error StabilityCommand::run() const {
+convert::Error make_directory(const std::string& directory) {
   std::error_code failed;
   std::filesystem::create_directories(directory, failed);
   if (failed) return {directory + ": cannot be made: " + failed.message()};
+  return {};
+}
+
+void print_accuracy(const study::AccuracyResult& result) {
+  std::printf("%s\n", result.scene.title.c_str());
+  for (const study::Slope& s : result.slopes) {
+    std::printf("  order of %s %s: %.2f", s.engine.c_str(), s.option.c_str(), s.found);
+    if (s.expected > 0) std::printf(" (theory %.0f)", s.expected);
+    std::puts("");
+  }
+  for (const study::AccuracyPoint& p : result.points)
+    if (p.pareto)
+      std::printf("  front: %8.2f us, %9.2e m  %s 1/%.0f s, tolerance %.0e m, substeps %d, cap %d\n", p.us,
+                  p.error, p.label().c_str(), 1 / p.h, p.accuracy.tolerance, p.accuracy.substeps,
+                  p.accuracy.max_iterations);
+}
+
+}  // namespace
+
+convert::Error StabilityCommand::draw_maps() const {
+  const auto draw = [&](const study::FailureMap& map, const std::string& name) {
+    const std::string file = directory + "/" + name;
+    if (convert::Error error = write_atomically(file + ".csv", study::map_csv(map))) return error;
+    if (convert::Error error = study::draw_map(map, file + ".svg")) return error;
+    return study::draw_map(map, file + ".png");
+  };
+  if (convert::Error error =
+          draw(study::map_of_speeds(quick, progress_bar("joint speeds")), "failure_map_speed"))
+    return error;
+  return draw(study::map_of_masses(quick, progress_bar("mass ratios")), "failure_map_mass");
+}
+
+convert::Error StabilityCommand::run() const {
+  if (convert::Error error = make_directory(directory)) return error;
   if (!json_output) std::fputs(study::stability_table_head().c_str(), stdout);
   const auto print = [&](const study::StabilityResult& result) {
     if (json_output) return;
@@ -24,11 +61,33 @@ convert::Error StabilityCommand::run() const {
   const nlohmann::json summary = study::stability_json(results);
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))
     return error;
+  if (only.empty() && !json_output)
+    if (convert::Error error = draw_maps()) return error;
   if (json_output)
     std::puts(summary.dump().c_str());
   else
     std::printf("%d cases passed, %d failed; %s/stability.csv\n", summary["passed"].get<int>(),
                 summary["failed"].get<int>(), directory.c_str());
+  return {};
+}
+
+convert::Error AccuracyCommand::run() const {
+  if (convert::Error error = make_directory(directory)) return error;
+  const auto results = study::run_accuracy({quick, only}, progress_bar("accuracy"));
+  if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
+  const std::string base = directory + "/accuracy";
+  if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(results))) return error;
+  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results))) return error;
+  for (const study::AccuracyResult& result : results)
+    for (const char* ending : {".svg", ".png"})
+      if (convert::Error error = study::draw_accuracy(result, base + "_" + result.scene.name + ending))
+        return error;
+  if (json_output) {
+    std::puts(study::accuracy_json(results).dump().c_str());
+    return {};
+  }
+  for (const study::AccuracyResult& result : results) print_accuracy(result);
+  std::printf("%s.html\n", base.c_str());
   return {};
 }
 

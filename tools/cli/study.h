@@ -12,6 +12,16 @@ struct StabilityCommand {
   bool quick = false, json_output = false;
 
   convert::Error run() const;
+
+ private:
+  convert::Error draw_maps() const;
+};
+
+struct AccuracyCommand {
+  std::string directory = "out/study", only;
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
 };
 
 }  // namespace sinew::cli

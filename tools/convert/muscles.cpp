@@ -107,44 +107,86 @@ void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, doub
   }
 }
 
+namespace {
+
+constexpr double kRate = 60;  // frames a second at which clips are looked at
+
+/// A skeleton's residual pass and what it works on.
+struct Pass {
+  explicit Pass(const Skeleton& skeleton)
+      : tree(skeleton), kinematics(tree), motion(tree), force(tree.bodies), moment(tree.bodies) {
+    jets.resize(skeleton.joints.size());
+    for (const Collider& c : skeleton.colliders)
+      if (c.joint < skeleton.body_count) append_contact_points<double>(c, points);
+  }
+  /// Poses, and the wrenches [body] that the clip asks for; false when it has no such frame.
+  bool run(const Clip& clip, int frame) {
+    if (!SamplingJob<double>{&clip, frame / kRate, 1, jets}.Run()) return false;
+    inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
+                              moment);
+    return true;
+  }
+
+  Tree<double> tree;
+  Kinematics<double> kinematics;
+  Motion<double> motion;
+  std::vector<Vec3<double>> force, moment;
+  std::vector<JointJet<double>> jets;
+  std::vector<ContactPoint<double>> points;
+};
+
+int frames_of(const Clip& clip) {
+  return std::max(1, static_cast<int>(clip.duration * kRate));
+}
+
+/// Height of the floor that a clip moves on, m: where the body's lowest point is most often, to a centimetre.
+/// Some frames are in flight, and in some a collider thicker than the skin sinks in.
+double floor_of(const Clip& clip, Pass& pass) {
+  std::vector<double> lowest;
+  for (int f = 0; f < frames_of(clip); ++f) {
+    if (!pass.run(clip, f)) continue;
+    double low = 1e9;
+    for (const ContactPoint<double>& p : pass.points)
+      low = std::min(
+          low, (pass.kinematics.origin[p.body] + pass.kinematics.rotation[p.body] * p.local).z() - p.radius);
+    lowest.push_back(low);
+  }
+  std::sort(lowest.begin(), lowest.end());
+  std::size_t most = 0;
+  double floor = 0;
+  for (std::size_t begin = 0, end = 0; begin < lowest.size(); ++begin) {
+    while (end < lowest.size() && lowest[end] < lowest[begin] + 0.01) ++end;
+    if (end - begin <= most) continue;
+    most = end - begin;
+    floor = lowest[(begin + end) / 2];
+  }
+  return floor;
+}
+
+}  // namespace
+
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report) {
-  const Tree<double> tree(skeleton);
-  Kinematics<double> kinematics(tree);
-  Motion<double> motion(tree);
-  std::vector<Vec3<double>> force(tree.bodies), moment(tree.bodies);
+  Pass pass(skeleton);
+  const Tree<double>& tree = pass.tree;
   std::vector<double> torque(tree.dofs), highest(tree.dofs, 0.0), lowest(tree.dofs, 0.0);
   std::vector<const Clip*> asks(tree.bodies, nullptr);
   std::vector<double> most(tree.bodies, 0.0);
-  std::vector<JointJet<double>> jets(skeleton.joints.size());
-  std::vector<ContactPoint<double>> points;
-  for (const Collider& c : skeleton.colliders)
-    if (c.joint < skeleton.body_count) append_contact_points<double>(c, points);
   for (const Clip& clip : clips) {
-    double floor = 1e9;  // the clip's own
-    const int frames = std::max(1, static_cast<int>(clip.duration * 60));
-    for (int pass = 0; pass < 2; ++pass)
-      for (int f = 0; f < frames; ++f) {
-        if (!SamplingJob<double>{&clip, f / 60.0, 1, jets}.Run()) continue;
-        inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
-                                  moment);
-        if (pass == 0) {
-          for (const ContactPoint<double>& p : points)
-            floor = std::min(
-                floor, (kinematics.origin[p.body] + kinematics.rotation[p.body] * p.local).z() - p.radius);
-          continue;
-        }
-        share_support<double>(tree, kinematics, points, floor, {}, force, moment);
-        project_wrenches<double>(tree, kinematics, force, moment, torque);
-        for (int i = 0; i < tree.bodies; ++i)
-          for (int d = tree.first_dof[i]; d < tree.first_dof[i] + dof_count(skeleton.joints[i].type); ++d) {
-            highest[d] = std::max(highest[d], torque[d]);
-            lowest[d] = std::min(lowest[d], torque[d]);
-            if (std::abs(torque[d]) > most[i]) {
-              most[i] = std::abs(torque[d]);
-              asks[i] = &clip;
-            }
+    const double floor = floor_of(clip, pass);
+    for (int f = 0; f < frames_of(clip); ++f) {
+      if (!pass.run(clip, f)) continue;
+      share_support<double>(tree, pass.kinematics, pass.points, floor, {}, pass.force, pass.moment);
+      project_wrenches<double>(tree, pass.kinematics, pass.force, pass.moment, torque);
+      for (int i = 0; i < tree.bodies; ++i)
+        for (int d = tree.first_dof[i]; d < tree.first_dof[i] + dof_count(skeleton.joints[i].type); ++d) {
+          highest[d] = std::max(highest[d], torque[d]);
+          lowest[d] = std::min(lowest[d], torque[d]);
+          if (std::abs(torque[d]) > most[i]) {
+            most[i] = std::abs(torque[d]);
+            asks[i] = &clip;
           }
-      }
+        }
+    }
   }
   report["muscles"] = nlohmann::json::array();
   for (int i = 0; i < tree.bodies; ++i) {

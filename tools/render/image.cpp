@@ -74,18 +74,16 @@ bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& heigh
   return png_image_finish_read(&png, nullptr, rgba.data(), 0, nullptr) != 0;
 }
 
-convert::Error write_png(const Image& image, const std::string& path) {
-  const std::string temporary = path + ".tmp";
-  FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (!file) return {path + ": cannot be written"};
+convert::Error write_png(const Image& image, const std::string& path, const std::string& name) {
+  FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) return {name + ": cannot be written"};
   std::vector<std::uint8_t> row(std::size_t(image.width) * 3);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info || setjmp(png_jmpbuf(png)) != 0) {
     if (png) png_destroy_write_struct(&png, &info);
     std::fclose(file);
-    std::remove(temporary.c_str());
-    return {path + ": cannot be written"};
+    return {name + ": cannot be written"};
   }
   png_init_io(png, file);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
@@ -105,12 +103,7 @@ convert::Error write_png(const Image& image, const std::string& path) {
   }
   png_write_end(png, info);
   png_destroy_write_struct(&png, &info);
-  const bool closed = std::fclose(file) == 0;
-  if (!closed || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    return {path + ": cannot be written"};
-  }
-  return {};
+  return std::fclose(file) == 0 ? convert::Error{} : convert::Error{name + ": cannot be written"};
 }
 
 }  // namespace sinew::render

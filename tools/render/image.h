@@ -15,7 +15,8 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 };
 
-convert::Error write_png(const Image& image, const std::string& path);
+/// sRGB PNG at `path`; errors call it `name`.
+convert::Error write_png(const Image& image, const std::string& path, const std::string& name);
 
 /// PNG or JPEG file bytes to RGBA rows from the top. False when it is neither, or damaged.
 bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height,

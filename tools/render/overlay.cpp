@@ -6,67 +6,13 @@
 #include <cmath>
 #include <cstdio>
 
-#include "render/geometry.h"
+#include "render/pen.h"
 
 namespace sinew::render {
 namespace {
 
-struct Color {
-  double r, g, b, a = 1;
-};
-
-struct Pen {
-  cairo_t* cr;
-  double unit;  ///< one 720th of the height
-  Color text, dim, panel;
-
-  void set(const Color& c) const { cairo_set_source_rgba(cr, c.r, c.g, c.b, c.a); }
-  double write(double x, double y, double size, const std::string& s, const Color& c,
-               bool bold = false) const {
-    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL,
-                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cr, size * unit);
-    set(c);
-    cairo_move_to(cr, x * unit, y * unit);
-    cairo_show_text(cr, s.c_str());
-    cairo_text_extents_t e;
-    cairo_text_extents(cr, s.c_str(), &e);
-    return e.x_advance / unit;
-  }
-  double width(double size, const std::string& s, bool bold = false) const {
-    cairo_select_font_face(cr, "Inter", CAIRO_FONT_SLANT_NORMAL,
-                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cr, size * unit);
-    cairo_text_extents_t e;
-    cairo_text_extents(cr, s.c_str(), &e);
-    return e.x_advance / unit;
-  }
-  void box(double x, double y, double w, double h) const {
-    const double r = 9 * unit;
-    x *= unit, y *= unit, w *= unit, h *= unit;
-    cairo_new_sub_path(cr);
-    cairo_arc(cr, x + w - r, y + r, r, -M_PI / 2, 0);
-    cairo_arc(cr, x + w - r, y + h - r, r, 0, M_PI / 2);
-    cairo_arc(cr, x + r, y + h - r, r, M_PI / 2, M_PI);
-    cairo_arc(cr, x + r, y + r, r, M_PI, 1.5 * M_PI);
-    cairo_close_path(cr);
-    set(panel);
-    cairo_fill(cr);
-  }
-  void line(double x0, double y0, double x1, double y1, double thick, const Color& c) const {
-    set(c);
-    cairo_set_line_width(cr, thick * unit);
-    cairo_move_to(cr, x0 * unit, y0 * unit);
-    cairo_line_to(cr, x1 * unit, y1 * unit);
-    cairo_stroke(cr);
-  }
-};
-
-Color stress(float load) {
-  const Vec3<float> c = stress_color(load);
-  return {std::pow(double(c.x()), 0.4545), std::pow(double(c.y()), 0.4545), std::pow(double(c.z()), 0.4545),
-          1};
-}
+constexpr double kMargin = 24;
+constexpr double kSpan = 5;  ///< s of the torque curve
 
 std::string text(const char* format, double a, double b = 0) {
   char buffer[96];
@@ -74,107 +20,224 @@ std::string text(const char* format, double a, double b = 0) {
   return buffer;
 }
 
-void state_panel(const Pen& pen, const scene::Recording& rec, std::size_t index) {
+/// Median of the last steps, µs: readable, and one that waited for the processor does not count.
+double usual_cost(const scene::Recording& rec, std::size_t index) {
+  std::vector<float> last;
+  for (std::size_t i = index >= 8 ? index - 8 : 0; i <= index; ++i)
+    last.push_back(rec.frames[i].characters[0].microseconds);
+  std::nth_element(last.begin(), last.begin() + static_cast<std::ptrdiff_t>(last.size() / 2), last.end());
+  return double(last[last.size() / 2]);
+}
+
+void draw_state(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
   const scene::Frame& frame = rec.frames[index];
   const scene::CharacterFrame& c = frame.characters[0];
   const Skeleton& skeleton = rec.characters[0]->skeleton;
-  pen.box(24, 24, 330, 148);
-  pen.write(42, 58, 21, rec.title.substr(0, 26), pen.text, true);
-  pen.write(284, 58, 15, text("%.2f s", frame.time), pen.dim);
-  double us = 0;
-  int counted = 0;
-  for (std::size_t i = index >= 8 ? index - 8 : 0; i <= index; ++i, ++counted)
-    us += double(rec.frames[i].characters[0].microseconds);
+  const double left = at.x + 18, right = at.x + at.width - 18;
+  pen.box(at);
+  pen.write(left, at.y + 32, 20, pen.fitted(20, rec.title, 200, true), pen.text, true);
+  pen.write_right(right, at.y + 32, 15, text("%.2f s", frame.time), pen.dim);
   const bool playback = c.unknown_dofs == 0;
-  const Color state = playback ? Color{0.36, 0.78, 0.66} : stress(0.8f);
-  double x = 42 + pen.write(42, 90, 26, text("%.0f", c.unknown_dofs), state, true);
-  x += pen.write(x + 7, 90, 15, text("of %.0f DOFs unknown", c.total_dofs), pen.text) + 7;
-  pen.write(x + 9, 90, 15, playback ? "playback" : "solved", state);
-  pen.write(42, 116, 15, text("%.0f µs a step", counted ? us / counted : 0), pen.dim);
-  pen.write(190, 116, 15, text("strength %.0f %%", 100.0 * double(c.strength)), pen.dim);
+  const Color state = playback ? pen.calm : pen.warm;
+  double x = left + pen.write(left, at.y + 67, 28, text("%.0f", c.unknown_dofs), state, true) + 8;
+  pen.write(x, at.y + 67, 15, text("of %.0f DOFs unknown", c.total_dofs), pen.text);
+  const std::string word = playback ? "playback" : "solved";
+  pen.badge(right - pen.width(13, word, true) - 1.3 * 13, at.y + 66, 13, word, state);
+  pen.write(left, at.y + 93, 15, text("%.0f µs a step", usual_cost(rec, index)), pen.dim);
+  pen.write_right(right, at.y + 93, 15, text("strength %.0f %%", 100.0 * double(c.strength)), pen.dim);
   const int j = c.most_loaded_joint;
-  const std::string joint = j >= 0 ? skeleton.joints[static_cast<std::size_t>(j)].name : "";
   const float load = j >= 0 ? c.load[static_cast<std::size_t>(j)] : 0;
-  pen.write(42, 142, 15, joint.substr(0, 22) + text("  %.0f %% of its limit", 100.0 * double(load)), pen.dim);
-  for (int k = 0; k < 60; ++k)  // load bar in the ramp's own colours
-    pen.line(42 + 4.9 * k, 157, 42 + 4.9 * (k + 1), 157, 4,
-             double(k) / 60 < double(load) ? stress(float(k) / 60) : Color{0.5, 0.5, 0.55, 0.25});
+  if (j >= 0)
+    pen.write(left, at.y + 118, 15, pen.fitted(15, skeleton.joints[static_cast<std::size_t>(j)].name, 150),
+              pen.dim);
+  pen.write_right(right, at.y + 118, 15, text("%.0f %% of its limit", 100.0 * double(load)),
+                  load >= 0.995f ? pen.stress(1) : pen.dim);
+  pen.ramp({left, at.y + 130, right - left, 4}, double(load));
 }
 
-void curve_panel(const Pen& pen, const scene::Recording& rec, std::size_t index, double right) {
-  const double w = 372, h = 196, x0 = right - w - 24, y0 = 720 - h - 24;
-  const Skeleton& skeleton = rec.characters[0]->skeleton;
-  int joint = rec.plotted_joint;
-  if (joint < 0) {
-    std::vector<float> total(skeleton.joints.size(), 0);
-    for (const scene::Frame& f : rec.frames)
-      for (std::size_t i = 0; i < total.size(); ++i) total[i] += f.characters[0].load[i];
-    joint = static_cast<int>(std::max_element(total.begin(), total.end()) - total.begin());
-  }
-  const auto at = static_cast<std::size_t>(joint);
-  pen.box(x0, y0, w, h);
-  pen.write(x0 + 18, y0 + 28, 15, "Torque of " + skeleton.joints[at].name.substr(0, 18), pen.text, true);
-  const scene::CharacterFrame& now = rec.frames[index].characters[0];
-  pen.write(x0 + w - 96, y0 + 28, 14, text("%.0f N·m", double(now.torque[at])), stress(now.load[at]));
-  const double span = 5, end = std::max(span, rec.frames[index].time), begin = end - span;
-  double top = 1;
+void draw_legend(const Pen& pen, const Rect& at) {
+  pen.box(at);
+  pen.write(at.x + 14, at.y + 20, 12, "load / muscle limit", pen.dim);
+  pen.write_right(at.x + at.width - 14, at.y + 20, 12, "100 %", pen.dim);
+  pen.ramp({at.x + 14, at.y + 28, at.width - 28, 6}, 1);
+}
+
+/// Joint of the torque curve: the scene's, or the most loaded over the recording.
+std::size_t plotted_joint(const scene::Recording& rec) {
+  if (rec.plotted_joint >= 0) return static_cast<std::size_t>(rec.plotted_joint);
+  std::vector<float> total(rec.characters[0]->skeleton.joints.size(), 0);
   for (const scene::Frame& f : rec.frames)
-    top = std::max({top, std::abs(double(f.characters[0].torque[at])) * 1.1});
-  double limit_now = 0;
-  for (const scene::Frame& f : rec.frames) limit_now = std::max(limit_now, double(f.characters[0].limit[at]));
-  if (std::isfinite(limit_now) && limit_now < 3 * top) top = std::max(top, 1.15 * limit_now);
-  const double left = x0 + 52, bottom = y0 + 130, height = 88, plot_w = w - 70;
-  const auto px = [&](double t) { return left + plot_w * (t - begin) / span; };
-  const auto py = [&](double v) { return bottom - height / 2 - height / 2 * std::clamp(v / top, -1.0, 1.0); };
-  for (const double v : {top, 0.0, -top}) {
-    pen.line(left, py(v), left + plot_w, py(v), 1, {0.6, 0.63, 0.68, v == 0 ? 0.45 : 0.18});
-    pen.write(x0 + 14, py(v) + 4, 11, text("%.0f", v), pen.dim);
+    for (std::size_t i = 0; i < total.size(); ++i) total[i] += f.characters[0].load[i];
+  return static_cast<std::size_t>(std::max_element(total.begin(), total.end()) - total.begin());
+}
+
+/// A step of the vertical scale that gives two to four marks: 1, 2 or 5 times a power of ten.
+double nice_step(double top) {
+  const double decade = std::pow(10, std::floor(std::log10(top / 2)));
+  for (const double m : {5.0, 2.0})
+    if (m * decade * 2 <= top) return m * decade;
+  return decade;
+}
+
+void draw_chart(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
+  const std::size_t joint = plotted_joint(rec);
+  const scene::CharacterFrame& now = rec.frames[index].characters[0];
+  pen.box(at);
+  const std::string name = rec.characters[0]->skeleton.joints[joint].name;
+  pen.write(at.x + 18, at.y + 28, 15, pen.fitted(15, "Torque of " + name, 250, true), pen.text, true);
+  pen.write_right(at.x + at.width - 18, at.y + 28, 15, text("%.0f N·m", double(now.torque[joint])),
+                  now.load[joint] >= 0.995f ? pen.stress(1) : pen.calm, true);
+
+  const double begin = std::max(0.0, rec.frames[index].time - kSpan);
+  double low = 0, high = 1;
+  for (const scene::Frame& f : rec.frames) {
+    const scene::CharacterFrame& c = f.characters[0];
+    high = std::max(high, 1.12 * double(c.torque[joint]));
+    low = std::min(low, 1.12 * double(c.torque[joint]));
+    if (std::isfinite(c.limit[joint])) high = std::max(high, 1.12 * double(c.limit[joint]));
   }
-  const std::size_t step = 1;
-  for (std::size_t i = 1; i <= index; i += step) {
-    const scene::Frame &a = rec.frames[i - 1], &b = rec.frames[i];
-    if (a.time < begin) continue;
-    const scene::CharacterFrame &ca = a.characters[0], &cb = b.characters[0];
-    if (i % 4 < 2 && std::isfinite(cb.limit[at]) && cb.limit[at] < 3 * top)
-      for (const double side : {1.0, -1.0})
-        pen.line(px(a.time), py(side * double(ca.limit[at])), px(b.time), py(side * double(cb.limit[at])),
-                 1.2, {0.85, 0.8, 0.7, 0.55});
-    pen.line(px(a.time), py(double(ca.torque[at])), px(b.time), py(double(cb.torque[at])), 2.2,
-             stress(std::max(0.45f, cb.load[at])));
+  if (low < 0) low = -std::max(high, -low), high = -low;  // both directions: symmetric
+  const double left = at.x + 54, right = at.x + at.width - 18, top = at.y + 44,
+               bottom = at.y + at.height - 26;
+  const auto px = [&](double t) { return left + (right - left) * (t - begin) / kSpan; };
+  const auto py = [&](double v) { return bottom + (top - bottom) * (v - low) / (high - low); };
+  const double step = nice_step(high);
+  for (double v = low < 0 ? -std::floor(-low / step) * step : 0; v <= high + 1e-9; v += step) {
+    pen.line(left, py(v), right, py(v), 1, pen.faint);
+    pen.write_right(left - 8, py(v) + 4, 11, text("%.0f", v + 0.0), pen.dim);
   }
-  // Unknown degrees of freedom over the same span.
-  const double base = y0 + h - 16;
-  pen.write(x0 + 14, base - 2, 11, "DOFs", pen.dim);
-  for (std::size_t i = 0; i <= index; ++i) {
-    const scene::CharacterFrame& c = rec.frames[i].characters[0];
-    if (rec.frames[i].time < begin) continue;
-    const double x = px(rec.frames[i].time), share = c.total_dofs ? double(c.unknown_dofs) / c.total_dofs : 0;
-    pen.line(x, base, x, base - 1 - 26 * share, plot_w / (span * rec.frame_rate) + 0.4,
-             share > 0 ? stress(0.8f) : Color{0.36, 0.78, 0.66, 0.8});
+  for (double t = std::ceil(begin); t <= begin + kSpan + 1e-9; t += 1) {
+    const std::string label = text("%.0f s", t);
+    const double x = px(t), half = pen.width(11, label) / 2;
+    if (x - half >= left - 10 && x + half <= right + 6) pen.write(x - half, bottom + 17, 11, label, pen.dim);
   }
+
+  cairo_t* cr = pen.cairo();
+  const double u = pen.unit();
+  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  const std::size_t first = static_cast<std::size_t>(std::max(1.0, std::ceil(begin * rec.frame_rate)));
+  const double dashes[] = {4 * u, 4 * u};
+  for (const double side : {1.0, -1.0}) {
+    if (side < 0 && low >= 0) continue;
+    cairo_set_dash(cr, dashes, 2, 0);
+    cairo_set_line_width(cr, 1.4 * u);
+    pen.set(pen.warm.faded(0.8));
+    cairo_new_path(cr);
+    for (std::size_t i = first; i <= index; ++i) {
+      const float limit = rec.frames[i].characters[0].limit[joint];
+      if (!std::isfinite(limit)) continue;
+      cairo_line_to(cr, px(rec.frames[i].time) * u, py(side * double(limit)) * u);
+    }
+    cairo_stroke(cr);
+    cairo_set_dash(cr, nullptr, 0, 0);
+  }
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+  for (std::size_t i = first + 1; i <= index; ++i) {
+    const scene::CharacterFrame &a = rec.frames[i - 1].characters[0], &b = rec.frames[i].characters[0];
+    pen.line(px(rec.frames[i - 1].time), py(double(a.torque[joint])), px(rec.frames[i].time),
+             py(double(b.torque[joint])), 2.2, b.load[joint] >= 0.995f ? pen.stress(1) : pen.calm);
+  }
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+  if (index > 0) {
+    cairo_new_path(cr);
+    cairo_arc(cr, px(rec.frames[index].time) * u, py(double(now.torque[joint])) * u, 4 * u, 0, 2 * M_PI);
+    pen.set(now.load[joint] >= 0.995f ? pen.stress(1) : pen.calm);
+    cairo_fill(cr);
+  }
+}
+
+/// Share of unknown DOFs over the whole recording: the past in colour, what comes fainter.
+void draw_timeline(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
+  pen.box(at);
+  const std::string label = "unknown DOFs";
+  pen.write(at.x + 14, at.y + at.height / 2 + 4.5, 12, label, pen.dim);
+  const double left = at.x + 14 + pen.width(12, label) + 14, right = at.x + at.width - 16;
+  const double base = at.y + at.height - 6, room = at.height - 11;
+  const std::size_t count = rec.frames.size();
+  const double step = (right - left) / double(count), u = pen.unit();
+  const auto solved = [&](std::size_t i) { return rec.frames[i].characters[0].unknown_dofs > 0; };
+  for (std::size_t i = 0; i < count;) {  // one area for each run of one colour
+    const std::size_t begin = i;
+    cairo_move_to(pen.cairo(), (left + step * double(begin)) * u, base * u);
+    for (; i < count && solved(i) == solved(begin) && (i <= index) == (begin <= index); ++i) {
+      const scene::CharacterFrame& c = rec.frames[i].characters[0];
+      const double share = c.total_dofs > 0 ? double(c.unknown_dofs) / c.total_dofs : 0;
+      const double y = (base - 2 - (room - 2) * share) * u;
+      cairo_line_to(pen.cairo(), (left + step * double(i)) * u, y);
+      cairo_line_to(pen.cairo(), (left + step * double(i + 1)) * u, y);
+    }
+    cairo_line_to(pen.cairo(), (left + step * double(i)) * u, base * u);
+    pen.set((solved(begin) ? pen.warm : pen.calm).faded(begin <= index ? 1 : 0.28));
+    cairo_fill(pen.cairo());
+  }
+  const double x = left + step * (double(index) + 0.5);
+  pen.line(x, at.y + 4, x, at.y + at.height - 4, 1.6, pen.text);
+}
+
+/// One or two lines in the lower left, broken between words.
+void draw_caption(const Pen& pen, const Rect& room, const std::string& caption) {
+  constexpr double kSize = 19, kPad = 20, kLine = 25;
+  const double most = room.width - 2 * kPad;
+  std::vector<std::string> lines{caption};
+  if (pen.width(kSize, caption) > most) {
+    std::size_t cut = caption.rfind(' ');
+    while (cut != std::string::npos && cut > 0 && pen.width(kSize, caption.substr(0, cut)) > most)
+      cut = caption.rfind(' ', cut - 1);
+    if (cut != std::string::npos && cut > 0) lines = {caption.substr(0, cut), caption.substr(cut + 1)};
+  }
+  double width = 0;
+  for (std::string& line : lines) {
+    line = pen.fitted(kSize, line, most);
+    width = std::max(width, pen.width(kSize, line));
+  }
+  const double height = 20 + kLine * double(lines.size());
+  const double y = room.y + room.height - height;
+  pen.box({room.x, y, width + 2 * kPad, height});
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    pen.write(room.x + kPad, y + 29 + kLine * double(i), kSize, lines[i], pen.text);
 }
 
 }  // namespace
 
+Layout::Layout(int pixels_wide, int pixels_high)
+    : unit(std::min(pixels_high / 720.0, pixels_wide / 860.0)),
+      width(pixels_wide / unit),
+      height(pixels_high / unit) {
+  constexpr double kGap = 10;
+  state = {kMargin, kMargin, 330, 146};
+  legend = {width - kMargin - 210, kMargin, 210, 44};
+  timeline = {kMargin, height - 16 - 34, width - 2 * kMargin, 34};
+  const double lowest = timeline.y - kGap;
+  chart = {width - kMargin - 364, lowest - 186, 364, 186};
+  caption = {kMargin, lowest - 70, chart.x - kMargin - 2 * kGap, 70};
+}
+
 void draw_overlay(const scene::Recording& rec, std::size_t index, bool dark, Image& image) {
   if (rec.frames.empty() || rec.frames[index].characters.empty()) return;
-  cairo_surface_t* surface = cairo_image_surface_create_for_data(image.pixels.data(), CAIRO_FORMAT_RGB24,
-                                                                 image.width, image.height, image.width * 4);
-  cairo_t* cr = cairo_create(surface);
-  Pen pen{cr, image.height / 720.0, {}, {}, {}};
-  pen.text = dark ? Color{0.95, 0.96, 0.97} : Color{0.12, 0.14, 0.17};
-  pen.dim = dark ? Color{0.70, 0.73, 0.77} : Color{0.34, 0.37, 0.42};
-  pen.panel = dark ? Color{0.07, 0.08, 0.10, 0.72} : Color{1, 1, 1, 0.78};
-  state_panel(pen, rec, index);
-  curve_panel(pen, rec, index, image.width / pen.unit);
-  if (const std::string& caption = rec.frames[index].caption; !caption.empty()) {
-    const double w = pen.width(19, caption) + 40;
-    pen.box(24, 720 - 24 - 44, w, 44);
-    pen.write(44, 720 - 24 - 16, 19, caption, pen.text);
-  }
-  cairo_destroy(cr);
-  cairo_surface_finish(surface);
-  cairo_surface_destroy(surface);
+  const Layout layout(image.width, image.height);
+  const Pen pen(image, layout.unit, dark);
+  draw_state(pen, layout.state, rec, index);
+  draw_legend(pen, layout.legend);
+  draw_chart(pen, layout.chart, rec, index);
+  draw_timeline(pen, layout.timeline, rec, index);
+  if (const std::string& caption = rec.frames[index].caption; !caption.empty())
+    draw_caption(pen, layout.caption, caption);
+}
+
+void draw_title(const Asset& asset, bool dark, Image& image) {
+  const Skeleton& s = asset.skeleton;
+  int dofs = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(s.body_count); ++i)
+    dofs += dof_count(s.joints[i].type);
+  const Layout layout(image.width, image.height);
+  const Pen pen(image, layout.unit, dark);
+  const std::string facts =
+      text("%.0f joints · %.0f DOFs · ", double(s.joints.size()), dofs) + text("%.1f kg", s.total_mass());
+  const std::string name = pen.fitted(20, s.name, 420, true);
+  const double width = std::max(pen.width(20, name, true), pen.width(14, facts)) + 36;
+  pen.box({kMargin, kMargin, width, 66});
+  pen.write(kMargin + 18, kMargin + 30, 20, name, pen.text, true);
+  pen.write(kMargin + 18, kMargin + 52, 14, facts, pen.dim);
 }
 
 }  // namespace sinew::render

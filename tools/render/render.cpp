@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <optional>
 
+#include "render/camera.h"
 #include "render/overlay.h"
-#include "render/stage.h"
-#include "render/video.h"
+#include "render/sink.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew::render {
@@ -15,133 +16,166 @@ namespace {
 
 using convert::Error;
 
-Error check(const Options& o, const std::string& output) {
+bool one_of(const std::string& value, std::initializer_list<const char*> allowed) {
+  return std::find(allowed.begin(), allowed.end(), value) != allowed.end();
+}
+
+/// RRGGBB to 0 … 1 each.
+std::optional<Vec3<float>> parse_color(const std::string& text) {
+  if (text.size() != 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) return {};
+  const unsigned long value = std::stoul(text, nullptr, 16);
+  return Vec3<float>(float(value >> 16), float(value >> 8 & 255), float(value & 255)) / 255;
+}
+
+/// What is wrong, or nothing.
+std::string fault(const Options& o, const std::filesystem::path& output) {
+  const std::string size = std::to_string(o.width) + "x" + std::to_string(o.height);
   if (o.width < 16 || o.height < 16 || o.width > 8192 || o.height > 8192)
-    return {"size is not between 16 and 8192"};
-  if (o.width % 2 || o.height % 2)
-    return {"width and height must be even (" + std::to_string(o.width) + "x" + std::to_string(o.height) +
-            ")"};
-  if (o.samples != 1 && o.samples != 4) return {"samples are 1 or 4"};
-  if (o.theme != "dark" && o.theme != "light") return {"unknown theme '" + o.theme + "'"};
-  if (o.mode != "skin" && o.mode != "xray" && o.mode != "shapes") return {"unknown mode '" + o.mode + "'"};
-  if (!(o.fps >= 1 && o.fps <= 240)) return {"fps is not between 1 and 240"};
-  const std::string extension = std::filesystem::path(output).extension().string();
-  if (extension != ".mp4" && extension != ".webm" && extension != ".gif" && extension != ".png")
-    return {output + ": unknown kind of output; .mp4, .webm, .gif or .png"};
+    return "its size is not between 16 and 8192 (" + size + ")";
+  if (o.width % 2 || o.height % 2) return "width and height must be even (" + size + ")";
+  if (o.samples != 1 && o.samples != 4) return "samples are 1 or 4";
+  if (!one_of(o.quality, {"full", "fast"})) return "unknown quality '" + o.quality + "'";
+  if (!one_of(o.theme, {"dark", "light"})) return "unknown theme '" + o.theme + "'";
+  if (!o.background.empty() && !parse_color(o.background))
+    return "background '" + o.background + "' is not a colour RRGGBB";
+  if (!one_of(o.mode, {"skin", "xray", "shapes", "both"})) return "unknown mode '" + o.mode + "'";
+  if (!(o.fps >= 1 && o.fps <= 240)) return "fps is not between 1 and 240";
+  if (!(o.start >= 0)) return "start is not a time from 0 s on";
+  if (o.frames_per_revolution < 1) return "frames per revolution are not positive";
+  if (o.threads < 1 || o.threads > 64) return "encoder threads are not between 1 and 64";
+  if (!one_of(output.extension().string(), {".mp4", ".webm", ".gif", ".png"}))
+    return "unknown kind of output; .mp4, .webm, .gif or .png";
   std::error_code ignored;
-  const auto parent = std::filesystem::path(output).parent_path();
-  if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
-    return {output + ": its directory does not exist"};
+  if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path(), ignored))
+    return "its directory does not exist";
   return {};
 }
 
-/// Pictures or a video, by the output's name.
-class Sink {
+Error check(const Options& o, const std::string& output) {
+  const std::string found = fault(o, output);
+  return found.empty() ? Error{} : Error{output + ": " + found};
+}
+
+void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look look, Geometry& out) {
+  const Vec3<float> ball(0.50f, 0.17f, 0.07f), wall(0.30f, 0.33f, 0.38f);
+  out.clear();
+  for (std::size_t c = 0; c < rec.characters.size(); ++c)
+    append_character(*rec.characters[c], frame.characters[c], look, out);
+  for (std::size_t p = 0; p < rec.props.size(); ++p)
+    if (frame.props[p].world.translation.z() > -100)  // parked below until it is launched
+      append_shape(rec.props[p].shape, rec.props[p].size, frame.props[p].world, ball, out);
+  for (const Collider& c : rec.obstacles)
+    append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), wall, out);
+}
+
+/// A thin dark line between two pictures.
+void draw_seam(Image& image) {
+  const std::size_t row = std::size_t(image.width) * 4;
+  for (std::size_t y = 0; y < std::size_t(image.height); ++y)
+    for (std::size_t k = row / 2 - 4; k < row / 2 + 4; ++k) image.pixels[y * row + k] /= 2;
+}
+
+/// One picture per look, side by side.
+class Painter {
  public:
-  Error open(const std::string& output, const Options& o) {
-    output_ = output;
-    if (std::filesystem::path(output).extension() == ".png") return {};
-    Error error;
-    video_ = VideoWriter::create(output, o.width, o.height, o.fps, o.threads, error);
-    return error;
-  }
-  Error add(const Image& image) {
-    if (video_) return video_->add(image);
-    char name[1024];
-    const bool pattern = output_.find('%') != std::string::npos;
-    if (pattern && !numbered()) return {output_ + ": the number in it is not like %04d"};
-    if (!pattern) {
-      if (count_++ > 0) return {};
-      return write_png(image, output_);
+  /// `clear`: of two figures each moves towards the middle, clear of the overlay's panels.
+  static Error create(const Options& o, bool clear, std::unique_ptr<Painter>& out) {
+    out.reset(new Painter);
+    if (o.mode == "both") {
+      out->looks_ = {Look::kSkin, Look::kXray};
+    } else {
+      out->looks_ = {o.mode == "xray" ? Look::kXray : (o.mode == "shapes" ? Look::kShapes : Look::kSkin)};
     }
-    const auto at = output_.find('%'), d = output_.find('d', at);
-    const int digits = std::max(1, std::atoi(output_.c_str() + at + 1));
-    std::snprintf(name, sizeof name, "%s%0*d%s", output_.substr(0, at).c_str(), digits, count_++,
-                  output_.substr(d + 1).c_str());
-    return write_png(image, name);
+    StageOptions stage{o.width / static_cast<int>(out->looks_.size()),
+                       o.height,
+                       o.samples,
+                       o.theme == "dark",
+                       o.quality == "full",
+                       parse_color(o.background)};
+    out->aspect_ = float(stage.width) / float(stage.height);
+    if (out->looks_.size() == 2 && clear) out->shift_ = 0.5f;
+    out->width_ = o.width;
+    std::string why;
+    out->stage_ = Stage::create(stage, why);
+    return out->stage_ ? Error{} : Error{"renderer: " + why};
   }
-  Error finish() { return video_ ? video_->finish() : Error{}; }
-  bool single() const { return !video_ && output_.find('%') == std::string::npos; }
+
+  /// Of the room that the figure has.
+  float aspect() const { return aspect_ * (1 - 0.6f * shift_); }
+
+  void paint(const scene::Recording& rec, const scene::Frame& frame, const View& view, float ground,
+             Image& out) {
+    if (looks_.size() == 1) {
+      append_frame(rec, frame, looks_[0], geometry_);
+      stage_->draw(geometry_, view, ground, out);
+      return;
+    }
+    for (std::size_t part = 0; part < looks_.size(); ++part) {
+      append_frame(rec, frame, looks_[part], geometry_);
+      View own = view;
+      own.shift = part == 0 ? shift_ : -shift_;
+      stage_->draw(geometry_, own, ground, part_);
+      out.width = width_;
+      out.height = part_.height;
+      const std::size_t row = std::size_t(width_) * 4, piece = std::size_t(part_.width) * 4;
+      out.pixels.resize(row * std::size_t(out.height));
+      for (std::size_t y = 0; y < std::size_t(out.height); ++y)
+        std::memcpy(&out.pixels[y * row + part * piece], &part_.pixels[y * piece], piece);
+    }
+    draw_seam(out);
+  }
 
  private:
-  bool numbered() const {
-    const auto at = output_.find('%'), d = output_.find('d', at);
-    if (d == std::string::npos || d - at > 3) return false;
-    return std::all_of(output_.begin() + static_cast<std::ptrdiff_t>(at) + 1,
-                       output_.begin() + static_cast<std::ptrdiff_t>(d), ::isdigit) &&
-           output_.find('%', d) == std::string::npos;
-  }
-  std::string output_;
-  std::unique_ptr<VideoWriter> video_;
-  int count_ = 0;
+  Painter() = default;
+  std::vector<Look> looks_;
+  std::unique_ptr<Stage> stage_;
+  float aspect_ = 1, shift_ = 0;
+  int width_ = 0;
+  Geometry geometry_;
+  Image part_;
 };
 
-Look look_of(const Options& o) {
-  return o.mode == "xray" ? Look::kXray : (o.mode == "shapes" ? Look::kShapes : Look::kSkin);
+/// Which recorded frame each picture shows: the nearest in time.
+std::vector<std::size_t> pick_frames(const scene::Recording& rec, const Options& o, bool single) {
+  const double duration = rec.frames.back().time - rec.frames.front().time - o.start;
+  const int total = single ? 1 : std::max(1, static_cast<int>(std::lround(duration * o.fps)));
+  std::vector<std::size_t> picked;
+  picked.reserve(static_cast<std::size_t>(total));
+  for (int n = 0; n < total; ++n)
+    picked.push_back(std::min(rec.frames.size() - 1,
+                              static_cast<std::size_t>(std::lround((o.start + n / o.fps) * rec.frame_rate))));
+  return picked;
 }
 
-struct Bounds {
-  Vec3<float> low = Vec3<float>::Constant(1e9f), high = Vec3<float>::Constant(-1e9f);
-  void add(const Vec3<float>& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+/// A recording of the asset's clip or rest pose, one frame per picture.
+scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const Clip* clip, const Options& o,
+                              int frames) {
+  const Skeleton& s = asset->skeleton;
+  std::vector<JointJet<float>> jets(s.joints.size());
+  for (std::size_t i = 0; i < jets.size(); ++i) {
+    jets[i].rotation = s.joints[i].rest.rotation.cast<float>();
+    jets[i].translation = s.joints[i].rest.translation.cast<float>();
   }
-};
-
-/// Box of a character: collider ends, or joints where there are none.
-void add_bounds(const Asset& asset, const scene::CharacterFrame& f, Bounds& b) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(asset.skeleton.body_count); ++i)
-    b.add(f.model[i].translation);
-  for (const Collider& c : asset.skeleton.colliders) {
-    const Transform<float> x = f.model[static_cast<std::size_t>(c.joint)] * c.local.cast<float>();
-    const float reach = c.shape == Shape::kBox ? float(c.size.maxCoeff()) : float(c.size.x());
-    for (const float side : {1.f, -1.f}) {
-      const Vec3<float> end =
-          x * Vec3<float>(0, 0, side * float(c.shape == Shape::kCapsule ? c.size.z() : 0));
-      b.add(end + Vec3<float>::Constant(reach));
-      b.add(end - Vec3<float>::Constant(reach));
+  scene::Recording rec;
+  rec.title = s.name;
+  rec.frame_rate = o.fps;
+  rec.characters = {asset};
+  for (int n = 0; n < frames; ++n) {
+    const double time = o.start + n / o.fps;
+    if (clip) SamplingJob<float>{clip, time, 1, jets}.Run();
+    scene::CharacterFrame pose;
+    pose.load.assign(s.joints.size(), 0);
+    for (std::size_t i = 0; i < jets.size(); ++i) {
+      const Transform<float> local{jets[i].rotation, jets[i].translation};
+      const int parent = s.joints[i].parent;
+      pose.model.push_back(parent < 0 ? local : pose.model[static_cast<std::size_t>(parent)] * local);
     }
+    scene::Frame frame;
+    frame.time = time;
+    frame.characters = {std::move(pose)};
+    rec.frames.push_back(std::move(frame));
   }
-}
-
-/// Camera for every frame: the recording's, or fitted to the first frame's character and following it
-/// smoothly.
-std::vector<View> plan_camera(const scene::Recording& rec) {
-  std::vector<View> views(rec.frames.size());
-  Bounds first;
-  for (std::size_t c = 0; c < rec.characters.size(); ++c)
-    add_bounds(*rec.characters[c], rec.frames[0].characters[c], first);
-  if (rec.characters.empty()) first = {Vec3<float>::Constant(-1), Vec3<float>::Constant(1)};
-  const float size = std::max(0.1f, (first.high - first.low).norm());
-  const float fov = rec.camera.vertical_fov_deg * 3.14159265f / 180;
-  Vec3<float> direction = rec.camera.eye - rec.camera.target;
-  Vec3<float> target = rec.camera.target;
-  float distance = direction.norm();
-  direction /= std::max(1e-6f, distance);
-  if (rec.camera.frame_automatically) {
-    target = (first.low + first.high) / 2;
-    target.z() = first.low.z() + 0.47f * (first.high.z() - first.low.z());
-    distance = 0.78f * size / std::tan(fov / 2);
-  }
-  const int follow = rec.camera.follow_character;
-  Vec3<float> start = Vec3<float>::Zero(), smooth = Vec3<float>::Zero();
-  const float keep = std::exp(-1.f / (0.45f * float(rec.frame_rate)));
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    Vec3<float> shift = Vec3<float>::Zero();
-    if (follow >= 0 && follow < static_cast<int>(rec.characters.size())) {
-      Vec3<float> root = rec.frames[i].characters[static_cast<std::size_t>(follow)].model[0].translation;
-      root.z() = 0;
-      if (i == 0) start = smooth = root;
-      smooth = keep * smooth + (1 - keep) * root;
-      shift = smooth - start;
-    }
-    views[i] = {target + shift + distance * direction, target + shift, fov, 1.6f * size};
-  }
-  return views;
-}
-
-Error unavailable(const std::string& what) {
-  return {"renderer: " + what};
+  return rec;
 }
 
 }  // namespace
@@ -150,95 +184,52 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
                        const std::function<void(int, int)>& progress) {
   if (Error error = check(o, output)) return error;
   if (rec.frames.empty()) return {"the recording has no frames"};
-  std::string why;
-  const auto stage = Stage::create(o.width, o.height, o.samples, o.theme == "dark", why);
-  if (!stage) return unavailable(why);
-  Sink sink;
-  if (Error error = sink.open(output, o)) return error;
-  const std::vector<View> views = plan_camera(rec);
-  const double duration = rec.frames.back().time - rec.frames.front().time;
-  const int total = sink.single() ? 1 : std::max(1, static_cast<int>(std::lround(duration * o.fps)));
-  Geometry geometry;
+  if (o.start > rec.frames.back().time - rec.frames.front().time)
+    return {output + ": start is after the end of the recording"};
+  std::unique_ptr<Painter> painter;
+  if (Error error = Painter::create(o, o.overlay, painter)) return error;
+  Error error;
+  const auto sink = Sink::open(output, o, error);
+  if (!sink) return error;
+  const std::vector<View> views = plan_camera(rec, painter->aspect());
+  const std::vector<std::size_t> picked = pick_frames(rec, o, sink->single());
   Image image;
-  for (int n = 0; n < total; ++n) {
-    const auto index =
-        std::min(rec.frames.size() - 1, static_cast<std::size_t>(std::lround(n / o.fps * rec.frame_rate)));
-    const scene::Frame& frame = rec.frames[index];
-    geometry.clear();
-    for (std::size_t c = 0; c < rec.characters.size(); ++c)
-      append_character(*rec.characters[c], frame.characters[c], look_of(o), geometry);
-    for (std::size_t p = 0; p < rec.props.size(); ++p)
-      if (frame.props[p].world.translation.z() > -100)
-        append_shape(rec.props[p].shape, rec.props[p].size, frame.props[p].world, {0.55f, 0.22f, 0.10f},
-                     geometry);
-    for (const Collider& c : rec.obstacles)
-      append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), {0.30f, 0.33f, 0.38f}, geometry);
-    stage->draw(geometry, views[index], 0, image);
-    if (o.overlay) draw_overlay(rec, index, o.theme == "dark", image);
-    if (Error error = sink.add(image)) return error;
-    if (progress) progress(n + 1, total);
+  for (std::size_t n = 0; n < picked.size(); ++n) {
+    painter->paint(rec, rec.frames[picked[n]], views[picked[n]], 0, image);
+    if (o.overlay) draw_overlay(rec, picked[n], o.theme == "dark", image);
+    if (error = sink->add(image); error) return error;
+    if (progress) progress(static_cast<int>(n) + 1, static_cast<int>(picked.size()));
   }
-  return sink.finish();
+  return sink->finish();
 }
 
-Error render_asset(std::shared_ptr<const Asset> asset, const Options& o, const std::string& output,
+Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, const std::string& output,
                    const std::function<void(int, int)>& progress) {
   if (Error error = check(o, output)) return error;
-  const Skeleton& s = asset->skeleton;
-  int clip = -1;
-  if (!o.clip.empty() && (clip = asset->find_clip(o.clip)) < 0) return {"unknown clip '" + o.clip + "'"};
-  std::string why;
-  const auto stage = Stage::create(o.width, o.height, o.samples, o.theme == "dark", why);
-  if (!stage) return unavailable(why);
-  Sink sink;
-  if (Error error = sink.open(output, o)) return error;
-  const int total = sink.single() ? 1 : o.frames_per_revolution;
-  Geometry geometry;
+  const int clip = o.clip.empty() ? -1 : asset->find_clip(o.clip);
+  if (!o.clip.empty() && clip < 0) return {asset->skeleton.name + ": no clip '" + o.clip + "'"};
+  const Clip* played = clip < 0 ? nullptr : &asset->clips[static_cast<std::size_t>(clip)];
+  std::unique_ptr<Painter> painter;
+  if (Error error = Painter::create(o, false, painter)) return error;
+  Error error;
+  const auto sink = Sink::open(output, o, error);
+  if (!sink) return error;
+  const bool turning = o.turntable || !played;
+  const int total = sink->single() ? 1
+                    : turning      ? o.frames_per_revolution
+                                   : std::max(1, static_cast<int>(std::lround(played->duration * o.fps)));
+  const scene::Recording rec = record_asset(asset, played, o, total);
+  const std::vector<View> views =
+      plan_turntable(rec, painter->aspect(), turning ? o.frames_per_revolution : 0);
+  const float ground = lowest_point(rec);
   Image image;
-  std::vector<JointJet<float>> jets(s.joints.size());
-  scene::CharacterFrame frame;
-  frame.load.assign(s.joints.size(), 0);
-  frame.model.resize(s.joints.size());
-  View view;
-  float ground = 0;
-  for (int n = 0; n < total; ++n) {
-    if (clip >= 0) {
-      SamplingJob<float>{&asset->clips[static_cast<std::size_t>(clip)], n / o.fps, 1, jets}.Run();
-    } else {
-      for (std::size_t i = 0; i < jets.size(); ++i) {
-        jets[i].rotation = s.joints[i].rest.rotation.cast<float>();
-        jets[i].translation = s.joints[i].rest.translation.cast<float>();
-      }
-    }
-    for (std::size_t i = 0; i < jets.size(); ++i) {
-      const Transform<float> local{jets[i].rotation, jets[i].translation};
-      frame.model[i] =
-          s.joints[i].parent < 0 ? local : frame.model[static_cast<std::size_t>(s.joints[i].parent)] * local;
-    }
-    Bounds bounds;
-    add_bounds(*asset, frame, bounds);
-    if (n == 0 || clip >= 0) {
-      const float size = std::max(0.05f, (bounds.high - bounds.low).norm());
-      if (n == 0) {
-        ground = bounds.low.z();
-        view.light_radius = 1.3f * size;
-        view.vertical_fov = 0.5f;
-      }
-      view.target = (bounds.low + bounds.high) / 2;
-      view.eye.x() = 0.72f * size / std::tan(view.vertical_fov / 2);
-    }
-    const float angle =
-        -0.6f + (o.turntable ? 2 * 3.14159265f * float(n) / float(o.frames_per_revolution) : 0);
-    const float distance =
-        0.62f * std::max(0.05f, (bounds.high - bounds.low).norm()) / std::tan(view.vertical_fov / 2);
-    view.eye = view.target + distance * Vec3<float>(std::cos(angle) * 0.97f, std::sin(angle) * 0.97f, 0.22f);
-    geometry.clear();
-    append_character(*asset, frame, look_of(o), geometry);
-    stage->draw(geometry, view, ground, image);
-    if (Error error = sink.add(image)) return error;
-    if (progress) progress(n + 1, total);
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    painter->paint(rec, rec.frames[n], views[n], ground, image);
+    if (o.overlay) draw_title(*asset, o.theme == "dark", image);
+    if (error = sink->add(image); error) return error;
+    if (progress) progress(static_cast<int>(n) + 1, total);
   }
-  return sink.finish();
+  return sink->finish();
 }
 
 }  // namespace sinew::render

@@ -10,27 +10,30 @@
 namespace sinew::render {
 
 struct Options {
-  int width = 1280, height = 720;
+  int width = 1280, height = 720;  ///< pixels, even
   double fps = 30;
-  int samples = 4;             ///< MSAA of the figure, 1 or 4
-  std::string theme = "dark";  ///< dark | light
-  std::string mode =
-      "skin";  ///< skin | xray (muscle spindles coloured by load, translucent mesh beside) | shapes
+  int samples = 4;               ///< multisampling, 1 or 4
+  std::string quality = "full";  ///< full: ambient occlusion, softer shadows | fast
+  std::string theme = "dark";    ///< dark | light
+  std::string background;        ///< RRGGBB, sRGB: one colour instead of the theme's sky; empty: the sky
+  std::string mode = "skin";     ///< skin | xray: muscles coloured by load in translucent skin | shapes |
+                                 ///< both: skin on the left, xray on the right
   bool overlay = true;
-  bool turntable = false;
+  double start = 0;        ///< s: scenes begin here; the moment of a single picture
+  bool turntable = false;  ///< assets: the camera goes round
   int frames_per_revolution = 120;
-  std::string clip;  ///< assets: clip played during the turntable; empty: rest pose
-  int threads = 4;   ///< video encoder threads: fixed, so that two runs give identical frames
+  std::string clip;  ///< assets: clip to play; empty: rest pose on the turntable
+  int threads = 4;   ///< of the video encoder: fixed, so that two runs give identical frames
 };
 
-/// Writes OUT by its extension: .mp4, .webm, .gif, or a directory/pattern ending in .png (frame_%04d.png; a
-/// plain "x.png" with one frame). Atomic: nothing half-written is left behind. `progress(done, total)` may be
-/// empty.
+/// Writes OUT by its extension: .mp4, .webm, .gif or .png (frame_%04d.png for all frames, x.png for one).
+/// Atomic: nothing half-written is left behind. `progress(done, total)` may be empty.
 convert::Error render_recording(const scene::Recording& recording, const Options& options,
                                 const std::string& output, const std::function<void(int, int)>& progress);
 
-/// Turntable (or clip playback) of an asset on its own.
-convert::Error render_asset(std::shared_ptr<const Asset> asset, const Options& options,
+/// An asset on its own: one revolution of the turntable, or one pass of a clip (with `turntable` too: one
+/// revolution while the clip plays).
+convert::Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& options,
                             const std::string& output, const std::function<void(int, int)>& progress);
 
 }  // namespace sinew::render

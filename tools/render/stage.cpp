@@ -10,8 +10,21 @@ namespace sinew::render {
 namespace {
 
 constexpr int kShadowSize = 2048;
+constexpr float kShadowReach = 3.2f;  ///< times `unit`: m around the target that the shadow map covers
 
 using Mat4 = Eigen::Matrix4f;
+
+/// Light and colours: linear, except fog and zenith, which are as shown.
+struct Theme {
+  Vec3<float> key, sky, ground, line, rim, fog, zenith;
+  float pool;  ///< how much the floor darkens away from the figure
+};
+const Theme kDark{
+    {1.95f, 1.74f, 1.48f}, {0.24f, 0.30f, 0.40f},   {0.070f, 0.078f, 0.092f}, {0.30f, 0.35f, 0.42f},
+    {0.34f, 0.46f, 0.62f}, {0.165f, 0.185f, 0.22f}, {0.055f, 0.062f, 0.080f}, 0.75f};
+const Theme kLight{
+    {1.75f, 1.64f, 1.50f}, {0.42f, 0.47f, 0.54f},  {0.36f, 0.37f, 0.39f}, {0.16f, 0.18f, 0.21f},
+    {0.16f, 0.19f, 0.24f}, {0.86f, 0.875f, 0.90f}, {0.70f, 0.77f, 0.86f}, 0.12f};
 
 Mat4 look_at(const Vec3<float>& eye, const Vec3<float>& target) {
   const Vec3<float> back = (eye - target).normalized();
@@ -25,10 +38,11 @@ Mat4 look_at(const Vec3<float>& eye, const Vec3<float>& target) {
   return m;
 }
 
-Mat4 perspective(float fov, float aspect, float near, float far) {
+Mat4 perspective(float fov, float aspect, float shift, float near, float far) {
   const float f = 1 / std::tan(fov / 2);
   Mat4 m = Mat4::Zero();
   m(0, 0) = f / aspect;
+  m(0, 2) = -shift;
   m(1, 1) = f;
   m(2, 2) = (far + near) / (near - far);
   m(2, 3) = 2 * far * near / (near - far);
@@ -36,34 +50,66 @@ Mat4 perspective(float fov, float aspect, float near, float far) {
   return m;
 }
 
+/// OpenGL takes places in a buffer, in bytes, as pointers.
+const void* in_buffer(std::size_t offset) {
+  return reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)
+}
+
 }  // namespace
 
-std::unique_ptr<Stage> Stage::create(int width, int height, int samples, bool dark, std::string& error) {
+/// What a frame's passes share.
+struct Stage::Matrices {
+  Mat4 view_projection, light;
+  Vec3<float> light_direction;
+  float near, far;
+
+  Matrices(const View& view, float aspect) {
+    const float distance = (view.eye - view.target).norm();
+    near = 0.04f * distance;
+    far = 30 * distance + 60 * view.unit;
+    view_projection =
+        perspective(view.vertical_fov, aspect, view.shift, near, far) * look_at(view.eye, view.target);
+    // The key light stands high to the left of the camera, as in a studio: also around a turntable.
+    Vec3<float> toward = view.eye - view.target;
+    toward.z() = 0;
+    toward = toward.norm() > 1e-4f * distance ? Vec3<float>(toward.normalized()) : Vec3<float>::UnitX();
+    const Vec3<float> left = toward.cross(Vec3<float>::UnitZ());
+    light_direction = (0.45f * toward + 0.70f * left + 0.95f * Vec3<float>::UnitZ()).normalized();
+    const float reach = kShadowReach * view.unit;
+    Mat4 projection = Mat4::Identity();
+    projection(0, 0) = projection(1, 1) = 1 / reach;
+    projection(2, 2) = -1 / (5 * reach);
+    projection(2, 3) = -1;
+    light = projection * look_at(view.target + light_direction * (5 * reach), view.target);
+  }
+};
+
+std::unique_ptr<Stage> Stage::create(const StageOptions& options, std::string& error) {
   std::unique_ptr<Stage> stage(new Stage);
   stage->context_ = Context::create(error);
   if (!stage->context_) return nullptr;
-  stage->width_ = width;
-  stage->height_ = height;
-  stage->samples_ = samples;
-  stage->dark_ = dark;
+  stage->options_ = options;
   return stage->set_up(error) ? std::move(stage) : nullptr;
 }
 
-GLuint Stage::program(const char* vertex, const char* fragment, std::string& error) {
+GLuint Stage::program(const char* vertex, const char* fragment, const std::string& defines,
+                      std::string& error) {
   const Gl& gl = context_->gl();
   const GLuint made = gl.CreateProgram();
+  const std::string head =
+      "#version 330 core\n#define SHADOW_TAPS " + std::string(options_.fine ? "16\n" : "6\n") + defines;
   for (const auto& [kind, source] :
        {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
     const GLuint shader = gl.CreateShader(kind);
-    const char* parts[] = {kCommon, source};
-    gl.ShaderSource(shader, 2, parts, nullptr);
+    const char* parts[] = {head.c_str(), kUniforms, kind == GL_FRAGMENT_SHADER ? kShading : "", source};
+    gl.ShaderSource(shader, 4, parts, nullptr);
     gl.CompileShader(shader);
     GLint ok = 0;
     gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
     if (!ok) {
       char log[512] = {};
       gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-      error = std::string("shader: ") + log;
+      error = "shader: " + std::string(log, std::strcspn(log, "\n"));
       return 0;
     }
     gl.AttachShader(made, shader);
@@ -72,29 +118,59 @@ GLuint Stage::program(const char* vertex, const char* fragment, std::string& err
   gl.LinkProgram(made);
   GLint ok = 0;
   gl.GetProgramiv(made, GL_LINK_STATUS, &ok);
-  if (!ok) error = "shaders do not link";
-  return ok ? made : 0;
+  if (!ok) {
+    error = "shaders do not link";
+    return 0;
+  }
+  gl.UseProgram(made);
+  gl.Uniform1i(gl.GetUniformLocation(made, "shadow_map"), 0);
+  gl.Uniform1i(gl.GetUniformLocation(made, "albedo_map"), 1);
+  gl.Uniform1i(gl.GetUniformLocation(made, "occlusion_map"), 2);
+  gl.Uniform1i(gl.GetUniformLocation(made, "depth_map"), 2);
+  return made;
 }
 
 bool Stage::set_up(std::string& error) {
-  const Gl& gl = context_->gl();
-  figure_ = program(kFigureVertex, kFigureFragment, error);
-  ground_ = program(kGroundVertex, kGroundFragment, error);
-  sky_ = program(kSkyVertex, kSkyFragment, error);
-  shadow_ = program(kShadowVertex, kShadowFragment, error);
-  if (!figure_ || !ground_ || !sky_ || !shadow_) return false;
+  const std::string open = options_.fine ? "#define OCCLUSION\n" : "";
+  figure_ = program(kFigureVertex, kFigureFragment, open, error);
+  shell_ = program(kFigureVertex, kFigureFragment, "#define SHELL\n", error);
+  ground_ = program(kGroundVertex, kGroundFragment, open, error);
+  sky_ = program(kSkyVertex, kSkyFragment, "", error);
+  depth_ = program(kDepthVertex, kDepthFragment, "", error);
+  if (!figure_ || !shell_ || !ground_ || !sky_ || !depth_) return false;
+  if (options_.fine) {
+    floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
+    obscurance_ = program(kScreenVertex, kObscuranceFragment, "", error);
+    blur_ = program(kScreenVertex, kBlurFragment, "", error);
+    if (!floor_depth_ || !obscurance_ || !blur_) return false;
+  }
+  set_up_vertices();
+  if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) ||
+      !set_up_target(multi_target_, options_.samples) || !set_up_target(single_target_, 1)) {
+    error = "no framebuffer of that size";
+    return false;
+  }
+  return true;
+}
 
-  gl.GenTextures(1, &shadow_map_);
-  gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, 0, GL_DEPTH_COMPONENT,
-                GL_UNSIGNED_INT, nullptr);
-  for (const auto& [name, value] : {std::pair<GLenum, GLint>{GL_TEXTURE_MIN_FILTER, GL_LINEAR},
-                                    {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER},
-                                    {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER},
-                                    {GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE},
-                                    {GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL}})
-    gl.TexParameteri(GL_TEXTURE_2D, name, value);
+GLuint Stage::map(GLint format, GLenum channels, int width, int height, GLint filter) {
+  const Gl& gl = context_->gl();
+  GLuint made = 0;
+  gl.GenTextures(1, &made);
+  gl.BindTexture(GL_TEXTURE_2D, made);
+  gl.TexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, GL_FLOAT, nullptr);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  return made;
+}
+
+bool Stage::set_up_shadow() {
+  const Gl& gl = context_->gl();
+  shadow_map_ = map(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, kShadowSize, kShadowSize, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   const float lit[4] = {1, 1, 1, 1};
   gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
   gl.GenFramebuffers(1, &shadow_target_);
@@ -102,28 +178,50 @@ bool Stage::set_up(std::string& error) {
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map_, 0);
   gl.DrawBuffer(GL_NONE);
   gl.ReadBuffer(GL_NONE);
+  return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
 
-  const auto target = [&](GLuint& framebuffer, int samples) {
-    GLuint buffers[2];
-    gl.GenRenderbuffers(2, buffers);
-    gl.GenFramebuffers(1, &framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    for (int k = 0; k < 2; ++k) {
-      gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[k]);
-      const GLenum format = k == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT24;
-      if (samples > 1)
-        gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width_, height_);
-      else
-        gl.RenderbufferStorage(GL_RENDERBUFFER, format, width_, height_);
-      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
-                                 GL_RENDERBUFFER, buffers[k]);
-    }
-    return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  };
-  if (!target(multi_target_, samples_) || !target(single_target_, 1)) {
-    error = "no framebuffer of that size";
-    return false;
+bool Stage::set_up_occlusion() {
+  const Gl& gl = context_->gl();
+  const int width = half_width(), height = half_height();
+  half_depth_ = map(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width, height, GL_NEAREST);
+  gl.GenFramebuffers(1, &half_target_);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, half_depth_, 0);
+  gl.DrawBuffer(GL_NONE);
+  gl.ReadBuffer(GL_NONE);
+  bool complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  gl.GenFramebuffers(2, open_target_);
+  for (int k = 0; k < 2; ++k) {
+    open_map_[k] = map(GL_RG16F, GL_RG, width, height, GL_NEAREST);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[k]);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, open_map_[k], 0);
+    complete &= gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   }
+  return complete;
+}
+
+bool Stage::set_up_target(GLuint& framebuffer, int samples) {
+  const Gl& gl = context_->gl();
+  GLuint buffers[2];
+  gl.GenRenderbuffers(2, buffers);
+  gl.GenFramebuffers(1, &framebuffer);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  for (int k = 0; k < 2; ++k) {
+    gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[k]);
+    const GLenum format = k == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT24;
+    if (samples > 1)
+      gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, options_.width, options_.height);
+    else
+      gl.RenderbufferStorage(GL_RENDERBUFFER, format, options_.width, options_.height);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
+                               GL_RENDERBUFFER, buffers[k]);
+  }
+  return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+void Stage::set_up_vertices() {
+  const Gl& gl = context_->gl();
   gl.GenVertexArrays(1, &empty_array_);
   gl.GenVertexArrays(1, &array_);
   gl.BindVertexArray(array_);
@@ -133,8 +231,7 @@ bool Stage::set_up(std::string& error) {
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
   const auto attribute = [&](GLuint index, GLint size, std::size_t offset) {
     gl.EnableVertexAttribArray(index);
-    gl.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                           reinterpret_cast<const void*>(offset));
+    gl.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(Vertex), in_buffer(offset));
   };
   attribute(0, 3, offsetof(Vertex, position));
   attribute(1, 3, offsetof(Vertex, normal));
@@ -145,7 +242,6 @@ bool Stage::set_up(std::string& error) {
   gl.BindTexture(GL_TEXTURE_2D, white_);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  return true;
 }
 
 GLuint Stage::texture(const Material* material) {
@@ -168,118 +264,156 @@ GLuint Stage::texture(const Material* material) {
   return made;
 }
 
+void Stage::use(GLuint program, const Matrices& m, const View& view, float ground) {
+  const Gl& gl = context_->gl();
+  const Theme& theme = options_.dark ? kDark : kLight;
+  gl.UseProgram(program);
+  const auto place = [&](const char* name) { return gl.GetUniformLocation(program, name); };
+  const auto vec = [&](const char* name, const Vec3<float>& v) {
+    gl.Uniform3f(place(name), v.x(), v.y(), v.z());
+  };
+  gl.UniformMatrix4fv(place("view_projection"), 1, GL_FALSE, m.view_projection.data());
+  gl.UniformMatrix4fv(place("light_matrix"), 1, GL_FALSE, m.light.data());
+  vec("eye", view.eye);
+  vec("target", view.target);
+  vec("light_direction", m.light_direction);
+  vec("key_color", theme.key);
+  vec("sky_color", theme.sky);
+  vec("ground_color", theme.ground);
+  vec("line_color", theme.line);
+  vec("rim_color", theme.rim);
+  vec("fog_color", options_.background.value_or(theme.fog));
+  vec("zenith", options_.background.value_or(theme.zenith));
+  gl.Uniform1f(place("vignetting"), options_.background ? 0.f : 0.55f);
+  gl.Uniform1f(place("pool"), theme.pool);
+  gl.Uniform1f(place("shift"), view.shift);
+  gl.Uniform1f(place("unit"), view.unit);
+  gl.Uniform1f(place("ground"), ground);
+  // Grid cells of half a metre around an adult, by tens for other sizes.
+  gl.Uniform1f(place("cell"), 0.5f * std::pow(10.f, std::round(std::log10(view.unit))));
+  gl.Uniform2f(place("viewport"), float(options_.width), float(options_.height));
+  const float up = std::tan(view.vertical_fov / 2);
+  gl.Uniform2f(place("slope"), up * float(options_.width) / float(options_.height), up);
+  gl.Uniform2f(place("near_far"), m.near, m.far);
+  const float pitch = std::asin((view.target - view.eye).normalized().z());
+  gl.Uniform2f(place("view_up"), std::sin(pitch - view.vertical_fov / 2),
+               std::sin(pitch + view.vertical_fov / 2));
+}
+
+void Stage::draw_depth(const Geometry& geometry, const Mat4& to_clip) {
+  const Gl& gl = context_->gl();
+  gl.BindVertexArray(array_);
+  gl.UseProgram(depth_);
+  gl.UniformMatrix4fv(gl.GetUniformLocation(depth_, "to_clip"), 1, GL_FALSE, to_clip.data());
+  for (const Draw& d : geometry.draws)
+    if (!d.skin_shell) draw_triangles(d);
+}
+
+void Stage::draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
+  gl.Viewport(0, 0, half_width(), half_height());
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  draw_depth(geometry, m.view_projection);
+  use(floor_depth_, m, view, ground);
+  gl.BindVertexArray(empty_array_);
+  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+
+  gl.Disable(GL_DEPTH_TEST);
+  gl.ActiveTexture(GL_TEXTURE2);
+  for (const int pass : {0, 1}) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[pass]);
+    gl.BindTexture(GL_TEXTURE_2D, pass == 0 ? half_depth_ : open_map_[0]);
+    use(pass == 0 ? obscurance_ : blur_, m, view, ground);
+    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  }
+  gl.BindTexture(GL_TEXTURE_2D, open_map_[1]);
+  gl.Enable(GL_DEPTH_TEST);
+}
+
+void Stage::draw_triangles(const Draw& d) {
+  const Gl& gl = context_->gl();
+  if (d.closed) gl.Enable(GL_CULL_FACE);
+  gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT,
+                  in_buffer(std::size_t(d.first) * sizeof(std::uint32_t)));
+  if (d.closed) gl.Disable(GL_CULL_FACE);
+}
+
+void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
+  const Gl& gl = context_->gl();
+  gl.BindVertexArray(array_);
+  gl.ActiveTexture(GL_TEXTURE1);
+  use(figure_, m, view, ground);
+  for (const Draw& d : geometry.draws)
+    if (!d.skin_shell) {
+      gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
+      draw_triangles(d);
+    }
+  use(shell_, m, view, ground);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  for (const Draw& d : geometry.draws) {
+    if (!d.skin_shell) continue;
+    // Depth first, so that only the nearest skin is blended.
+    gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_triangles(d);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl.DepthFunc(GL_LEQUAL);
+    gl.Enable(GL_BLEND);
+    draw_triangles(d);
+    gl.DepthFunc(GL_LESS);
+    gl.Disable(GL_BLEND);
+  }
+}
+
+void Stage::read(Image& out) {
+  const Gl& gl = context_->gl();
+  const int width = options_.width, height = options_.height;
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, multi_target_);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, single_target_);
+  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, single_target_);
+  const std::size_t row = std::size_t(width) * 4;
+  std::vector<std::uint8_t> bottom_up(row * std::size_t(height));
+  gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up.data());
+  out.width = width;
+  out.height = height;
+  out.pixels.resize(bottom_up.size());
+  for (std::size_t y = 0; y < std::size_t(height); ++y)
+    std::memcpy(&out.pixels[y * row], &bottom_up[(std::size_t(height) - 1 - y) * row], row);
+}
+
 void Stage::draw(const Geometry& geometry, const View& view, float ground, Image& out) {
   const Gl& gl = context_->gl();
+  const Matrices m(view, float(options_.width) / float(options_.height));
   gl.BindVertexArray(array_);
   gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
   gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.vertices.size() * sizeof(Vertex)),
                 geometry.vertices.data(), GL_STREAM_DRAW);
-  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.indices.size() * 4),
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                static_cast<GLsizeiptr>(geometry.indices.size() * sizeof(std::uint32_t)),
                 geometry.indices.data(), GL_STREAM_DRAW);
 
-  const Vec3<float> light = Vec3<float>(0.42f, -0.55f, 0.95f).normalized();
-  const Mat4 light_view = look_at(view.target + light * 20, view.target);
-  Mat4 light_projection = Mat4::Identity();
-  light_projection(0, 0) = light_projection(1, 1) = 1 / view.light_radius;
-  light_projection(2, 2) = -1 / 20.f;
-  light_projection(2, 3) = -1;
-  const Mat4 light_matrix = light_projection * light_view;
-  const float distance = (view.eye - view.target).norm();
-  const Mat4 view_projection =
-      perspective(view.vertical_fov, float(width_) / float(height_), 0.02f * distance, 60 * distance + 60) *
-      look_at(view.eye, view.target);
-
-  const auto use = [&](GLuint program) {
-    gl.UseProgram(program);
-    const auto vec = [&](const char* name, float x, float y, float z) {
-      gl.Uniform3f(gl.GetUniformLocation(program, name), x, y, z);
-    };
-    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "view_projection"), 1, GL_FALSE,
-                        view_projection.data());
-    gl.UniformMatrix4fv(gl.GetUniformLocation(program, "light_matrix"), 1, GL_FALSE, light_matrix.data());
-    vec("eye", view.eye.x(), view.eye.y(), view.eye.z());
-    vec("light_direction", light.x(), light.y(), light.z());
-    vec("key_color", dark_ ? 1.75f : 1.7f, dark_ ? 1.6f : 1.6f, dark_ ? 1.4f : 1.45f);
-    if (dark_) {
-      vec("sky_color", 0.25f, 0.30f, 0.38f);
-      vec("ground_color", 0.085f, 0.092f, 0.105f);
-      vec("fog_color", 0.235f, 0.255f, 0.29f);
-      vec("zenith", 0.105f, 0.12f, 0.15f);
-    } else {
-      vec("sky_color", 0.50f, 0.55f, 0.62f);
-      vec("ground_color", 0.42f, 0.43f, 0.45f);
-      vec("fog_color", 0.86f, 0.875f, 0.90f);
-      vec("zenith", 0.66f, 0.74f, 0.85f);
-    }
-    gl.Uniform1f(gl.GetUniformLocation(program, "ground"), ground);
-    gl.Uniform1i(gl.GetUniformLocation(program, "shadow_map"), 0);
-    gl.Uniform1i(gl.GetUniformLocation(program, "albedo_map"), 1);
-  };
-
+  gl.Enable(GL_DEPTH_TEST);
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
-  gl.Enable(GL_DEPTH_TEST);
-  gl.DepthMask(GL_TRUE);
-  gl.Disable(GL_BLEND);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  use(shadow_);
-  for (const Draw& d : geometry.draws)
-    if (d.alpha >= 1)
-      gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT,
-                      reinterpret_cast<const void*>(std::size_t(d.first) * 4));
+  draw_depth(geometry, m.light);
+  if (options_.fine) draw_occlusion(geometry, m, view, ground);
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, multi_target_);
-  gl.Viewport(0, 0, width_, height_);
+  gl.Viewport(0, 0, options_.width, options_.height);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
-  gl.ActiveTexture(GL_TEXTURE1);
-  gl.BindTexture(GL_TEXTURE_2D, white_);
-
-  use(sky_);
-  const float pitch = std::asin((view.target - view.eye).normalized().z());
-  gl.Uniform3f(gl.GetUniformLocation(sky_, "view_up"), std::sin(pitch - view.vertical_fov / 2),
-               std::sin(pitch + view.vertical_fov / 2), 0);
-  gl.Disable(GL_DEPTH_TEST);
   gl.BindVertexArray(empty_array_);
+  gl.Disable(GL_DEPTH_TEST);
+  use(sky_, m, view, ground);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   gl.Enable(GL_DEPTH_TEST);
-  use(ground_);
+  use(ground_, m, view, ground);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-
-  gl.BindVertexArray(array_);
-  use(figure_);
-  for (const bool translucent : {false, true})
-    for (const Draw& d : geometry.draws) {
-      if ((d.alpha < 1) != translucent) continue;
-      gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
-      gl.Uniform1f(gl.GetUniformLocation(figure_, "alpha"), d.alpha);
-      const void* first = reinterpret_cast<const void*>(std::size_t(d.first) * 4);
-      if (translucent) {  // depth first, so that only the nearest skin is blended
-        gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT, first);
-        gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        gl.DepthFunc(GL_LEQUAL);
-        gl.Enable(GL_BLEND);
-        gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-      }
-      gl.DrawElements(GL_TRIANGLES, d.count, GL_UNSIGNED_INT, first);
-      gl.DepthFunc(GL_LESS);
-      gl.Disable(GL_BLEND);
-    }
-
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, multi_target_);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, single_target_);
-  gl.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, single_target_);
-  std::vector<std::uint8_t> upside_down(std::size_t(width_) * std::size_t(height_) * 4);
-  gl.ReadPixels(0, 0, width_, height_, GL_BGRA, GL_UNSIGNED_BYTE, upside_down.data());
-  out.width = width_;
-  out.height = height_;
-  out.pixels.resize(upside_down.size());
-  const std::size_t row = std::size_t(width_) * 4;
-  for (std::size_t y = 0; y < std::size_t(height_); ++y)
-    std::memcpy(&out.pixels[y * row], &upside_down[(std::size_t(height_) - 1 - y) * row], row);
+  draw_figure(geometry, m, view, ground);
+  read(out);
 }
 
 }  // namespace sinew::render

@@ -1,9 +1,10 @@
-// Draws one frame of geometry: sky, ground grid, soft shadow, lit figure; 4x multisampled, tone-mapped, read
-// back.
+// Draws one frame of geometry: sky, ground grid, soft shadow, ambient occlusion, lit figure; multisampled,
+// tone-mapped, read back.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render/context.h"
@@ -15,26 +16,52 @@ namespace sinew::render {
 struct View {
   Vec3<float> eye, target;
   float vertical_fov = 0.56f;  ///< rad
-  float light_radius = 4;      ///< m around `target` that the shadow map covers
+  float unit = 1;   ///< the figure's size in adults of 1.75 m: scales shadow, occlusion, grid and fog
+  float shift = 0;  ///< of the target to the right of the picture's middle, in half widths
+};
+
+struct StageOptions {
+  int width = 1280, height = 720;
+  int samples = 4;  ///< multisampling, 1 or 4
+  bool dark = true;
+  bool fine = true;                            ///< ambient occlusion, softer shadows
+  std::optional<Vec3<float>> background = {};  ///< sRGB 0 … 1, one colour; else the theme's sky
 };
 
 class Stage {
  public:
-  static std::unique_ptr<Stage> create(int width, int height, int samples, bool dark, std::string& error);
+  static std::unique_ptr<Stage> create(const StageOptions& options, std::string& error);
   /// Renders into `out` (sized here). `ground` is the floor's height.
   void draw(const Geometry& geometry, const View& view, float ground, Image& out);
 
  private:
+  struct Matrices;
+
   Stage() = default;
   bool set_up(std::string& error);
-  GLuint program(const char* vertex, const char* fragment, std::string& error);
+  bool set_up_shadow();
+  bool set_up_occlusion();
+  bool set_up_target(GLuint& framebuffer, int samples);
+  void set_up_vertices();
+  GLuint program(const char* vertex, const char* fragment, const std::string& defines, std::string& error);
+  /// A texture to draw into; bound afterwards.
+  GLuint map(GLint format, GLenum channels, int width, int height, GLint filter);
   GLuint texture(const Material* material);
+  void use(GLuint program, const Matrices& m, const View& view, float ground);
+  void draw_triangles(const Draw& d);
+  void draw_depth(const Geometry& geometry, const Eigen::Matrix4f& to_clip);
+  void draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground);
+  void draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground);
+  void read(Image& out);
+  int half_width() const { return (options_.width + 1) / 2; }
+  int half_height() const { return (options_.height + 1) / 2; }
 
   std::unique_ptr<Context> context_;
-  int width_ = 0, height_ = 0, samples_ = 4;
-  bool dark_ = true;
-  GLuint figure_ = 0, ground_ = 0, sky_ = 0, shadow_ = 0;
+  StageOptions options_;
+  GLuint figure_ = 0, shell_ = 0, ground_ = 0, sky_ = 0, depth_ = 0, floor_depth_ = 0, obscurance_ = 0,
+         blur_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0, multi_target_ = 0, single_target_ = 0;
+  GLuint half_depth_ = 0, half_target_ = 0, open_map_[2] = {}, open_target_[2] = {};
   GLuint array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0, empty_array_ = 0, white_ = 0;
   std::map<const Material*, GLuint> textures_;
 };

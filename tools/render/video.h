@@ -1,4 +1,4 @@
-// Frames → MP4, WebM or GIF through libav.
+// Frames → MP4, WebM or GIF.
 #pragma once
 
 #include <memory>
@@ -8,21 +8,20 @@
 
 namespace sinew::render {
 
-/// H.264 (bt709, yuv420p), VP9 or GIF by the file's extension. Fixed thread count and bit-exact flags: two
-/// runs decode to the same frames. Writes beside `path` and renames in finish(); without finish() nothing is
-/// left.
-class VideoWriter {
+/// Frames being written. Nothing is left behind without finish().
+class FrameWriter {
  public:
-  static std::unique_ptr<VideoWriter> create(const std::string& path, int width, int height, double fps,
-                                             int threads, convert::Error& error);
-  ~VideoWriter();
-  convert::Error add(const Image& frame);
-  convert::Error finish();
-
- private:
-  VideoWriter();
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  FrameWriter() = default;
+  virtual ~FrameWriter() = default;
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
+  virtual convert::Error add(const Image& frame) = 0;
+  virtual convert::Error finish() = 0;
 };
+
+/// By the extension of `path`: .mp4 (H.264, bt709, yuv420p), .webm (VP9) or .gif (one palette for the whole
+/// video). Two runs decode to the same frames. An error in builds without SINEW_VIDEO.
+std::unique_ptr<FrameWriter> create_video(const std::string& path, int width, int height, double fps,
+                                          int threads, convert::Error& error);
 
 }  // namespace sinew::render

@@ -1,31 +1,18 @@
 // Rows 45–48, 52–54 and figures: muscles, their limits, and the way between animation and physics.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "convert/convert.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
 #include "study/humanoid.h"
+#include "study/mannequin.h"
 
 namespace sinew::study {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-/// The project's own character, converted once; null where its file is missing.
-const Asset* mannequin() {
-  static const std::unique_ptr<Asset> asset = [] {
-    auto made = std::make_unique<Asset>();
-    nlohmann::json report;
-    const std::string file = SINEW_ASSETS_DIR "/character/mannequin.glb";
-    if (convert::open_any(file, nlohmann::json::object(), *made, report)) made.reset();
-    return made;
-  }();
-  return asset.get();
-}
 
 /// Plays the mannequin's walk with its muscles scaled by `strength`.
 template <class T>

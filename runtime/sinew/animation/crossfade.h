@@ -3,15 +3,15 @@
 
 #include <span>
 
-#include "sinew/animation/clip.h"
+#include "sinew/animation/blending_job.h"
 
 namespace sinew {
 
 /// A weight and its first two time derivatives. A weight that is not C² injects torque.
 template <class T>
-struct EaseWeight {
-  T value = T(0), rate = T(0), acceleration = T(0);
-
+struct EaseWeight : TimeJet<T> {
+  using TimeJet<T>::TimeJet;
+  EaseWeight() : TimeJet<T>(T(0)) {}
   /// Quintic ease from 0 at `elapsed` = 0 to 1 at `duration` (s), flat and uncurved at both ends.
   static EaseWeight at(T elapsed, T duration) {
     if (duration <= T(0) || elapsed >= duration) return {T(1), T(0), T(0)};
@@ -22,9 +22,8 @@ struct EaseWeight {
   }
 };
 
-/// out = (1 − w)·a + w·b per joint, on quaternions in R⁴ (the nearer of ±b), normalised:
-/// P = Σ wᵢpᵢ, P' = Σ (wᵢpᵢ' + wᵢ'pᵢ), P'' = Σ (wᵢpᵢ'' + 2wᵢ'pᵢ' + wᵢ''pᵢ). `out` may be `a` or `b`. Spans of
-/// equal length.
+/// out = (1 − w)·a + w·b per joint with exact derivatives: the BlendingJob of two layers that needs no
+/// status. 0 ≤ w ≤ 1. `out` may be `a` or `b`. Spans of equal length.
 template <class T>
 void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
                std::span<JointJet<T>> out);

@@ -2,28 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "sinew/animation/bspline.h"
-#include "sinew/animation/kernels/kernels.h"
+#include "sinew/animation/kernels/layout.h"
 
 namespace sinew {
 namespace {
 
-using kernels::JetLayout;
-using kernels::PoseLayout;
 using kernels::SplineSpan;
 
-template <class T>
-constexpr bool kLayoutsAgree = sizeof(JointJet<T>) == sizeof(JetLayout<T>) &&
-                               sizeof(Transform<T>) == sizeof(PoseLayout<T>) &&
-                               offsetof(JointJet<T>, omega) == offsetof(JetLayout<T>, omega) &&
-                               offsetof(JointJet<T>, alpha) == offsetof(JetLayout<T>, alpha) &&
-                               offsetof(JointJet<T>, translation) == offsetof(JetLayout<T>, translation) &&
-                               offsetof(JointJet<T>, velocity) == offsetof(JetLayout<T>, velocity) &&
-                               offsetof(JointJet<T>, acceleration) == offsetof(JetLayout<T>, acceleration) &&
-                               offsetof(Transform<T>, translation) == offsetof(PoseLayout<T>, translation);
-static_assert(kLayoutsAgree<float> && kLayoutsAgree<double> && sizeof(Clip::Track) == sizeof(int));
+static_assert(sizeof(Clip::Track) == sizeof(int), "kernels read tracks as joint indices");
 
 /// Time within the clip and how many whole loops came before it.
 struct Place {
@@ -61,13 +49,10 @@ SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, double time, d
   return span;
 }
 
-/// The kernel of this processor.
-#define SINEW_DISPATCH(call) (kernels::has_avx2() ? kernels::avx2::call : kernels::baseline::call)
-
 /// Samples all groups at a place; `speed` is the playback rate, 0 for a pose that is held.
 template <class T, class Out>
 void sample(const Clip& clip, double time, double speed, std::span<Out> out) {
-  const auto* still = reinterpret_cast<const PoseLayout<float>*>(clip.constants.data());
+  const auto* still = kernels::layout(clip.constants.data());
   SINEW_DISPATCH(constants(still, static_cast<int>(out.size()), out.data()));
   for (const Clip::Group& group : clip.groups) {
     if (group.tracks.empty()) continue;
@@ -100,11 +85,9 @@ Status SamplingJob<T>::Run() const {
   const bool held = !clip->loops && (time < 0 || time > clip->duration);  // a clamped pose stands still
   const double speed = held ? 0.0 : rate;
   if (!moving.empty())
-    sample<T>(*clip, place.time, speed,
-              std::span(reinterpret_cast<JetLayout<T>*>(moving.data()), moving.size()));
+    sample<T>(*clip, place.time, speed, std::span(kernels::layout(moving.data()), moving.size()));
   if (!still.empty())
-    sample<T>(*clip, place.time, speed,
-              std::span(reinterpret_cast<PoseLayout<T>*>(still.data()), still.size()));
+    sample<T>(*clip, place.time, speed, std::span(kernels::layout(still.data()), still.size()));
   if (clip->loops && clip->duration > 0) {
     const Vec3<double> step = clip->root_step.template cast<double>();
     const Vec3<T> shift = (step * (place.loops + place.time / clip->duration)).template cast<T>();

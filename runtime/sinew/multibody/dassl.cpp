@@ -98,7 +98,7 @@ bool Dassl::correct(double t, Vector& y, Vector& yp, Vector& e) {
       yp -= c_ * residual_;
       const double size = weighted_norm(residual_, y_, settings_);
       if (!std::isfinite(size)) break;
-      if (size <= negligible) converged = true;
+      if (size <= negligible || size <= h_ * system_->noise() / settings_.atol) converged = true;
       if (m == 0) {
         first = size;
       } else {
@@ -141,7 +141,8 @@ std::string Dassl::step() {
       h_ *= 0.25;
       continue;
     }
-    const double size = weighted_norm(e, y_, settings_);
+    const double unavoidable = h_ * system_->noise() / settings_.atol;
+    const double size = std::max(0.0, weighted_norm(e, y_, settings_) - unavoidable);
     const double error_k = sigma_[k + 1] * size;
     double error_below = 0, estimate = error_k;
     int next = k;

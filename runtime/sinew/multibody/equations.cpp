@@ -248,10 +248,23 @@ bool Equations::close(Vector& y) {
   return true;
 }
 
+double Equations::noise() const {
+  // A gap of rounding size moves dependent coordinates by 1/σ of it, their rates by 1/σ², accelerations by
+  // 1/σ³.
+  const double weakest = rz_.weakest();
+  if (rz_.trivial() || weakest > VelocityTransformation::kWeak) return 0;
+  const double speed = qd_.cwiseAbs().maxCoeff();
+  return std::numeric_limits<double>::epsilon() * speed * speed / (weakest * weakest * weakest);
+}
+
+bool Equations::poorly_chosen() const {
+  return rz_.growth() > kWorstGrowth;
+}
+
 bool Equations::accept(double, Vector& y) {
   if (rz_.trivial() || !close(y)) return false;
   largest_gap_ = std::max(largest_gap_, rz_.gap(motion_).size);
-  return rz_.growth() > kWorstGrowth && rz_.choose(motion_);
+  return poorly_chosen() && rz_.choose(motion_);
 }
 
 }  // namespace sinew::multibody

@@ -45,7 +45,12 @@ class Equations : public System {
   bool tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) override;
   bool factorise(double c) override;
   void solve(Vector& r) override;
+  double noise() const override;
   bool accept(double t, Vector& y) override;
+
+  /// True when the last evaluation's independent coordinates determine the dependent ones badly: `accept`
+  /// would choose others.
+  bool poorly_chosen() const;
 
   /// State with loops closed to rounding, for output. False when they do not close.
   bool close(Vector& y);

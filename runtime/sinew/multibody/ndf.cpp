@@ -117,7 +117,7 @@ bool Ndf::correct(double t_new, const Vector& predicted, const Vector& psi, Vect
     d -= residual_;
     y = predicted + d;
     yp = (alpha(k_) * d + psi) / h_;
-    if (size <= negligible) return true;
+    if (size <= negligible || size <= h_ * system_->noise() / settings_.atol) return true;
     if (i == 0) {
       if (contraction_ > 0 && size * contraction_ / (1 - contraction_) <= 0.05) return true;
     } else {
@@ -158,7 +158,8 @@ std::string Ndf::step() {
       continue;
     }
     const Vector y = predicted + d;
-    const double error = error_constant(k_) * worst_error(d, y, settings_);
+    const double unavoidable = h_ * system_->noise() / settings_.atol;
+    const double error = std::max(0.0, error_constant(k_) * worst_error(d, y, settings_) - unavoidable);
     if (!(error <= 1)) {
       ++counts_.error_failures;
       change_step(std::clamp(0.8 * std::pow(error, -1.0 / (k_ + 1)), 0.1, 0.8));

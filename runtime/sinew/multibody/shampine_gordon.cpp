@@ -124,7 +124,7 @@ std::string ShampineGordon::step() {
       if (k > 2 && std::max(error_below, error_two_below) <= error_k) next = k - 1;
       if (k == 2 && error_below <= 0.5 * error_k) next = k - 1;
     }
-    if (!(error <= eps_)) {
+    if (!(error <= eps_ + h_ * system_->noise())) {
       ++counts_.error_failures;
       first_phase_ = false;
       restore();

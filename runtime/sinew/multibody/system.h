@@ -25,6 +25,11 @@ class System {
   /// Solves with that factor in place: r → δ.
   virtual void solve(Vector& r) = 0;
 
+  /// Size of the error in y' that rounding left in the last evaluation where it is far above rounding itself
+  /// (close to a singular position), else 0. Shorter steps cannot reduce it, so methods must not ask for them
+  /// on its account.
+  virtual double noise() const { return 0; }
+
   /// Called with each accepted state; may correct y (drift of dependent coordinates). True: the meaning of
   /// the tangent's parts has changed, evaluate it anew.
   virtual bool accept(double, Vector&) { return false; }

@@ -9,7 +9,6 @@ namespace {
 /// Relative singular value below which the loops are taken to say nothing: a position error of 1e-10 m then
 /// moves the dependent coordinates by less than 1e-3.
 constexpr double kSingular = 1e-7;
-constexpr double kWeak = 1e-2;       ///< relative singular value below which loops are closed to rounding
 constexpr double kRounding = 1e-16;  ///< m
 constexpr double kFarthestMove = 1;  ///< rad or m, in one iteration
 constexpr int kMaxIterations = 12;
@@ -46,8 +45,6 @@ bool VelocityTransformation::choose(const BodyMotion& motion) {
   rates_.resize(nd, nf);
   factor_ = Eigen::CompleteOrthogonalDecomposition<Matrix>(jacobian_.rows(), nd);
   factor_.setThreshold(kSingular);
-  rz_ = Matrix::Zero(model_->size(), nf);
-  for (Eigen::Index c = 0; c < nf; ++c) rz_(independent_[c], c) = 1;
   split(jacobian_);
   return true;
 }
@@ -79,7 +76,6 @@ bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& m
         open <= tolerance && (conditioning_ > kWeak || open <= kRounding || open > 0.1 * best);
     if (closed) {
       rates_ = -factor_.solve(by_independent_);
-      for (std::size_t d = 0; d < dependent_.size(); ++d) rz_.row(dependent_[d]) = rates_.row(d);
       return true;
     }
     best = std::min(best, open);
@@ -108,24 +104,47 @@ void VelocityTransformation::bias(BodyMotion& motion, Vector& bias) {
 
 void VelocityTransformation::expand(const Vector& bias, Eigen::Ref<Vector> qdd) const {
   if (trivial()) return;
-  Vector independent(freedom());
-  for (int i = 0; i < freedom(); ++i) independent[i] = qdd[independent_[i]];
-  qdd.noalias() = rz_ * independent;
-  qdd += bias;
+  for (std::size_t d = 0; d < dependent_.size(); ++d) {
+    double sum = bias[dependent_[d]];
+    for (int i = 0; i < freedom(); ++i) sum += rates_(d, i) * qdd[independent_[i]];
+    qdd[dependent_[d]] = sum;
+  }
 }
 
 void VelocityTransformation::reduce(const Vector& force, Vector& out) const {
-  if (trivial())
+  if (trivial()) {
     out = force;
-  else
-    out.noalias() = rz_.transpose() * force;
+    return;
+  }
+  out.resize(freedom());
+  for (int i = 0; i < freedom(); ++i) {
+    double sum = force[independent_[i]];
+    for (std::size_t d = 0; d < dependent_.size(); ++d) sum += rates_(d, i) * force[dependent_[d]];
+    out[i] = sum;
+  }
 }
 
 void VelocityTransformation::reduce(const Matrix& a, Matrix& out) const {
-  if (trivial())
+  if (trivial()) {
     out = a;
-  else
-    out.noalias() = rz_.transpose() * (a * rz_);
+    return;
+  }
+  // With the coordinates sorted into independent and dependent ones and D = ∂q_d/∂q_i:
+  // A_ii + A_id D + Dᵀ(A_di + A_dd D). Cheap because the dependent ones are few.
+  const Eigen::Index nf = freedom(), nd = static_cast<Eigen::Index>(dependent_.size());
+  out.resize(nf, nf);
+  Matrix id(nf, nd), di(nd, nf), dd(nd, nd);
+  for (Eigen::Index c = 0; c < nf; ++c) {
+    for (Eigen::Index r = 0; r < nf; ++r) out(r, c) = a(independent_[r], independent_[c]);
+    for (Eigen::Index r = 0; r < nd; ++r) di(r, c) = a(dependent_[r], independent_[c]);
+  }
+  for (Eigen::Index c = 0; c < nd; ++c) {
+    for (Eigen::Index r = 0; r < nf; ++r) id(r, c) = a(independent_[r], dependent_[c]);
+    for (Eigen::Index r = 0; r < nd; ++r) dd(r, c) = a(dependent_[r], dependent_[c]);
+  }
+  di.noalias() += dd * rates_;
+  out.noalias() += id * rates_;
+  out.noalias() += rates_.transpose() * di;
 }
 
 Gap VelocityTransformation::gap(const BodyMotion& motion) {

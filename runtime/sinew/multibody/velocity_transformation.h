@@ -14,6 +14,9 @@ namespace sinew::multibody {
 
 class VelocityTransformation {
  public:
+  /// Value of `weakest` below which rounding is felt in accelerations: loops are closed to rounding there.
+  static constexpr double kWeak = 1e-2;
+
   explicit VelocityTransformation(const Model& model);
 
   const std::vector<int>& independent() const { return independent_; }
@@ -28,6 +31,10 @@ class VelocityTransformation {
   bool choose(const BodyMotion& motion);
   /// How badly determined the dependent coordinates are: largest |∂q_d/∂q_i|.
   double growth() const { return trivial() ? 0 : rates_.cwiseAbs().maxCoeff(); }
+
+  /// Smallest over largest singular value (by pivots) with which the loops determine the dependent
+  /// coordinates; 0 at a singular position.
+  double weakest() const { return conditioning_; }
 
   /// Solves the loops for the dependent coordinates of q by Newton from where they are; sets the poses of
   /// `motion` and factorises Φ_q there. False when the loops cannot be closed from here.
@@ -55,7 +62,6 @@ class VelocityTransformation {
   const Model* model_;
   std::vector<int> independent_, dependent_;
   Matrix jacobian_, by_dependent_, by_independent_, rates_;
-  Matrix rz_;  ///< [N×independent]
   Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
   double conditioning_ = 1;  ///< smallest over largest pivot of the factor
   Vector phi_, zero_;

@@ -29,16 +29,34 @@ struct SplineSpan {
   int joint_end = 0;  ///< joints from here on are left out
 };
 
+/// Layers of a blend, see BlendingJob.
+template <class T>
+struct BlendLayerData {
+  enum Mode { kMix, kOverride, kAdditive };
+  const JetLayout<T>* jets = nullptr;
+  const T* mask = nullptr;  ///< [joint], or null for 1
+  T weight[3] = {1, 0, 0};  ///< value, 1/s, 1/s²
+  Mode mode = kMix;
+};
+template <class T>
+struct BlendData {
+  const BlendLayerData<T>* layers = nullptr;
+  int layer_count = 0;
+  const PoseLayout<T>* rest = nullptr;  ///< or null for the identity
+};
+
 /// `constants`: what joints without a track keep. `rotations`, `translations`: the joints of one group.
 #define SINEW_KERNELS_OF(T, Out)                                           \
   void constants(const PoseLayout<float>* poses, int joints, Out<T>* out); \
   void rotations(const SplineSpan<T>& span, Out<T>* out);                  \
   void translations(const SplineSpan<T>& span, Out<T>* out);
-#define SINEW_ALL_KERNELS             \
-  SINEW_KERNELS_OF(float, JetLayout)  \
-  SINEW_KERNELS_OF(float, PoseLayout) \
-  SINEW_KERNELS_OF(double, JetLayout) \
-  SINEW_KERNELS_OF(double, PoseLayout)
+#define SINEW_ALL_KERNELS                                                      \
+  SINEW_KERNELS_OF(float, JetLayout)                                           \
+  SINEW_KERNELS_OF(float, PoseLayout)                                          \
+  SINEW_KERNELS_OF(double, JetLayout)                                          \
+  SINEW_KERNELS_OF(double, PoseLayout)                                         \
+  void blend(const BlendData<float>& data, int joints, JetLayout<float>* out); \
+  void blend(const BlendData<double>& data, int joints, JetLayout<double>* out);
 namespace baseline {
 SINEW_ALL_KERNELS
 }

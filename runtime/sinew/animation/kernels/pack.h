@@ -22,9 +22,10 @@ struct Pack {
   Pack() = default;
   Pack(Vector x) : v(x) {}
   static Pack all(T x) {
-    Pack same;
-    for (int i = 0; i < N; ++i) same.v[i] = x;
-    return same;
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return Pack(Vector{(static_cast<void>(I), x)...});
+    }
+    (std::make_integer_sequence<int, N>());
   }
   template <class U>
   static Pack load(const U* from) {
@@ -39,6 +40,19 @@ struct Pack {
   friend Pack operator/(const Pack& a, const Pack& b) { return a.v / b.v; }
   friend Pack operator-(const Pack& a) { return -a.v; }
   friend Pack operator*(T s, const Pack& a) { return s * a.v; }
+  friend Pack where_equal(const Pack& a, T b, const Pack& yes, const Pack& no) {
+    return Pack(a.v == b ? yes.v : no.v);
+  }
+  friend Pack where_negative(const Pack& a, const Pack& yes, const Pack& no) {
+    return Pack(a.v < T(0) ? yes.v : no.v);
+  }
+  /// Whether any lane is below zero.
+  friend bool any_negative(const Pack& a) {
+    const auto below = a.v < T(0);
+    bool any = false;
+    for (int i = 0; i < N; ++i) any |= below[i] != 0;
+    return any;
+  }
   friend Pack sqrt(const Pack& a) {
     Pack x;
     for (int i = 0; i < N; ++i) {
@@ -50,6 +64,23 @@ struct Pack {
     return x;
   }
 };
+
+/// Four numbers from each of the addresses `at(group)`. Registers are joined, never assembled in memory: a
+/// wide load that follows narrow stores stalls.
+template <class P, class At>
+P load_fours(At at, int group = 0) {
+  if constexpr (P::kLanes == 4) {
+    return P::load(at(group));
+  } else {
+    constexpr int kHalf = P::kLanes / 2;
+    using Half = Pack<typename P::Scalar, kHalf>;
+    const Half low = load_fours<Half>(at, group), high = load_fours<Half>(at, group + kHalf / 4);
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return P(__builtin_shufflevector(low.v, high.v, I...));
+    }
+    (std::make_integer_sequence<int, P::kLanes>());
+  }
+}
 
 /// Calls f with the constants 0 … N − 1.
 template <int N, class F>

@@ -4,21 +4,10 @@
 
 #include "sinew/animation/kernels/jet_algebra.h"
 #include "sinew/animation/kernels/kernels.h"
-#include "sinew/animation/kernels/pack.h"
+#include "sinew/animation/kernels/lanes.h"
 
 namespace sinew::kernels {
 namespace {
-
-template <class T>
-struct LanesOf;
-template <>
-struct LanesOf<float> {
-  using Type = Pack<float, SINEW_FLOAT_LANES>;
-};
-template <>
-struct LanesOf<double> {
-  using Type = Pack<double, 4>;
-};
 
 /// Weighted sums of one block of control points, still in the order of the clip: a row of numbers does not
 /// care which joints they belong to.

@@ -1,0 +1,64 @@
+// Several motions → one: weighted mixes, masked overrides and additive layers, with exact derivatives.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "sinew/animation/clip.h"
+#include "sinew/animation/time_jet.h"
+
+namespace sinew {
+
+/// How a layer joins what is below it; w is its weight times its mask at a joint.
+enum class BlendMode : std::uint8_t {
+  kMix,       ///< weighted mean of all mixed layers: P = Σ w·p / Σ w
+  kOverride,  ///< (1 − w)·below + w·layer: a cut at w = 1, with no inverse masks to keep
+  kAdditive,  ///< below ∘ (w of the layer's difference, see `subtract_reference`)
+};
+
+template <class T>
+struct BlendLayer {
+  std::span<const JointJet<T>> jets;
+  TimeJet<T> weight{T(1), T(0),
+                    T(0)};       ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
+  std::span<const T> mask = {};  ///< [joint] in [0, 1]; empty = 1 everywhere
+  BlendMode mode = BlendMode::kMix;
+};
+
+/// Blends jets joint by joint. Rotations are summed as quaternions in R⁴, of ±q the one nearer to what is
+/// below (to the first mixed layer), and normalised; all derivatives are those of the blended pose by the
+/// product rule: P'' = Σ (w·p'' + 2w'·p' + w''·p).
+///
+/// Mixed layers come first whatever their place in the list, the others follow in order. Exact where the mask
+/// says so: at mask 0 a layer leaves the bits below it alone; at mask 1 a constant override of weight 1, or
+/// the only mixed layer, gives its own bits. A joint that no mixed layer reaches rests in `rest`.
+///
+/// Allocates nothing. `out` may be one of the layers. Output shorter than the layers means fewer joints.
+template <class T>
+struct BlendingJob {
+  static constexpr int kMaxLayers = 16;
+  std::span<const BlendLayer<T>> layers;
+  std::span<const Transform<T>> rest = {};  ///< local transforms; empty = identity
+  std::span<JointJet<T>> out;
+
+  Status Validate() const;  ///< `Status::index`: layer at fault
+  Status Run() const;
+};
+
+extern template struct BlendingJob<float>;
+extern template struct BlendingJob<double>;
+
+/// What an additive layer is: the difference between a motion and a reference pose, δ = reference⁻¹·jets for
+/// rotations (in child axes, so velocities stay as they are) and jets − reference for translations. `out` may
+/// be `jets`.
+template <class T>
+void subtract_reference(std::span<const Transform<T>> reference, std::span<const JointJet<T>> jets,
+                        std::span<JointJet<T>> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = jets[i];
+    out[i].rotation = reference[i].rotation.conjugate() * jets[i].rotation;
+    out[i].translation -= reference[i].translation;
+  }
+}
+
+}  // namespace sinew

@@ -1,0 +1,73 @@
+// Moving frames: rigid transforms whose numbers carry their derivatives, so that composing them is
+// kinematics.
+#pragma once
+
+#include <span>
+
+#include "sinew/animation/clip.h"
+#include "sinew/animation/time_jet.h"
+
+/// Vectors and quaternions of TimeJets are Eigen's.
+template <class S>
+struct Eigen::NumTraits<sinew::TimeJet<S>> : Eigen::GenericNumTraits<sinew::TimeJet<S>> {
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 3,
+    AddCost = 3,
+    MulCost = 9
+  };
+};
+
+namespace sinew {
+
+template <class T>
+using MovingVector = Vec3<TimeJet<T>>;
+/// Products and inverses give exact velocities and accelerations, Coriolis terms included.
+template <class T>
+using MovingTransform = Transform<TimeJet<T>>;
+
+/// A vector that stays as it is.
+template <class T>
+MovingVector<T> still(const Vec3<T>& v) {
+  return {v.x(), v.y(), v.z()};
+}
+template <class T>
+Vec3<T> value_of(const MovingVector<T>& v) {
+  return {v.x().value, v.y().value, v.z().value};
+}
+template <class T>
+Vec3<T> rate_of(const MovingVector<T>& v) {
+  return {v.x().rate, v.y().rate, v.z().rate};
+}
+template <class T>
+Vec3<T> acceleration_of(const MovingVector<T>& v) {
+  return {v.x().acceleration, v.y().acceleration, v.z().acceleration};
+}
+
+/// Turns the direction of `from` into that of `to` the short way. Neither zero; not for opposite directions.
+template <class T>
+Quat<TimeJet<T>> shortest_arc(const MovingVector<T>& from, const MovingVector<T>& to);
+
+/// A joint's jet as a moving frame child → parent, and back. Back, the rotation need not have unit length.
+template <class T>
+MovingTransform<T> moving_transform(const JointJet<T>& jet);
+template <class T>
+JointJet<T> joint_jet(const MovingTransform<T>& moving);
+
+/// Frame of a joint in model space (the axes of the root's parent), by walking up to the root. `parents`
+/// [joint], −1 for a root.
+template <class T>
+MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint);
+
+#define SINEW_MOVING_INSTANCES(prefix, T)                                                  \
+  prefix Quat<TimeJet<T>> shortest_arc<T>(const MovingVector<T>&, const MovingVector<T>&); \
+  prefix MovingTransform<T> moving_transform<T>(const JointJet<T>&);                       \
+  prefix JointJet<T> joint_jet<T>(const MovingTransform<T>&);                              \
+  prefix MovingTransform<T> model_motion<T>(std::span<const JointJet<T>>, std::span<const int>, int);
+SINEW_MOVING_INSTANCES(extern template, float)
+SINEW_MOVING_INSTANCES(extern template, double)
+
+}  // namespace sinew

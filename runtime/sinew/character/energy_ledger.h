@@ -1,0 +1,35 @@
+// Energy without work: the last word on what a step may leave behind.
+//
+// bdf1 dissipates and bdf2 nearly does, but a constraint's reaction works along the chord that a joint's arc
+// is stepped by, of the order of h²g/length and h²|ω|², so an inverted pendulum or a light link that whirls
+// about a heavy one can gain. Where nothing does work, each island has a ceiling that never rises: what a
+// step leaves above it is taken out of the motion, first of that relative to each tree's centre of mass.
+// Source of the idea: Dinev, Liu & Kavan, "Stabilizing integrators for real-time physics", 2018.
+#pragma once
+
+#include <span>
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// Kinetic, potential and stored energy of the trees now, J.
+template <class T>
+double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
+
+template <class T>
+class EnergyLedger {
+ public:
+  /// Holds the trees of a passive island, stepped together, under their ceiling. `before` is their energy
+  /// before the step; `strict` takes that for the ceiling (a solve that did not converge). True if motion was
+  /// taken out.
+  bool settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
+              bool strict) const;
+};
+
+extern template class EnergyLedger<float>;
+extern template class EnergyLedger<double>;
+extern template double energy<float>(std::span<CharacterState<float>* const>, const Vec3<double>&);
+extern template double energy<double>(std::span<CharacterState<double>* const>, const Vec3<double>&);
+
+}  // namespace sinew

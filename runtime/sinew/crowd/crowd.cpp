@@ -1,0 +1,266 @@
+#include "sinew/crowd/crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "sinew/animation/crossfade.h"
+#include "sinew/animation/kernels/layout.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/crowd/rig.h"
+
+namespace sinew {
+namespace {
+
+/// A cache line; vectors of them are aligned as the kernels want.
+struct alignas(64) Line {
+  float numbers[16];
+};
+
+using Check = void (*)(const crowd_kernels::Rig&, const crowd_kernels::Batch&);
+
+Check kernel(InstructionSet set, int lanes) {
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512)
+    return lanes == 8 ? crowd_kernels::avx512::check8 : crowd_kernels::avx512::check16;
+  if (set == InstructionSet::kAvx2)
+    return lanes == 8 ? crowd_kernels::avx2::check8 : crowd_kernels::avx2::check16;
+#endif
+  (void)set;
+  return lanes == 8 ? crowd_kernels::baseline::check8 : crowd_kernels::baseline::check16;
+}
+
+/// 1 / limit; a muscle that has nothing is overloaded by anything.
+float inverse(float limit) {
+  return limit > 0 ? 1 / limit : std::numeric_limits<float>::max();
+}
+
+}  // namespace
+
+bool available(InstructionSet set) {
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq");
+  if (set == InstructionSet::kAvx2) return __builtin_cpu_supports("avx2");
+#endif
+  return set == InstructionSet::kBaseline;
+}
+
+InstructionSet best_instruction_set() {
+  for (const InstructionSet set : {InstructionSet::kAvx512, InstructionSet::kAvx2})
+    if (available(set)) return set;
+  return InstructionSet::kBaseline;
+}
+
+struct Crowd::Impl {
+  Skeleton skeleton;
+  CrowdSettings settings;
+  CrowdRig rig;
+  Check check;
+  int lanes, batches, joints, lines;  ///< lines: of one array [dof][lane]
+  std::vector<CrowdTrack> tracks;     ///< [character]
+  std::vector<std::uint8_t> active;
+  std::vector<JointJet<float>> jets;                      ///< [character][joint]
+  std::vector<Transform<float>> models;                   ///< [character][joint]
+  std::vector<Line> inverse_plus, inverse_minus, torque;  ///< [batch][dof][lane]
+  std::vector<Line> peak;                                 ///< [batch][lane]
+  std::vector<Line> scratch;                              ///< [chunk]
+  std::vector<int> overloaded;
+  double step = 0;
+
+  Impl(const Skeleton& s, const CrowdSettings& c)
+      : skeleton(s), settings(c), rig(skeleton, settings), joints(int(s.joints.size())) {
+    lanes = c.lanes != 0 ? c.lanes : (c.instruction_set == InstructionSet::kAvx512 ? 16 : 8);
+    check = kernel(c.instruction_set, lanes);
+    batches = (c.capacity + lanes - 1) / lanes;
+    lines = (rig.view.dof_count * lanes + 15) / 16;
+    const std::size_t padded = std::size_t(batches) * lanes;
+    tracks.resize(padded);
+    active.resize(padded);
+    jets.resize(padded * joints);
+    models.resize(padded * joints);
+    for (auto* array : {&inverse_plus, &inverse_minus, &torque}) array->resize(std::size_t(batches) * lines);
+    peak.resize(batches);
+    scratch.resize(c.chunks * scratch_lines());
+    overloaded.reserve(c.capacity);
+    for (std::size_t i = 0; i < padded; ++i) {
+      rest(int(i));
+      set_strength(int(i), 1);
+    }
+  }
+
+  std::size_t scratch_lines() const {
+    return crowd_kernels::scratch_bytes(rig.view.body_count, int(rig.points.size())) / sizeof(Line);
+  }
+  JointJet<float>* jets_of(int character) { return jets.data() + std::size_t(character) * joints; }
+  Transform<float>* model_of(int character) { return models.data() + std::size_t(character) * joints; }
+  std::size_t dof_place(int character, int dof) const {
+    return std::size_t(character / lanes) * lines * 16 + std::size_t(dof) * lanes + character % lanes;
+  }
+  static float& number(std::vector<Line>& array, std::size_t place) {
+    return array[place / 16].numbers[place % 16];
+  }
+
+  void rest(int character) {
+    for (int j = 0; j < joints; ++j) {
+      const Transform<float> local = skeleton.joints[j].rest.cast<float>();
+      JointJet<float>& jet = jets_of(character)[j];
+      jet = {};
+      jet.rotation = local.rotation;
+      jet.translation = local.translation;
+      const int parent = skeleton.joints[j].parent;
+      model_of(character)[j] = parent < 0 ? local : model_of(character)[parent] * local;
+    }
+  }
+  void set_strength(int character, float strength) {
+    for (int dof = 0; dof < rig.view.dof_count; ++dof) {
+      number(inverse_plus, dof_place(character, dof)) = inverse(rig.torque_plus[dof] * strength);
+      number(inverse_minus, dof_place(character, dof)) = inverse(rig.torque_minus[dof] * strength);
+    }
+  }
+
+  void sample(int character) {
+    CrowdTrack& track = tracks[character];
+    if (!track.clip) return;
+    track.time += track.rate * step;
+    const std::span out(jets_of(character), joints);
+    (void)SamplingJob<float>{track.clip, track.time, track.rate, out}.Run();
+    place_root(track.place, out[0]);
+  }
+  void ride_along(int character) {
+    const JointJet<float>* local = jets_of(character);
+    Transform<float>* model = model_of(character);
+    for (int j = skeleton.body_count; j < joints; ++j)
+      model[j] = model[skeleton.joints[j].parent] * Transform<float>{local[j].rotation, local[j].translation};
+  }
+  void run_batch(int b, Line* chunk_scratch) {
+    const int first = b * lanes;
+    int some = -1;  // fills the lanes of those who do not take part
+    for (int lane = 0; lane < lanes; ++lane)
+      if (active[first + lane]) {
+        sample(first + lane);
+        some = first + lane;
+      }
+    if (some < 0) return;
+    crowd_kernels::Batch batch;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int character = active[first + lane] ? first + lane : some;
+      batch.jets[lane] = kernels::layout(jets_of(character));
+      if (settings.model_poses) batch.model[lane] = kernels::layout(model_of(character));
+    }
+    batch.inverse_plus = inverse_plus[std::size_t(b) * lines].numbers;
+    batch.inverse_minus = inverse_minus[std::size_t(b) * lines].numbers;
+    batch.torque = torque[std::size_t(b) * lines].numbers;
+    batch.peak = peak[b].numbers;
+    batch.scratch = chunk_scratch;
+    check(rig.view, batch);
+    for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
+      if (active[first + lane]) ride_along(first + lane);
+  }
+  static void run_chunk(void* context, int chunk) {
+    Impl& self = *static_cast<Impl*>(context);
+    const auto begin_of = [&](int c) { return int(std::int64_t(self.batches) * c / self.settings.chunks); };
+    for (int b = begin_of(chunk); b < begin_of(chunk + 1); ++b)
+      self.run_batch(b, self.scratch.data() + chunk * self.scratch_lines());
+  }
+};
+
+Crowd::Crowd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Crowd::~Crowd() = default;
+
+std::unique_ptr<Crowd> Crowd::create(const Skeleton& skeleton, const CrowdSettings& settings,
+                                     Status& status) {
+  status = validate(skeleton);
+  if (!status) return nullptr;
+  const auto refuse = [&](const char* reason) {
+    status = Status::error(Code::kInvalidArgument, reason);
+    return nullptr;
+  };
+  if (settings.capacity < 1 || settings.capacity > 10'000'000)
+    return refuse("capacity is not within 1 and 10 million");
+  if (settings.lanes != 0 && settings.lanes != 8 && settings.lanes != 16) return refuse("lanes are 8 or 16");
+  if (settings.chunks < 1 || settings.chunks > 65536) return refuse("chunks are not within 1 and 65536");
+  if (!available(settings.instruction_set)) return refuse("this processor lacks the instruction set");
+  if (!settings.gravity.allFinite() || !std::isfinite(settings.ground_height))
+    return refuse("gravity or ground is not finite");
+  if (skeleton.body_count < 1) return refuse("rig has no bodies");
+  return std::unique_ptr<Crowd>(new Crowd(std::make_unique<Impl>(skeleton, settings)));
+}
+
+namespace {
+
+Status check_index(int character, int capacity) {
+  if (character >= 0 && character < capacity) return {};
+  return Status::error(Code::kInvalidArgument, "no such character", character);
+}
+
+}  // namespace
+
+Status Crowd::play(int character, const CrowdTrack& track) {
+  if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
+  if (track.clip) {
+    if (track.clip->joint_count != impl_->joints)
+      return Status::error(Code::kInvalidArgument, "clip has another number of joints than the rig",
+                           character);
+    if (Status status = SamplingJob<float>{track.clip, track.time, track.rate}.Validate(); !status)
+      return status;
+  }
+  if (!track.place.rotation.coeffs().allFinite() || !track.place.translation.allFinite())
+    return Status::error(Code::kNotFinite, "place is not finite", character);
+  impl_->tracks[character] = track;
+  impl_->active[character] = 1;
+  return {};
+}
+
+Status Crowd::set_active(int character, bool active) {
+  if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
+  impl_->active[character] = active;
+  return {};
+}
+
+Status Crowd::set_strength(int character, float strength) {
+  if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
+  if (!(strength >= 0)) return Status::error(Code::kInvalidArgument, "strength must be ≥ 0", character);
+  impl_->set_strength(character, strength);
+  return {};
+}
+
+Status Crowd::step(double h, const ParallelFor& parallel_for) {
+  if (!(h >= 0 && h <= 1)) return Status::error(Code::kOutOfRange, "step is not within 0 and 1 s");
+  Impl& impl = *impl_;
+  impl.step = h;
+  if (parallel_for.run)
+    parallel_for.run(parallel_for.host, impl.settings.chunks, Impl::run_chunk, &impl);
+  else
+    for (int chunk = 0; chunk < impl.settings.chunks; ++chunk) Impl::run_chunk(&impl, chunk);
+  impl.overloaded.clear();
+  for (int i = 0; i < impl.settings.capacity; ++i)
+    if (impl.active[i] && !(peak_load(i) <= 1)) impl.overloaded.push_back(i);
+  return {};
+}
+
+std::span<const int> Crowd::overloaded() const {
+  return impl_->overloaded;
+}
+float Crowd::peak_load(int character) const {
+  return impl_->peak[character / impl_->lanes].numbers[character % impl_->lanes];
+}
+float Crowd::torque(int character, int dof) const {
+  return Impl::number(impl_->torque, impl_->dof_place(character, dof));
+}
+int Crowd::dof_count() const {
+  return impl_->rig.view.dof_count;
+}
+std::span<JointJet<float>> Crowd::jets(int character) {
+  return {impl_->jets_of(character), std::size_t(impl_->joints)};
+}
+std::span<const Transform<float>> Crowd::model(int character) const {
+  return {impl_->model_of(character), std::size_t(impl_->joints)};
+}
+const CrowdTrack& Crowd::track(int character) const {
+  return impl_->tracks[character];
+}
+
+}  // namespace sinew

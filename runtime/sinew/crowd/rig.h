@@ -1,0 +1,21 @@
+// A skeleton as the batch kernels want it. Internal to the crowd layer.
+#pragma once
+
+#include <vector>
+
+#include "sinew/crowd/crowd.h"
+#include "sinew/crowd/kernels/batch.h"
+
+namespace sinew {
+
+struct CrowdRig {
+  std::vector<crowd_kernels::RigBody> bodies;
+  std::vector<crowd_kernels::RigPoint> points;   ///< by body
+  std::vector<float> torque_plus, torque_minus;  ///< [dof] muscle limits at strength 1, N·m
+  crowd_kernels::Rig view;                       ///< of the above
+
+  CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings);
+  CrowdRig(const CrowdRig&) = delete;
+};
+
+}  // namespace sinew

@@ -1,0 +1,106 @@
+// What a crowd of undisturbed characters costs on one core, per character, against plain playback of the
+// same.
+#include <benchmark/benchmark.h>
+
+#include <numeric>
+
+#include "fixtures/clips.h"
+#include "fixtures/humanoid.h"
+#include "sinew/animation/model_pose_job.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/crowd/crowd.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kStep = 1 / 60.0;
+
+void per_character(benchmark::State& state, int characters) {
+  state.counters["per character"] = benchmark::Counter(
+      characters, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// Poses from the clip and their model transforms, one character after the other: what an engine does anyway.
+void playback(benchmark::State& state) {
+  const int characters = int(state.range(0));
+  const Skeleton rig = fixtures::humanoid();
+  const int joints = int(rig.joints.size());
+  const Clip clip = fixtures::random_clip({.joints = joints});
+  std::vector<int> parents;
+  for (const Joint& joint : rig.joints) parents.push_back(joint.parent);
+  std::vector<Transform<float>> poses(joints), models(std::size_t(joints) * characters);
+  double time = 0;
+  for (auto _ : state) {
+    for (int i = 0; i < characters; ++i) {
+      (void)SamplingJob<float>{&clip, time + 0.01 * i, 1, {}, poses}.Run();
+      const std::span out(models.data() + std::size_t(i) * joints, joints);
+      (void)ModelPoseJob<float>{parents, {}, poses, {}, out}.Run();
+    }
+    benchmark::ClobberMemory();
+    time += kStep;
+  }
+  per_character(state, characters);
+}
+
+std::unique_ptr<Crowd> crowd_of(const Skeleton& rig, const CrowdSettings& settings) {
+  Status status;
+  auto crowd = Crowd::create(rig, settings, status);
+  for (int i = 0; i < settings.capacity; ++i) (void)crowd->set_strength(i, 1e6f);
+  return crowd;
+}
+
+/// The whole frame: sampling, residual, support, comparison, model poses.
+void crowd_frame(benchmark::State& state, InstructionSet set, int lanes) {
+  if (!available(set)) return state.SkipWithError("this processor lacks the instruction set");
+  const Skeleton rig = fixtures::humanoid();
+  const Clip clip = fixtures::random_clip({.joints = int(rig.joints.size())});
+  CrowdSettings settings;
+  settings.capacity = int(state.range(0));
+  settings.instruction_set = set;
+  settings.lanes = lanes;
+  const auto crowd = crowd_of(rig, settings);
+  for (int i = 0; i < settings.capacity; ++i) (void)crowd->play(i, {&clip, 0.01 * i, 1, {}});
+  for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
+  if (!crowd->overloaded().empty()) state.SkipWithError("a character left its animation");
+  per_character(state, settings.capacity);
+}
+
+/// Torques and comparison alone, from jets that stay as they are. 0: all; 1: with ground support; 2: and
+/// poses.
+void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool ground, bool poses) {
+  if (!available(set)) return state.SkipWithError("this processor lacks the instruction set");
+  const Skeleton rig = fixtures::humanoid();
+  const Clip clip = fixtures::random_clip({.joints = int(rig.joints.size())});
+  CrowdSettings settings;
+  settings.capacity = int(state.range(0));
+  settings.instruction_set = set;
+  settings.lanes = lanes;
+  settings.ground = ground;
+  settings.model_poses = poses;
+  const auto crowd = crowd_of(rig, settings);
+  for (int i = 0; i < settings.capacity; ++i) {
+    (void)crowd->play(i, {});
+    (void)SamplingJob<float>{&clip, 0.01 * i, 1, crowd->jets(i)}.Run();
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
+  per_character(state, settings.capacity);
+}
+
+constexpr InstructionSet kBaseline = InstructionSet::kBaseline, kAvx2 = InstructionSet::kAvx2,
+                         kAvx512 = InstructionSet::kAvx512;
+
+BENCHMARK(playback)->Arg(16)->Arg(1000)->Arg(10000);
+BENCHMARK_CAPTURE(crowd_check, residual_baseline_8, kBaseline, 8, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_baseline_16, kBaseline, 16, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_avx2_8, kAvx2, 8, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_avx2_16, kAvx2, 16, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_avx512_8, kAvx512, 8, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_avx512_16, kAvx512, 16, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_support_avx512_16, kAvx512, 16, true, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_support_pose_avx512_16, kAvx512, 16, true, true)->Arg(64);
+BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);
+BENCHMARK_CAPTURE(crowd_frame, avx2_8, kAvx2, 8)->Arg(1000);
+BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(10000)->Arg(100000);
+
+}  // namespace
+}  // namespace sinew

@@ -1,0 +1,370 @@
+#include "sinew/crowd/crowd.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "character/scenes.h"
+#include "fixtures/clips.h"
+#include "fixtures/counting_new.h"
+#include "residual/random_tree.h"
+#include "sinew/effects/support.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kStep = 1 / 60.0;
+
+std::unique_ptr<Crowd> crowd_of(const Skeleton& skeleton, const CrowdSettings& settings) {
+  Status status;
+  auto crowd = Crowd::create(skeleton, settings, status);
+  EXPECT_TRUE(crowd) << status.reason;
+  return crowd;
+}
+
+/// Sways all joints of a rig within 0.3 rad of rest.
+Clip swaying_clip(const Skeleton& skeleton, unsigned seed) {
+  const int joints = int(skeleton.joints.size());
+  Clip clip = fixtures::random_clip(
+      {.joints = joints, .duration = 4, .knot_interval = 0.5f, .moving = 1, .seed = seed});
+  Clip::Group& turns = clip.groups[0];
+  for (std::size_t n = 0; n < turns.controls.size() / 4; ++n) {
+    Eigen::Map<Quat<float>> q(turns.controls.data() + 4 * n);
+    const Quat<double> sway = Quat<double>::Identity().slerp(0.2, q.cast<double>());
+    q = (skeleton.joints[n % joints].rest.rotation * sway).cast<float>();
+  }
+  for (std::size_t n = 0; n < clip.groups[1].controls.size() / 3; ++n) {
+    Eigen::Map<Vec3<float>> x(clip.groups[1].controls.data() + 3 * n);
+    x = 0.1f * x + skeleton.joints[0].rest.translation.cast<float>();
+  }
+  for (int j = 0; j < joints; ++j) clip.constants[j] = skeleton.joints[j].rest.cast<float>();
+  return clip;
+}
+
+/// The humanoid with fingers that ride along.
+Skeleton rig_with_fingers() {
+  Skeleton rig = fixtures::humanoid();
+  const int hand = rig.find("hand_r");
+  for (int n = 0; n < 2; ++n) {
+    Joint finger;
+    finger.name = "finger" + std::to_string(n);
+    finger.parent = n == 0 ? hand : int(rig.joints.size()) - 1;
+    finger.rest.translation = {0.01, 0.02, -0.09};
+    rig.joints.push_back(finger);
+  }
+  return rig;
+}
+
+/// A mixed crowd: clips, times, rates and places all differ.
+struct Scene {
+  Skeleton rig = rig_with_fingers();
+  std::array<Clip, 3> clips = {swaying_clip(rig, 1), swaying_clip(rig, 2), swaying_clip(rig, 3)};
+
+  CrowdTrack track(int i) const {
+    CrowdTrack track;
+    track.clip = &clips[i % 3];
+    track.time = 0.137 * i;
+    track.rate = 0.8 + 0.05 * (i % 9);
+    track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}),
+                   {3.f * float(i % 10), 2.f * float(i / 10), 0}};
+    return track;
+  }
+  std::unique_ptr<Crowd> crowd(const CrowdSettings& settings) const {
+    auto crowd = crowd_of(rig, settings);
+    for (int i = 0; i < settings.capacity; ++i) EXPECT_TRUE(crowd->play(i, track(i)).ok());
+    return crowd;
+  }
+};
+
+/// What the recursions of residual/ say in double of the motion that a character of the crowd plays.
+std::vector<double> slow_torques(const Skeleton& skeleton, std::span<const JointJet<float>> jets,
+                                 const CrowdSettings& settings) {
+  const Tree<double> tree(skeleton);
+  std::vector<JointJet<double>> exact;
+  for (const JointJet<float>& j : jets)
+    exact.push_back({j.rotation.cast<double>().normalized(), j.omega.cast<double>(), j.alpha.cast<double>(),
+                     j.translation.cast<double>(), j.velocity.cast<double>(), j.acceleration.cast<double>()});
+  Kinematics<double> kinematics(tree);
+  Motion<double> motion(tree);
+  std::vector<Vec3<double>> force(tree.bodies), moment(tree.bodies);
+  std::vector<double> torque(tree.dofs);
+  const Vec3<double> origin = exact[0].translation;
+  inertial_wrenches<double>(tree, exact, settings.gravity, origin, kinematics, motion, force, moment);
+  std::vector<ContactPoint<double>> points;
+  for (const Collider& collider : skeleton.colliders) append_contact_points<double>(collider, points);
+  if (settings.ground)
+    share_support<double>(tree, kinematics, points, settings.ground_height - origin.z(), {}, force, moment);
+  project_wrenches<double>(tree, kinematics, force, moment, torque);
+  return torque;
+}
+
+TEST(Crowd, TorquesAreThoseOfTheResidualPassForEveryTypeOfJoint) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Skeleton skeleton = fixtures::random_skeleton(seed);
+    CrowdSettings settings;
+    settings.capacity = 19;
+    settings.ground = false;
+    settings.gravity = {1, -2, -9};
+    const auto crowd = crowd_of(skeleton, settings);
+    fixtures::Random random(seed + 100);
+    const Tree<double> tree(skeleton);
+    for (int i = 0; i < settings.capacity; ++i) {
+      ASSERT_TRUE(crowd->play(i, {}).ok());
+      const auto pose = fixtures::random_pose(tree, random, 0.6);
+      for (int j = 0; j < tree.bodies; ++j) {
+        const auto vector = [&](double scale) -> Vec3<float> { return random.vector(scale).cast<float>(); };
+        crowd->jets(i)[j] = {pose[j].rotation.cast<float>(),    vector(1), vector(3),
+                             pose[j].translation.cast<float>(), vector(1), vector(3)};
+      }
+    }
+    ASSERT_TRUE(crowd->step(kStep).ok());
+    for (int i = 0; i < settings.capacity; ++i) {
+      const std::vector<double> wanted = slow_torques(skeleton, crowd->jets(i), settings);
+      double scale = 1;  // float: 1e-6 of the largest number that a chain of ten joints adds up
+      for (const double torque : wanted) scale = std::max(scale, std::abs(torque));
+      for (int dof = 0; dof < crowd->dof_count(); ++dof)
+        EXPECT_NEAR(crowd->torque(i, dof), wanted[dof], 1e-5 * scale) << "seed " << seed << " dof " << dof;
+    }
+  }
+}
+
+TEST(Crowd, GroundSupportIsSharedAsInAWorld) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 40;
+  for (const double ground : {-0.3, 0.0, 0.02, 0.05}) {  // in flight … sunk in
+    settings.ground_height = ground;
+    const auto crowd = scene.crowd(settings);
+    ASSERT_TRUE(crowd->step(kStep).ok());
+    for (int i = 0; i < settings.capacity; ++i) {
+      const std::vector<double> wanted = slow_torques(scene.rig, crowd->jets(i), settings);
+      // The least-squares system of points within centimetres of each other loses four digits of float.
+      for (int dof = 0; dof < crowd->dof_count(); ++dof)
+        EXPECT_NEAR(crowd->torque(i, dof), wanted[dof], 0.5) << "character " << i << " dof " << dof;
+    }
+  }
+}
+
+TEST(Crowd, SaysOfACharacterWhatAWorldSays) {
+  fixtures::Playing<float> scene;
+  CrowdSettings settings;
+  settings.capacity = 3;
+  const auto crowd = crowd_of(scene.skeleton, settings);
+  ASSERT_TRUE(crowd->play(1, {}).ok());
+  for (int n = 0; n < 30; ++n) {
+    scene.step(float(kStep));
+    ASSERT_TRUE(scene.character().on_animation());
+    const auto jets = fixtures::idle<float>(scene.skeleton, double(scene.time));
+    std::copy(jets.begin(), jets.end(), crowd->jets(1).begin());
+    ASSERT_TRUE(crowd->step(kStep).ok());
+    EXPECT_TRUE(crowd->overloaded().empty());
+    float peak = 0;
+    for (int dof = 0; dof < crowd->dof_count(); ++dof) {
+      EXPECT_NEAR(crowd->torque(1, dof), scene.character().torque()[dof], 0.05)
+          << "N·m; weight 770 N, in float";
+      if (dof >= 6) peak = std::max(peak, scene.character().load()[dof]);
+    }
+    EXPECT_NEAR(crowd->peak_load(1), peak, 1e-3);
+    for (std::size_t j = 0; j < jets.size(); ++j) {
+      EXPECT_LT((crowd->model(1)[j].translation - scene.character().model()[j].translation).norm(), 1e-6);
+      EXPECT_LT(crowd->model(1)[j].rotation.angularDistance(scene.character().model()[j].rotation), 2e-3);
+    }
+  }
+}
+
+struct Result {
+  std::vector<float> numbers;
+
+  explicit Result(Crowd& crowd, int count) {
+    for (int i = 0; i < count; ++i) {
+      numbers.push_back(crowd.peak_load(i));
+      for (int dof = 0; dof < crowd.dof_count(); ++dof) numbers.push_back(crowd.torque(i, dof));
+      for (const Transform<float>& t : crowd.model(i)) {
+        numbers.insert(numbers.end(), t.rotation.coeffs().begin(), t.rotation.coeffs().end());
+        numbers.insert(numbers.end(), t.translation.begin(), t.translation.end());
+      }
+    }
+  }
+  bool same_bits(const Result& other) const {
+    return numbers.size() == other.numbers.size() &&
+           std::memcmp(numbers.data(), other.numbers.data(), numbers.size() * sizeof(float)) == 0;
+  }
+};
+
+/// A pool as simple as can be: threads take the next index.
+void run_on_threads(void* host, int count, void (*task)(void*, int), void* context) {
+  std::atomic<int> next{0};
+  std::vector<std::jthread> threads;
+  for (int n = 0; n < *static_cast<int*>(host); ++n)
+    threads.emplace_back([&] {
+      for (int i = next++; i < count; i = next++) task(context, i);
+    });
+}
+
+TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 53;
+  settings.instruction_set = InstructionSet::kBaseline;
+  settings.lanes = 8;
+  const auto reference = scene.crowd(settings);
+  for (int n = 0; n < 3; ++n) ASSERT_TRUE(reference->step(kStep).ok());
+  const Result wanted(*reference, settings.capacity);
+  for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512})
+    for (const int lanes : {8, 16})
+      for (int threads : {0, 1, 3}) {
+        if (!available(set)) continue;
+        settings.instruction_set = set;
+        settings.lanes = lanes;
+        settings.chunks = threads == 0 ? 1 : 2 * threads + 1;
+        const auto crowd = scene.crowd(settings);
+        for (int n = 0; n < 3; ++n)
+          ASSERT_TRUE(
+              crowd->step(kStep, threads == 0 ? ParallelFor{} : ParallelFor{run_on_threads, &threads}).ok());
+        EXPECT_TRUE(Result(*crowd, settings.capacity).same_bits(wanted))
+            << "set " << int(set) << ", " << lanes << " lanes, " << threads << " threads";
+      }
+}
+
+TEST(Crowd, ModelPosesChainTheJetsRideAlongJointsIncluded) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 21;
+  const auto crowd = scene.crowd(settings);
+  ASSERT_TRUE(crowd->step(kStep).ok());
+  for (int i = 0; i < settings.capacity; ++i) {
+    std::vector<Transform<float>> model;
+    for (std::size_t j = 0; j < scene.rig.joints.size(); ++j) {
+      const Transform<float> local{crowd->jets(i)[j].rotation, crowd->jets(i)[j].translation};
+      const int parent = scene.rig.joints[j].parent;
+      model.push_back(parent < 0 ? local : model[parent] * local);
+      EXPECT_LT((crowd->model(i)[j].translation - model[j].translation).norm(), 1e-5) << "float at 30 m";
+      EXPECT_LT((crowd->model(i)[j].rotation.coeffs() - model[j].rotation.coeffs()).norm(), 1e-5);
+    }
+  }
+}
+
+TEST(Crowd, OnlyTheCharacterWhoseMusclesAreTooWeakIsOverloaded) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 40;
+  const auto crowd = scene.crowd(settings);
+  for (int i = 0; i < settings.capacity; ++i)
+    ASSERT_TRUE(crowd->set_strength(i, std::numeric_limits<float>::infinity()).ok());
+  ASSERT_TRUE(crowd->step(kStep).ok());
+  EXPECT_TRUE(crowd->overloaded().empty());
+  EXPECT_EQ(crowd->peak_load(17), 0);
+  ASSERT_TRUE(crowd->set_strength(17, 0.001f).ok());
+  ASSERT_TRUE(crowd->set_strength(33, 0).ok());
+  ASSERT_TRUE(crowd->step(kStep).ok());
+  EXPECT_EQ(std::vector<int>(crowd->overloaded().begin(), crowd->overloaded().end()),
+            (std::vector<int>{17, 33}));
+  // The load is the torque over the limit of its own direction.
+  const Tree<double> tree(scene.rig);
+  double load = 0;
+  for (int i = 1; i < tree.bodies; ++i)
+    for (int k = 0; k < tree.dof_count(i); ++k) {
+      const double torque = crowd->torque(17, tree.first_dof[i] + k);
+      const DofLimits& limits = scene.rig.joints[i].dofs[k];
+      load = std::max(load,
+                      std::abs(torque) / (0.001 * (torque >= 0 ? limits.torque_plus : limits.torque_minus)));
+    }
+  EXPECT_NEAR(crowd->peak_load(17), load, 1e-5 * load);
+}
+
+TEST(Crowd, MotionThatIsNotFiniteIsReportedAndStaysInItsLane) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 16;
+  const auto crowd = scene.crowd(settings);
+  ASSERT_TRUE(crowd->step(kStep).ok());
+  const Result before(*crowd, 5);
+  for (int i = 0; i < 16; ++i) {
+    ASSERT_TRUE(crowd->set_strength(i, 1e6f).ok());
+    CrowdTrack held = crowd->track(i);
+    held.clip = nullptr;
+    ASSERT_TRUE(crowd->play(i, held).ok());
+  }
+  crowd->jets(5)[3].alpha.x() = NAN;
+  ASSERT_TRUE(crowd->step(0).ok());
+  EXPECT_EQ(std::vector<int>(crowd->overloaded().begin(), crowd->overloaded().end()), std::vector<int>{5});
+  for (int i = 0; i < 5; ++i)
+    for (int dof = 0; dof < crowd->dof_count(); ++dof) EXPECT_TRUE(std::isfinite(crowd->torque(i, dof)));
+}
+
+TEST(Crowd, InactiveCharactersAreLeftAloneAndChangeNobody) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 40;
+  const auto all = scene.crowd(settings), some = scene.crowd(settings);
+  for (int i = 0; i < settings.capacity; ++i)
+    if (i % 3 != 1 || (i >= 16 && i < 32)) {  // a whole batch among them
+      ASSERT_TRUE(some->set_active(i, false).ok());
+      ASSERT_TRUE(some->set_strength(i, 0).ok());
+      some->jets(i)[2].rotation.x() = NAN;
+    }
+  ASSERT_TRUE(all->step(kStep).ok());
+  ASSERT_TRUE(some->step(kStep).ok());
+  EXPECT_TRUE(some->overloaded().empty() || some->overloaded().size() == all->overloaded().size());
+  for (int i = 0; i < settings.capacity; ++i) {
+    if (i % 3 != 1 || (i >= 16 && i < 32)) {
+      EXPECT_EQ(some->track(i).time, scene.track(i).time);
+      EXPECT_EQ(some->model(i)[0].translation, scene.rig.joints[0].rest.translation.cast<float>());
+      continue;
+    }
+    EXPECT_EQ(some->peak_load(i), all->peak_load(i));
+    EXPECT_EQ(some->model(i)[5].translation, all->model(i)[5].translation);
+  }
+}
+
+TEST(Crowd, StepAllocatesNothing) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 40;
+  settings.chunks = 3;
+  const auto crowd = scene.crowd(settings);
+  const long before = fixtures::allocations;
+  std::vector<int> counted(1);
+  EXPECT_EQ(fixtures::allocations - before, 1) << "the counter does not count";
+  const long start = fixtures::allocations;
+  bool ok = true;
+  for (int n = 0; n < 10; ++n) ok &= crowd->step(kStep).ok();
+  EXPECT_EQ(fixtures::allocations - start, 0);
+  EXPECT_TRUE(ok);
+}
+
+TEST(Crowd, RefusesWhatCannotBeMeant) {
+  const Scene scene;
+  const auto refused = [&](auto change) {
+    CrowdSettings settings;
+    change(settings);
+    Status status;
+    return !Crowd::create(scene.rig, settings, status) && !status.ok();
+  };
+  EXPECT_TRUE(refused([](CrowdSettings& s) { s.capacity = 0; }));
+  EXPECT_TRUE(refused([](CrowdSettings& s) { s.lanes = 7; }));
+  EXPECT_TRUE(refused([](CrowdSettings& s) { s.chunks = 0; }));
+  EXPECT_TRUE(refused([](CrowdSettings& s) { s.ground_height = NAN; }));
+  Status status;
+  Skeleton broken = scene.rig;
+  broken.joints[3].parent = 9;
+  EXPECT_EQ(Crowd::create(broken, {}, status), nullptr);
+  EXPECT_EQ(status.index, 3);
+  const auto crowd = scene.crowd({.capacity = 4});
+  EXPECT_EQ(crowd->play(4, {}).index, 4);
+  EXPECT_FALSE(crowd->set_active(-1, true).ok());
+  EXPECT_FALSE(crowd->set_strength(0, NAN).ok());
+  EXPECT_FALSE(crowd->step(-1).ok());
+  EXPECT_FALSE(crowd->step(NAN).ok());
+  const Clip other = fixtures::random_clip({.joints = 3});
+  EXPECT_EQ(crowd->play(0, {&other}).code, Code::kInvalidArgument);
+  EXPECT_FALSE(crowd->play(0, {nullptr, 0, 1, {Quat<float>(NAN, 0, 0, 0), {0, 0, 0}}}).ok());
+}
+
+}  // namespace
+}  // namespace sinew

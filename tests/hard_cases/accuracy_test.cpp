@@ -1,0 +1,96 @@
+// The accuracy study measures what it says, and our schemes have the order that theory gives them.
+#include "study/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "sinew/skeleton/rotation.h"
+#include "study/bodies.h"
+
+namespace sinew::study {
+namespace {
+
+AccuracyPoint point(double us, double error, const char* engine = "Sinew", double h = 1) {
+  AccuracyPoint p;
+  p.engine = engine;
+  p.h = h, p.us = us, p.error = error;
+  p.survived = true;
+  return p;
+}
+
+TEST(AccuracyStudy, DisplacementIsTheRootMeanSquareOfAllMass) {
+  const Skeleton box = box_body(3, {0.2, 0.4, 0.6});
+  const std::vector<Transform<double>> here(1);
+  std::vector<Transform<double>> there(1);
+  there[0].translation = {0.3, 0, 0.4};
+  EXPECT_NEAR(displacement(box, here, there), 0.5, 1e-12);
+  // Turned by a half about z, a point at (x, y) moves by 2·√(x² + y²): its mean square is 4·Izz/m.
+  there[0].translation.setZero();
+  there[0].rotation = rotation_exp<double>({0, 0, 3.14159265358979});
+  EXPECT_NEAR(displacement(box, here, there), 2 * std::sqrt((0.04 + 0.16) / 12), 1e-9);
+}
+
+TEST(AccuracyStudy, OrderIsTheSlopeOfAPowerLawAndSkipsWhatDidNotSurvive) {
+  std::vector<AccuracyPoint> points;
+  for (const double h : {0.1, 0.05, 0.025}) points.push_back(point(1, 3 * std::pow(h, 1.7), "", h));
+  points.push_back(point(1, 100, "", 0.2));
+  points.back().survived = false;
+  EXPECT_NEAR(order_of(points), 1.7, 1e-9);
+  EXPECT_EQ(order_of({}), 0);
+}
+
+TEST(AccuracyStudy, TheFrontHoldsWhatNothingBeats) {
+  std::vector<AccuracyPoint> points{point(1, 1), point(2, 0.5), point(3, 0.7), point(4, 0.1), point(4, 0.2)};
+  points.push_back(point(0.1, 0.01));
+  points.back().survived = false;
+  mark_pareto(points);
+  std::vector<bool> front;
+  for (const AccuracyPoint& p : points) front.push_back(p.pareto);
+  EXPECT_EQ(front, (std::vector<bool>{true, true, false, true, false, false}));
+}
+
+TEST(AccuracyStudy, PriceIsTheCheapestWithinTheErrorPerEngine) {
+  const std::vector<AccuracyPoint> points{point(9, 1e-4), point(5, 1e-3), point(7, 1e-3),
+                                          point(1, 1e-5, "Peer")};
+  EXPECT_EQ(price_of(points, "Sinew", 2e-3), 5);
+  EXPECT_EQ(price_of(points, "Sinew", 5e-4), 9);
+  EXPECT_LT(price_of(points, "Sinew", 1e-6), 0);
+  EXPECT_EQ(price_of(points, "Peer", 2e-3), 1);
+}
+
+TEST(AccuracyStudy, SchemesHaveTheirOrderOnATumblingBody) {
+  const std::vector<AccuracyResult> results = run_accuracy({true, "tumbling"}, {});
+  ASSERT_EQ(results.size(), 1u);
+  ASSERT_EQ(results[0].slopes.size(), 3u);
+  for (const Slope& slope :
+       results[0].slopes)  // the leading error term rules to a tenth or so from 1/240 s on
+    EXPECT_NEAR(slope.found, slope.expected, 0.2) << slope.option;
+}
+
+TEST(AccuracyStudy, ReportIsOnePageWithItsDataAndNothingToLoad) {
+  AccuracyResult result;
+  result.scene = accuracy_scenes()[0];
+  result.points = {point(1, 1e-3), point(10, 1e-5)};
+  for (AccuracyPoint& p : result.points) p.varied = "step", p.option = "</script>";
+  const std::string page = accuracy_html({result});
+  for (const char* hole : {"@DATA@", "@UPLOT_JS@", "@UPLOT_CSS@", "<script src", "<link"})
+    EXPECT_EQ(page.find(hole), std::string::npos) << hole;
+  EXPECT_NE(page.find(result.scene.title), std::string::npos);
+  std::size_t ends = 0;
+  for (std::size_t at = 0; (at = page.find("</script>", at)) != std::string::npos; ++at) ++ends;
+  EXPECT_EQ(ends, 2u) << "data ended a script early";
+  const std::string csv = accuracy_csv({result});
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  for (const char* ending : {"png", "svg"}) {
+    const std::string file = testing::TempDir() + "accuracy." + ending;
+    EXPECT_FALSE(draw_accuracy(result, file));
+    EXPECT_GT(std::filesystem::file_size(file), 5000u);
+  }
+  EXPECT_TRUE(run_accuracy({true, "no such scene"}, {}).empty());
+}
+
+}  // namespace
+}  // namespace sinew::study

@@ -1,0 +1,23 @@
+// Where the camera stands in every frame.
+#pragma once
+
+#include <vector>
+
+#include "render/stage.h"
+#include "scene/recording.h"
+
+namespace sinew::render {
+
+/// One view per recorded frame. The recording's own camera, or one that keeps all characters in the picture:
+/// distance and height follow a window of past and coming frames, so that it neither lags nor shakes.
+/// `aspect` is width / height.
+std::vector<View> plan_camera(const scene::Recording& recording, float aspect);
+
+/// Views of a character on its own: framed as above from slightly above, turned by n / `per_revolution` of a
+/// full circle in frame n (not at all when it is 0).
+std::vector<View> plan_turntable(const scene::Recording& recording, float aspect, int per_revolution);
+
+/// Height of the lowest point of the first frame's characters, m.
+float lowest_point(const scene::Recording& recording);
+
+}  // namespace sinew::render

@@ -1,0 +1,25 @@
+// Work per evaluation of serial chains against their number of bodies.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace sinew::study {
+
+struct ChainPoint {
+  int links = 0;
+  double dtr = 0, dsr = 0, rr = 0;  ///< µs per evaluation
+};
+
+/// Chains of 5 … 1000 links (5 … 200 when `quick`).
+std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& done_one);
+
+/// Exponent p of time ~ links^p over the chains of at least `from` links.
+double growth_exponent(const std::vector<ChainPoint>& chains, double ChainPoint::*time, int from);
+
+std::string chains_csv(const std::vector<ChainPoint>& chains);
+/// Draws the CSV with gnuplot, double logarithmic. "" or what is wrong.
+std::string plot_chains(const std::string& csv, const std::string& png);
+
+}  // namespace sinew::study

@@ -1,0 +1,64 @@
+// Measuring the reference family: mechanisms with their references, time of one evaluation, time and true
+// error of one simulation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mechanism/simulate_mechanism.h"
+
+namespace sinew::study {
+
+/// Largest |difference|/(1 + |value|) over all coordinates and sampled instants.
+struct TrueError {
+  double q = 0, u = 0;
+  bool within(const TrueError& other) const { return q <= other.q && u <= other.u; }
+};
+
+/// Coordinates and rates of all joints at given instants.
+struct Trajectory {
+  std::vector<double> t;
+  std::vector<multibody::Vector> y;  ///< q, q'
+};
+
+TrueError error_of(const Trajectory& trajectory, const Trajectory& reference);
+
+/// A mechanism of the study and what its motion truly is.
+struct StudyCase {
+  std::string name;
+  multibody::Mechanism mechanism;
+  Trajectory reference;
+  bool stiff = false;
+  bool closed() const { return !mechanism.loops.empty(); }
+};
+
+/// Reads DIRECTORY/NAME.json and DIRECTORY/reference/NAME.csv; without the latter the reference is DE at
+/// 1e-12.
+/// "" or what is wrong.
+std::string load_case(const std::string& directory, const std::string& name, StudyCase& out);
+
+/// One simulation: which, how long, how true.
+struct Measurement {
+  std::string mechanism;
+  std::string method;       ///< "DE · DTR", "Simbody · CPodes", …
+  double tolerance = 0;     ///< relative and absolute
+  double milliseconds = 0;  ///< CPU time of the integration, best of the repeats
+  TrueError error;
+  long steps = 0, evaluations = 0, tangents = 0, factorisations = 0;
+  double closure = 0;       ///< m
+  double energy_drift = 0;  ///< J; of conservative mechanisms
+  std::string stopped;      ///< "" or why there is no figure
+};
+
+/// CPU time of this thread, s.
+double cpu_seconds();
+
+/// Simulates with Sinew; `repeats` times, the quickest counts.
+Measurement measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
+                    double tolerance, int repeats);
+
+/// Time of one derivative (DTR, DSR) or residual (RR) in µs: best of repeats over states of the reference,
+/// moved by 1e-6 like an integrator's predictions.
+double evaluation_time(const StudyCase& c, multibody::Formulation formulation, int repeats);
+
+}  // namespace sinew::study
