@@ -234,7 +234,7 @@ class BodyBuilder {
     return values[static_cast<std::size_t>(at)];
   }
 
-  void fit_capsule(Part& part) {
+  void fit_capsule(Part& part) const {
     Vec3<double> middle = Vec3<double>::Zero();
     for (const Vec3<double>& v : part.vertices) middle += v;
     middle /= double(part.vertices.size());
