@@ -10,6 +10,7 @@ namespace {
 void undisturbed_frame(benchmark::State& state) {
   fixtures::Playing<float> scene;
   std::vector<std::vector<JointJet<float>>> frames;
+  frames.reserve(600);
   for (int n = 0; n < 600; ++n) frames.push_back(fixtures::idle<float>(scene.skeleton, n / 60.0));
   std::size_t n = 0;
   for (auto _ : state) {

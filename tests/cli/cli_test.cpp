@@ -177,6 +177,20 @@ TEST(Command, EvaluatePrintsWhatItPromises) {
                  "wing");
 }
 
+TEST(Command, InfoReportsMemoryPerRigAndCharacter) {
+  const Outcome run = sinew("info " + kAsset + " --json");
+  ASSERT_EQ(run.code, 0) << run.out;
+  const json bytes = json::parse(run.out)["memory_bytes"];
+  // 22 joints: a pose and a history of about 200 bytes each, and room for contacts. A character holds that
+  // and what the solver needs.
+  EXPECT_GT(bytes["snapshot"], 22 * 100);
+  EXPECT_LT(bytes["snapshot"], 20000);
+  if (bytes["character"] == 0) GTEST_SKIP() << "the address sanitizer's heap cannot be read";
+  EXPECT_GT(bytes["skeleton"], 22 * sizeof(double));
+  EXPECT_GT(bytes["clips"], bytes["skeleton"]);
+  EXPECT_GT(bytes["character"], 2 * bytes["snapshot"].get<int>());
+}
+
 TEST(Command, RendersAPictureOfAnAsset) {
   const std::string out = own_directory() + "picture.png";
   const Outcome run = sinew("render " + kAsset + " --size 320x180 -o " + out);

@@ -35,7 +35,7 @@ void expect_no_faults(int half) {
   }
   const int count = std::max(1, number("SINEW_RANDOM_TREES", kUsualCount) / 2);
   const RandomTreesReport report =
-      run_random_trees<T>(std::uint64_t(1 + half * count), count,
+      run_random_trees<T>(1 + std::uint64_t(half) * std::uint64_t(count), count,
                           std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   std::string first;
   for (std::size_t i = 0; i < std::min<std::size_t>(report.faults.size(), 10); ++i)

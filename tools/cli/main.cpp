@@ -8,6 +8,7 @@
 #include "cli/evaluate.h"
 #include "cli/files.h"
 #include "cli/mechanism.h"
+#include "cli/memory.h"
 #include "cli/study.h"
 #include "cli/tables.h"
 #include "convert/convert.h"
@@ -84,6 +85,8 @@ struct InfoCommand {
     json colliders = asset.skeleton.colliders.size();
     report["colliders"] = colliders;
     report["meshes"] = asset.meshes.size();
+    const json memory = cli::memory_of(asset);
+    report["memory_bytes"] = memory;
     json clips = json::array();
     for (const sinew::Clip& c : asset.clips)
       clips.push_back({{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}});
@@ -91,9 +94,21 @@ struct InfoCommand {
     if (json_output)
       std::puts(report.dump().c_str());
     else
-      std::printf("%scolliders %zu, meshes %zu\n", sinew::convert::report_text(report).c_str(),
-                  asset.skeleton.colliders.size(), asset.meshes.size());
+      std::printf("%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(report).c_str(),
+                  asset.skeleton.colliders.size(), asset.meshes.size(), memory_text(memory).c_str());
     return {};
+  }
+
+ private:
+  static std::string memory_text(const json& bytes) {
+    if (bytes.is_null()) return "";
+    const auto kilobytes = [&](const char* key) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.1f kB", bytes[key].get<double>() / 1000);
+      return std::string(text);
+    };
+    return "memory: per rig " + kilobytes("skeleton") + " and clips of " + kilobytes("clips") +
+           "; per character " + kilobytes("character") + ", snapshot at most " + kilobytes("snapshot") + "\n";
   }
 };
 

@@ -97,8 +97,8 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   const int walk = first_of({"walk", "Walk"}, longest), stand = first_of({"stand", "idle", "Idle"}, walk);
   const auto [lowest, highest] = extent(*asset, walk);
   const double height = std::max(0.3, highest - lowest), mass = body.total_mass();
-  if (lowest < -0.1 * height)
-    c.position.z() = -lowest;  // made around its middle: it would stand in the ground
+  // Its shapes stand on the floor, not in it: a leg that the floor pushes never comes back to its clip.
+  c.position.z() = std::max(0.0, -std::min(lowest, extent(*asset, stand).first));
   c.clips.push_back({.clip = walk, .start = 0, .blend = 0});
   // From how it lies to the first pose of its own way up or, where it has none, to standing; then played.
   const int own_way = first_of({"get_up_supine", "get_up", "getup", "GetUp"}, -1);

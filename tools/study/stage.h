@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,7 +60,7 @@ class Stage {
   /// Steps for `seconds`, calling before(t) ahead of each step.
   template <class Before>
   void run(double seconds, double h, Before before) {
-    const int count = static_cast<int>(seconds / h + 0.5);
+    const int count = static_cast<int>(std::lround(seconds / h));
     for (int n = 0; n < count; ++n) {
       before(n * h);
       if (!step(h)) return;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/character/island.h"
+#include "sinew/character/snapshot.h"
 #include "sinew/effects/support.h"
 
 namespace sinew {
@@ -26,6 +27,7 @@ struct World<T>::Impl {
   bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
   bool near_obstacle(const CharacterState<T>& state, T h) const;
   void step_once(T h);
+  MovingParts<T> moving() { return {states, lagged}; }
 };
 
 template <class T>
@@ -302,6 +304,41 @@ Status World<T>::step(T h) {
   if (h > T(0.25)) return Status::error(Code::kOutOfRange, "step above 0.25 s");
   impl_->step_once(h);
   return {};
+}
+
+template <class T>
+std::size_t World<T>::snapshot_capacity() const {
+  return bytes_at_most(impl_->moving(), Content::kState);
+}
+
+template <class T>
+std::size_t World<T>::save(std::span<std::byte> out) const {
+  return write_bytes(impl_->moving(), Content::kState, out);
+}
+
+template <class T>
+Status World<T>::restore(std::span<const std::byte> snapshot) {
+  return read_bytes(impl_->moving(), Content::kState, snapshot);
+}
+
+template <class T>
+std::size_t World<T>::inputs_capacity() const {
+  return bytes_at_most(impl_->moving(), Content::kInputs);
+}
+
+template <class T>
+std::size_t World<T>::save_inputs(std::span<std::byte> out) const {
+  return write_bytes(impl_->moving(), Content::kInputs, out);
+}
+
+template <class T>
+Status World<T>::restore_inputs(std::span<const std::byte> inputs) {
+  return read_bytes(impl_->moving(), Content::kInputs, inputs);
+}
+
+template <class T>
+SnapshotField World<T>::snapshot_field(std::size_t byte) const {
+  return field_at(impl_->moving(), byte);
 }
 
 template class World<float>;

@@ -12,6 +12,7 @@
 // exceeds a muscle's limit, those degrees of freedom are solved together with contacts and friction.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -80,6 +81,12 @@ struct WorldSettings {
   double ground_restitution = 0;  ///< see Collider::restitution
 };
 
+/// Where a byte of a snapshot belongs.
+struct SnapshotField {
+  int state = -1;         ///< character or prop, in the order in which they were added; -1: the world
+  const char* name = "";  ///< "" where there is no such byte
+};
+
 template <class T>
 struct CharacterState;  // residual, history and solver state; world.cpp
 
@@ -143,6 +150,24 @@ class World {
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
   /// Allocates nothing, throws nothing. On an error nothing has moved.
   Status step(T h);
+
+  // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
+  // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.
+  // Targets and impulses are inputs and not part of it: set them after restoring. torque(), limit(),
+  // unknown() and report() follow with the next step. recording.h writes whole runs and replays them.
+
+  /// Bytes that a snapshot takes at most.
+  std::size_t snapshot_capacity() const;
+  /// Bytes written, or 0 where `out` is too small.
+  std::size_t save(std::span<std::byte> out) const;
+  /// Refuses what save() of such a world did not write, with nothing moved.
+  Status restore(std::span<const std::byte> snapshot);
+  /// The same for the inputs that wait for the next step: targets and impulses.
+  std::size_t inputs_capacity() const;
+  std::size_t save_inputs(std::span<std::byte> out) const;
+  Status restore_inputs(std::span<const std::byte> inputs);
+  /// What a byte of the snapshot that save() would write now stands for.
+  SnapshotField snapshot_field(std::size_t byte) const;
 
  private:
   struct Impl;

@@ -1,8 +1,7 @@
 #include "sinew/multibody/simulation.h"
 
-#include <time.h>
-
 #include <cmath>
+#include <ctime>
 
 namespace sinew::multibody {
 namespace {

@@ -1,0 +1,253 @@
+#include "sinew/character/snapshot.h"
+
+#include <algorithm>
+
+namespace sinew {
+namespace {
+
+/// Also tells zeros of different sign apart.
+template <class Values>
+bool same_bits(const Values& a, const Values& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(*a.data()) * a.size()) == 0;
+}
+
+/// body → world as the step computes it from the local pose.
+template <class T>
+Mat3<T> rotation_of(const CharacterState<T>& s, int body, const Mat3<T>* parent) {
+  Mat3<T> relative = s.local[body].rotation.toRotationMatrix();
+  if (!parent) return relative;
+  Mat3<T> product;
+  product.noalias() = *parent * relative;
+  return product;
+}
+
+template <class T>
+void visit_pose(CharacterState<T>& s, ByteStream& stream) {
+  for (Transform<T>& x : s.local) {
+    stream.rotation("pose rotation", x.rotation);
+    stream.vector("pose translation", x.translation);
+  }
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    JointJet<T>& last = s.target_before[i];
+    const bool elsewhere =
+        last.rotation.coeffs() != s.local[i].rotation.coeffs() || last.translation != s.local[i].translation;
+    if (stream.part("joint is off its last target", elsewhere)) {
+      stream.rotation("last target's rotation", last.rotation);
+      stream.vector("last target's translation", last.translation);
+    } else if (stream.reading()) {
+      last.rotation = s.local[i].rotation;
+      last.translation = s.local[i].translation;
+    }
+  }
+}
+
+template <class T>
+void visit_joints(CharacterState<T>& s, ByteStream& stream) {
+  stream.value("span of the joint speeds", s.rate_step);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const std::size_t count = s.tree.dof_count(i);
+    Deviation<T>& d = s.deviation[i];
+    auto flags = static_cast<std::uint8_t>((d.on_animation ? 1 : 0) + (d.released ? 2 : 0));
+    stream.value("joint on the animation or released", flags);
+    if (stream.reading()) {
+      d = {};
+      d.on_animation = (flags & 1) != 0;
+      d.released = (flags & 2) != 0;
+    }
+    stream.array("joint speed", s.rate[i].data(), count);
+    stream.array("joint speed before", s.rate_before[i].data(), count);
+    constexpr std::array<T, 6> none{};
+    if (stream.part("joint has a deviation", !same_bits(d.offset, none) || !same_bits(d.rate, none))) {
+      stream.array("deviation", d.offset.data(), count);
+      stream.array("deviation's rate", d.rate.data(), count);
+    }
+  }
+  stream.array("load", s.load.data(), s.load.size());
+}
+
+template <class T>
+void visit_history(CharacterState<T>& s, ByteStream& stream) {
+  History<T>& h = s.history;
+  stream.value("span of the history", h.step_before);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    stream.vector("centre of mass", h.center[i]);
+    stream.vector("velocity", h.velocity[i]);
+    stream.vector("angular momentum", h.momentum[i]);
+    stream.matrix("rotation rate", h.rotation_rate[i]);
+    const int parent = s.tree.parent[i];
+    const Mat3<T> rotation = rotation_of(s, i, parent < 0 ? nullptr : &h.rotation[parent]);
+    if (stream.part("rotation differs from the pose's", !same_bits(h.rotation[i], rotation)))
+      stream.matrix("rotation", h.rotation[i]);
+    else if (stream.reading())
+      h.rotation[i] = rotation;
+  }
+  if (!stream.part("contacts have been the same", s.steps_unchanged > 0)) return;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    stream.vector("centre of mass before", h.center_before[i]);
+    stream.vector("velocity before", h.velocity_before[i]);
+    stream.vector("angular momentum before", h.momentum_before[i]);
+    stream.matrix("rotation before", h.rotation_before[i]);
+  }
+}
+
+}  // namespace
+
+template <class T>
+void visit_state(CharacterState<T>& s, ByteStream& stream) {
+  std::uint8_t root = static_cast<std::uint8_t>(s.settings.root);
+  stream.value("root drive", root);
+  if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kFree))
+    s.settings.root = static_cast<RootDrive>(root);
+  stream.value("strength", s.settings.strength);
+  stream.array("strength of a joint", s.joint_strength.data(), s.joint_strength.size());
+  stream.value("contacts that touched", s.contact_signature);
+  stream.value("limits that bore", s.limit_signature);
+  stream.value("steps with the same contacts", s.steps_unchanged);
+  visit_pose(s, stream);
+  visit_joints(s, stream);
+  visit_history(s, stream);
+  if (!stream.reading()) return;
+  s.impulses.clear();
+  s.refresh_limits();
+  s.update_model();
+}
+
+template <class T>
+void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
+  for (JointJet<T>& jet : s.target) {
+    stream.rotation("target rotation", jet.rotation);
+    stream.vector("target angular velocity", jet.omega);
+    stream.vector("target angular acceleration", jet.alpha);
+    stream.vector("target translation", jet.translation);
+    stream.vector("target velocity", jet.velocity);
+    stream.vector("target acceleration", jet.acceleration);
+  }
+  std::uint32_t count = static_cast<std::uint32_t>(s.impulses.size());
+  stream.value("number of impulses", count);
+  if (stream.reading()) s.impulses.resize(std::min<std::size_t>(count, s.impulses.capacity()));
+  for (ExternalForce<T>& impulse : s.impulses) {
+    stream.value("impulse's body", impulse.body);
+    if (stream.reading()) impulse.body = std::clamp(impulse.body, 0, s.tree.bodies - 1);
+    stream.vector("impulse's point", impulse.local);
+    stream.vector("impulse", impulse.force);
+  }
+}
+
+namespace {
+
+struct Header {
+  std::uint32_t content = 0, bytes = 0;
+  std::uint64_t layout = 0, digest = 0;
+};
+
+void visit_header(Header& header, ByteStream& stream) {
+  stream.value("header", header.content);
+  stream.value("header", header.bytes);
+  stream.value("header", header.layout);
+  stream.value("header", header.digest);
+}
+
+/// FNV-1a.
+std::uint64_t digest(std::span<const std::byte> bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const std::byte b : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3ull;
+  return hash;
+}
+
+/// Of a world's make-up: scalar, states and their joints. Bytes fit worlds of the same make-up.
+template <class T>
+std::uint64_t layout_of(const MovingParts<T>& world) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  const auto add = [&](std::uint64_t x) { hash = (hash ^ x) * 0x100000001b3ull; };
+  add(sizeof(T));
+  for (const auto& s : world.states) {
+    add(s->local.size());
+    for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
+  }
+  return hash;
+}
+
+template <class T>
+void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
+  std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
+  stream.value("number of contact forces", count);
+  if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
+  for (LaggedForce<T>& contact : lagged) {
+    auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here
+    stream.value("contact", id);
+    stream.value("contact force", force);
+    stream.value("contact stiffness", stiffness);
+    stream.value("contact offset", offset);
+  }
+}
+
+/// The bytes behind the header.
+template <class T>
+void visit(const MovingParts<T>& world, Content content, ByteStream& stream) {
+  for (const auto& s : world.states)
+    content == Content::kState ? visit_state(*s, stream) : visit_inputs(*s, stream);
+  if (content == Content::kState) visit_lagged(world.lagged, stream);
+}
+
+}  // namespace
+
+template <class T>
+std::size_t bytes_at_most(const MovingParts<T>& world, Content content) {
+  ByteStream stream = ByteStream::bound();
+  visit(world, content, stream);
+  std::size_t room = kHeaderBytes + stream.position();
+  if (content == Content::kState)
+    room += (world.lagged.capacity() - world.lagged.size()) * (sizeof(std::uint64_t) + 3 * sizeof(T));
+  else
+    for (const auto& s : world.states)
+      room += (s->impulses.capacity() - s->impulses.size()) * (sizeof(int) + 6 * sizeof(T));
+  return room;
+}
+
+template <class T>
+std::size_t write_bytes(const MovingParts<T>& world, Content content, std::span<std::byte> out) {
+  if (out.size() < kHeaderBytes) return 0;
+  ByteStream body = ByteStream::writer(out.subspan(kHeaderBytes));
+  visit(world, content, body);
+  if (!body.ok()) return 0;
+  const std::size_t bytes = kHeaderBytes + body.position();
+  Header header{static_cast<std::uint32_t>(content), static_cast<std::uint32_t>(bytes), layout_of(world),
+                digest(out.subspan(kHeaderBytes, body.position()))};
+  ByteStream head = ByteStream::writer(out);
+  visit_header(header, head);
+  return bytes;
+}
+
+template <class T>
+Status read_bytes(const MovingParts<T>& world, Content content, std::span<const std::byte> in) {
+  Header header;
+  ByteStream head = ByteStream::reader(in);
+  visit_header(header, head);
+  if (!head.ok() || header.content != static_cast<std::uint32_t>(content))
+    return Status::error(Code::kBadFile, "not a snapshot");
+  if (header.bytes != in.size()) return Status::error(Code::kBadFile, "snapshot is cut off");
+  if (header.layout != layout_of(world))
+    return Status::error(Code::kInvalidArgument, "snapshot of a world with other characters or props");
+  if (header.digest != digest(in.subspan(kHeaderBytes)))
+    return Status::error(Code::kBadFile, "snapshot was changed");
+  ByteStream body = ByteStream::reader(in.subspan(kHeaderBytes));
+  visit(world, content, body);
+  return body.ok() ? Status{} : Status::error(Code::kBadFile, "snapshot ends early");
+}
+
+template <class T>
+SnapshotField field_at(const MovingParts<T>& world, std::size_t byte) {
+  if (byte < kHeaderBytes) return {-1, "header"};
+  ByteStream stream = ByteStream::namer(byte - kHeaderBytes);
+  for (std::size_t n = 0; n < world.states.size(); ++n) {
+    visit_state(*world.states[n], stream);
+    if (*stream.name()) return {static_cast<int>(n), stream.name()};
+  }
+  visit_lagged(world.lagged, stream);
+  return {-1, stream.name()};
+}
+
+SINEW_SNAPSHOT_INSTANCES(template, float)
+SINEW_SNAPSHOT_INSTANCES(template, double)
+
+}  // namespace sinew

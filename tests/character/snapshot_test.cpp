@@ -1,0 +1,222 @@
+// A snapshot is everything: a world restored from one goes on as the world that it was taken of, to the bit.
+#include "character/scenes.h"
+#include "sinew/character/recording.h"
+
+namespace sinew {
+namespace {
+
+/// A humanoid that is pushed while it plays, goes limp, falls onto a ball and gets its strength back: every
+/// kind of state in 4 s.
+template <class T>
+struct Story {
+  Skeleton skeleton = fixtures::humanoid();
+  World<T> world;
+  int frame = 0;
+
+  explicit Story(double strength = 1) : world({}) {
+    Status status;
+    CharacterSettings settings;
+    settings.strength = strength;
+    settings.self_collision = true;
+    EXPECT_EQ(world.add_character(skeleton, settings, status), 0) << status.reason;
+    PropSettings ball;
+    ball.pose.translation = {0.3, 0.1, 0.2};
+    EXPECT_EQ(world.add_prop(ball, status), 0) << status.reason;
+    EXPECT_TRUE(hero().set_target(fixtures::idle<T>(skeleton, 0)).ok());
+    hero().reset();
+  }
+  Character<T> hero() { return world.character(0); }
+
+  /// What the host does before a step; the step itself is left to the caller.
+  void inputs() {
+    ++frame;
+    EXPECT_TRUE(hero().set_target(fixtures::idle<T>(skeleton, frame / 60.0)).ok());
+    const int chest = skeleton.find("chest");
+    if (frame == 20) {
+      EXPECT_TRUE(hero().apply_impulse(chest, hero().model()[chest].translation, {T(30), T(20), T(0)}).ok());
+    }
+    if (frame == 60) {
+      hero().set_root_drive(RootDrive::kFree);
+      EXPECT_TRUE(hero().set_strength(T(0.02)).ok());
+    }
+    if (frame == 180) {
+      hero().set_root_drive(RootDrive::kAssisted);
+      EXPECT_TRUE(hero().set_strength(T(1)).ok());
+    }
+  }
+  void step() {
+    inputs();
+    ASSERT_TRUE(world.step(T(1) / 60).ok());
+  }
+};
+
+template <class T>
+std::vector<std::byte> saved(const World<T>& world) {
+  std::vector<std::byte> bytes(world.snapshot_capacity());
+  const std::size_t size = world.save(bytes);
+  EXPECT_GT(size, 0u);
+  bytes.resize(size);
+  return bytes;
+}
+
+template <class T>
+bool same_pose(World<T>& a, World<T>& b) {
+  const auto same = [](std::span<const Transform<T>> x, std::span<const Transform<T>> y) {
+    bool all = true;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      all = all && x[i].rotation.coeffs() == y[i].rotation.coeffs() && x[i].translation == y[i].translation;
+    return all;
+  };
+  const Transform<T> ball_a = a.prop_pose(0), ball_b = b.prop_pose(0);
+  return same(a.character(0).model(), b.character(0).model()) && same({&ball_a, 1}, {&ball_b, 1});
+}
+
+template <class T>
+class Snapshot : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Snapshot, Scalars);
+
+TYPED_TEST(Snapshot, RestoredIntoAnotherWorldGoesOnToTheBit) {
+  // Playing; just pushed; on the way back; falling; lying with bdf2; getting its strength back.
+  for (const int at : {10, 20, 26, 90, 170, 190}) {
+    Story<TypeParam> first, second;
+    while (first.frame < at) first.step();
+    const std::vector<std::byte> bytes = saved(first.world);
+    ASSERT_TRUE(second.world.restore(bytes).ok());
+    EXPECT_TRUE(same_pose(first.world, second.world)) << at;
+    EXPECT_EQ(saved(second.world), bytes) << at;
+    second.frame = first.frame;
+    for (int n = 0; n < 60; ++n) {
+      first.step();
+      second.step();
+      ASSERT_TRUE(same_pose(first.world, second.world)) << at << " + " << n;
+      ASSERT_EQ(saved(first.world), saved(second.world)) << at << " + " << n;
+    }
+  }
+}
+
+TYPED_TEST(Snapshot, RestoredIntoTheSameWorldRepeatsWhatHappened) {
+  Story<TypeParam> story;
+  while (story.frame < 70) story.step();
+  const std::vector<std::byte> start = saved(story.world);
+  std::vector<std::vector<std::byte>> once;
+  for (int n = 0; n < 40; ++n) {
+    story.step();
+    once.push_back(saved(story.world));
+  }
+  ASSERT_TRUE(story.world.restore(start).ok());
+  story.frame = 70;
+  for (const std::vector<std::byte>& expected : once) {
+    story.step();
+    ASSERT_EQ(saved(story.world), expected) << story.frame;
+  }
+}
+
+TEST(SnapshotBytes, CapacityIsEnoughAndTooSmallARoomIsRefused) {
+  Story<float> story;
+  std::size_t most = 0;
+  const std::size_t capacity = story.world.snapshot_capacity();
+  while (story.frame < 220) {
+    story.step();
+    most = std::max(most, saved(story.world).size());
+    ASSERT_EQ(story.world.snapshot_capacity(), capacity);
+  }
+  EXPECT_LE(most, capacity);
+  std::vector<std::byte> room(saved(story.world).size());
+  EXPECT_EQ(story.world.save(room), room.size());
+  EXPECT_EQ(story.world.save(std::span(room).first(room.size() - 1)), 0u);
+  EXPECT_EQ(story.world.save({}), 0u);
+}
+
+TEST(SnapshotBytes, OfAPlayingHumanoidIsBelowTwoKilobytes) {
+  fixtures::Playing<float> scene;
+  for (int n = 0; n < 30; ++n) scene.step();
+  EXPECT_LE(saved(scene.world).size(), 2048u);
+  RecordProperty("bytes_playing", static_cast<int>(saved(scene.world).size()));
+}
+
+TEST(SnapshotBytes, DamagedOrForeignBytesAreRefusedAndMoveNothing) {
+  Story<float> story, other;
+  for (int n = 0; n < 70; ++n) story.step();
+  const std::vector<std::byte> good = saved(story.world);
+  const std::vector<std::byte> untouched = saved(other.world);
+  for (std::size_t byte = 0; byte < good.size(); byte += 7) {
+    std::vector<std::byte> bad = good;
+    bad[byte] ^= std::byte{4};
+    EXPECT_FALSE(other.world.restore(bad).ok()) << byte;
+    EXPECT_FALSE(other.world.restore(std::span(good).first(byte)).ok()) << byte;
+  }
+  std::vector<std::byte> longer = good;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(other.world.restore(longer).ok());
+  Story<double> in_double;
+  EXPECT_FALSE(in_double.world.restore(good).ok());
+  fixtures::Playing<float> without_a_ball;
+  EXPECT_FALSE(without_a_ball.world.restore(good).ok());
+  std::vector<std::byte> inputs(story.world.inputs_capacity());
+  inputs.resize(story.world.save_inputs(inputs));
+  EXPECT_FALSE(other.world.restore(inputs).ok());
+  EXPECT_EQ(saved(other.world), untouched);
+  EXPECT_TRUE(other.world.restore(good).ok());
+}
+
+TEST(Recording, ReplaysToTheBitFromTheRecordedStart) {
+  Story<float> story, again;
+  Recorder<float> recorder(story.world);
+  while (story.frame < 200) {
+    story.inputs();
+    ASSERT_TRUE(recorder.step(story.frame % 2 ? 1 / 60.f : 1 / 45.f).ok());
+  }
+  for (int n = 0; n < 5; ++n) again.step();  // whatever state it is in
+  ReplayReport report;
+  const Status status = replay(again.world, recorder.bytes(), report);
+  ASSERT_TRUE(status.ok()) << status.reason;
+  EXPECT_EQ(report.steps, 200);
+  EXPECT_TRUE(report.same);
+  EXPECT_TRUE(same_pose(story.world, again.world));
+}
+
+TEST(Recording, ReplayStopsWhereAnotherWorldFirstDiffersAndNamesTheField) {
+  Story<float> story;
+  Recorder<float> recorder(story.world);
+  while (story.frame < 100) {
+    story.inputs();
+    ASSERT_TRUE(recorder.step(1 / 60.f).ok());
+  }
+  // Other inertias: playback is the same pose to the bit, so torques and momenta tell first.
+  Skeleton body = fixtures::humanoid();
+  for (Joint& joint : body.joints) joint.inertia *= 1.01;
+  World<float> world({});
+  Status status;
+  CharacterSettings settings;
+  settings.self_collision = true;
+  ASSERT_EQ(world.add_character(body, settings, status), 0);
+  PropSettings ball;
+  ball.pose.translation = {0.3, 0.1, 0.2};
+  ASSERT_EQ(world.add_prop(ball, status), 0);
+  ReplayReport report;
+  status = replay(world, recorder.bytes(), report);
+  ASSERT_TRUE(status.ok()) << status.reason;
+  EXPECT_FALSE(report.same);
+  EXPECT_EQ(report.steps, 1);
+  EXPECT_EQ(report.field.state, 0);
+  EXPECT_STREQ(report.field.name, "load");
+}
+
+TEST(Recording, CutOffRecordingIsRefused) {
+  Story<float> story, again;
+  Recorder<float> recorder(story.world);
+  for (int n = 0; n < 3; ++n) {
+    story.inputs();
+    ASSERT_TRUE(recorder.step(1 / 60.f).ok());
+  }
+  ReplayReport report;
+  const auto bytes = recorder.bytes();
+  EXPECT_FALSE(replay(again.world, bytes.first(0), report).ok());
+  EXPECT_FALSE(replay(again.world, bytes.first(bytes.size() - 1), report).ok());
+  EXPECT_FALSE(replay(again.world, bytes.first(bytes.size() / 2), report).ok());
+  EXPECT_TRUE(replay(again.world, bytes, report).ok());
+}
+
+}  // namespace
+}  // namespace sinew
