@@ -45,5 +45,7 @@ if [ "${1:-}" = --all ]; then
   build/sinew study accuracy --quick -o build/study >build/accuracy.log
 fi
 tail -n 8 build/test.log
+# What the tests of passing conversions print stays in ctest's own log.
+sed -n '/^file .*error mm$/,/^\[/{/^\[/!p}' build/Testing/Temporary/LastTest.log | tee -a build/test.log
 echo "tests: $(grep -c 'Passed' build/test.log) passed, build/test.log holds the details"
 if [ -n "${CI:-}" ]; then grep -E 'tests passed|Total Test time' build/test.log; fi

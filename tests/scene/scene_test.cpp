@@ -123,7 +123,7 @@ TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
   const Result r = run(R"(, "clips": [{"clip": "walk"},
                             {"clip": "get_up", "start": 3, "blend": 1, "rate": 0, "align": true, "from_pose": true}],
                             "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]])",
-                       "", 4.5);
+                       "", 5);
   const auto fastest = [&](double from, double to) {
     float speed = 0;
     for (double t = from; t < to; t += 1 / 60.0)
@@ -135,7 +135,8 @@ TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
   ASSERT_LT(r.at(2.9).model[0].translation.z(), 0.3f) << "it lies";
   // The ease of 1 s has moved no further than 30u²(1 − u)² · 1.5 m/s (an arm's span) at u = 0.12.
   EXPECT_LT(fastest(3, 3.1), 0.33f * 1.5f);
-  EXPECT_EQ(r.at(4.5).unknown_dofs, 0) << "it has come to the clip";
+  // An arm lies under the body: it comes out when the chest lifts, half a second after the ease.
+  EXPECT_EQ(r.at(4.9).unknown_dofs, 0) << "it has come to the clip";
 }
 
 TEST(Scene, OffsetStartsInTheMiddleOfAClip) {
