@@ -32,7 +32,8 @@ def _surface_points():
         s, e, w, h, f = (AT[j + tail] for j in ("upperarm", "forearm", "hand", "thigh", "foot"))
         side = {
             "heel": ("foot", [h[0], 0, -0.045]), "heel_back": ("foot", [h[0], 0.03, -0.07]), "ball_in": ("foot", [h[0] - 0.03 * sign, 0, 0.12]), "ball_out": ("foot", [h[0] + 0.03 * sign, 0, 0.12]),
-            "toe": ("toes", [h[0] - 0.01 * sign, 0.004, 0.185]), "instep": ("foot", [h[0], 0.06, 0.07]), "toe_top": ("toes", [h[0], 0.03, 0.17]),
+            "toe": ("toes", [h[0] - 0.01 * sign, 0.004, 0.185]), "toe_pad_in": ("toes", [h[0] - 0.03 * sign, 0, 0.152]),
+            "toe_pad_out": ("toes", [h[0] + 0.03 * sign, 0, 0.148]), "instep": ("foot", [h[0], 0.06, 0.07]), "toe_top": ("toes", [h[0], 0.03, 0.17]),
             "ankle_out": ("foot", [h[0] + 0.04 * sign, 0.06, 0]), "knee": ("shin", [h[0], 0.475, 0.065]), "shin": ("shin", [h[0], 0.33, 0.045]), "calf": ("shin", [h[0], 0.36, -0.075]),
             "thigh_front": ("thigh", [h[0], 0.70, 0.09]), "thigh_back": ("thigh", [h[0], 0.72, -0.09]), "thigh_out": ("thigh", [h[0] + 0.09 * sign, 0.80, 0]),
             "hip_front": ("pelvis", [0.09 * sign, 0.965, 0.10]), "hip_out": ("pelvis", [0.17 * sign, 0.94, 0]), "seat": ("pelvis", [0.076 * sign, 0.915, -0.14]),
@@ -48,7 +49,13 @@ def _surface_points():
     for _ in range(4):
         places -= field(places)[:, None] * gradient(places)
     places[:, 1] = np.maximum(places[:, 1], 0)
-    return {name: (joint, place) for (name, (joint, _)), place in zip(seeds.items(), places)}
+    points = {name: (joint, place) for (name, (joint, _)), place in zip(seeds.items(), places)}
+    # Corners of the boxes that the converter puts around feet and toes: a little outside the skin.
+    for tail, sign in zip(SIDES, (1, -1)):
+        for k, (joint, x, y, z) in enumerate((("foot", 0.04, 0, -0.066), ("foot", -0.04, 0, -0.066), ("toes", 0.04, 0, 0.203), ("toes", -0.05, 0, 0.203),
+                                              ("toes", 0.04, 0.034, 0.203), ("toes", -0.05, 0.034, 0.203))):
+            points[f"corner_{k}{tail}"] = (joint + tail, np.array([AT["foot" + tail][0] + sign * x, y, z]))
+    return points
 
 
 POINTS = _surface_points()
@@ -103,8 +110,10 @@ class ContactMotion:
         self.wish = np.array([np.convolve(c, width, "valid") for c in padded.T]).T
         names = list(POINTS)
         self.bears = np.zeros((len(names), self.frames), bool)
+        self.lift = np.zeros((len(names), 1))  # m that a point bears above the floor: colliders are thicker than the skin of seat and heel
         for group, begin, end in bearing:
             for name in group:
+                self.lift[names.index(name)] = 0.007 if name.startswith(("seat", "heel_back")) else 0.0
                 self.bears[names.index(name), (t >= begin - 1e-9) & (t <= end + 1e-9)] = True
         self.trust = np.where(t < 0.1, 2.0, 0.5)  # lying should look as wished: the fall ends so
         limits = np.array([RANGE.get(f, RANGE.get(f[:-2], (-1e9, 1e9))) for f in FIELDS], float)
@@ -140,7 +149,7 @@ class ContactMotion:
     def _contact_rows(self, at):
         """Bearing points on the floor, the others not below it, 3 mm; steps of bearing points from frame to frame, 1 mm."""
         rows = lambda x: np.moveaxis(x, 0, -1)
-        height = at[..., 1]
+        height = at[..., 1] - self.lift[:, None]
         step = np.concatenate([np.diff(at[..., [0, 2]], axis=2), np.zeros_like(at[:, :, :1, :2])], axis=2)
         both = self.bears & np.roll(self.bears, -1, axis=1)
         some = both.any(axis=1)

@@ -21,8 +21,8 @@ def _both(*names):
 
 
 SUPINE = [
-    (0.00, dict(z=-0.52, lean=-90, neck=4, shoulder=-12, abduction=18, elbow=14, arm_twist=-20, knee=6, hip=3, ankle=-28)),
-    (0.06, dict(z=-0.52, lean=-90, neck=6, shoulder=-12, abduction=18, elbow=14, arm_twist=-20, knee=6, hip=3, ankle=-28)),
+    (0.00, dict(z=-0.52, lean=-90, neck=4, shoulder=-12, abduction=18, elbow=14, arm_twist=-20, knee=8, hip=4, ankle=-3)),
+    (0.06, dict(z=-0.52, lean=-90, neck=6, shoulder=-12, abduction=18, elbow=14, arm_twist=-20, knee=8, hip=4, ankle=-3)),
     (0.15, dict(z=-0.52, lean=-80, flexion=22, neck=32, abduction=20, elbow=20, elbow_r=65, shoulder_r=-30, abduction_r=35, shoulder_l=20, knee=30, hip=22, ankle=-20)),
     (0.30, dict(z=-0.50, lean=-42, flexion=30, neck=18, spine_twist=-18, hip_l=85, knee_l=95, hip_r=75, knee_r=85, shoulder_l=55, elbow_l=30, abduction_l=12,
                 shoulder_r=-45, abduction_r=30, elbow_r=10, wrist_r=65, arm_twist_r=-30)),
@@ -36,7 +36,7 @@ SUPINE_BEARS = [
     (_both("back"), 0, 0.19), (["head_back"], 0, 0.08), (_both("seat"), 0, 0.38), (_both("heel_back"), 0, 0.04),
     (["elbow_r"], 0.15, 0.23), (["palm_r", "fingers_r"], 0.24, 0.55), (["heel_l", "ball_in_l", "ball_out_l"], 0.26, 1), (["heel_r", "ball_in_r", "ball_out_r"], 0.36, 1)]
 PRONE = [
-    (0.00, dict(z=0.0, lean=90, neck=-12, head_twist=55, shoulder=10, abduction=55, elbow=80, arm_twist=-60, hip=0, knee=3, ankle=-45)),
+    (0.00, dict(z=0.0, lean=90, neck=-12, head_twist=55, shoulder=-6, abduction=24, elbow=16, arm_twist=50, hip=-2, knee=14, ankle=-48)),
     (0.13, dict(z=0.0, lean=88, flexion=-8, neck=-25, shoulder=-15, abduction=28, elbow=115, wrist=60, pronation=40, hip=4, knee=8, ankle=-15, toes=30)),
     (0.30, dict(z=-0.20, lean=70, flexion=0, neck=-28, shoulder=60, abduction=16, elbow=45, wrist=65, pronation=40, hip=50, knee=75, ankle=0, toes=45)),
     (0.43, dict(z=-0.33, lean=72, flexion=12, neck=-28, shoulder=80, abduction=10, elbow=15, wrist=70, pronation=40, hip=85, knee=92, ankle=5, toes=50)),
@@ -45,8 +45,8 @@ PRONE = [
     (0.88, dict(z=-0.02, lean=16, flexion=3, neck=-8, hip_l=35, knee_l=28, ankle_l=10, hip_r=40, knee_r=55, ankle_r=-5, shoulder=8, elbow=18, abduction=8)),
 ]
 PRONE_BEARS = [
-    (_both("breast"), 0, 0.15), (_both("hip_front"), 0, 0.16), (_both("thigh_front"), 0, 0.14), (["knee_l"], 0.11, 0.40), (["knee_r"], 0.11, 0.62), (["toe_l"], 0.15, 0.40), (["toe_r"], 0.15, 0.79),
-    (_both("toe_top"), 0, 0.03), (_both("palm", "fingers"), 0.13, 0.46), (["heel_l", "ball_in_l", "ball_out_l"], 0.55, 1), (["heel_r", "ball_in_r", "ball_out_r"], 0.94, 1)]
+    (_both("breast"), 0, 0.15), (_both("hip_front"), 0, 0.16), (_both("thigh_front"), 0, 0.14), (["knee_l"], 0.11, 0.40), (["knee_r"], 0.11, 0.62), (["toe_pad_in_l", "toe_pad_out_l"], 0.17, 0.40), (["toe_pad_in_r", "toe_pad_out_r"], 0.17, 0.77),
+    (_both("palm", "fingers"), 0.13, 0.46), (["heel_l", "ball_in_l", "ball_out_l"], 0.55, 1), (["heel_r", "ball_in_r", "ball_out_r"], 0.94, 1)]
 
 
 def clips():

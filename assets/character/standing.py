@@ -15,7 +15,7 @@ def pose(frames, sway=0.0, aside=0.0, breath=0.0):
     zero = np.zeros(frames)
     a = ANGLES
     m.trunk(lean=a["lean"], spine_flexion=a["flexion"] - 0.6 * breath, neck=a["neck"] + 0.5 * breath, head_twist=200 * aside)
-    m.root = np.stack([aside + zero, 0.957 + zero, zero], axis=1)
+    m.root = np.stack([aside + zero, 0.9545 + zero, zero], axis=1)
     for tail, sign in (("_l", 1), ("_r", -1)):
         m.arm(tail, a["shoulder"] + 120 * sway, a["abduction"] + 0.7 * breath, a["elbow"] + 0.5 * breath, wrist=a["wrist"])
         m.local["clavicle" + tail] = turn(np.array([0, 0, 1.0]), sign * 0.8 * (breath + zero))

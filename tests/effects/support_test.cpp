@@ -71,6 +71,21 @@ TEST(Support, AccelerationToTheRightPushesOffTheLeftFoot) {
   for (const int foot : {left, right}) EXPECT_GE((before[foot] - s.force[foot]).z(), 0);
 }
 
+TEST(Support, FeetOfAStrideLeanTowardsTheHipsAndAgainstEachOther) {
+  Standing s;
+  const int left = s.skeleton.find("foot_l"), right = s.skeleton.find("foot_r");
+  s.kinematics.origin[left].x() += 0.2;
+  s.kinematics.origin[right].x() -= 0.2;
+  const std::vector<V> before = s.force;
+  s.share();
+  const V front = before[left] - s.force[left], back = before[right] - s.force[right];
+  EXPECT_LT(front.x(), -0.1 * front.z());
+  EXPECT_GT(back.x(), 0.1 * back.z());
+  // Within 0.4 of the vertical by default, and no push that the motion does not ask for.
+  EXPECT_LE(front.head<2>().norm(), 0.8 * front.z());
+  EXPECT_NEAR((front + back).x(), 0, 1e-9 * front.z());
+}
+
 TEST(Support, DoesNothingInFlight) {
   Standing s(0.1);
   const std::vector<V> before = s.force;

@@ -122,9 +122,8 @@ TEST(Scene, GetUpIsChosenByTheSideThatTheCharacterLiesOn) {
 TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
   const Result r = run(R"(, "clips": [{"clip": "walk"},
                             {"clip": "get_up", "start": 3, "blend": 1, "rate": 0, "align": true, "from_pose": true}],
-                            "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]],
-                            "root_force": 450, "root_torque": 170, "position": [0, 0, 0.014])",
-                       "", 4.5);
+                            "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]])",
+                       "", 5);
   const auto fastest = [&](double from, double to) {
     float speed = 0;
     for (double t = from; t < to; t += 1 / 60.0)
@@ -134,24 +133,10 @@ TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
     return speed;
   };
   ASSERT_LT(r.at(2.9).model[0].translation.z(), 0.3f) << "it lies";
-  // The ease has 0.17 of its peak speed 0.1 s after its start; the floor that bodies press on adds to it.
-  EXPECT_LT(fastest(3, 3.1), 0.5f * fastest(3.1, 4));
-  // Measured joint by joint, rad: it comes to the first pose of the clip, but for what the floor is in the
-  // way of.
-  const SceneCharacter& c = r.scene.characters[0];
-  const bool prone = forward(r, r.at(2.9)).z() < 0;
-  std::vector<JointJet<float>> jets(c.asset->skeleton.joints.size());
-  SamplingJob<float>{&c.asset->clips[prone ? c.clips[1].clip_when_prone : c.clips[1].clip], 0, 1, jets}.Run();
-  const auto away = [&](double t) {
-    float sum = 0;
-    for (int i = 1; i < c.asset->skeleton.body_count; ++i) {
-      const int parent = c.asset->skeleton.joints[i].parent;
-      const auto& model = r.at(t).model;
-      sum += (model[parent].rotation.conjugate() * model[i].rotation).angularDistance(jets[i].rotation);
-    }
-    return sum;
-  };
-  EXPECT_LT(away(4.5), 0.1f * away(3));
+  // The ease of 1 s has moved no further than 30u²(1 − u)² · 1.5 m/s (an arm's span) at u = 0.12.
+  EXPECT_LT(fastest(3, 3.1), 0.33f * 1.5f);
+  // An arm lies under the body: it comes out when the chest lifts, half a second after the ease.
+  EXPECT_EQ(r.at(4.9).unknown_dofs, 0) << "it has come to the clip";
 }
 
 TEST(Scene, OffsetStartsInTheMiddleOfAClip) {

@@ -8,6 +8,7 @@
 #include "convert/human.h"
 #include "convert/muscles.h"
 #include "convert/roles.h"
+#include "convert/shapes.h"
 #include "convert/volume.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -50,6 +51,10 @@ bool is_hand(Role r) {
 }
 bool is_foot(Role r) {
   return r == Role::kFootL || r == Role::kFootR;
+}
+
+bool is_toes(Role r) {
+  return r == Role::kToesL || r == Role::kToesR;
 }
 
 /// Radius of a limb of unknown girth, as a share of its length (de Leva's segment volumes read as cylinders:
@@ -202,11 +207,11 @@ class BodyBuilder {
     bone(j);
     Part& part = parts_[j];
     Collider& c = part.shape;
-    const bool role_foot = is_foot(roles_[j]);
-    if (part.vertices.size() >= 12 && role_foot) {
-      fit_box(j);
-    } else if (part.vertices.size() >= 12) {
-      fit_capsule(part);
+    if (part.vertices.size() >= 12) {
+      if (is_foot(roles_[j]) || is_toes(roles_[j]))
+        c = fit_sole(part.vertices, part.direction, rig_.joints[j].rest.rotation, rig_.height);
+      else
+        c = fit_capsule(part.vertices, part.direction, rig_.height);
     } else {
       // Heads, hands and feet of bare skeletons: lengths as shares of stature (Drillis & Contini).
       const bool head = roles_[j] == Role::kHead;
@@ -226,51 +231,6 @@ class BodyBuilder {
                                          : kPi * s.x() * s.x() * (2 * s.z() + 4.0 / 3.0 * s.x());
     // A chain link without skin of its own and without length carries nothing.
     if (part.length < 0.005 * rig_.height && part.vertices.empty()) part.volume = 0;
-  }
-
-  static double percentile(std::vector<double>& values, double p) {
-    const auto at = static_cast<std::ptrdiff_t>(p * double(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
-  }
-
-  void fit_capsule(Part& part) const {
-    Vec3<double> middle = Vec3<double>::Zero();
-    for (const Vec3<double>& v : part.vertices) middle += v;
-    middle /= double(part.vertices.size());
-    std::vector<double> along, away;
-    const Vec3<double> d = part.direction;
-    const Vec3<double> offset = middle - d * d.dot(middle);
-    for (const Vec3<double>& v : part.vertices) {
-      along.push_back(d.dot(v));
-      away.push_back((v - offset - d * d.dot(v)).norm());
-    }
-    const double low = percentile(along, 0.04), high = percentile(along, 0.96);
-    const double radius = std::clamp(percentile(away, 0.55), 0.005 * rig_.height, 0.2 * rig_.height);
-    part.shape.shape = Shape::kCapsule;
-    part.shape.size = {radius, radius, std::max(0.0, (high - low) / 2 - radius)};
-    part.shape.local.translation = offset + d * ((low + high) / 2);
-    part.shape.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), d);
-  }
-
-  /// Feet: a box with level faces at rest that reaches the sole.
-  void fit_box(int j) {
-    Part& part = parts_[j];
-    const Quat<double> level = rig_.joints[j].rest.rotation;  // joint → model
-    const Vec3<double> forward = level * part.direction;
-    const double heading = std::atan2(forward.y(), forward.x());
-    const Quat<double> box(Eigen::AngleAxisd(heading, Vec3<double>::UnitZ()));
-    Vec3<double> low = Vec3<double>::Constant(1e9), high = -low;
-    for (const Vec3<double>& v : part.vertices) {
-      const Vec3<double> p = box.conjugate() * (level * v);
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    high.z() = std::min(high.z(), 0.02 * rig_.height);  // not up the shin: the ankle is the joint's origin
-    part.shape.shape = Shape::kBox;
-    part.shape.size = ((high - low) / 2).cwiseMax(0.004 * rig_.height);
-    part.shape.local.rotation = level.conjugate() * box;
-    part.shape.local.translation = part.shape.local.rotation * ((low + high) / 2);
   }
 
   /// Axis of flexion: across the bone, about which the clips bend this joint; anatomy's where they hardly do.

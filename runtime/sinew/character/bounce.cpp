@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/energy_ledger.h"
+
 namespace sinew {
 namespace {
 
@@ -49,16 +51,6 @@ bool Bounce<T>::possible(std::span<const Contact<T>> contacts) {
 }
 
 template <class T>
-double Bounce<T>::energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
-  double sum = 0;
-  for (const CharacterState<T>* s : states) {
-    const Totals t = totals<T>(s->tree, s->history, gravity);
-    sum += t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
-  }
-  return sum;
-}
-
-template <class T>
 void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
                         const Vec3<double>& gravity, T h) {
   impacts_.clear();
@@ -97,8 +89,8 @@ bool Bounce<T>::factorise(std::span<CharacterState<T>* const> states) {
                                       k.rotation[i] * s.tree.inertia[i] * k.rotation[i].transpose());
     }
     assemble_tree_matrix<T>(s.tree, k, axes_, s.problem.composite, unknowns_, first_[n], false, mass_);
+    add_floor<T>(s.tree, k, s.problem.composite, unknowns_, first_[n], mass_);
   }
-  mass_.raise_diagonal(sizeof(T) == 4 ? T(1e-6) : T(1e-10));
   return mass_.factorise();
 }
 
@@ -192,7 +184,7 @@ bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<cons
     for (std::size_t j = 0; j < m; ++j)
       for (std::size_t k = 0; k < n; ++k) delassus_[i * m + j] += rows_[i * n + k] * answers_[j * n + k];
   solve_impulses();
-  const T share = affordable(budget - energy(states, gravity));
+  const T share = affordable(budget - energy<T>(states, gravity));
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t k = 0; k < n; ++k) change_[k] += share * impacts_[i].impulse * answers_[i * n + k];

@@ -22,9 +22,6 @@ class Bounce {
 
   /// Whether any contact both bounces and closed in this step.
   static bool possible(std::span<const Contact<T>> contacts);
-  /// The energy that the trees have now, kinetic, potential and stored: none may come on top (J).
-  static double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
-
   /// Changes the velocities of the trees' histories where contacts closed in the step of h seconds that led
   /// to the problems' kinematics. `budget` is the energy before that step. True if anything bounced. Costs
   /// one tree solve per bouncing contact.

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
+constexpr double kExitSpeed = 0.5;      ///< m/s, of what begins inside something
+constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
@@ -60,8 +62,22 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
   remember(c);
-  if (c.fresh) stiffen_for_impact(c);
+  if (c.fresh) {
+    stiffen_for_impact(c);
+    lead_out(c);
+  }
+  c.start_gap = c.gap;
   contacts_.push_back(c);
+}
+
+/// What begins inside something (spawned there, or played there by an animation) is not shot out of it: the
+/// surface is where the feature is, and comes back at a walking pace.
+template <class T>
+void ContactFinder<T>::lead_out(Contact<T>& c) const {
+  if (c.gap >= T(-kLeftInside)) return;
+  const T offset = std::max(-c.gap - T(kExitSpeed) * h_, T(0));
+  c.offset += offset;
+  c.gap += offset;
 }
 
 /// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
@@ -74,6 +90,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.fresh = false;
   c.lagged_normal_force = found->force;
   c.offset = found->offset;
+  if (c.offset > T(kLeftInside)) c.offset = std::max(c.offset - T(kExitSpeed) * h_, T(kLeftInside));
   if (found->stiffness < c.stiffness)
     c.offset += ContactLaw<T>::depth(found->stiffness, found->force) -
                 ContactLaw<T>::depth(c.stiffness, found->force);

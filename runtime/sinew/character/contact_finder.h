@@ -44,6 +44,7 @@ class ContactFinder {
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
   void remember(Contact<T>& contact) const;
+  void lead_out(Contact<T>& contact) const;
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
 

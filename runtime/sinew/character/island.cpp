@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sinew {
 namespace {
@@ -362,13 +363,19 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
   const bool may_bounce = Bounce<T>::possible(contacts_);
-  const double budget = may_bounce ? Bounce<T>::energy(states_, world_->gravity) : 0;
+  const double budget = energy<T>(states_, world_->gravity);
+  const bool no_pose = !solved.converged && passive() && pose_energy() > budget + 1e-3 * std::abs(budget);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    if (!settled(s)) hold(s);
+    if (no_pose || !settled(s)) hold(s);
     finish(s, static_cast<int>(n), *world_, h);
   }
   if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
+  if (!solved.converged || passive()) {
+    if (ledger_.settle(states_, world_->gravity, budget, !solved.converged)) ++damped_;
+  } else {
+    for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
+  }
   lagged_.clear();
   for (const Contact<T>& c : contacts_)
     if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
@@ -377,7 +384,36 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Last rung: where a solve left something that is no pose, the tree stays where it was, at rest.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push.
+template <class T>
+bool IslandStepper<T>::passive() const {
+  return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
+    if (s->root_is_kinematic() || !s->impulses.empty()) return false;
+    const JointLaw<T>& law = s->problem.law;
+    return std::all_of(law.torque_plus.begin(), law.torque_plus.end(), [](T t) { return t <= T(0); }) &&
+           std::all_of(law.torque_minus.begin(), law.torque_minus.end(), [](T t) { return t <= T(0); });
+  });
+}
+
+/// What the trees store at the present poses: gravity, contacts and joint limits, J.
+template <class T>
+double IslandStepper<T>::pose_energy() const {
+  double sum = 0;
+  for (const CharacterState<T>* s : states_) {
+    const Vec3<double> gravity = world_->gravity;
+    for (int i = 0; i < s->tree.bodies; ++i) {
+      const Vec3<T> center = s->problem.kinematics.center[i] + settings_.common_origin;
+      sum -= double(s->tree.mass[i]) * gravity.dot(center.template cast<double>());
+    }
+    for (const JointRow<T>& row : s->problem.rows)
+      if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
+  }
+  for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  return sum;
+}
+
+/// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
+/// the tree stays where it was, at rest.
 template <class T>
 void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
@@ -432,7 +468,7 @@ void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   total_ = {};
   all_converged_ = true;
-  splits_ = parts_ = held_ = 0;
+  splits_ = parts_ = damped_ = held_ = 0;
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
   const int parts = parts_of(h);
@@ -445,6 +481,7 @@ void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider
     r.converged = all_converged_;
     r.substeps = parts_;
     r.splits = splits_;
+    r.damped = damped_;
     r.held = held_;
   }
   lagged_out.insert(lagged_out.end(), lagged_.begin(), lagged_.end());

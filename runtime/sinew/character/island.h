@@ -6,6 +6,7 @@
 
 #include "sinew/character/bounce.h"
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/energy_ledger.h"
 #include "sinew/character/sweep.h"
 #include "sinew/optimizer/newton.h"
 
@@ -28,6 +29,8 @@ class IslandStepper {
   int parts_of(T h) const;
   void advance_part(T begin, T end, int splits_left);
   SolveReport attempt(T h, T fraction);
+  bool passive() const;
+  double pose_energy() const;
   void hold(CharacterState<T>& state);
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
@@ -51,11 +54,12 @@ class IslandStepper {
   SolveReport total_;
   bool all_converged_ = true;
   bool mispredicted_ = false;  ///< contacts or limits changed under bdf2
-  int parts_ = 0, splits_ = 0, held_ = 0;
+  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0;
   StepSettings<T> settings_;
   std::vector<TreeProblem<T>*> problems_;
   ContactFinder<T> finder_;
   Bounce<T> bounce_;
+  EnergyLedger<T> ledger_;
   std::vector<T> free_share_;  ///< [tree] see sweep()
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;

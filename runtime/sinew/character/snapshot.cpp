@@ -103,6 +103,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
+  stream.value("energy ceiling", s.energy_ceiling);
   visit_pose(s, stream);
   visit_joints(s, stream);
   visit_history(s, stream);

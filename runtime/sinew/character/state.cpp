@@ -170,6 +170,7 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
+  energy_ceiling = std::numeric_limits<double>::infinity();
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
 }
 

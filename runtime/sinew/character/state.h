@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "sinew/character/world.h"
@@ -55,6 +56,8 @@ struct CharacterState {
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
+  double energy_ceiling =
+      std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;
 
   CharacterState(const Skeleton& s, const CharacterSettings& c);

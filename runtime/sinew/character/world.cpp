@@ -251,6 +251,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   s.rate_step = T(0);
   s.contact_signature = s.limit_signature = 0;
   s.steps_unchanged = 0;
+  s.energy_ceiling = std::numeric_limits<double>::infinity();
   s.report = {};
   s.report.dofs = s.tree.dofs;
   s.report_totals(settings.gravity);

@@ -51,11 +51,14 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   if (carried <= T(0)) return;
   // Hardly standing (about to land, or just off): hardly borne, so that forces fade in.
   const T scale = total.z() / carried * std::min(T(1), sum / T(0.2));
-  // Forces lean towards the root by as much as all points can follow, so that a stride's feet brake and push
-  // against each other and the hips carry little. `mean` is their average, which the motion does not ask for.
+  // Forces lean towards where their limb leaves the root by as much as all points can follow, so that a
+  // stride's feet brake and push against each other and the hips carry little. `mean` is their average, which
+  // the motion does not ask for.
   using Vec2 = Eigen::Matrix<T, 2, 1>;
-  const auto lean = [&](const Vec3<T>& at) -> Vec2 {
-    return (k.origin[0] - at).template head<2>() / std::max(k.origin[0].z() - ground, T(1e-3));
+  const auto lean = [&](int body, const Vec3<T>& at) -> Vec2 {
+    while (body > 0 && tree.parent[body] > 0) body = tree.parent[body];
+    const T height = k.origin[body].z() - ground;
+    return height > reach ? Vec2((k.origin[body] - at).template head<2>() / height) : Vec2(Vec2::Zero());
   };
   Vec2 mean = Vec2::Zero();
   T steepest = T(0);
@@ -63,8 +66,8 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
     const T w = bearing(k, p, ground, reach, x);
     const T up = std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
     if (up <= T(0)) continue;
-    mean += up / carried * lean(x);
-    steepest = std::max(steepest, lean(x).norm());
+    mean += up / carried * lean(p.body, x);
+    steepest = std::max(steepest, lean(p.body, x).norm());
   }
   const T follow = std::min(T(1), T(settings.lean) / std::max(steepest, T(1e-6)));
   // No more friction than the floor could give.
@@ -74,7 +77,7 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
     const T up = scale * std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
     if (up <= T(0)) continue;
     Vec3<T> f(T(0), T(0), up);
-    f.template head<2>() = up * (level + follow * (lean(x) - mean));
+    f.template head<2>() = up * (level + follow * (lean(p.body, x) - mean));
     force[p.body] -= f;
     moment[p.body] -= x.cross(f);
   }

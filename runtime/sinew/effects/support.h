@@ -3,7 +3,7 @@
 // A kinematic root bears the whole weight, so its legs would seem to hang. The residual wrench at the root is
 // therefore shared out to the points that stand on the floor, and the joints between see what a standing
 // body's joints see. Statically indeterminate with two feet: the smallest weighted forces that balance weight
-// and tilt are taken, and they lean towards the root as the forces of walking people do (Maus, Lipfert,
+// and tilt are taken, and they lean towards the hips as the forces of walking people do (Maus, Lipfert,
 // Gross, Rummel & Seyfarth 2010, Nature Communications 1:70: they meet in a point above the centre of mass).
 #pragma once
 
@@ -15,7 +15,7 @@ namespace sinew {
 
 struct SupportSettings {
   double reach = 0.025;  ///< m; a point this high above the floor bears nothing, at the floor it bears fully
-  double lean = 0.4;     ///< most that a force leans towards the root, horizontal by vertical
+  double lean = 0.4;     ///< most that a force leans towards the hip, horizontal by vertical
 };
 
 /// Subtracts the support forces from the body wrenches (before project_wrenches). `force` and `moment` [body]

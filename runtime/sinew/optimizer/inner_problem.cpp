@@ -91,6 +91,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
     }
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
                             geometric, smooth_);
+    add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
     if (geometric) add_joint_geometry(*p);
   }
   if (geometric) contact_rows_.add_bending(smooth_);
@@ -194,7 +195,6 @@ bool InnerProblem<T>::newton_step() {
         factor_.row(rows.unknown + i)[unknowns_.pattern.depth[rows.unknown + j]] +=
             curvature * row.gradient[i] * row.gradient[j];
   }
-  factor_.raise_diagonal(sizeof(T) == 4 ? T(1e-6) : T(1e-10));
   ++factorisations;
   if (!factor_.factorise()) return false;
   if (contact_rows_.coupled()) return conjugate_gradients();
@@ -328,6 +328,7 @@ T InnerProblem<T>::displacement(std::span<const T> direction) const {
         w += p->kinematics.w[dof] * direction[k];
         v += p->kinematics.v[dof] * direction[k];
       }
+      if (tree.mass[i] <= T(0)) continue;  // nobody sees where a massless link spins between ball joints
       const T moved = (v + w.cross(p->kinematics.center[i])).norm() + T(kRotationArm) * w.norm();
       finite = finite && std::isfinite(moved);
       largest = std::max(largest, moved);

@@ -50,8 +50,8 @@ class InnerProblem {
   T slope(std::span<const T> direction) const;
   /// Directional derivative with the gradient that the trees hold now.
   T slope_now(std::span<const T> direction) const;
-  /// Largest displacement (m) of any body along a direction: of its centre plus 0.15 m per radian. Infinite
-  /// where it is no number.
+  /// Largest displacement (m) of any body with mass along a direction: of its centre plus 0.15 m per radian.
+  /// Infinite where it is no number.
   T displacement(std::span<const T> direction) const;
 
   int factorisations = 0;  ///< since begin()

@@ -27,6 +27,14 @@ void History<T>::stop() {
 }
 
 template <class T>
+void History<T>::slow(T factor, const Vec3<T>& shared) {
+  for (Vec3<T>& v : velocity) v = shared + factor * (v - shared);
+  for (Vec3<T>& l : momentum) l *= factor;
+  for (Mat3<T>& r : rotation_rate) r *= factor;
+  step_before = T(0);
+}
+
+template <class T>
 Prediction<T>::Prediction(int bodies) : center(bodies), rotation(bodies), momentum(bodies), start(bodies) {}
 
 namespace {

@@ -34,6 +34,9 @@ struct History {
   explicit History(int bodies);
   /// Takes all motion out.
   void stop();
+  /// Velocities relative to a shared one (m/s), and angular momenta, times a factor; what was before is
+  /// forgotten.
+  void slow(T factor, const Vec3<T>& shared);
 };
 
 /// Targets of inertia for one step, relative to the common origin.

@@ -39,6 +39,9 @@ int unknown_above(const Tree<T>& tree, int body, const Unknowns& unknowns, int f
 
 namespace {
 
+/// Of the inertia about the common origin.
+constexpr double kFloor = 5e-7;
+
 /// Second derivative of the pose: l acts on what k moves.
 template <class T>
 Vec3<T> geometric_column(const Composite<T>& c, const Vec3<T>& w, const Vec3<T>& v) {
@@ -75,6 +78,18 @@ void assemble_tree_matrix(const Tree<T>& tree, const Kinematics<T>& kin, const P
       }
     }
     if (const int p = tree.parent[i]; p >= 0) bodies[p] += bodies[i];
+  }
+}
+
+template <class T>
+void add_floor(const Tree<T>& tree, const Kinematics<T>& kin, std::span<const Composite<T>> bodies,
+               const Unknowns& unknowns, int first, TreeMatrix<T>& out) {
+  for (int d = 0; d < tree.dofs; ++d) {
+    const int k = unknowns.of_dof[first + d];
+    if (k < 0) continue;
+    const Composite<T>& c = bodies[tree.dof_body[d]];
+    out.row(k)[unknowns.pattern.depth[k]] +=
+        T(kFloor) * (c.mass * kin.v[d].squaredNorm() + c.rotational.trace() * kin.w[d].squaredNorm());
   }
 }
 

@@ -1,5 +1,6 @@
 #include "sinew/residual/tree_factor.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sinew {
@@ -23,12 +24,6 @@ int TreePattern::add(int above) {
   row.push_back(entries);
   entries += padded(depth.back() + 1);
   return size++;
-}
-
-template <class T>
-void TreeMatrix<T>::raise_diagonal(T share) {
-  const TreePattern& p = *pattern_;
-  for (int k = 0; k < p.size; ++k) row(k)[p.depth[k]] *= T(1) + share;
 }
 
 template <class T>
@@ -59,12 +54,17 @@ inline void subtract(T* __restrict target, const T* __restrict path, T factor, i
 
 template <class T>
 bool TreeMatrix<T>::factorise() {
+  constexpr T kRounding = sizeof(T) == 4 ? T(1e-5) : T(1e-12);  // of the diagonal
   const TreePattern& p = *pattern_;
+  diagonal_.resize(p.size);
+  for (int k = 0; k < p.size; ++k) diagonal_[k] = row(k)[p.depth[k]];
   for (int k = p.size - 1; k >= 0; --k) {
     T* path = row(k);
     const int depth = p.depth[k];
-    const T pivot = path[depth];
-    if (!(pivot > T(0))) return false;  // also catches NaN
+    const T smallest = kRounding * diagonal_[k];
+    if (!(path[depth] > -smallest)) return false;  // also catches NaN
+    const T pivot = std::max(path[depth], smallest);
+    if (!(pivot > T(0))) return false;
     const T root = std::sqrt(pivot);
     const T inverse = T(1) / root;
     path[depth] = root;

@@ -40,19 +40,21 @@ class TreeMatrix {
  public:
   explicit TreeMatrix(const TreePattern& pattern) : pattern_(&pattern) {}
   /// Set-up for patterns of at most so many unknowns.
-  void reserve(int unknowns) { values_.reserve(std::size_t(unknowns) * TreePattern::padded(unknowns)); }
+  void reserve(int unknowns) {
+    values_.reserve(std::size_t(unknowns) * TreePattern::padded(unknowns));
+    diagonal_.reserve(unknowns);
+  }
   void set_zero() { values_.assign(pattern_->entries, T(0)); }
   T* row(int k) { return values_.data() + pattern_->row[k]; }
   const T* row(int k) const { return values_.data() + pattern_->row[k]; }
   std::vector<T>& values() { return values_; }
   const std::vector<T>& values() const { return values_; }
 
-  /// Diagonal × (1 + share): a pivot that is all rounding (a massless link's spin between two ball joints
-  /// moves nothing) becomes one of the right size.
-  void raise_diagonal(T share);
   /// y = H·x.
   void multiply(std::span<const T> x, std::span<T> y) const;
-  /// Replaces H by its factor L. False (and a half-finished factor) when H is not positive definite.
+  /// Replaces H by its factor L. False (and a half-finished factor) when H is not positive definite. A pivot
+  /// that elimination has left nothing of but rounding (a massless link's spin between two ball joints moves
+  /// nothing) becomes a small share of the diagonal that it was.
   bool factorise();
   /// Solves LᵀL·x = b in place; call after factorise().
   void solve(std::span<T> b) const;
@@ -60,6 +62,7 @@ class TreeMatrix {
  private:
   const TreePattern* pattern_;
   std::vector<T> values_;
+  std::vector<T> diagonal_;  ///< [unknown] before elimination
 };
 
 extern template class TreeMatrix<float>;
