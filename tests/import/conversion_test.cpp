@@ -1,9 +1,15 @@
 // Traps that show only when a file is converted: units, axes, control bones, mesh and clips in several files.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "convert/convert.h"
 #include "reading.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/io/asset.h"
 #include "sinew/skeleton/skeleton.h"
+#include "skinned_leg.h"
 
 namespace sinew::convert {
 namespace {
@@ -13,23 +19,29 @@ using import::test::Scratch;
 
 struct Converted {
   Asset asset;
-  nlohmann::json report;
   std::string error;
-  double unit() const { return report["unit"]["meters_per_unit"]; }
-  double height() const { return report["height_m"]; }
+  double unit = 0, height = 0;  ///< m
+  std::string unit_from, up, name;
+  std::vector<std::string> notes;
 };
 
 Converted convert(const std::vector<std::string>& inputs, const nlohmann::json& options = {}) {
   Converted made;
-  made.error = convert_files(inputs, options, made.asset, made.report).message;
+  nlohmann::json report;
+  made.error = convert_files(inputs, options, made.asset, report).message;
+  if (!made.error.empty()) return made;
+  made.name = report["name"];
+  made.notes = report["notes"].get<std::vector<std::string>>();
+  if (!report.contains("unit")) return made;  // a URDF's is known
+  made.unit = report["unit"]["meters_per_unit"];
+  made.unit_from = report["unit"]["from"];
+  made.up = report["up"]["axis"];
+  made.height = report["height_m"];
   return made;
 }
 
 MATCHER_P(NotesSay, text, "") {
-  *result_listener << arg.report["notes"].dump();
-  for (const auto& note : arg.report["notes"])
-    if (note.template get<std::string>().find(text) != std::string::npos) return true;
-  return false;
+  return testing::ExplainMatchResult(testing::Contains(testing::HasSubstr(text)), arg.notes, result_listener);
 }
 
 class SharedAsset : public testing::Test {
@@ -39,6 +51,7 @@ class SharedAsset : public testing::Test {
   }
   Converted convert_shared(const std::vector<std::string>& names, const nlohmann::json& options = {}) const {
     std::vector<std::string> inputs;
+    inputs.reserve(names.size());
     for (const std::string& name : names) inputs.push_back((root_ / name).string());
     Converted made = convert(inputs, options);
     EXPECT_EQ(made.error, "");
@@ -51,37 +64,37 @@ constexpr double kCmuUnit = 0.056444;  ///< m, by the library's own notes
 
 TEST_F(SharedAsset, ClipsOfOneLibraryGetOneUnit) {  // traps 1 and 4: three BVH, and FBX that say centimetres
   for (const char* name : {"bvh/cmu_12_01_walk.bvh", "bvh/cmu_01_01_jumps.bvh", "bvh/cmu_13_26.bvh"})
-    EXPECT_EQ(convert_shared({name}).unit(), kCmuUnit) << name;
+    EXPECT_EQ(convert_shared({name}).unit, kCmuUnit) << name;
   for (const char* name :
        {"fbx/cmu_49_08_cartwheel.fbx", "fbx/cmu_09_11_run.fbx"})  // under a node scaled by 100
-    EXPECT_DOUBLE_EQ(convert_shared({name}).unit(), kCmuUnit / 100) << name;
+    EXPECT_DOUBLE_EQ(convert_shared({name}).unit, kCmuUnit / 100) << name;
 }
 
 TEST_F(SharedAsset, FoxInCentimetresIsAFox) {  // trap 1: glTF means metres, the file has 79 of them
   const Converted fox = convert_shared({"gltf/fox.glb"});
-  EXPECT_EQ(fox.unit(), 0.01);
-  EXPECT_NEAR(fox.height(), 0.79, 0.01);  // to the tips of the ears; its joints span 0.61
+  EXPECT_EQ(fox.unit, 0.01);
+  EXPECT_NEAR(fox.height, 0.79, 0.01);  // to the tips of the ears; its joints span 0.61
 }
 
 TEST_F(SharedAsset, LargeCharacterInMetresStaysLarge) {
-  EXPECT_EQ(convert_shared({"gltf/quaternius_robot.glb"}).unit(), 1);
+  EXPECT_EQ(convert_shared({"gltf/quaternius_robot.glb"}).unit, 1);
 }
 
 TEST_F(SharedAsset, OptionBeatsFileAndGuess) {
-  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}, {{"unit", 0.05}}).unit(), 0.05);
-  EXPECT_EQ(convert_shared({"gltf/cesium_man.gltf"}, {{"unit", 1.5}}).unit(), 1.5);
+  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}, {{"unit", 0.05}}).unit, 0.05);
+  EXPECT_EQ(convert_shared({"gltf/cesium_man.gltf"}, {{"unit", 1.5}}).unit, 1.5);
 }
 
 TEST_F(SharedAsset, UpAxisComesFromTheFirstFrame) {  // trap 2
-  EXPECT_EQ(convert_shared({"bvh/fair_jumping.bvh"}).report["up"]["axis"], "z");
-  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}).report["up"]["axis"], "y");
+  EXPECT_EQ(convert_shared({"bvh/fair_jumping.bvh"}).up, "z");
+  EXPECT_EQ(convert_shared({"bvh/cmu_12_01_walk.bvh"}).up, "y");
 }
 
 TEST_F(SharedAsset,
        StarOfBonesAtRestIsMeasuredWhereItStands) {  // trap 3: 20 units high at rest, 154 in frame 0
   const Converted dancer = convert_shared({"bvh/jesse_dance.bvh"});
-  EXPECT_EQ(dancer.unit(), 0.01);
-  EXPECT_GT(dancer.height(), 1.4);
+  EXPECT_EQ(dancer.unit, 0.01);
+  EXPECT_GT(dancer.height, 1.4);
 }
 
 TEST_F(SharedAsset, ControlBonesGetNoBody) {  // trap 12
@@ -126,6 +139,7 @@ TEST_F(SharedAsset, WhatIsOddInAUrdfIsSaid) {
   EXPECT_THAT(romeo, NotesSay("moves no mass"));                  // trap 38
   const Converted panda = convert_shared({"urdf/panda.urdf"});
   EXPECT_THAT(panda, NotesSay("zero is outside its limits"));  // trap 42
+  EXPECT_THAT(panda, NotesSay("links have meshes only"));      // trap 49
   const Converted quadruped = convert_shared({"urdf/bullet_quadruped.urdf"});
   EXPECT_THAT(quadruped, NotesSay("is locked"));  // trap 43
   const Converted humanoid = convert_shared({"urdf/bullet_humanoid.urdf"});
@@ -144,8 +158,108 @@ TEST(Conversion, FarPropDoesNotChangeTheUnit) {  // trap 34
   const Scratch scratch;
   const Converted made = convert({scratch.write("a.gltf", gltf.dump()).string()});
   ASSERT_EQ(made.error, "");
-  EXPECT_EQ(made.unit(), 1);
-  EXPECT_EQ(made.report["unit"]["from"], "file");
+  EXPECT_EQ(made.unit, 1);
+  EXPECT_EQ(made.unit_from, "file");
+}
+
+using import::test::kick_keys;
+using import::test::kicking_leg;
+using import::test::set_buffer;
+using import::test::skinned;
+
+Converted convert_gltf(const nlohmann::json& gltf) {
+  const Scratch scratch;
+  Converted made = convert({scratch.write("a.gltf", gltf.dump()).string()});
+  EXPECT_EQ(made.error, "");
+  return made;
+}
+
+int joint_named(const Converted& made, const std::string& name) {
+  const auto& joints = made.asset.skeleton.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j].name == name) return static_cast<int>(j);
+  return -1;
+}
+
+TEST(Conversion, NodeBetweenTwoBonesBecomesAJoint) {  // trap 8
+  nlohmann::json gltf = skinned({0.5f, 0.5f, 0, 0}, {0});
+  const std::size_t between = gltf["nodes"].size();
+  gltf["nodes"].push_back({{"name", "between"}, {"translation", {0, -0.25, 0}}, {"children", {1}}});
+  gltf["nodes"][0]["children"] = {between};
+  const Converted made = convert_gltf(gltf);
+  const int joint = joint_named(made, "between");
+  ASSERT_GE(joint, 0);
+  EXPECT_EQ(made.asset.skeleton.joints[joint_named(made, "leg")].parent, joint);
+  EXPECT_NEAR(made.asset.skeleton.joints[joint].rest.translation.norm(), 0.25, 1e-6);  // floats
+}
+
+TEST(Conversion, RigidPropFollowsTheJointItHangsOn) {  // trap 13
+  nlohmann::json gltf = skinned({1, 0, 0, 0}, {0});
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["meshes"][1]["name"] = "hat";
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("JOINTS_0");
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  gltf["nodes"].push_back({{"name", "hat"}, {"mesh", 1}});
+  gltf["nodes"][1]["children"] = {gltf["nodes"].size() - 1};
+  const Converted made = convert_gltf(gltf);
+  const auto hat = std::find_if(made.asset.meshes.begin(), made.asset.meshes.end(),
+                                [](const Mesh& m) { return m.name == "hat"; });
+  ASSERT_NE(hat, made.asset.meshes.end());
+  EXPECT_EQ(hat->joints[0], joint_named(made, "leg"));
+  EXPECT_EQ(hat->weights[0], 1);
+  EXPECT_NEAR(hat->positions[2], 0.5, 1e-6);  // the leg's place, in floats
+}
+
+TEST(Conversion, MeshThatHangsOnNoJointIsLeftOut) {  // trap 34
+  nlohmann::json gltf = skinned({1, 0, 0, 0}, {0});
+  gltf["meshes"].push_back(gltf["meshes"][0]);
+  gltf["meshes"][1]["name"] = "floor";
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("JOINTS_0");
+  gltf["meshes"][1]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  gltf["nodes"].push_back({{"name", "floor"}, {"mesh", 1}, {"translation", {0, 13, 0}}});
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
+  const Converted made = convert_gltf(gltf);
+  EXPECT_EQ(made.asset.meshes.size(), 1u);
+  EXPECT_LT(made.height, 3);
+  EXPECT_THAT(made, NotesSay("mesh 'floor' hangs on no joint; left out"));
+}
+
+TEST(Conversion, SkinIsBakedWhereItsBindMatricesPutItAtRest) {      // trap 29
+  const Converted made = convert_gltf(skinned({1, 0, 0, 0}, {1}));  // bound 1 m along X from where it rests
+  ASSERT_EQ(made.asset.meshes.size(), 1u);
+  const auto& at = made.asset.meshes[0].positions;  // of the corner at 0: hip (0, 1, 0) less (1, 0, 0), Y up
+  EXPECT_NEAR(at[0], 0, 1e-6);                      // floats
+  EXPECT_NEAR(at[1], -1, 1e-6);
+  EXPECT_NEAR(at[2], 1, 1e-6);
+}
+
+TEST(Conversion, NegatedQuaternionIsTheSameKey) {  // trap 24
+  nlohmann::json gltf = kicking_leg();
+  const Converted plain = convert_gltf(gltf);
+  std::vector<float> keys = kick_keys();
+  for (std::size_t k = 7; k < 11; ++k) keys[k] = -keys[k];  // the second of three
+  set_buffer(gltf, keys);
+  EXPECT_EQ(write_asset(convert_gltf(gltf).asset), write_asset(plain.asset));
+}
+
+TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
+  nlohmann::json gltf = kicking_leg();
+  std::vector<float> values = kick_keys();
+  const std::size_t places =
+      import::test::append(gltf, values, {0, -0.5f, 0, 0, -0.6f, 0, 0, -0.5f, 0}, "VEC3", 3);
+  auto& kick = gltf["animations"][0];
+  kick["channels"].push_back(kick["channels"][0]);
+  kick["channels"][1]["target"]["node"] = 0;  // without a skin, a joint is what moves
+  kick["samplers"].push_back({{"input", 0}, {"output", places}});
+  kick["channels"].push_back({{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}});
+  set_buffer(gltf, values);
+  const Converted made = convert_gltf(gltf);
+  ASSERT_EQ(made.asset.clips.size(), 1u);
+  std::vector<JointJet<float>> jets(made.asset.skeleton.joints.size());
+  ASSERT_TRUE((SamplingJob<float>{&made.asset.clips[0], 0.5, 1, jets}.Run().ok()));
+  const auto leg = static_cast<std::size_t>(joint_named(made, "leg"));
+  EXPECT_NEAR(jets[leg].translation.norm(), 0.6, 1.1e-3);  // the curve's budget is 1 mm
+  EXPECT_THAT(made, NotesSay("1 joint changes its distance to the parent, by up to 100 mm"));
 }
 
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {
@@ -153,6 +267,37 @@ TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {
   const std::string file = scratch.write("Läufer 1.bvh", "HIERARCHY").string();
   const Converted made = convert({file});
   EXPECT_EQ(made.error.rfind(file + ": ", 0), 0u) << made.error;
+}
+
+TEST(Conversion, NamesInLatin1BecomeUtf8) {
+  std::string bvh = import::test::walking_bvh();
+  bvh.replace(bvh.find("hip"), 3,
+              "H\xFC"
+              "fte");
+  const Scratch scratch;
+  const Converted made = convert({scratch.write("l\xE4uft.bvh", bvh).string()});
+  ASSERT_EQ(made.error, "");
+  EXPECT_EQ(made.name, "läuft");
+  EXPECT_EQ(made.asset.skeleton.joints[0].name, "Hüfte");
+}
+
+TEST(Conversion, WhatLeavesTheSpaceOfFloatsIsRefused) {
+  const Scratch scratch;
+  const std::string file = scratch.write("a.bvh", import::test::walking_bvh()).string();
+  for (const double unit : {1e300, std::nan(""), -1.0})
+    EXPECT_THAT(convert({file}, {{"unit", unit}}).error, testing::HasSubstr("option 'unit'"));
+  EXPECT_THAT(convert({file}, {{"unit", 1e5}}).error, testing::HasSubstr("10 km from the origin"));
+  const std::string far =
+      scratch
+          .write("b.bvh", import::test::short_bvh("Frames: 2\nFrame Time: 0.02\n0 90 0 0 0 0 0 0 "
+                                                  "0\n1e30 90 0 0 0 0 0 90 0\n"))
+          .string();
+  EXPECT_THAT(convert({far}).error, testing::HasSubstr("clip 'Motion'"));
+  nlohmann::json gltf = kicking_leg();
+  set_buffer(gltf, {0, 0.5f, 1e8f, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  gltf["accessors"][0]["max"] = {1e8};
+  EXPECT_THAT(convert({scratch.write("c.gltf", gltf.dump()).string()}).error,
+              testing::HasSubstr("clip 'kick' is too long"));
 }
 
 TEST(Conversion, SceneWithoutJointsIsRefusedInWords) {  // trap 37

@@ -60,7 +60,7 @@ SourceScene pivoted_leg() {
   return s;
 }
 
-TEST(FbxPivots, FoldedJointMovesAsItsChainDid) {
+TEST(FbxPivots, FoldedJointMovesAsItsChainDid) {  // trap 7
   const SourceScene before = pivoted_leg();
   SourceScene after = before;
   fold_fbx_pivots(after);

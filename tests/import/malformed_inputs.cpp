@@ -54,7 +54,7 @@ void add_gltf(std::vector<Malformed>& all) {
   add("Chain20000", gltf_chain(20000), "nested too deeply");
   add("Chain200000", gltf_chain(200000), "too many nodes");
   add("Brackets200000", R"({"asset":)" + repeated("[", 200000), "nested too deeply");
-  add("NanRotation", gltf([](Json& g) {
+  add("NanRotation", gltf([](Json& g) {  // trap 26
         set_buffer(g, {0, 0.5f, 1, 0, 0, 0, 1, kNan, kNan, kNan, kNan, 0, 0, 0, 1});
       }),
       "clip 'kick' node 'leg': a rotation key");
@@ -169,7 +169,7 @@ void add_xml_and_fbx(std::vector<Malformed>& all) {
                                    std::pair("ColladaIndexIsSigned", "<p\n>0 1 -2</p>")})
     add(name, "a.dae", collada("<node id=\"n\"/>") + list, "holds something that is no number");
   add("ColladaUtf16", "a.dae", std::string("\xFF\xFE<\0C\0O\0", 8), "UTF-16 text; save it as UTF-8");
-  add("FbxOld", "a.fbx",
+  add("FbxOld", "a.fbx",  // trap 36
       "; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 6100\n}\n",
       "assimp: .*(version|FBX)");
   add("FbxOnlyMagic", "a.fbx", std::string("Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0", 27), "assimp: ");
@@ -205,6 +205,7 @@ void add_urdf(std::vector<Malformed>& all) {
       "link 'c' is its own ancestor, or has two parents");
   add("Nested200000", "<robot name=\"r\">" + repeated("<link name=\"a\">", 200000),
       "XML is nested too deeply");
+  // Trap 48.
   add("Spherical", short_urdf(knee(limit, "spherical")), "knee.*spherical");
   add("ZeroAxis", short_urdf(knee("<axis xyz=\"0 0 0\"/>" + limit)),
       "joint 'knee' has an axis of length zero");

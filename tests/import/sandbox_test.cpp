@@ -36,7 +36,7 @@ std::string outcome_of(long returned) {
 }
 
 TEST(Sandbox, BringsTheAnswerBack) {
-  const std::string large(10 << 20, 'x');
+  std::string large(10 << 20, 'x');
   const Result result = run([&](const OpenFile&) { return large; });
   EXPECT_TRUE(result.ok) << result.error;
   EXPECT_EQ(result.answer, large);

@@ -1,56 +1,13 @@
 // Skins, weights and textures come out as they stand in the file.
 #include <gmock/gmock.h>
 
-#include <bit>
-
 #include "reading.h"
+#include "skinned_leg.h"
 
 namespace sinew::import::test {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Three vertices' joint indices, four each, in the bits of floats.
-std::vector<float> indices(std::uint32_t of_each_vertex) {
-  return std::vector<float>(3, std::bit_cast<float>(of_each_vertex));
-}
-
-std::vector<float> three_times(std::vector<float> once) {
-  std::vector<float> all;
-  for (int i = 0; i < 3; ++i) all.insert(all.end(), once.begin(), once.end());
-  return all;
-}
-
-/// Inverse bind matrices of two joints: moved by −x along X.
-std::vector<float> binds(float x) {
-  std::vector<float> all;
-  for (int joint = 0; joint < 2; ++joint)
-    for (const float v : {1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, -x, 0.f, 0.f, 1.f})
-      all.push_back(v);
-  return all;
-}
-
-/// kicking_leg() with a triangle that hangs on hip and leg by `weights` of each vertex; one skin and mesh for
-/// each of `places`, the bind place along X.
-Json skinned(const std::vector<float>& weights, const std::vector<float>& places) {
-  Json gltf = kicking_leg();
-  std::vector<float> values = kick_keys();
-  const std::size_t position = append(gltf, values, corners(), "VEC3", 3);
-  gltf["accessors"][position].update({{"min", {0, 0, 0}}, {"max", {1, 1, 0}}});
-  Json attributes{{"POSITION", position},
-                  {"JOINTS_0", append(gltf, values, indices(0x00000100), "VEC4", 3, 5121)},
-                  {"WEIGHTS_0", append(gltf, values, three_times(weights), "VEC4", 3)}};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    gltf["skins"].push_back(
-        {{"joints", {0, 1}}, {"inverseBindMatrices", append(gltf, values, binds(places[k]), "MAT4", 2)}});
-    gltf["meshes"].push_back(
-        {{"name", "skin" + std::to_string(k)}, {"primitives", {{{"attributes", attributes}}}}});
-    gltf["nodes"].push_back({{"name", "body" + std::to_string(k)}, {"mesh", k}, {"skin", k}});
-    gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
-  }
-  set_buffer(gltf, values);
-  return gltf;
-}
 
 TEST(Skin, WeightsComeAsInTheFileWhateverTheirSum) {  // trap 27
   const Outcome outcome = read_content("a.gltf", skinned({0.25f, 0.25f, 0, 0}, {0}).dump());

@@ -191,7 +191,7 @@ TEST(Bvh, JointsAreBonesAndEndSitesAreNot) {
   EXPECT_EQ(scene.up_axis, -1);
 }
 
-TEST(Bvh, FrameTimeGivesTheRate) {
+TEST(Bvh, FrameTimeGivesTheRate) {  // trap 19
   const Outcome outcome = read_content("a.bvh", walking_bvh());
   ASSERT_TRUE(outcome.ok) << outcome.error;
   EXPECT_NEAR(outcome.scene.clips[0].key_rate, 50, 1e-4);  // the file's 0.02 s pass through a float
@@ -347,7 +347,7 @@ TEST(Urdf, NamespaceThatXacroLeavesBehindIsNoMacro) {
   EXPECT_TRUE(outcome.ok) << outcome.error;
 }
 
-TEST(Urdf, PrimitiveShapesAndMeshesAreTold) {
+TEST(Urdf, PrimitiveShapesAndMeshesAreTold) {  // trap 49
   const Outcome outcome = read_content(
       "a.urdf", short_urdf(knee(kGoodLimit),
                            "<visual><geometry><box size=\"1 2 4\"/></geometry></visual>"

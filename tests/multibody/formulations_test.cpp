@@ -134,6 +134,18 @@ TEST(Formulations, LongChainsKeepTheirAgreement) {
   EXPECT_LT(relative_residual(rr, 0, y, yp), kAgreement);
 }
 
+TEST(Formulations, FigureOneHasTheResidualsAndAccelerationsOfTheDocumentation) {
+  // Numbers printed in runtime/sinew/multibody/README.md, to the digits printed there.
+  const Model model(loaded(kOwn + "figure1.json"));
+  Equations rr(model, Formulation::kRr, Tangent::kNumeric), dtr(model, Formulation::kDtr, Tangent::kNumeric);
+  Vector y, yp = Vector::Zero(12), r(12);
+  ASSERT_EQ(rr.start(y), "");
+  ASSERT_TRUE(rr.residual(0, y, yp, r));
+  EXPECT_LT((r.tail(6) - Vector{{-3.116, 0.067, 1.904, -10.45, 0.829, 0}}).cwiseAbs().maxCoeff(), 5e-3);
+  ASSERT_TRUE(dtr.derivative(0, y, yp));
+  EXPECT_LT((yp.tail(6) - Vector{{-3.878, -0.156, -4.510, 16.03, -23.25, 0}}).cwiseAbs().maxCoeff(), 5e-3);
+}
+
 TEST(Formulations, AccumulatedInertiasOfFigureOneAreSumsOverWhatEachJointCarries) {
   // Equation 31 on the tree of the paper's Figure 1: at a hinge of unit rate the kinetic energy is ½·M_ii,
   // and joints on different branches (2 and 5) are not coupled: the zeros of equation 30.

@@ -179,6 +179,19 @@ TEST(Integrators, UnreachableTolerancesStopWithTimeReasonAndWhatWasComputed) {
   }
 }
 
+TEST(Integrators, MotionTooFastForItsToleranceStopsInsteadOfGoingOnForHours) {
+  Mechanism fast = loaded(kOwn + "figure1.json");
+  fast.gravity *= 1e12;
+  SimulationSettings settings;
+  settings.max_steps = 2000;
+  settings.output = instants(1, 10);
+  const Model model(fast);
+  const SimulationResult run = simulate(model, settings);
+  EXPECT_NE(run.stopped.find("the most steps allowed"), std::string::npos) << run.stopped;
+  EXPECT_EQ(run.steps.steps, 2000);
+  EXPECT_GT(run.samples.back().t, 0);
+}
+
 TEST(Integrators, FormulationsThatDoNotFitTheMethodAreRefusedWithTheOneThatDoes) {
   const Model open(loaded(kOwn + "chain.json")), closed(loaded(kOwn + "four_bar.json"));
   SimulationSettings settings;

@@ -175,6 +175,19 @@ TEST(Reference, FixedStepSchemesConvergeToTheReference) {
   }
 }
 
+TEST(Reference, FixedStepSchemesCrossSingularPositions) {
+  if (!have_shared()) GTEST_SKIP() << kNoShared;
+  const Model model(loaded(kShared + "nfourbar_2.json"));
+  for (const Method method : {Method::kBdf1, Method::kBdf2}) {
+    SimulationSettings settings;
+    settings.method = method;
+    settings.output = {10};
+    const SimulationResult run = simulate(model, settings);
+    EXPECT_EQ(run.stopped, "");
+    EXPECT_LT(run.samples.back().closure, 1e-8);
+  }
+}
+
 TEST(Reference, SingularPositionsArePassedAtEveryTolerance) {
   if (!have_shared()) GTEST_SKIP() << kNoShared;
   // In the horizontal position the loops lose rank and rounding is magnified without bound; steps that shrank

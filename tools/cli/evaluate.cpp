@@ -145,6 +145,9 @@ convert::Error evaluate(const Skeleton& source, const json& state, bool fixed_ba
     return {e.what()};
   }
   const DynamicsResult r = evaluate_dynamics(skeleton, states, gravity);
+  if (!std::isfinite(r.kinetic_energy + r.potential_energy) || !r.inverse_dynamics.allFinite() ||
+      !r.forward_dynamics.allFinite())
+    return {"the state leads to numbers that are not finite"};
   json matrix = json::array();
   for (Eigen::Index i = 0; i < r.mass_matrix.rows(); ++i)
     matrix.push_back(list(Eigen::VectorXd(r.mass_matrix.row(i))));

@@ -64,4 +64,8 @@ std::function<void(int, int)> progress_bar(const std::string& what) {
   };
 }
 
+std::string json_text(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace sinew::cli

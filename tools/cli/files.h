@@ -18,4 +18,7 @@ convert::Error read_json(const std::string& path, nlohmann::json& out);
 /// Progress bar on a terminal once a job runs over a second; silent otherwise.
 std::function<void(int, int)> progress_bar(const std::string& what);
 
+/// One line of JSON; bytes of file names that are not UTF-8 become U+FFFD.
+std::string json_text(const nlohmann::json& json);
+
 }  // namespace sinew::cli

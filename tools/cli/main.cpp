@@ -36,7 +36,7 @@ struct SourceOptions {
     out = json::object();
     if (!options_file.empty())
       if (Error error = cli::read_json(options_file, out)) return error;
-    if (unit > 0) out["unit"] = unit;
+    if (unit != 0) out["unit"] = unit;  // NaN too: refused by name
     if (!up.empty()) out["up"] = up;
     return {};
   }
@@ -64,7 +64,7 @@ struct ConvertCommand {
     report["output"] = output;
     report["bytes"] = bytes.size();
     if (json_output)
-      std::puts(report.dump().c_str());
+      std::puts(cli::json_text(report).c_str());
     else
       std::printf("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
                   bytes.size());
@@ -212,7 +212,7 @@ struct RenderCommand {
   }
   Error done() const {
     if (json_output)
-      std::puts(json{{"output", output}}.dump().c_str());
+      std::puts(cli::json_text({{"output", output}}).c_str());
     else
       std::printf("%s: %dx%d\n", output.c_str(), options.width, options.height);
     return {};

@@ -23,6 +23,9 @@ void add_mechanism_options(CLI::App& app, mechanism::SimulateOptions& o) {
       ->check(CLI::PositiveNumber)
       ->group(group);
   app.add_option("--max-step", o.max_step, "longest step, s")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--max-steps", o.max_steps, "stop after so many (1000000)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
   app.add_option("--t-end", o.t_end, "simulated time, s (the file's)")
       ->check(CLI::PositiveNumber)
       ->group(group);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <new>
 
 #include "convert/body.h"
 #include "convert/fit/clip_fit.h"
@@ -106,7 +107,11 @@ Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json
     if (!import::read_source(inputs[i], {}, scenes[i], error)) return in_file(inputs[i], error);
   }
   report = nlohmann::json::object();
-  return convert_scenes(inputs, scenes, options, out, report);
+  try {
+    return convert_scenes(inputs, scenes, options, out, report);
+  } catch (const std::bad_alloc&) {
+    return in_file(inputs[0], "not enough memory to convert it");
+  }
 }
 
 Error open_any(const std::string& path, const nlohmann::json& options, Asset& out, nlohmann::json& report) {

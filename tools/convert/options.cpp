@@ -1,6 +1,7 @@
 #include "convert/options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "convert/roles.h"
@@ -54,6 +55,16 @@ std::map<std::string, double> parse_muscles(const nlohmann::json& json) {
     if (value <= 0) throw BadOption("option 'muscles." + name + "' is not positive");
   }
   return rows;
+}
+
+/// Numbers beyond these are slips of the pen, and squares of them leave the range of floats.
+void check_numbers(const nlohmann::json& value, const std::string& name) {
+  constexpr double kLargest = 1e6;
+  if (value.is_structured()) {
+    for (const auto& [key, inner] : value.items()) check_numbers(inner, name + "." + key);
+  } else if (value.is_number() && !(std::abs(value.get<double>()) <= kLargest)) {
+    throw BadOption("option '" + name + "' is beyond a million");
+  }
 }
 
 template <class Use>
@@ -154,6 +165,7 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.clips = value.get<std::vector<std::string>>();
       else
         return {"unknown option '" + key + "'"};
+      check_numbers(value, key);
       const bool negative = value.is_number() && value.get<double>() < 0;
       if (negative) return {"option '" + key + "' is negative"};
     }
@@ -173,12 +185,11 @@ Error override_masses(const Options& options, bool keep_total, Skeleton& skeleto
   const double total = skeleton.total_mass();
   std::vector<std::uint8_t> given(skeleton.joints.size(), 0);
   double fixed = 0, others = 0;
-  for (const auto& [name, of_joint] : options.joints) {
-    const auto& mass = of_joint.mass;
-    const bool found = each_named(name, skeleton, [&](Joint& joint) {
-      if (!mass || joint.mass <= 0) return;
-      joint.inertia *= *mass / joint.mass;
-      joint.mass = *mass;
+  for (const auto& [name, o] : options.joints) {
+    const bool found = each_named(name, skeleton, [&, &o = o](Joint& joint) {
+      if (!o.mass || joint.mass <= 0) return;
+      joint.inertia *= *o.mass / joint.mass;
+      joint.mass = *o.mass;
       given[static_cast<std::size_t>(&joint - skeleton.joints.data())] = 1;
     });
     if (!found) return {"option 'joints': it has no simulated joint or role '" + name + "'"};

@@ -180,6 +180,14 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& joints, const
 void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world,
                const Matrix& to_model, const std::map<int, int>& joint_of_node, nlohmann::json& report,
                Rig& rig) {
+  // What carries vertices without weights: the nearest joint above the mesh's node.
+  int carrier = in.node;
+  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
+  if (carrier < 0 && in.bones.empty()) {
+    report["notes"].push_back("mesh '" + in.name + "' hangs on no joint; left out");
+    return;
+  }
+  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
   Mesh mesh;
   mesh.name = in.name;
   mesh.material = in.material;
@@ -190,10 +198,6 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
   for (std::size_t b = 0; b < in.bones.size(); ++b)
     for (const auto& [v, w] : in.bones[b].weights)
       if (w > 0 && joint_of_node.count(in.bones[b].node)) influences[v].push_back({w, static_cast<int>(b)});
-  // What carries vertices without weights: the nearest joint above the mesh's node.
-  int carrier = in.node;
-  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
-  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
   int repaired = 0, unweighted = 0, reduced = 0;
   const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
   for (std::size_t v = 0; v < vertices; ++v) {
@@ -253,13 +257,57 @@ void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std
   rig.meshes.push_back(std::move(mesh));
 }
 
+/// Joints other than the root whose distance to their parent changes by more than 1 mm over the motion, and
+/// the largest change, m.
+std::pair<int, double> stretch(const Rig::Motion& motion) {
+  int count = 0;
+  double largest = 0;
+  for (std::size_t j = 1; j < motion.samples.front().size(); ++j) {
+    double low = 1e300, high = 0;
+    for (const auto& frame : motion.samples) {
+      const double length = frame[j].translation.norm();
+      low = std::min(low, length);
+      high = std::max(high, length);
+    }
+    count += high - low > 1e-3;
+    largest = std::max(largest, high - low);
+  }
+  return {count, largest};
+}
+
+constexpr double kMostSamples = 3e7;  ///< joints × frames of a clip: an hour of motion capture, 2 GB
+
+/// A character's reach, m: beyond it floats cannot hold millimetres.
+constexpr double kFarthest = 1e4;
+
+/// Where a mesh or motion leaves the space that floats can hold, if it does.
+std::string fault_in_size(const Rig& rig) {
+  const auto beyond = [](double x) { return !(std::abs(x) <= kFarthest); };
+  const std::string where = " is more than 10 km from the origin; is the unit right?";
+  for (const Rig::Joint& joint : rig.joints)
+    if (beyond(joint.rest.translation.norm())) return "joint '" + joint.name + "'" + where;
+  for (const Mesh& mesh : rig.meshes)
+    if (std::any_of(mesh.positions.begin(), mesh.positions.end(), [&](float x) { return beyond(double(x)); }))
+      return "mesh '" + mesh.name + "'" + where;
+  for (const Rig::Motion& motion : rig.motions)
+    for (const auto& frame : motion.samples)
+      for (std::size_t j = 0; j < frame.size(); ++j)
+        if (beyond(frame[j].translation.norm()))
+          return "clip '" + motion.name + "': joint '" + rig.joints[j].name + "'" + where;
+  return {};
+}
+
+double sampling_rate(const SourceClip& clip) {
+  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+}
+
 /// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
 /// rest).
 Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
                    const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
-  motion.sample_rate = std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+  motion.sample_rate = sampling_rate(clip);
   const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
   if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
   bool scaled = false;
@@ -281,6 +329,11 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
     }
     motion.samples.push_back(std::move(local));
   }
+  if (const auto [count, largest] = stretch(motion); count > 0)
+    report["notes"].push_back(
+        "clip '" + clip.name + "': " + std::to_string(count) +
+        (count == 1 ? " joint changes its" : " joints change their") + " distance to the parent, by up to " +
+        std::to_string(std::lround(1e3 * largest)) + " mm; physics follows the clip there");
   // A loop comes back to its first pose, the root's place aside.
   double turned = 0;
   for (std::size_t j = 0; j < rig.joints.size(); ++j)
@@ -369,6 +422,8 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       if (!options.clips.empty() &&
           std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end())
         continue;
+      if (clip.duration * sampling_rate(clip) * double(rig.joints.size()) > kMostSamples)
+        return {"clip '" + clip.name + "' is too long to convert: " + std::to_string(clip.duration) + " s"};
       Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";
@@ -377,6 +432,7 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   }
   for (const std::string& wanted : options.clips)
     if (!taken.count(wanted)) return {"it has no clip '" + wanted + "'"};
+  if (const std::string fault = fault_in_size(rig); !fault.empty()) return {fault};
   out = std::move(rig);
   return {};
 }

@@ -1,6 +1,7 @@
 #include "convert/urdf_body.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "convert/body.h"
@@ -19,7 +20,7 @@ bool repair_inertia(Mat3<double>& inertia) {
   m = m.cwiseMax(floor);
   if (m[2] > m[0] + m[1]) m[0] = m[2] - m[1];
   if (before[0] >= -1e-12 * m[2] && before[0] + before[1] >= before[2] * (1 - 1e-9)) return false;
-  const Mat3<double> axes = eigen.eigenvectors();
+  const Mat3<double>& axes = eigen.eigenvectors();
   inertia = axes * m.asDiagonal() * axes.transpose();
   inertia = 0.5 * (inertia + inertia.transpose()).eval();
   return true;
@@ -115,6 +116,9 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
     add_shapes(link, i, scene.links, s);
     s.joints.push_back(joint);
   }
+  const auto has_only_meshes = [](const SourceUrdfLink& l) { return l.mesh_count > 0 && l.shapes.empty(); };
+  if (const auto n = std::count_if(scene.links.begin(), scene.links.end(), has_only_meshes); n > 0)
+    note(std::to_string(n) + " links have meshes only, which are not read; capsules along the links instead");
   s.body_count = count;
   report["total_mass_kg"] = s.total_mass();
   out = std::move(s);

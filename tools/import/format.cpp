@@ -78,8 +78,8 @@ std::string detect_format(const std::string& content) {
   const std::string start = start_of(content);
   if (start.rfind("; FBX", 0) == 0) return "fbx";
   if (start.rfind("HIERARCHY", 0) == 0) return "bvh";
-  if (start.rfind('{', 0) == 0 && content.find("\"asset\"") != std::string::npos) return "gltf";
-  if (start.rfind('<', 0) == 0) {
+  if (start[0] == '{' && content.find("\"asset\"") != std::string::npos) return "gltf";
+  if (start[0] == '<') {
     if (start.find("<COLLADA") != std::string::npos) return "dae";
     if (content.find("<robot") != std::string::npos) return "urdf";
   }

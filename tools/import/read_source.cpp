@@ -10,6 +10,7 @@
 #include "import/readers.h"
 #include "import/sandbox.h"
 #include "import/serialize.h"
+#include "import/text.h"
 
 namespace sinew::import {
 namespace {
@@ -18,9 +19,12 @@ constexpr std::size_t kMaxMessage = 400;
 
 /// One line that a terminal survives: messages may quote bytes of the file.
 std::string one_line(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
-  if (message.size() > kMaxMessage) message = message.substr(0, kMaxMessage) + " …";
+  message = clean_text(message);
+  if (message.size() > kMaxMessage) {
+    std::size_t end = kMaxMessage;
+    while ((message[end] & 0xC0) == 0x80) --end;  // not inside a character
+    message = message.substr(0, end) + " …";
+  }
   while (!message.empty() && message.back() == ' ') message.pop_back();
   return message;
 }
@@ -80,7 +84,7 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
     error = one_line(fault);
     return false;
   }
-  if (out.name.empty()) out.name = std::filesystem::path(path).stem().string();
+  if (out.name.empty()) out.name = clean_text(std::filesystem::path(path).stem().string());
   return true;
 }
 

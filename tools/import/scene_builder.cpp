@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "import/fbx_pivots.h"
+#include "import/text.h"
 
 namespace sinew::import {
 namespace {
@@ -118,7 +119,7 @@ void SceneBuilder::collect_nodes() {
     const std::string known_as = open.node->mName.C_Str();
     const auto original = original_names_.find(known_as);
     SourceNode node;
-    node.original_name = original == original_names_.end() ? known_as : original->second;
+    node.original_name = clean_text(original == original_names_.end() ? known_as : original->second);
     node.parent = open.parent;
     node.local = matrix_of(open.node->mTransformation);
     const int index = static_cast<int>(out_.nodes.size());
@@ -141,7 +142,7 @@ void SceneBuilder::name_nodes() {
       if ((source_[i]->mNumMeshes > 0) != with_mesh) continue;
       SourceNode& node = out_.nodes[i];
       const std::string known_as = source_[i]->mName.C_Str();
-      const std::string unnamed = known_as.empty() ? "node" : known_as;
+      const std::string unnamed = known_as.empty() ? "node" : clean_text(known_as);
       const std::string plain = node.original_name.empty() ? unnamed : node.original_name;
       node.name = plain;
       int& number = next.try_emplace(plain, 2).first->second;
@@ -194,7 +195,7 @@ void SceneBuilder::collect_materials() {
     const aiMaterial& m = *in_.mMaterials[i];
     SourceMaterial material;
     aiString name;
-    if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = name.C_Str();
+    if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = clean_text(name.C_Str());
     aiColor4D color;
     if (m.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
         m.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)
@@ -203,7 +204,7 @@ void SceneBuilder::collect_materials() {
     if (m.GetTexture(aiTextureType_BASE_COLOR, 0, &path) == aiReturn_SUCCESS ||
         m.GetTexture(aiTextureType_DIFFUSE, 0, &path) == aiReturn_SUCCESS) {
       material.texture = texture_bytes(path.C_Str());
-      const std::string texture = std::string("texture '") + path.C_Str() + "' ";
+      const std::string texture = std::string("texture '") + clean_text(path.C_Str()) + "' ";
       if (material.texture.empty()) {
         out_.notes.push_back(texture + "not found; left out");
       } else if (!is_png_or_jpeg(material.texture)) {
@@ -217,7 +218,7 @@ void SceneBuilder::collect_materials() {
 
 void SceneBuilder::collect_mesh(const aiMesh& in, int node) {
   SourceMesh mesh;
-  mesh.name = in.mName.C_Str();
+  mesh.name = clean_text(in.mName.C_Str());
   mesh.material = static_cast<int>(in.mMaterialIndex);
   mesh.node = node;
   for (unsigned v = 0; v < in.mNumVertices; ++v) {
@@ -267,7 +268,7 @@ SourceChannel SceneBuilder::channel_of(const aiNodeAnim& in, int node, double ti
 
 void SceneBuilder::collect_clip(const aiAnimation& in) {
   SourceClip clip;
-  clip.name = in.mName.length ? in.mName.C_Str() : "clip_" + std::to_string(out_.clips.size());
+  clip.name = in.mName.length ? clean_text(in.mName.C_Str()) : "clip_" + std::to_string(out_.clips.size());
   const bool known = in.mTicksPerSecond > 0 && std::isfinite(in.mTicksPerSecond);
   const double ticks = known ? in.mTicksPerSecond : kTicksWhenUnknown;
   if (!known) out_.notes.push_back("clip '" + clip.name + "' has no ticks per second; 25 taken");
@@ -276,7 +277,8 @@ void SceneBuilder::collect_clip(const aiAnimation& in) {
     if (node >= 0)
       clip.channels.push_back(channel_of(*in.mChannels[c], node, ticks, clip.name));
     else
-      out_.notes.push_back("clip '" + clip.name + "' moves '" + in.mChannels[c]->mNodeName.C_Str() +
+      out_.notes.push_back("clip '" + clip.name + "' moves '" +
+                           clean_text(in.mChannels[c]->mNodeName.C_Str()) +
                            "', which does not exist; left out");
   }
   double first = std::numeric_limits<double>::max(), last = 0;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "import/readers.h"
+#include "import/text.h"
 
 namespace sinew::import {
 namespace {
@@ -125,7 +126,9 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
     throw std::runtime_error("it still holds xacro macros; expand them first");
   Collector collector;
   console_bridge::useOutputHandler(&collector);
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(content);
+  // Its names cannot be cleaned one by one: links and joints refer to each other by them.
+  const urdf::ModelInterfaceSharedPtr model =
+      urdf::parseURDF(is_utf8(content) ? content : clean_text(content));
   console_bridge::restorePreviousOutputHandler();
   if (!model)
     throw std::runtime_error(collector.errors.empty() ? "urdfdom cannot read it" : collector.errors);
@@ -138,7 +141,7 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
   scene.up_axis = 2;
   std::set<std::string> noted;
   for (const std::string& message : collector.messages)
-    if (noted.insert(message).second) scene.notes.push_back("urdfdom: " + message);
+    if (noted.insert(message).second) scene.notes.push_back(clean_text("urdfdom: " + message));
 
   struct Open {
     urdf::LinkConstSharedPtr link;

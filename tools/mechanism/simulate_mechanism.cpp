@@ -65,6 +65,7 @@ multibody::SimulationSettings settings_of(const SimulateOptions& o) {
   s.method = methods().at(o.integrator);
   s.integrator = {.rtol = o.rtol, .atol = o.atol, .max_step = o.max_step, .fixed_step = o.fixed_step};
   s.t_end = o.t_end;
+  s.max_steps = o.max_steps;
   s.output = o.instants;
   return s;
 }

@@ -9,9 +9,10 @@ struct SimulateOptions {
   std::string formulation = "RR-JF";   ///< see formulation_names
   std::string integrator = "ode15sR";  ///< see integrator_names
   double rtol = 1e-5, atol = 1e-5;
-  double max_step = 0;           ///< s; 0: none but the file's profiles
-  double fixed_step = 1e-3;      ///< s; bdf1 and bdf2
-  double t_end = 0;              ///< s; 0: the file's
+  double max_step = 0;       ///< s; 0: none but the file's profiles
+  double fixed_step = 1e-3;  ///< s; bdf1 and bdf2
+  double t_end = 0;          ///< s; 0: the file's
+  long max_steps = 1000000;
   int intervals = 50;            ///< equally spaced samples, unless `instants` are given
   std::vector<double> instants;  ///< s
 };

@@ -13,8 +13,13 @@ namespace {
 constexpr double kWide = 860, kHigh = 520, kLeft = 84, kTop = 64, kRight = 210, kBottom = 58;
 constexpr Colour kOurs[] = {{0.00, 0.45, 0.70}, {0.34, 0.71, 0.91}, {0.54, 0.39, 0.82},
                             {0.00, 0.29, 0.48}, {0.23, 0.63, 0.79}, {0.70, 0.62, 0.86}};
-constexpr Colour kPeers[] = {{0.84, 0.37, 0.00}, {0.90, 0.62, 0.00}, {0.75, 0.31, 0.49},
-                             {0.00, 0.62, 0.45}, {0.48, 0.48, 0.00}, {0.53, 0.53, 0.53}};
+constexpr Colour kPeers[] = {{0.84, 0.37, 0.00}, {0.90, 0.62, 0.00}, {0.75, 0.31, 0.49}, {0.00, 0.62, 0.45},
+                             {0.48, 0.48, 0.00}, {0.53, 0.53, 0.53}, {0.55, 0.27, 0.07}, {0.10, 0.10, 0.10}};
+
+/// m; below a nanometre every error is drawn alike.
+double shown(double error) {
+  return std::max(error, 1e-9);
+}
 
 /// A logarithmic axis from `low` to `high`, drawn from pixel `from` to `to`.
 struct Axis {
@@ -22,7 +27,7 @@ struct Axis {
   void hold(double value) { low = std::min(low, value), high = std::max(high, value); }
   void round() {
     low = std::pow(10, std::floor(std::log10(low)));
-    high = std::pow(10, std::ceil(std::log10(high)));
+    high = std::max(10 * low, std::pow(10, std::ceil(std::log10(high))));
   }
   double at(double value) const { return from + (to - from) * std::log(value / low) / std::log(high / low); }
 };
@@ -66,7 +71,7 @@ void draw_axes(const Canvas& canvas, const Axis& x, const Axis& y) {
 std::vector<const AccuracyPoint*> sweep_of(const AccuracyResult& result, const std::string& label) {
   std::vector<const AccuracyPoint*> line;
   for (const AccuracyPoint& p : result.points)
-    if (p.label() == label && p.varied == "step" && p.survived && p.error > 0 && p.us > 0) line.push_back(&p);
+    if (p.label() == label && p.varied == "step" && p.survived && p.us > 0) line.push_back(&p);
   return line;
 }
 
@@ -76,14 +81,14 @@ void draw_line(const Canvas& canvas, const std::vector<const AccuracyPoint*>& li
   canvas.set(colour);
   cairo_set_line_width(pen, 1.8);
   cairo_new_path(pen);
-  for (const AccuracyPoint* p : line) cairo_line_to(pen, x.at(p->us), y.at(p->error));
+  for (const AccuracyPoint* p : line) cairo_line_to(pen, x.at(p->us), y.at(shown(p->error)));
   cairo_stroke(pen);
   for (const AccuracyPoint* p : line) {
     cairo_new_path(pen);
-    cairo_arc(pen, x.at(p->us), y.at(p->error), 3.5, 0, 7);
+    cairo_arc(pen, x.at(p->us), y.at(shown(p->error)), 3.5, 0, 7);
     cairo_fill(pen);
     if (!p->pareto) continue;
-    cairo_arc(pen, x.at(p->us), y.at(p->error), 6.5, 0, 7);
+    cairo_arc(pen, x.at(p->us), y.at(shown(p->error)), 6.5, 0, 7);
     cairo_stroke(pen);
   }
 }
@@ -96,8 +101,9 @@ convert::Error draw_accuracy(const AccuracyResult& result, const std::string& fi
   for (const AccuracyPoint& p : result.points)
     if (std::find(labels.begin(), labels.end(), p.label()) == labels.end()) labels.push_back(p.label());
   for (const std::string& label : labels)
-    for (const AccuracyPoint* p : sweep_of(result, label)) x.hold(p->us), y.hold(p->error);
-  if (x.high <= 0) return {file + ": there is no point to draw"};
+    for (const AccuracyPoint* p : sweep_of(result, label)) x.hold(p->us), y.hold(shown(p->error));
+  std::erase_if(labels, [&](const std::string& label) { return sweep_of(result, label).empty(); });
+  if (labels.empty()) return {file + ": there is no point to draw"};
   x.round(), y.round();
   Canvas canvas(file, kWide, kHigh);
   canvas.text(result.scene.title + ": error against time", 20, 30, 18, 0, true);

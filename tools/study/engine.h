@@ -54,6 +54,12 @@ std::vector<EngineOption> sinew_options();
 /// Peers that this build was linked with.
 std::vector<EngineOption> peer_options();
 std::vector<EngineOption> mujoco_options();
+std::vector<EngineOption> bullet_options();
+std::vector<EngineOption> dart_options();
+std::vector<EngineOption> ode_options();
+
+/// Why an engine that is compared only in free motion refuses a scene, or empty.
+std::string needs_contacts_or_muscles(const EngineScene& scene);
 
 /// The rest pose at rest, in double.
 Figure resting(const Skeleton& skeleton);

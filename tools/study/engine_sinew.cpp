@@ -99,6 +99,13 @@ Figure resting(const Skeleton& skeleton) {
   return {skeleton, rest_jets<double>(skeleton), false};
 }
 
+std::string needs_contacts_or_muscles(const EngineScene& scene) {
+  for (const Figure& figure : scene.figures)
+    if (figure.driven || (scene.ground && !figure.skeleton.colliders.empty()))
+      return "contacts and muscles are compared with MuJoCo only";
+  return {};
+}
+
 std::vector<EngineOption> sinew_options() {
   return {{"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
           {"Sinew", "bdf1 float", make<float, Scheme::kBdf1>},
@@ -111,7 +118,8 @@ std::vector<EngineOption> sinew_options() {
 std::vector<EngineOption> peer_options() {
   std::vector<EngineOption> all;
 #ifdef SINEW_PEERS
-  for (const auto& of : {mujoco_options()}) all.insert(all.end(), of.begin(), of.end());
+  for (const auto& of : {mujoco_options(), bullet_options(), dart_options(), ode_options()})
+    all.insert(all.end(), of.begin(), of.end());
 #endif
   return all;
 }

@@ -19,10 +19,15 @@ constexpr double kCellWide = 46, kCellHigh = 24, kPanelLeft = 52, kPanelTop = 26
 constexpr int kPanelsAcross = 3;
 
 std::string number(double value) {
-  if (!std::isfinite(value)) return "-";
+  if (!(std::abs(value) < 1e4)) return "-";  // how far beyond says nothing any more
   char text[32];
-  std::snprintf(text, sizeof text,
-                std::abs(value) >= 1e4 || (value != 0 && std::abs(value) < 1e-3) ? "%.0e" : "%.2g", value);
+  std::snprintf(text, sizeof text, value != 0 && std::abs(value) < 1e-3 ? "%.0e" : "%.2g", value);
+  return text;
+}
+
+std::string column_name(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
   return text;
 }
 
@@ -41,7 +46,7 @@ void draw_panel(const Canvas& canvas, const FailureMap& map, std::size_t engine,
     }
   }
   for (std::size_t c = 0; c < map.columns.size(); ++c)
-    canvas.text(number(map.columns[c]), x + kPanelLeft + kCellWide * (double(c) + 0.5),
+    canvas.text(column_name(map.columns[c]), x + kPanelLeft + kCellWide * (double(c) + 0.5),
                 y + kPanelTop + kCellHigh * double(map.steps.size()) + 13, 11, 0.5);
 }
 

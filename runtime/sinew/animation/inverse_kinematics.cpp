@@ -48,21 +48,15 @@ TimeJet<T> soft_reach(const TimeJet<T>& r, T softness) {
   return TimeJet<T>(soft) + width * (u - u * u * u * (TimeJet<T>(T(1)) - T(0.5) * u));
 }
 
-/// Turns `joint` about its origin by `turn`, given in model axes; `parent` is its parent's frame after all
-/// turns.
+/// Turns a joint, whose model rotation `was` so with its parents as they are by now, to what it `becomes`.
 template <class T>
-void turn_joint(const MovingTransform<T>& parent, const Quat<TimeJet<T>>& model_rotation, JointJet<T>& jet) {
+void turn_joint(const Quat<TimeJet<T>>& was, const Quat<TimeJet<T>>& becomes, JointJet<T>& jet) {
   MovingTransform<T> local = moving_transform(jet);
-  local.rotation = parent.rotation.conjugate() * model_rotation;
+  local.rotation = local.rotation * (was.conjugate() * becomes);
   const JointJet<T> turned = joint_jet(local);
   jet.rotation = turned.rotation;
   jet.omega = turned.omega;
   jet.alpha = turned.alpha;
-}
-
-template <class T>
-MovingTransform<T> parent_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint) {
-  return parents[joint] < 0 ? moving_transform(JointJet<T>()) : model_motion(jets, parents, parents[joint]);
 }
 
 }  // namespace
@@ -88,8 +82,9 @@ Status TwoBoneJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   if (is_zero(weight)) return {};
   const std::span<const JointJet<T>> before = jets;
-  const MovingTransform<T> a = model_motion(before, parents, upper),
-                           b = model_motion(before, parents, middle), c = model_motion(before, parents, end);
+  const MovingTransform<T> a = model_motion(before, parents, upper);
+  const MovingTransform<T> b = a * model_motion(before, parents, middle, upper);
+  const MovingTransform<T> c = b * model_motion(before, parents, end, middle);
   const MovingVector<T> first = b.translation - a.translation, second = c.translation - b.translation;
   const TimeJet<T> l1 = length<T>(first), l2 = length<T>(second);
   const MovingVector<T> wanted = c.translation + (target - c.translation) * weight - a.translation;
@@ -117,9 +112,10 @@ Status TwoBoneJob<T>::Run() const {
     swing = shortest_arc<T>(axis, axis.dot(normal).value < T(0) ? MovingVector<T>(-normal) : normal) * swing;
   }
   const Quat<TimeJet<T>> bend = shortest_arc<T>(swing * second, shin);
-  turn_joint(parent_motion(before, parents, upper), swing * a.rotation, jets[upper]);
-  turn_joint(parent_motion(before, parents, middle), bend * (swing * b.rotation), jets[middle]);
-  if (keep_end) turn_joint(parent_motion(before, parents, end), c.rotation, jets[end]);
+  const Quat<TimeJet<T>> shin_was = swing * b.rotation;
+  turn_joint<T>(a.rotation, swing * a.rotation, jets[upper]);
+  turn_joint<T>(shin_was, bend * shin_was, jets[middle]);
+  if (keep_end) turn_joint<T>(bend * (swing * c.rotation), c.rotation, jets[end]);
   return {};
 }
 
@@ -156,7 +152,7 @@ Status AimJob<T>::Run() const {
   }
   for (int i = 0; i < 4; ++i) turn.coeffs()[i] *= weight;
   turn.w() += TimeJet<T>(T(1)) - weight;
-  turn_joint(parent_motion(before, parents, joint), turn * frame.rotation, jets[joint]);
+  turn_joint<T>(frame.rotation, turn * frame.rotation, jets[joint]);
   return {};
 }
 

@@ -42,9 +42,10 @@ JointJet<T> joint_jet(const MovingTransform<T>& moving) {
 }
 
 template <class T>
-MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint) {
+MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint,
+                                int ancestor) {
   MovingTransform<T> frame = moving_transform(jets[joint]);
-  for (int i = parents[joint]; i >= 0; i = parents[i]) frame = moving_transform(jets[i]) * frame;
+  for (int i = parents[joint]; i > ancestor; i = parents[i]) frame = moving_transform(jets[i]) * frame;
   return frame;
 }
 

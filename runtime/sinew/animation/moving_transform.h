@@ -57,16 +57,17 @@ MovingTransform<T> moving_transform(const JointJet<T>& jet);
 template <class T>
 JointJet<T> joint_jet(const MovingTransform<T>& moving);
 
-/// Frame of a joint in model space (the axes of the root's parent), by walking up to the root. `parents`
-/// [joint], −1 for a root.
+/// Frame of a joint in that of an ancestor, or in model space (the axes of the root's parent), by walking up.
+/// `parents` [joint], −1 for a root.
 template <class T>
-MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint);
+MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<const int> parents, int joint,
+                                int ancestor = -1);
 
 #define SINEW_MOVING_INSTANCES(prefix, T)                                                  \
   prefix Quat<TimeJet<T>> shortest_arc<T>(const MovingVector<T>&, const MovingVector<T>&); \
   prefix MovingTransform<T> moving_transform<T>(const JointJet<T>&);                       \
   prefix JointJet<T> joint_jet<T>(const MovingTransform<T>&);                              \
-  prefix MovingTransform<T> model_motion<T>(std::span<const JointJet<T>>, std::span<const int>, int);
+  prefix MovingTransform<T> model_motion<T>(std::span<const JointJet<T>>, std::span<const int>, int, int);
 SINEW_MOVING_INSTANCES(extern template, float)
 SINEW_MOVING_INSTANCES(extern template, double)
 

@@ -55,6 +55,12 @@ InstructionSet best_instruction_set() {
 }
 
 struct Crowd::Impl {
+  /// What one part of the frame works in.
+  struct Chunk {
+    Line* scratch;
+    Transform<float>* unwanted;  ///< takes the poses of lanes that do not take part
+  };
+
   Skeleton skeleton;
   CrowdSettings settings;
   CrowdRig rig;
@@ -67,6 +73,7 @@ struct Crowd::Impl {
   std::vector<Line> inverse_plus, inverse_minus, torque;  ///< [batch][dof][lane]
   std::vector<Line> peak;                                 ///< [batch][lane]
   std::vector<Line> scratch;                              ///< [chunk]
+  std::vector<Transform<float>> unwanted;                 ///< [chunk][joint]
   std::vector<int> overloaded;
   double step = 0;
 
@@ -84,6 +91,7 @@ struct Crowd::Impl {
     for (auto* array : {&inverse_plus, &inverse_minus, &torque}) array->resize(std::size_t(batches) * lines);
     peak.resize(batches);
     scratch.resize(c.chunks * scratch_lines());
+    unwanted.resize(std::size_t(c.chunks) * joints);
     overloaded.reserve(c.capacity);
     for (std::size_t i = 0; i < padded; ++i) {
       rest(int(i));
@@ -135,35 +143,36 @@ struct Crowd::Impl {
     for (int j = skeleton.body_count; j < joints; ++j)
       model[j] = model[skeleton.joints[j].parent] * Transform<float>{local[j].rotation, local[j].translation};
   }
-  void run_batch(int b, Line* chunk_scratch) {
+  void run_batch(int b, const Chunk& chunk) {
     const int first = b * lanes;
-    int some = -1;  // fills the lanes of those who do not take part
+    const auto takes_part = [&](int lane) { return active[first + lane] != 0; };
+    bool any = false;
     for (int lane = 0; lane < lanes; ++lane)
-      if (active[first + lane]) {
+      if (takes_part(lane)) {
         sample(first + lane);
-        some = first + lane;
+        any = true;
       }
-    if (some < 0) return;
+    if (!any) return;
     crowd_kernels::Batch batch;
-    for (int lane = 0; lane < lanes; ++lane) {
-      const int character = active[first + lane] ? first + lane : some;
-      batch.jets[lane] = kernels::layout(jets_of(character));
-      if (settings.model_poses) batch.model[lane] = kernels::layout(model_of(character));
-    }
+    for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
+      batch.model[lane] = kernels::layout(takes_part(lane) ? model_of(first + lane) : chunk.unwanted);
+    batch.jets = kernels::layout(jets_of(first));
+    batch.joints = joints;
     batch.inverse_plus = inverse_plus[std::size_t(b) * lines].numbers;
     batch.inverse_minus = inverse_minus[std::size_t(b) * lines].numbers;
     batch.torque = torque[std::size_t(b) * lines].numbers;
     batch.peak = peak[b].numbers;
-    batch.scratch = chunk_scratch;
+    batch.scratch = chunk.scratch;
     check(rig.view, batch);
     for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
-      if (active[first + lane]) ride_along(first + lane);
+      if (takes_part(lane)) ride_along(first + lane);
   }
-  static void run_chunk(void* context, int chunk) {
+  static void run_chunk(void* context, int index) {
     Impl& self = *static_cast<Impl*>(context);
     const auto begin_of = [&](int c) { return int(std::int64_t(self.batches) * c / self.settings.chunks); };
-    for (int b = begin_of(chunk); b < begin_of(chunk + 1); ++b)
-      self.run_batch(b, self.scratch.data() + chunk * self.scratch_lines());
+    const Chunk chunk{self.scratch.data() + index * self.scratch_lines(),
+                      self.unwanted.data() + std::size_t(index) * self.joints};
+    for (int b = begin_of(index); b < begin_of(index + 1); ++b) self.run_batch(b, chunk);
   }
 };
 
@@ -236,8 +245,11 @@ Status Crowd::step(double h, const ParallelFor& parallel_for) {
   else
     for (int chunk = 0; chunk < impl.settings.chunks; ++chunk) Impl::run_chunk(&impl, chunk);
   impl.overloaded.clear();
-  for (int i = 0; i < impl.settings.capacity; ++i)
-    if (impl.active[i] && !(peak_load(i) <= 1)) impl.overloaded.push_back(i);
+  for (int b = 0; b < impl.batches; ++b)
+    for (int lane = 0; lane < impl.lanes; ++lane) {
+      const int character = b * impl.lanes + lane;
+      if (impl.active[character] && !(impl.peak[b].numbers[lane] <= 1)) impl.overloaded.push_back(character);
+    }
   return {};
 }
 

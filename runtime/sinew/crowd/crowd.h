@@ -69,7 +69,7 @@ class Crowd {
 
   /// From now on a character plays this; it stands in its rest pose before. Makes it active.
   Status play(int character, const CrowdTrack& track);
-  /// Inactive characters cost nothing, and a step leaves everything of theirs alone.
+  /// Inactive characters are neither sampled nor posed nor reported; their torques and loads mean nothing.
   Status set_active(int character, bool active);
   /// Of all its muscles, ≥ 0; infinity: never overloaded.
   Status set_strength(int character, float strength);

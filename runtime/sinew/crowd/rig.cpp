@@ -82,6 +82,7 @@ CrowdRig::CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings) {
   view.ground = settings.ground;
   view.ground_height = float(settings.ground_height);
   view.support_reach = float(SupportSettings().reach);
+  view.support_lean = float(SupportSettings().lean);
 }
 
 }  // namespace sinew

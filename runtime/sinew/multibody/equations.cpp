@@ -262,8 +262,9 @@ bool Equations::poorly_chosen() const {
 }
 
 bool Equations::accept(double, Vector& y) {
+  // In every step, though evaluations close the loops for themselves: dependent coordinates that were left to
+  // drift lose the branch at a singular position.
   if (rz_.trivial() || !close(y)) return false;
-  largest_gap_ = std::max(largest_gap_, rz_.gap(motion_).size);
   return poorly_chosen() && rz_.choose(motion_);
 }
 

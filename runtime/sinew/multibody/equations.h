@@ -59,8 +59,6 @@ class Equations : public System {
   const Model& model() const { return *model_; }
   const VelocityTransformation& transformation() const { return rz_; }
   const EvaluationCounts& counts() const { return counts_; }
-  /// Largest gap that `accept` found before closing, and after (m).
-  double largest_gap() const { return largest_gap_; }
 
  private:
   bool prepare(double t, const Vector& y);
@@ -89,7 +87,6 @@ class Equations : public System {
   Matrix stiffness_, damping_, inertia_, iteration_;
   Eigen::PartialPivLU<Matrix> factor_;
   double c_ = 0;
-  double largest_gap_ = 0;
 };
 
 }  // namespace sinew::multibody

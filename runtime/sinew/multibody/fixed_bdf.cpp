@@ -1,5 +1,6 @@
 #include "sinew/multibody/fixed_bdf.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sinew::multibody {
@@ -35,7 +36,7 @@ std::string FixedBdf::step() {
     yp -= c * r;
     const double size = weighted_norm(r, y_, settings_);
     if (!std::isfinite(size)) break;
-    converged = size <= kNewtonTolerance;
+    converged = size <= std::max(kNewtonTolerance, h * system_->noise() / settings_.atol);
   }
   if (!converged) return stopped(t_, "Newton's method does not converge at this step length");
   rate_before_ = rate_;

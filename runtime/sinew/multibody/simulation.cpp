@@ -103,7 +103,10 @@ SimulationResult simulate(const Model& model, const SimulationSettings& settings
   };
   look();
   while (integrator->time() < t_end) {
-    result.stopped = integrator->step();
+    result.stopped =
+        integrator->counts().steps < settings.max_steps
+            ? integrator->step()
+            : stopped(integrator->time(), "the most steps allowed are done and the end is not near");
     if (!result.stopped.empty()) break;
     if (progress) progress(integrator->time());
     if (settings.energy || (next < settings.output.size() && settings.output[next] <= integrator->time()))

@@ -14,6 +14,7 @@ struct SimulationSettings {
   Method method = Method::kOde15sR;
   IntegratorSettings integrator;
   double t_end = 0;            ///< s; 0: the file's
+  long max_steps = 1000000;    ///< then it stops: a motion too fast for its tolerance would go on for hours
   std::vector<double> output;  ///< instants to sample, ascending
   bool energy = false;         ///< also integrate the power of what is not conservative
 };

@@ -46,11 +46,13 @@ struct Rig {
   bool ground = false;
   float ground_height = 0;  ///< m
   float support_reach = 0;  ///< m, as SupportSettings
+  float support_lean = 0;
 };
 
 struct Batch {
-  const kernels::JetLayout<float>* jets[kMaxLanes] = {};  ///< [lane][body] local, the root's in the world
-  kernels::PoseLayout<float>* model[kMaxLanes] = {};      ///< [lane][body] joint → world; all or none
+  const kernels::JetLayout<float>* jets = nullptr;    ///< [lane][joints] local, the root's in the world
+  int joints = 0;                                     ///< of the skeleton: the bodies come first
+  kernels::PoseLayout<float>* model[kMaxLanes] = {};  ///< [lane] → [body] joint → world; all or none
   const float* inverse_plus = nullptr;   ///< [dof][lane] 1 / muscle limit in the positive direction, 1/(N·m)
   const float* inverse_minus = nullptr;  ///< [dof][lane]
   float* torque = nullptr;               ///< [dof][lane] N·m (N for translations)

@@ -18,7 +18,12 @@ struct Body {
   Vec<P> omega, alpha;   ///< of the body
   Vec<P> acceleration;   ///< of its origin, less gravity
   Vec<P> force, moment;  ///< that its motion asks for, about its origin
-  P rotation[4];         ///< body → world
+};
+
+/// Where it is, for those who need to know.
+template <class P>
+struct Placed {
+  P rotation[4];  ///< body → world
   Turn<P> world;
   Vec<P> origin;  ///< from the root's, world axes
 };
@@ -33,11 +38,15 @@ struct Standing {
 template <class P>
 struct Scratch {
   Body<P>* body;
+  Placed<P>* placed;
   Standing<P>* standing;  ///< [point] filled for bodies that are near the ground
 
   Scratch(void* memory, int bodies)
-      : body(static_cast<Body<P>*>(memory)), standing(reinterpret_cast<Standing<P>*>(body + bodies)) {}
-  static_assert(sizeof(Body<P>) == kBodyPacks * sizeof(P) && sizeof(Standing<P>) == kPointPacks * sizeof(P));
+      : body(static_cast<Body<P>*>(memory)),
+        placed(reinterpret_cast<Placed<P>*>(body + bodies)),
+        standing(reinterpret_cast<Standing<P>*>(placed + bodies)) {}
+  static_assert(sizeof(Body<P>) + sizeof(Placed<P>) == kBodyPacks * sizeof(P) &&
+                sizeof(Standing<P>) == kPointPacks * sizeof(P));
 };
 
 /// The lanes of a batch that one pass takes: as many as a register of the instruction set holds.
@@ -53,13 +62,15 @@ struct Jet {
   Vec<P> omega, alpha, translation, velocity, acceleration;
 
   Jet(const Batch& batch, int first_lane, int i) {
-    P n[20];
-    for (int c = 0; c < 20; c += 4) {
+    constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
+    const std::ptrdiff_t stride = std::ptrdiff_t(batch.joints) * kNumbers;
+    const float* from = batch.jets->rotation + first_lane * stride + i * kNumbers;
+    P n[kNumbers];
+#pragma GCC unroll 5
+    for (int c = 0; c < kNumbers; c += 4) {
       P m[4];
       for (int r = 0; r < 4; ++r)
-        m[r] = load_fours<P>([&](int group) {
-          return reinterpret_cast<const float*>(batch.jets[first_lane + 4 * group + r] + i) + c;
-        });
+        m[r] = load_fours<P>([&](int group) { return from + (4 * group + r) * stride + c; });
       transpose(m);
       for (int r = 0; r < 4; ++r) n[c + r] = m[r];
     }
@@ -100,16 +111,16 @@ void move(const Rig& rig, const RigBody& constants, const Jet<P>& jet, const Bod
 
 /// Orientation and origin in the world.
 template <class P>
-void place(const Jet<P>& jet, const Body<P>* parent, Body<P>& body) {
+void place(const Jet<P>& jet, const Turn<P>& turn, const Placed<P>* parent, Placed<P>& body) {
   if (!parent) {
     for (int c = 0; c < 4; ++c) body.rotation[c] = jet.rotation[c];
-    body.world = body.turn;
+    body.world = turn;
     body.origin = {P::all(0), P::all(0), P::all(0)};
     return;
   }
   multiply(parent->rotation, jet.rotation, body.rotation);
   body.world = turn_of(body.rotation);
-  body.origin = parent->origin + parent->world * body.arm;
+  body.origin = parent->origin + parent->world * jet.translation;
 }
 
 /// Torques about the joint's degrees of freedom, as JointType orders them.
@@ -163,18 +174,19 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
   Vec<P> total{zero, zero, zero}, tilt = total;
   for (int i = 0; i < rig.body_count; ++i) {
     const Body<P>& body = scratch.body[i];
-    const Vec<P> force = body.world * body.force;
+    const Placed<P>& placed = scratch.placed[i];
+    const Vec<P> force = placed.world * body.force;
     total = total + force;
-    tilt = tilt + (body.world * body.moment + cross(body.origin, force));
+    tilt = tilt + (placed.world * body.moment + cross(placed.origin, force));
   }
-  const auto near = [&](const RigBody& constants, const Body<P>& body) {
+  const auto near = [&](const RigBody& constants, const Placed<P>& body) {
     return constants.point_count > 0 &&
            any_negative(body.origin.z - ground - P::all(constants.bound + rig.support_reach));
   };
   P sum = zero, y_sum = zero, x_sum = zero, yy = zero, xy = zero, xx = zero;
   for (int i = 0; i < rig.body_count; ++i) {
     const RigBody& constants = rig.bodies[i];
-    const Body<P>& body = scratch.body[i];
+    const Placed<P>& body = scratch.placed[i];
     if (!near(constants, body)) continue;
     for (int k = constants.first_point; k < constants.first_point + constants.point_count; ++k) {
       Vec<P> at = body.origin + body.world * same<P>(rig.points[k].local);
@@ -203,31 +215,45 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
   const auto lift = [&](const Standing<P>& s) {
     return largest(zero, s.share * (l0 + (l1 * s.place.y - l2 * s.place.x)));
   };
-  P carried = zero;
-  for (int i = 0; i < rig.body_count; ++i)
-    if (near(rig.bodies[i], scratch.body[i]))
-      for (int k = 0; k < rig.bodies[i].point_count; ++k)
-        carried = carried + lift(scratch.standing[rig.bodies[i].first_point + k]);
+  P carried = zero, x_carried = zero, y_carried = zero, farthest = zero;
+  for (int i = 0; i < rig.body_count; ++i) {
+    if (!near(rig.bodies[i], scratch.placed[i])) continue;
+    for (int k = 0; k < rig.bodies[i].point_count; ++k) {
+      const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
+      const P up = lift(s);
+      carried = carried + up;
+      x_carried = x_carried + up * s.place.x;
+      y_carried = y_carried + up * s.place.y;
+      const P away = s.place.x * s.place.x + s.place.y * s.place.y;
+      farthest = where_negative(-up, largest(farthest, away), farthest);
+    }
+  }
   // Lanes that fall, fly or stand on nothing keep their wrenches.
   P scale = total.z / carried * smallest(one, 5 * sum);
   for (const P& needed : {total.z, sum - P::all(1e-3f), carried})
     scale = where_negative(-needed, scale, zero);
+  // Level forces: friction's share, and the lean towards the root about its mean.
   const P level = one / largest(total.z, sqrt(total.x * total.x + total.y * total.y));
-  const Vec<P> direction{level * total.x, level * total.y, one};
+  const P slope = one / largest(-ground, P::all(1e-3f));
+  const P steepest = largest(slope * sqrt(farthest), P::all(1e-6f));
+  const P lean = slope * smallest(one, P::all(rig.support_lean) / steepest);
+  const P x_push = level * total.x + lean * (x_carried / carried),
+          y_push = level * total.y + lean * (y_carried / carried);
   for (int i = 0; i < rig.body_count; ++i) {
-    Body<P>& body = scratch.body[i];
-    if (!near(rig.bodies[i], body)) continue;
+    const Placed<P>& placed = scratch.placed[i];
+    if (!near(rig.bodies[i], placed)) continue;
     Vec<P> force{zero, zero, zero}, moment = force;
     for (int k = 0; k < rig.bodies[i].point_count; ++k) {
       const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
       const P up = where_equal(scale, 0, zero, scale * lift(s));
-      const Vec<P> push{where_equal(up, 0, zero, up * direction.x),
-                        where_equal(up, 0, zero, up * direction.y), up};
+      const Vec<P> push{where_equal(up, 0, zero, up * (x_push - lean * s.place.x)),
+                        where_equal(up, 0, zero, up * (y_push - lean * s.place.y)), up};
       force = force + push;
-      moment = moment + cross(s.place - body.origin, push);
+      moment = moment + cross(s.place - placed.origin, push);
     }
-    body.force = body.force - body.world.back(force);
-    body.moment = body.moment - body.world.back(moment);
+    Body<P>& body = scratch.body[i];
+    body.force = body.force - placed.world.back(force);
+    body.moment = body.moment - placed.world.back(moment);
   }
 }
 
@@ -249,9 +275,9 @@ void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
 
 template <class P>
 void write_model(const Rig& rig, const Batch& batch, int first_lane, const Vec<P>& root,
-                 const Body<P>* bodies) {
+                 const Placed<P>* bodies) {
   for (int i = 0; i < rig.body_count; ++i) {
-    const Body<P>& body = bodies[i];
+    const Placed<P>& body = bodies[i];
     const Vec<P> at = root + body.origin;
     P q[4] = {body.rotation[0], body.rotation[1], body.rotation[2], body.rotation[3]};
     P x[4] = {at.x, at.y, at.z, P::all(0)};
@@ -275,7 +301,7 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
     const Body<P>* parent = p < 0 ? nullptr : scratch.body + p;
     const Jet<P> jet(batch, lanes.first, i);
     move(rig, rig.bodies[i], jet, parent, scratch.body[i]);
-    if (placed) place(jet, parent, scratch.body[i]);
+    if (placed) place(jet, scratch.body[i].turn, p < 0 ? nullptr : scratch.placed + p, scratch.placed[i]);
   }
   const Vec<P> root = scratch.body[0].arm;
   if (rig.ground) share_support(rig, root.z, scratch);
@@ -289,7 +315,7 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
     parent.moment = parent.moment + (body.turn * body.moment + cross(body.arm, force));
   }
   compare<P>(rig, batch, lanes);
-  if (batch.model[0]) write_model(rig, batch, lanes.first, root, scratch.body);
+  if (batch.model[0]) write_model(rig, batch, lanes.first, root, scratch.placed);
 }
 
 /// A batch in as many passes as registers of `kRegister` lanes need.
