@@ -172,16 +172,16 @@ TEST(Scene, GroupStrengthSlackensOnlyItsSubtree) {
 }
 
 TEST(Scene, SelfCollisionIsSwitchedPerCharacter) {
-  const auto most_contacts = [](const std::string& flag) {
+  const auto contacts = [](const std::string& flag) {
     const Result r = run(R"(, "clips": [{"clip": "stand"}], "strength": [[0, 0]], "root": [[0, "free"]],
                             "self_collision": )" +
                              flag,
                          "", 3);
-    int most = 0;
-    for (const TelemetryRow& row : r.telemetry.rows) most = std::max(most, row.report.contacts);
-    return most;
+    int sum = 0;
+    for (const TelemetryRow& row : r.telemetry.rows) sum += row.report.contacts;
+    return sum;
   };
-  EXPECT_NE(most_contacts("true"), most_contacts("false"));
+  EXPECT_NE(contacts("true"), contacts("false")) << "a limp body folds";
 }
 
 TEST(Scene, PushIsSpreadOverItsDurationAndGivesItsImpulse) {

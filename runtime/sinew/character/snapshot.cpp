@@ -69,6 +69,9 @@ template <class T>
 void visit_history(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
   stream.value("span of the history", h.step_before);
+  std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
+  stream.value("scheme", scheme);
+  if (stream.reading()) h.scheme = static_cast<Scheme>(std::min(scheme, std::uint8_t{2}));
   for (int i = 0; i < s.tree.bodies; ++i) {
     stream.vector("centre of mass", h.center[i]);
     stream.vector("velocity", h.velocity[i]);
@@ -103,6 +106,9 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
+  stream.value("energy ceiling", s.energy_ceiling);
+  stream.value("energy ceiling", s.energy_ceiling);
+  stream.value("stored energy", s.report.elastic_energy);
   visit_pose(s, stream);
   visit_joints(s, stream);
   visit_history(s, stream);

@@ -215,30 +215,36 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
   const auto lift = [&](const Standing<P>& s) {
     return largest(zero, s.share * (l0 + (l1 * s.place.y - l2 * s.place.x)));
   };
-  P carried = zero, x_carried = zero, y_carried = zero, farthest = zero;
+  // Where a limb leaves the root, seen from a point that it stands on, per metre of height.
+  const auto lean = [&](int body, const Vec<P>& at) {
+    while (body > 0 && rig.bodies[body].parent > 0) body = rig.bodies[body].parent;
+    const Vec<P>& hip = scratch.placed[body].origin;
+    const P height = hip.z - ground, low = height - P::all(rig.support_reach);
+    const P slope = where_negative(-low, one / height, zero);
+    return Vec<P>{slope * (hip.x - at.x), slope * (hip.y - at.y), zero};
+  };
+  P carried = zero, x_mean = zero, y_mean = zero, steepest = zero;
   for (int i = 0; i < rig.body_count; ++i) {
     if (!near(rig.bodies[i], scratch.placed[i])) continue;
     for (int k = 0; k < rig.bodies[i].point_count; ++k) {
       const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
       const P up = lift(s);
+      const Vec<P> away = lean(i, s.place);
       carried = carried + up;
-      x_carried = x_carried + up * s.place.x;
-      y_carried = y_carried + up * s.place.y;
-      const P away = s.place.x * s.place.x + s.place.y * s.place.y;
-      farthest = where_negative(-up, largest(farthest, away), farthest);
+      x_mean = x_mean + up * away.x;
+      y_mean = y_mean + up * away.y;
+      steepest = where_negative(-up, largest(steepest, away.x * away.x + away.y * away.y), steepest);
     }
   }
   // Lanes that fall, fly or stand on nothing keep their wrenches.
   P scale = total.z / carried * smallest(one, 5 * sum);
   for (const P& needed : {total.z, sum - P::all(1e-3f), carried})
     scale = where_negative(-needed, scale, zero);
-  // Level forces: friction's share, and the lean towards the root about its mean.
+  // Level forces: friction's share, and the lean towards the hips about its mean.
   const P level = one / largest(total.z, sqrt(total.x * total.x + total.y * total.y));
-  const P slope = one / largest(-ground, P::all(1e-3f));
-  const P steepest = largest(slope * sqrt(farthest), P::all(1e-6f));
-  const P lean = slope * smallest(one, P::all(rig.support_lean) / steepest);
-  const P x_push = level * total.x + lean * (x_carried / carried),
-          y_push = level * total.y + lean * (y_carried / carried);
+  const P follow = smallest(one, P::all(rig.support_lean) / largest(sqrt(steepest), P::all(1e-6f)));
+  const P x_push = level * total.x - follow * (x_mean / carried),
+          y_push = level * total.y - follow * (y_mean / carried);
   for (int i = 0; i < rig.body_count; ++i) {
     const Placed<P>& placed = scratch.placed[i];
     if (!near(rig.bodies[i], placed)) continue;
@@ -246,8 +252,9 @@ void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scrat
     for (int k = 0; k < rig.bodies[i].point_count; ++k) {
       const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
       const P up = where_equal(scale, 0, zero, scale * lift(s));
-      const Vec<P> push{where_equal(up, 0, zero, up * (x_push - lean * s.place.x)),
-                        where_equal(up, 0, zero, up * (y_push - lean * s.place.y)), up};
+      const Vec<P> away = lean(i, s.place);
+      const Vec<P> push{where_equal(up, 0, zero, up * (x_push + follow * away.x)),
+                        where_equal(up, 0, zero, up * (y_push + follow * away.y)), up};
       force = force + push;
       moment = moment + cross(s.place - placed.origin, push);
     }
