@@ -107,7 +107,6 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("energy ceiling", s.energy_ceiling);
-  stream.value("energy ceiling", s.energy_ceiling);
   stream.value("stored energy", s.report.elastic_energy);
   visit_pose(s, stream);
   visit_joints(s, stream);
