@@ -70,8 +70,8 @@ struct Scene {
     track.clip = &clips[i % 3];
     track.time = 0.137 * i;
     track.rate = 0.8 + 0.05 * (i % 9);
-    track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}),
-                   {3.f * float(i % 10), 2.f * float(i / 10), 0}};
+    const int column = i % 10, row = i / 10;
+    track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}), {3.f * float(column), 2.f * float(row), 0}};
     return track;
   }
   std::unique_ptr<Crowd> crowd(const CrowdSettings& settings) const {

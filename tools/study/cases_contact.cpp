@@ -63,7 +63,8 @@ Verdict rolling_balls(const Trial& t) {
   Stage<T> stage(WorldSettings{});
   add_at(stage, box_body(10, {4, 4, 0.2}, 0.4), {0, 0, 0.1});
   const Skeleton ball = ball_body(1, 0.1, 1.6);  // with the plate's 0.4: 0.8
-  for (int i = 0; i < 25; ++i) add_at(stage, ball, {-1 + 0.5 * (i % 5), -1 + 0.5 * (i / 5), 0.3});
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 5; ++column) add_at(stage, ball, {-1 + 0.5 * column, -1 + 0.5 * row, 0.3});
   stage.run(0.5, t.h);
   const Vec3<double> diagonal = Vec3<double>(1, 1, 0).normalized();
   const double seconds = 1;

@@ -277,11 +277,12 @@ Verdict contact_stiffness_sweep(const Trial& t) {
 template <class T>
 double resting_height(int n, double h, Measurement& measured) {
   Skeleton body = free_body(10, box_inertia(10, {0.4, 0.4, 0.2}));
-  for (int i = 0; i < n * n; ++i) {
-    Collider& c = body.colliders.emplace_back();
-    c.size = Vec3<double>::Constant(0.01);
-    c.local.translation = {-0.2 + 0.4 * (i % n) / (n - 1), -0.2 + 0.4 * (i / n) / (n - 1), -0.09};
-  }
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column) {
+      Collider& c = body.colliders.emplace_back();
+      c.size = Vec3<double>::Constant(0.01);
+      c.local.translation = {-0.2 + 0.4 * column / (n - 1), -0.2 + 0.4 * row / (n - 1), -0.09};
+    }
   Stage<T> stage(WorldSettings{});
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
   jets[0].translation.z() = T(0.1);

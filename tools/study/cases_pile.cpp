@@ -82,9 +82,11 @@ template <class T>
 Verdict ball_pile(const Trial& t) {
   Stage<T> stage(WorldSettings{});
   const int n = t.quick ? 2 : 4;
-  for (int i = 0; i < n * n * n; ++i)
-    add_prop_at(stage, Shape::kSphere, Vec3<double>::Constant(0.5), 10,
-                {1.001 * (i % n), 1.001 * (i / n % n), 0.5 + 1.001 * (i / n / n)});
+  for (int x = 0; x < n; ++x)
+    for (int y = 0; y < n; ++y)
+      for (int z = 0; z < n; ++z)
+        add_prop_at(stage, Shape::kSphere, Vec3<double>::Constant(0.5), 10,
+                    {1.001 * x, 1.001 * y, 0.5 + 1.001 * z});
   stage.run(t.lasting(3, 1), t.h);
   Verdict v(stage.measured());
   v.general();
@@ -179,7 +181,8 @@ Verdict crowd_of_200(const Trial& t) {
   for (int i = 0; i < count; ++i) {
     Skeleton body = chain({3, JointType::kBall, JointType::kFree, 0.3, 3, 1, 0.05, true});
     std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    jets[0].translation = Vec3<T>(T(3 * (i % 20)), T(3 * (i / 20)), T(1.2));
+    const int column = i % 20, row = i / 20;
+    jets[0].translation = Vec3<T>(T(3 * column), T(3 * row), T(1.2));
     stage.add(body, limp(), jets);
   }
   stage.run(t.lasting(4, 2), t.h);

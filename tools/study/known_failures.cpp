@@ -19,8 +19,6 @@ constexpr const char* kFloat = "float: translations of the root lose their digit
 constexpr const char* kMissing = "not supported";
 
 constexpr KnownFailure kKnownFailures[] = {
-    {"tennis_racket", "at 1/30 s the first flip comes 21 % off the time that 1/480 s gives"},
-    {"substeps", "60 rad/s at 1/60 s is cut in 2 where a quarter of a radian was allowed"},
     {"symmetric_top", kWobble},
     {"free_flight_1_rad_s", kWobble},
     {"free_flight_3_rad_s", kWobble},
@@ -34,19 +32,16 @@ constexpr KnownFailure kKnownFailures[] = {
     {"hands_on_a_wheel", kMissing},
     {"weld_declared_thrice", kMissing},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
-    {"foot_on_slope", "stick speed of 1 cm/s creeps"},
     {"sliding_cube", "first order in the step where it stops"},
     {"bounce_1", "float and double lose 2.4 % of the height at 1/60 s"},
     {"spawned_in_floor", "thrown out in double, played in float"},
     {"limp_fall_counts", "more passes than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
-    {"figures_in_a_pile", "energy gained between figures"},
     {"colliding_figures", "energy gained between figures"},
     {"tumbling_box", "energy rises on edges"},
     {"figure_on_stairs", "energy rises on edges"},
     {"several_muscles_on_a_joint", kMissing},
     {"ellipsoidal_limit", kMissing},
-    {"pushed_figure", "99th percentile of passes 9, not 8"},
     {"baked_limbs", kMissing},
     {"piston", "throws the figure in float"},
     {"teleport", "an undeclared jump is an impact"},
@@ -54,7 +49,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"10_km_from_origin", kFloat},
     {"100_km_from_origin", kFloat},
     {"save_and_restore", kMissing},
-    {"random_trees", "energy gained with masses 1e8 : 1"},
 };
 
 }  // namespace

@@ -61,9 +61,10 @@ convert::Error draw_map(const FailureMap& map, const std::string& file) {
   canvas.text(map.title, kPanelGap, 28, 18, 0, true);
   canvas.text("down: time step; across: " + map.across + "; number: change of energy " + map.change,
               kPanelGap, 48, 12);
-  for (std::size_t e = 0; e < map.engines.size(); ++e)
-    draw_panel(canvas, map, e, kPanelGap + wide * double(e % kPanelsAcross),
-               kHead - 12 + high * double(e / kPanelsAcross));
+  for (std::size_t e = 0; e < map.engines.size(); ++e) {
+    const std::size_t row = e / kPanelsAcross, column = e % kPanelsAcross;
+    draw_panel(canvas, map, e, kPanelGap + wide * double(column), kHead - 12 + high * double(row));
+  }
   double x = kPanelGap;
   for (int fate = 0; fate < 5; ++fate) {
     canvas.fill(kColours[fate], x, height - 34, 16, 16);

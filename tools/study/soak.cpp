@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <random>
 
 #include "study/bodies.h"
@@ -32,8 +33,8 @@ void disturb(Character<T> c, std::vector<JointJet<T>>& jets, int index, std::mt1
   } else if (event < 12) {
     c.set_root_drive(event == 10 ? RootDrive::kFree : RootDrive::kAssisted);
   } else if (event < 13) {
-    jets[0].translation =
-        Vec3<T>(T(4 * (index % 5) + uniform(-1, 1)), T(4 * (index / 5) + uniform(-1, 1)), T(1.42));
+    const int column = index % 5, row = index / 5;
+    jets[0].translation = Vec3<T>(T(4 * column + uniform(-1, 1)), T(4 * row + uniform(-1, 1)), T(1.42));
     c.set_root_drive(RootDrive::kKinematic);
     c.set_target(jets);
     c.reset();
@@ -50,13 +51,14 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
   std::vector<std::vector<JointJet<T>>> jets(kCharacters, rest_jets<T>(body));
   for (int i = 0; i < kCharacters; ++i) {
     Status status;
-    jets[i][0].translation += Vec3<T>(T(4 * (i % 5)), T(4 * (i / 5)), T(0));
+    const int row = i / 5;
+    jets[i][0].translation += Vec3<T>(T(4 * (i % 5)), T(4 * row), T(0));
     world.add_character(body, {}, status);
     world.character(i).set_target(jets[i]);
     world.character(i).reset();
   }
   SoakReport report;
-  report.frames = static_cast<int>(seconds / h + 0.5);
+  report.frames = static_cast<int>(std::lround(seconds / h));
   std::vector<float> times;
   times.reserve(static_cast<std::size_t>(report.frames));
   Measurement& m = report.measured;

@@ -365,9 +365,18 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool may_bounce = Bounce<T>::possible(contacts_);
   const double budget = energy<T>(states_, world_->gravity);
   const bool no_pose = !solved.converged && passive() && pose_energy() > budget + 1e-3 * std::abs(budget);
+  bool any_held = false;
+  for (CharacterState<T>* s : states_)
+    if (no_pose || !settled(*s)) {
+      hold(*s);
+      any_held = true;
+    }
+  for (Contact<T>& c : contacts_)
+    if (any_held)
+      measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
+                 c);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    if (no_pose || !settled(s)) hold(s);
     finish(s, static_cast<int>(n), *world_, h);
   }
   if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
@@ -444,8 +453,9 @@ int IslandStepper<T>::parts_of(T h) const {
     T fastest = T(0);
     for (const CharacterState<T>* s : states_)
       for (int i = 0; i < s->tree.bodies; ++i) {
-        const Mat3<T> spin = s->history.rotation_rate[i] * s->history.rotation[i].transpose();
-        fastest = std::max(fastest, Vec3<T>(spin(2, 1), spin(0, 2), spin(1, 0)).norm());
+        // Of the carried momentum: a difference of rotations is the sine of the turn.
+        const Vec3<T> momentum = s->history.rotation[i].transpose() * s->history.momentum[i];
+        fastest = std::max(fastest, Vec3<T>(s->tree.inverse_inertia[i] * momentum).norm());
       }
     const double wanted = std::ceil(double(h * fastest) / accuracy.max_rotation);
     parts = std::max(parts, static_cast<int>(std::min(wanted, double(kMostParts))));

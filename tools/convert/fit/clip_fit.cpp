@@ -19,7 +19,7 @@ constexpr double kSmoothing = 1e-9;     ///< settles the controls that no sample
 /// Basis matrix of one knot spacing, factorised once for all joints.
 class KnotGrid {
  public:
-  KnotGrid(int frames, int stride, int degree, bool loops) : degree_(degree), loops_(loops) {
+  KnotGrid(int frames, int stride, int degree, bool loops) {
     const int intervals = std::max(1, frames - 1);
     spans_ = std::max(1, (intervals + stride - 1) / stride);
     if (loops) spans_ = std::max(spans_, degree + 1);
@@ -55,8 +55,6 @@ class KnotGrid {
   int spans() const { return spans_; }
 
  private:
-  int degree_;
-  bool loops_;
   int spans_ = 0, controls_ = 0;
   Eigen::SparseMatrix<double> basis_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
