@@ -175,13 +175,12 @@ class Runner {
     for (const Collider& o : s_.obstacles)
       if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
     for (const SceneProp& p : s_.props) {
-      PropSettings settings = p.settings;
-      if (p.launch_time > 0)
-        settings.pose.translation = waiting_place(launched_.size()).template cast<double>();
-      if (world_.add_prop(settings, status) < 0) return {"prop '" + p.name + "': " + status.reason};
+      const int prop = world_.add_prop(p.settings, status);
+      if (prop < 0) return {"prop '" + p.name + "': " + status.reason};
       recording_.props.push_back(
           {p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
       launched_.push_back(p.launch_time <= 0);
+      if (!launched_.back()) world_.park_prop(prop);
     }
     telemetry_.plotted_joint = recording_.plotted_joint = s_.plotted_joint;
     if (s_.plotted_joint >= 0)
@@ -205,18 +204,10 @@ class Runner {
     return {};
   }
 
-  /// Where nothing is near that a prop could touch before its launch.
-  static Vec3<T> waiting_place(std::size_t prop) { return {T(0), T(0), T(1000 * (prop + 1))}; }
-
   void launch(double t) {
     for (std::size_t p = 0; p < s_.props.size(); ++p) {
       const SceneProp& prop = s_.props[p];
-      if (!launched_[p] && t < prop.launch_time) {
-        world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), waiting_place(p)}, Vec3<T>::Zero(),
-                        Vec3<T>::Zero());
-        continue;
-      }
-      if (launched_[p]) continue;
+      if (launched_[p] || t < prop.launch_time) continue;
       launched_[p] = true;
       Vec3<double> from = prop.settings.pose.translation, velocity = prop.settings.velocity;
       if (prop.target_character >= 0) aim(prop, from, velocity);

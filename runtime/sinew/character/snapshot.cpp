@@ -99,6 +99,9 @@ template <class T>
 void visit_state(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t root = static_cast<std::uint8_t>(s.settings.root);
   stream.value("root drive", root);
+  std::uint8_t parked = s.parked ? 1 : 0;
+  stream.value("prop is out of the world", parked);
+  if (stream.reading()) s.parked = s.is_prop && parked != 0;
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kFree))
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);

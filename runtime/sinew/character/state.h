@@ -27,6 +27,7 @@ struct CharacterState {
   Tree<T> tree;
   CharacterSettings settings;
   bool is_prop = false;
+  bool parked = false;    ///< a prop out of the world
   double total_mass = 0;  ///< kg
 
   std::vector<JointJet<T>> target,

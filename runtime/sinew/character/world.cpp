@@ -141,6 +141,7 @@ template <class T>
 void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
                         const Vec3<T>& angular_velocity) {
   CharacterState<T>& s = *impl_->states[impl_->props[index]];
+  s.parked = false;
   JointJet<T>& jet = s.target[0];
   jet = {};
   jet.rotation = pose.rotation;
@@ -148,6 +149,11 @@ void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velo
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
   s.reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+void World<T>::park_prop(int index) {
+  impl_->states[impl_->props[index]]->parked = true;
 }
 
 template <class T>
@@ -192,6 +198,7 @@ const CharacterReport& World<T>::prop_report(int index) const {
 
 template <class T>
 bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
+  if (a.parked || b.parked) return false;
   const T reach =
       a.radius + b.radius + T(0.1) + 2 * h * (a.history.velocity[0].norm() + b.history.velocity[0].norm());
   return (a.model[0].translation - b.model[0].translation).norm() < reach;
@@ -276,7 +283,7 @@ void World<T>::Impl::step_once(T h) {
     members.clear();
     member_indices.clear();
     for (int i = 0; i < count; ++i)
-      if (group[i] == g) {
+      if (group[i] == g && !states[i]->parked) {
         members.push_back(states[i].get());
         member_indices.push_back(i);
       }

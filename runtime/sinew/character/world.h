@@ -145,6 +145,8 @@ class World {
   Vec3<T> prop_velocity(int index) const;
   void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
                 const Vec3<T>& angular_velocity);
+  /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
+  void park_prop(int index);
   const CharacterReport& prop_report(int index) const;
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
