@@ -34,7 +34,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"sliding_cube", "first order in the step where it stops"},
     {"bounce_1", "float and double lose 2.4 % of the height at 1/60 s"},
-    {"spawned_in_floor", "thrown out in double, played in float"},
     {"limp_fall_counts", "more passes than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"colliding_figures", "energy gained between figures"},
@@ -48,7 +47,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"zero_negative_tiny_step", "steps of 1 ns do not converge in float"},
     {"10_km_from_origin", kFloat},
     {"100_km_from_origin", kFloat},
-    {"save_and_restore", kMissing},
 };
 
 }  // namespace

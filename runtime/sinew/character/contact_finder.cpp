@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
-constexpr double kExitSpeed = 0.5;      ///< m/s, of what begins inside something
+constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something
 constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 

@@ -52,7 +52,10 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const V
     internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
     ceiling += s->energy_ceiling;
   }
+  const bool touching = std::any_of(states.begin(), states.end(),
+                                    [](const CharacterState<T>* s) { return s->report.contacts > 0; });
   if (strict || !std::isfinite(ceiling)) ceiling = before;
+  if (touching) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
   // Rounding of positions and momenta is no gain.
   const double noise = 64 * double(std::numeric_limits<T>::epsilon()) * (std::abs(now) + kinetic);
   const double gained = now - ceiling;
