@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
+constexpr int kFirstHost = 0x4000;      ///< of contact identities
 constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something
 constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
@@ -107,13 +108,34 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
     closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
   }
-  if (!c.plane) thickness = std::min(thickness, c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x());
+  thickness = std::min(thickness, c.half_thickness());
   c.approach = -closing.dot(c.normal);
   if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (h_ * thickness));
 }
 
 template <class T>
-void ContactFinder<T>::meet_static(int n, std::span<const Collider> obstacles) {
+void ContactFinder<T>::meet_hosts(int n, int collider, std::span<const HostObstacle> hosts) {
+  const CharacterState<T>& s = *states_[n];
+  const Bound& b = bounds_[first_bound_[n] + collider];
+  const Vec3<double> center = (b.center + common_origin_).template cast<double>();
+  for (std::size_t h = 0; h < hosts.size(); ++h) {
+    if (hosts[h].shape->distance(center).distance > double(b.radius + b.reach)) continue;
+    for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
+      if (s.points[k].kind == PointKind::kAxis) continue;
+      Contact<T> c = contact_of(n, s.points[k]);
+      c.host = hosts[h].shape;
+      c.shape_pose.translation = -common_origin_;
+      c.friction = std::sqrt(s.points[k].friction * T(hosts[h].friction));
+      c.restitution = std::max(c.restitution, T(hosts[h].restitution));
+      c.id = contact_id(indices_[n], k, -1, kFirstHost + static_cast<int>(h));
+      add(c, b.reach);
+    }
+  }
+}
+
+template <class T>
+void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
+  const std::span<const Collider> obstacles = surroundings.obstacles;
   const CharacterState<T>& s = *states_[n];
   const T ground = T(world_->ground_height) - common_origin_.z();
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
@@ -129,6 +151,7 @@ void ContactFinder<T>::meet_static(int n, std::span<const Collider> obstacles) {
         c.id = contact_id(indices_[n], k, -1, -1);
         add(c, b.reach);
       }
+    meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
     for (std::size_t o = 0; o < obstacles.size(); ++o) {
       const Collider& obstacle = obstacles[o];
       Transform<T> pose = obstacle.local.template cast<T>();
@@ -189,7 +212,7 @@ void ContactFinder<T>::meet_tree(int n, int m) {
 }
 
 template <class T>
-std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, std::span<const Collider> obstacles,
+std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const Surroundings& surroundings,
                                              std::span<CharacterState<T>* const> states,
                                              std::span<const int> indices,
                                              std::span<const LaggedForce<T>> lagged,
@@ -210,7 +233,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, std::sp
     bound(*s, h);
   }
   for (int n = 0; n < static_cast<int>(states.size()); ++n) {
-    if (states[n]->settings.ground_contact) meet_static(n, obstacles);
+    if (states[n]->settings.ground_contact) meet_static(n, surroundings);
     for (int m = 0; m < static_cast<int>(states.size()); ++m)
       if (m != n || states[n]->settings.self_collision) meet_tree(n, m);
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sinew/character/state.h"
+#include "sinew/effects/static_shape.h"
 
 namespace sinew {
 
@@ -17,6 +18,18 @@ struct LaggedForce {
   T offset = T(0);     ///< m, see Contact::offset
 };
 
+/// A shape of the host's, and what it is made of.
+struct HostObstacle {
+  const StaticShape* shape = nullptr;
+  double friction = 0.8, restitution = 0;
+};
+
+/// What stands around, apart from the floor.
+struct Surroundings {
+  std::span<const Collider> obstacles;
+  std::span<const HostObstacle> hosts;
+};
+
 template <class T>
 class ContactFinder {
  public:
@@ -26,7 +39,7 @@ class ContactFinder {
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
   /// feet would. Allocates nothing; contacts beyond what was reserved are dropped.
-  std::span<Contact<T>> find(const WorldSettings& world, std::span<const Collider> obstacles,
+  std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
                              std::span<const LaggedForce<T>> lagged, const Vec3<T>& common_origin, T h);
 
@@ -39,7 +52,8 @@ class ContactFinder {
   };
 
   void bound(const CharacterState<T>& state, T h);
-  void meet_static(int n, std::span<const Collider> obstacles);
+  void meet_static(int n, const Surroundings& surroundings);
+  void meet_hosts(int n, int collider, std::span<const HostObstacle> hosts);
   void meet_tree(int n, int m);
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);

@@ -319,7 +319,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
       forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, obstacles_, states_, indices_, lagged_, settings_.common_origin, h);
+    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
       sweep<T>(states_, contacts_, settings_.common_origin, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
@@ -464,11 +464,11 @@ int IslandStepper<T>::parts_of(T h) const {
 }
 
 template <class T>
-void IslandStepper<T>::step(const WorldSettings& world, std::span<const Collider> obstacles, T h,
+void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
                             std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
   world_ = &world;
-  obstacles_ = obstacles;
+  surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
   frame_ = h;

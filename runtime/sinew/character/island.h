@@ -21,7 +21,7 @@ class IslandStepper {
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
   /// `lagged_out`.
-  void step(const WorldSettings& world, std::span<const Collider> obstacles, T h,
+  void step(const WorldSettings& world, const Surroundings& surroundings, T h,
             std::span<CharacterState<T>* const> states, std::span<const int> indices,
             std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out);
 
@@ -46,7 +46,7 @@ class IslandStepper {
   void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
 
   const WorldSettings* world_ = nullptr;
-  std::span<const Collider> obstacles_;
+  Surroundings surroundings_;
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
   T frame_ = T(0);                      ///< s, the whole step

@@ -11,8 +11,7 @@ constexpr int kMostAdvances = 48;
 /// Motion below which a feature cannot get to the far side of the shape, m.
 template <class T>
 T safe_motion(const Contact<T>& c) {
-  const T half = c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x();
-  return T(0.5) * (half + c.radius);
+  return T(0.5) * (c.half_thickness() + c.radius);
 }
 
 /// Whether the speeds at the beginning of the step can carry a contact's feature through the shape.

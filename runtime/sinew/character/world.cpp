@@ -16,6 +16,7 @@ struct World<T>::Impl {
       states;                          ///< characters and props in the order they were added
   std::vector<int> characters, props;  ///< into states
   std::vector<Collider> obstacles;
+  std::vector<HostObstacle> hosts;
   IslandStepper<T> stepper;
   std::vector<LaggedForce<T>> lagged, lagged_new;
   std::vector<int> group;  ///< [state] island, or -1 where the state is on its own animation
@@ -49,8 +50,8 @@ void World<T>::Impl::reserve() {
   }
   // Every point may touch the floor, an obstacle, and a few shapes of others; what does not fit is dropped
   // furthest last.
-  const int contacts =
-      points * (2 + static_cast<int>(obstacles.size())) + std::min(points * shapes, 4 * points + 64);
+  const int contacts = points * (2 + static_cast<int>(obstacles.size() + hosts.size())) +
+                       std::min(points * shapes, 4 * points + 64);
   stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes);
   lagged.reserve(contacts);
   lagged_new.reserve(contacts);
@@ -167,6 +168,19 @@ Status World<T>::add_obstacle(const Collider& obstacle) {
 }
 
 template <class T>
+Status World<T>::add_obstacle(const StaticShape& shape, double friction, double restitution) {
+  if (!(friction >= 0) || !(restitution >= 0 && restitution <= 1))
+    return Status::error(Code::kInvalidArgument,
+                         "obstacle's friction must be ≥ 0, its restitution in [0, 1]");
+  const SignedDistance<double> probe = shape.distance(Vec3<double>::Zero());
+  if (!std::isfinite(probe.distance) || std::abs(probe.normal.norm() - 1) > 1e-6)
+    return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
+  impl_->hosts.push_back({&shape, friction, restitution});
+  impl_->reserve();
+  return {};
+}
+
+template <class T>
 Character<T> World<T>::character(int index) {
   return Character<T>(impl_->states[impl_->characters[index]].get());
 }
@@ -209,10 +223,15 @@ template <class T>
 bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
   if (!s.settings.ground_contact) return false;
   const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
-  return std::any_of(obstacles.begin(), obstacles.end(), [&](const Collider& o) {
-    const Vec3<double> center = s.model[0].translation.template cast<double>();
-    return signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance < double(reach);
-  });
+  const Vec3<double> center = s.model[0].translation.template cast<double>();
+  const auto near = [&](double distance) { return distance < double(reach); };
+  return std::any_of(
+             obstacles.begin(), obstacles.end(),
+             [&](const Collider& o) {
+               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
+             }) ||
+         std::any_of(hosts.begin(), hosts.end(),
+                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
 }
 
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
@@ -292,7 +311,7 @@ void World<T>::Impl::step_once(T h) {
     if (members.size() == 1 && first.fully_driven() && first.undisturbed() && !near_obstacle(first, h) &&
         play(first, h))
       continue;
-    stepper.step(settings, obstacles, h, members, member_indices, lagged, lagged_new);
+    stepper.step(settings, {obstacles, hosts}, h, members, member_indices, lagged, lagged_new);
   }
   std::sort(lagged_new.begin(), lagged_new.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });

@@ -87,6 +87,8 @@ struct SnapshotField {
   const char* name = "";  ///< "" where there is no such byte
 };
 
+class StaticShape;
+
 template <class T>
 struct CharacterState;  // residual, history and solver state; world.cpp
 
@@ -137,6 +139,8 @@ class World {
   int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
   int add_prop(const PropSettings& settings, Status& status);
   Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
+  /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
+  Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0);
 
   Character<T> character(int index);
   int character_count() const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/effects/static_shape.h"
+
 namespace sinew {
 namespace {
 
@@ -43,6 +45,13 @@ SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T
   Vec3<T> normal = Vec3<T>::Zero();
   normal[axis] = point[axis] < T(0) ? T(-1) : T(1);
   return {depth, normal, T(0), Vec3<T>::Zero()};
+}
+
+template <class T>
+T Contact<T>::half_thickness() const {
+  if (plane) return T(1e9);
+  if (host) return T(host->half_thickness());
+  return shape == Shape::kBox ? size.minCoeff() : size.x();
 }
 
 template <class T>
@@ -143,6 +152,12 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   if (c.plane) {
     c.normal = Vec3<T>::UnitZ();
     c.gap = c.point.z() - c.plane_height - c.radius + c.offset;
+    c.bends = false;
+  } else if (c.host) {
+    const SignedDistance<double> d =
+        c.host->distance((c.point - c.shape_pose.translation).template cast<double>());
+    c.normal = d.normal.template cast<T>();
+    c.gap = T(d.distance) - c.radius + c.offset;
     c.bends = false;
   } else {
     const Mat3<T> rotation =

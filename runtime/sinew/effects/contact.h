@@ -59,6 +59,8 @@ struct ContactPoint {
 template <class T>
 void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index = 0);
 
+class StaticShape;
+
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
 template <class T>
 struct Contact {
@@ -70,6 +72,8 @@ struct Contact {
       Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
   T radius = T(0);
   Shape shape = Shape::kSphere;
+  const StaticShape* host =
+      nullptr;              ///< instead of a shape; shape_pose.translation is then the world's origin
   bool plane = false;       ///< static half space z ≤ plane_height instead of a shape
   T plane_height = T(0);    ///< from the common origin
   Transform<T> shape_pose;  ///< shape → body_b (or → common origin when static)
@@ -92,6 +96,9 @@ struct Contact {
   Vec3<T> material_point = Vec3<T>::Zero(), material_point_b = Vec3<T>::Zero();
   T gap = T(0);
   T slip[2] = {T(0), T(0)};
+  /// Half the thickness of what is met, m.
+  T half_thickness() const;
+
   bool bends = false;                 ///< the surface is curved at the contact
   Mat3<T> bending = Mat3<T>::Zero();  ///< ∇²distance, 1/m
 };
@@ -173,6 +180,7 @@ template <class T>
 void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
 
 #define SINEW_CONTACT_INSTANCES(prefix, T)                                                   \
+  prefix struct Contact<T>;                                                                  \
   prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);        \
   prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int); \
   prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);           \
