@@ -2,7 +2,7 @@
 # Installs, builds and tests. Quiet; ends with one line (and, with CI set, ctest's own summary last).
 # Usage: tests/run.sh [--all]     --all adds the address and undefined-behaviour sanitizers, the format check and
 # clang-tidy (.clang-tidy), which runs inside a build of its own: the next run looks at changed files only; then
-# 4000 random trees, two minutes of soak and the accuracy study's report (build/study/accuracy.html).
+# 2000 random trees, two minutes of soak and the accuracy study's report (build/study/accuracy.html).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -49,7 +49,7 @@ fi
 build build
 run build
 if [ "${1:-}" = --all ]; then
-  SINEW_RANDOM_TREES=4000 long random_trees
+  SINEW_RANDOM_TREES=2000 long random_trees
   SINEW_SOAK_SECONDS=120 long soak
   build/sinew study accuracy --quick -o build/study >build/accuracy.log
 fi
