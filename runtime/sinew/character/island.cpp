@@ -363,16 +363,18 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
   const bool may_bounce = Bounce<T>::possible(contacts_);
-  const double budget = energy<T>(states_, world_->gravity);
-  const bool no_pose = !solved.converged && passive() && pose_energy() > budget + 1e-3 * std::abs(budget);
+  const bool closed = passive();
+  const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
+  const double budget = booked ? energy<T>(states_, world_->gravity) : 0;
+  const bool no_pose = !solved.converged && closed && pose_energy() > budget + 1e-3 * std::abs(budget);
   bool any_held = false;
   for (CharacterState<T>* s : states_)
     if (no_pose || !settled(*s)) {
       hold(*s);
       any_held = true;
     }
-  for (Contact<T>& c : contacts_)
-    if (any_held)
+  if (any_held)
+    for (Contact<T>& c : contacts_)
       measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
                  c);
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -380,7 +382,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     finish(s, static_cast<int>(n), *world_, h);
   }
   if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
-  if (!solved.converged || passive()) {
+  if (!solved.converged || closed) {
     if (ledger_.settle(states_, world_->gravity, budget, !solved.converged)) ++damped_;
   } else {
     for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
