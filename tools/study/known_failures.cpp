@@ -24,7 +24,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"free_flight_10_rad_s", kWobble},
     {"free_flight_30_rad_s", kWobble},
     {"orthogonal_hinges", kPlayed},
-    {"stiff_servo", "a return time far below the step overshoots"},
     {"bricard_loop", kMissing},
     {"n_four_bar", kMissing},
     {"singular_four_bar", kMissing},

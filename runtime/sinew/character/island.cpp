@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sinew/character/cut.h"
+#include "sinew/character/way_back.h"
 
 namespace sinew {
 namespace {
@@ -45,26 +46,6 @@ void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, in
   finder_.reserve(contacts, colliders);
   lagged_.reserve(contacts);
   solver_.reserve(dofs, bodies, contacts);
-}
-
-/// Muscles pull to the animation, or along a critically damped way back to it:
-/// e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the offset from the animation.
-template <class T>
-void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings& world, T h) {
-  const T tau = T(world.accuracy.return_time);
-  const T decay = std::exp(-h / tau);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T>& wanted = s.wanted[i];
-    const Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) {
-      s.problem.target[i] = wanted;
-      continue;
-    }
-    std::array<T, 6> offset{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k)
-      offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
-    s.problem.target[i] = at_offset<T>(s.tree, i, wanted, offset);
-  }
 }
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
@@ -109,8 +90,6 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     TreeProblem<T>& p = s.problem;
-    p.start[i] = s.local[i];
-    if (i == 0 && s.floats) p.start[i].translation = (s.history.place - common_origin_).template cast<T>();
     const Transform<T>& wanted = s.wanted[i];
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
@@ -287,7 +266,9 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
     problems_.push_back(&s->problem);
     s->problem.common_origin = s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(common_origin_.cast<T>());
     choose_wanted(*s, fraction);
-    choose_targets(*s, world, h);
+    std::copy_n(s->local.begin(), s->tree.bodies, s->problem.start.begin());
+    if (s->floats) s->problem.start[0].translation = (s->history.place - common_origin_).template cast<T>();
+    choose_targets<T>(*s, T(world.accuracy.return_time), h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();

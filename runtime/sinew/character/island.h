@@ -34,7 +34,6 @@ class IslandStepper {
   void hold(CharacterState<T>& state);
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void choose_targets(CharacterState<T>& state, const WorldSettings& world, T h);
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
   void first_guess(CharacterState<T>& state, T h, T share = T(1));
