@@ -117,10 +117,9 @@ namespace {
 /// Moves a history's place on to the root of `kinematics`; returns by how much.
 template <class T>
 Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history) {
-  const Vec3<double> root = common_origin + kinematics.origin[0].template cast<double>();
-  const Vec3<T> moved = (root - history.place).template cast<T>();
-  history.place = root;
-  return moved;
+  const Vec3<T> before = (history.place - common_origin).template cast<T>();
+  history.place = common_origin + kinematics.origin[0].template cast<double>();
+  return kinematics.origin[0] - before;
 }
 
 }  // namespace
