@@ -1,5 +1,6 @@
 #include "sinew/character/cut.h"
 
+#include <cmath>
 #include <limits>
 
 namespace sinew {
@@ -15,8 +16,9 @@ Transform<T> a_step_ago(const JointJet<T>& now, T h) {
 
 template <class T>
 bool leaps(const Transform<T>& before, const JointJet<T>& last) {
+  const T cut_cosine = std::cos(T(kCut / 2));
   return (before.translation - last.translation).norm() >= T(kCut) ||
-         before.rotation.angularDistance(last.rotation) >= T(kCut);
+         std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
 }
 
 template <class T>

@@ -453,6 +453,9 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
     CharacterReport& r = s->report;
     r.outer_passes = total_.outer_passes;
     r.factorisations = total_.factorisations;
+    r.chords = total_.chords;
+    r.corrections = total_.corrections;
+    r.plain_passes = total_.plain_passes;
     r.converged = all_converged_;
     r.substeps = parts_;
     r.splits = splits_;
