@@ -69,7 +69,8 @@ struct EstimatedFrame {
 };
 /// Runs a scene with the estimate on; the truth of a step is 32 steps of a part of it from the same state.
 /// Meant for options in double.
-std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h);
+std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h,
+                                             const Accuracy& accuracy = {});
 
 /// Root mean square displacement (m) of the mass of a figure between two poses.
 double displacement(const Skeleton& skeleton, const std::vector<Transform<double>>& a,

@@ -11,8 +11,9 @@ constexpr int kParts = 32;  ///< of a step: what is left of a first-order error 
 
 }  // namespace
 
-std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& s, const EngineOption& with, double h) {
-  Accuracy estimating, exact;
+std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& s, const EngineOption& with, double h,
+                                             const Accuracy& accuracy) {
+  Accuracy estimating = accuracy, exact = accuracy;
   estimating.estimate_error = true;
   exact.tolerance = 1e-7;
   exact.max_splits = 0;
