@@ -11,8 +11,8 @@ constexpr double kCertainRate = 0.1;  ///< steps that shrink faster have entered
 }  // namespace
 
 template <class T>
-void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts) {
-  inner_.reserve(dofs, bodies, contacts);
+void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts, int effect_rows) {
+  inner_.reserve(dofs, bodies, contacts, effect_rows);
   plain_.reserve(dofs);
   base_.reserve(bodies);
 }
