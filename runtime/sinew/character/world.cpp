@@ -180,6 +180,7 @@ void World<T>::remove_effects(int character) {
   CharacterState<T>& s = *impl_->states[impl_->characters[character]];
   s.problem.effects.clear();
   s.problem.effect_rows.clear();
+  s.problem.stiff = false;
   s.effects.clear();
 }
 

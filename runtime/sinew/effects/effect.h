@@ -53,12 +53,14 @@ template <class T>
 struct Curvature {
   std::span<Composite<T>> composite;         ///< [body]
   std::span<SpatialStiffness<T>> stiffness;  ///< [body]
+  bool& stiff;                               ///< something was added to `stiffness`
 
   /// At the material point x: the gradient there, for what turning the body does to it, and how it changes
   /// with x; `change` must be positive semidefinite.
   void add(int body, const Vec3<T>& x, const Vec3<T>& gradient, const Mat3<T>& change) const {
     composite[body].add_force(x, gradient);
     stiffness[body].add_point(x, change);
+    stiff = true;
   }
 };
 

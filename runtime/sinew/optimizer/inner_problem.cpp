@@ -93,7 +93,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
                             geometric, smooth_);
     add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
-    if (!p->effects.empty())
+    if (p->stiff)
       add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
                        smooth_);
     if (geometric) add_joint_geometry(*p);

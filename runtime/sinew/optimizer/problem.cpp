@@ -155,9 +155,10 @@ void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& p) {
     p.composite[push.body].add_force(x, -push.force);
   }
   if (p.effects.empty()) return;
-  std::fill(p.stiffness.begin(), p.stiffness.end(), SpatialStiffness<T>{});
+  if (p.stiff) std::fill(p.stiffness.begin(), p.stiffness.end(), SpatialStiffness<T>{});
+  p.stiff = false;
   for (const Effect<T>* effect : p.effects)
-    effect->add_curvature(effect_pose(settings, p), {p.composite, p.stiffness});
+    effect->add_curvature(effect_pose(settings, p), {p.composite, p.stiffness, p.stiff});
 }
 
 SINEW_PROBLEM_INSTANCES(template, float)

@@ -57,6 +57,7 @@ struct TreeProblem {
   std::vector<Effect<T>*> effects;             ///< the step's plan: those with instances on this tree
   std::vector<JointRow<T>> effect_rows;        ///< all of the effects'; those of unknowns are in `rows` too
   std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
+  bool stiff = false;                          ///< some of them is not zero
   int first_unknown_map = 0;                   ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
