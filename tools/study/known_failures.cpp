@@ -37,8 +37,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"colliding_figures", "energy gained between figures"},
     {"tumbling_box", "energy rises on edges"},
     {"figure_on_stairs", "energy rises on edges"},
-    {"several_muscles_on_a_joint", kMissing},
-    {"ellipsoidal_limit", kMissing},
     {"baked_limbs", kMissing},
     {"piston", "throws the figure in float"},
 };

@@ -28,14 +28,6 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
-/// Largest ratio of needed torque to limit over a joint's degrees of freedom.
-template <class T>
-T load_of(const TreeProblem<T>& p, int dof, T torque) {
-  const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-  if (std::isinf(limit)) return T(0);
-  return limit > T(0) ? std::abs(torque) / limit : T(0);
-}
-
 }  // namespace
 
 template <class T>
@@ -74,7 +66,7 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
-      load = std::max(load, load_of(s.problem, dof, s.problem.gradient[dof]));
+      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.problem.gradient));
     if (load <= T(1)) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
@@ -177,10 +169,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const T slope = row.slope(row.value);
     for (int a = 0; a < row.count; ++a) s.torque[row.dof + a] -= slope * row.gradient[a];
   }
+  for (const EllipsoidRow<T>& row : p.ellipsoids) {
+    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
+    for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
+  }
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     s.unknown[dof] = p.free[dof];
-    s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
+    s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
@@ -193,6 +188,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     T offset = T(0), rate = T(0), missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
+      s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
       d.rate[k] = (from_animation[k] - d.offset[k]) / h;
       d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
@@ -393,6 +389,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
   forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
+  s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
   predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);
