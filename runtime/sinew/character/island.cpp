@@ -332,10 +332,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held)
-    for (Contact<T>& c : contacts_)
-      measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
-                 c);
+  if (any_held) forget_contacts();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -396,6 +393,17 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
   ++held_;
+}
+
+/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
+/// what cannot move, without end.
+template <class T>
+void IslandStepper<T>::forget_contacts() {
+  for (Contact<T>& c : contacts_) {
+    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    c.offset -= std::min(c.gap, T(0));
+    c.gap = std::max(c.gap, T(0));
+  }
 }
 
 template <class T>

@@ -32,6 +32,7 @@ class IslandStepper {
   bool passive() const;
   double pose_energy() const;
   void hold(CharacterState<T>& state);
+  void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
   void choose_unknowns(CharacterState<T>& state);
