@@ -31,7 +31,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"weld_declared_thrice", kMissing},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"sliding_cube", "first order in the step where it stops"},
-    {"bounce_1", "float and double lose 2.4 % of the height at 1/60 s"},
     {"limp_fall_counts", "more passes than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"colliding_figures", "energy gained between figures"},

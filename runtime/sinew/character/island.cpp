@@ -344,9 +344,11 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
   }
   lagged_.clear();
-  for (const Contact<T>& c : contacts_)
-    if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
-      lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  for (const Contact<T>& c : contacts_) {
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
+    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
+    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
