@@ -14,7 +14,8 @@ struct KnownFailure {
 };
 
 constexpr const char* kWobble = "bdf2's kinetic energy swings about the true one";
-constexpr const char* kPlayed = "a limp body whose residual happens to be 0 is played, not simulated";
+constexpr const char* kStart =
+    "the two steps of bdf1 after a reset cost 1.2 mm; bdf2 sooner harms stiff damping";
 constexpr const char* kMissing = "not supported";
 
 constexpr KnownFailure kKnownFailures[] = {
@@ -23,7 +24,7 @@ constexpr KnownFailure kKnownFailures[] = {
     {"free_flight_3_rad_s", kWobble},
     {"free_flight_10_rad_s", kWobble},
     {"free_flight_30_rad_s", kWobble},
-    {"orthogonal_hinges", kPlayed},
+    {"orthogonal_hinges", kStart},
     {"bricard_loop", kMissing},
     {"n_four_bar", kMissing},
     {"singular_four_bar", kMissing},
