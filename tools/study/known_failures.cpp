@@ -38,7 +38,7 @@ constexpr KnownFailure kKnownFailures[] = {
     {"tumbling_box", "energy rises on edges"},
     {"figure_on_stairs", "energy rises on edges"},
     {"baked_limbs", kMissing},
-    {"piston", "throws the figure in float"},
+    {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };
 
 }  // namespace
