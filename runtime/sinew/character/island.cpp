@@ -192,11 +192,12 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     for (int k = 0; k < s.tree.dof_count(i); ++k) missed = std::max(missed, std::abs(from_target[k]));
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
       s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
-      // On the way back the rate is the path's at its end; its mean over the step would start the next part
-      // of the path too fast or too slow by an error of first order.
+      // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
+      // would start the next part of the path too fast or too slow by an error of first order.
       const T pull = d.rate[k] + d.offset[k] / tau;
-      const bool on_path = !d.on_animation && std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) <
-                                                  T(4) * settings_.kink_width;
+      const bool on_path =
+          !d.on_animation && s.load[first + k] < T(0.99) &&
+          std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < T(4) * settings_.kink_width;
       d.rate[k] = on_path ? (d.rate[k] - pull * h / tau) * decay : (from_animation[k] - d.offset[k]) / h;
       d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
