@@ -29,14 +29,6 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
-/// Largest ratio of needed torque to limit over a joint's degrees of freedom.
-template <class T>
-T load_of(const TreeProblem<T>& p, int dof, T torque) {
-  const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-  if (std::isinf(limit)) return T(0);
-  return limit > T(0) ? std::abs(torque) / limit : T(0);
-}
-
 }  // namespace
 
 template <class T>
@@ -76,7 +68,7 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
-      load = std::max(load, load_of(s.problem, dof, s.problem.gradient[dof]));
+      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.problem.gradient));
     if (load <= T(1)) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
@@ -179,10 +171,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const T slope = row.slope(row.value);
     for (int a = 0; a < row.count; ++a) s.torque[row.dof + a] -= slope * row.gradient[a];
   }
+  for (const EllipsoidRow<T>& row : p.ellipsoids) {
+    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
+    for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
+  }
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     s.unknown[dof] = p.free[dof];
-    s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
+    s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }
   const T tau = T(world.accuracy.return_time), decay = std::exp(-h / tau);
   for (int i = 0; i < s.tree.bodies; ++i) {
@@ -197,11 +192,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) missed = std::max(missed, std::abs(from_target[k]));
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      // On the way back the rate is the path's at its end; its mean over the step would start the next part
-      // of the path too fast or too slow by an error of first order.
+      s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
+      // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
+      // would start the next part of the path too fast or too slow by an error of first order.
       const T pull = d.rate[k] + d.offset[k] / tau;
-      const bool on_path = !d.on_animation && std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) <
-                                                  T(4) * settings_.kink_width;
+      const bool on_path =
+          !d.on_animation && s.load[first + k] < T(0.99) &&
+          std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < T(4) * settings_.kink_width;
       d.rate[k] = on_path ? (d.rate[k] - pull * h / tau) * decay : (from_animation[k] - d.offset[k]) / h;
       d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
@@ -376,9 +373,11 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
   }
   lagged_.clear();
-  for (const Contact<T>& c : contacts_)
-    if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
-      lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  for (const Contact<T>& c : contacts_) {
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
+    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
+    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
@@ -420,6 +419,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
   forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
+  s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
   predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);

@@ -111,6 +111,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
   stream.array("strength of a joint", s.joint_strength.data(), s.joint_strength.size());
+  stream.array("strength of a muscle", s.muscle_strength.data(), s.muscle_strength.size());
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
@@ -175,6 +176,7 @@ std::uint64_t layout_of(const MovingParts<T>& world) {
   add(sizeof(T));
   for (const auto& s : world.states) {
     add(s->local.size());
+    add(s->muscle_strength.size());
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
   }
   return hash;

@@ -18,6 +18,7 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
       rate_before(s.body_count),
       deviation(s.body_count),
       joint_strength(s.body_count, T(1)),
+      muscle_strength(s.muscles.size(), T(1)),
       torque(tree.dofs, T(0)),
       load(tree.dofs, T(0)),
       limit(tree.dofs, T(0)),
@@ -99,11 +100,25 @@ void CharacterState<T>::choose_self_pairs() {
     }
 }
 
+namespace {
+
+/// Of 0 and infinity, 0 wins: a dead muscle stays dead in a character that only plays.
+template <class T>
+T scaled(double limit_at_rest, T strength) {
+  return limit_at_rest > 0 && strength > T(0) ? T(limit_at_rest) * strength : T(0);
+}
+
+}  // namespace
+
+template <class T>
+T CharacterState<T>::muscle_limit(int muscle, double limit_at_rest) const {
+  const T own = scaled<T>(limit_at_rest, muscle_strength[muscle]);
+  const T joint = scaled<T>(double(own), joint_strength[skeleton.muscles[muscle].joint]);
+  return scaled<T>(double(joint), T(settings.strength));
+}
+
 template <class T>
 void CharacterState<T>::refresh_limits() {
-  const auto scaled = [](double limit_at_rest, T strength) {
-    return limit_at_rest > 0 ? T(limit_at_rest) * strength : T(0);
-  };
   for (int i = 0; i < tree.bodies; ++i) {
     const Joint& joint = skeleton.joints[i];
     const bool root = joint.type == JointType::kFree;
@@ -119,6 +134,12 @@ void CharacterState<T>::refresh_limits() {
       problem.law.torque_minus[dof] = minus;
       problem.law.torque_plus[dof] = plus;
     }
+  }
+  for (std::size_t m = 0; m < skeleton.muscles.size(); ++m) {
+    const Muscle& muscle = skeleton.muscles[m];
+    const int dof = tree.first_dof[muscle.joint] + muscle.dof;
+    problem.law.torque_minus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_minus);
+    problem.law.torque_plus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_plus);
   }
 }
 

@@ -41,6 +41,7 @@ struct CharacterState {
   T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
   std::vector<Deviation<T>> deviation;        ///< [body]
   std::vector<T> joint_strength;              ///< [body]
+  std::vector<T> muscle_strength;             ///< [muscle of the skeleton]
   std::vector<T> torque, load, limit;         ///< [dof]
   std::vector<std::uint8_t> unknown;          ///< [dof]
   std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
@@ -73,6 +74,8 @@ struct CharacterState {
     const double bears = std::clamp(double(heaviest), total_mass, 100 * total_mass);
     return T(bears * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
   }
+  /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
+  T muscle_limit(int muscle, double limit_at_rest) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
   /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.

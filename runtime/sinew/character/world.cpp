@@ -305,18 +305,16 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   for (const JointRow<T>& row : p.effect_rows)
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
-  for (int dof = s.root_is_kinematic() ? root_dofs : 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    if (std::abs(torque) > limit) return false;
-  }
-  for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    s.torque[dof] = torque;
-    s.limit[dof] = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = s.limit[dof] > T(0) && std::isfinite(s.limit[dof]) ? std::abs(torque) / s.limit[dof] : T(0);
-    s.unknown[dof] = 0;
-  }
+  for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
+      if (p.law.load(s.tree, i, dof, p.gradient) > T(1)) return false;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
+      s.torque[dof] = p.gradient[dof];
+      s.limit[dof] = p.law.limit(dof, p.gradient[dof]);
+      s.load[dof] = p.law.load(s.tree, i, dof, p.gradient);
+      s.unknown[dof] = 0;
+    }
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Transform<T> before = s.local[i];
     s.local[i] = {s.target[i].rotation, s.target[i].translation};

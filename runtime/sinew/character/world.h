@@ -116,6 +116,12 @@ class Character {
   /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
   Status set_strength(T strength);
   Status set_strength(int joint, T strength);
+  /// Strength of one of Skeleton::muscles, or of all of a group, ≥ 0; the character's and the joint's
+  /// multiply it.
+  Status set_muscle_strength(int muscle, T strength);
+  Status set_group_strength(const char* group, T strength);
+  /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle.
+  T muscle_torque(int muscle) const;
   void set_root_drive(RootDrive drive);
   /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
@@ -127,9 +133,10 @@ class Character {
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;
-  std::span<const T> load() const;                ///< 0 where the DOF has no muscle (root); 1 = saturated
-  std::span<const T> limit() const;               ///< of the direction in which it pulls now
-  int first_dof(int joint) const;                 ///< index into the spans above; joint < body_count
+  std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
+                                     ///< three of an ellipsoidal limit
+  std::span<const T> limit() const;  ///< of the direction in which it pulls now
+  int first_dof(int joint) const;    ///< index into the spans above; joint < body_count
   std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
   bool on_animation() const;                      ///< every joint is exactly where the clip wants it
   const CharacterReport& report() const;

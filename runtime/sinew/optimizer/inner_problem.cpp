@@ -36,6 +36,7 @@ void InnerProblem<T>::reserve(int dofs, int bodies, int contacts, int effect_row
   contact_rows_.reserve(contacts);
   joint_rows_.reserve(dofs * 8 + effect_rows);
   path_.resize(TreePattern::padded(dofs));
+  ellipsoid_rows_.reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
     v->reserve(dofs);
@@ -57,6 +58,7 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
   contact_rows_.collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
+  ellipsoid_rows_.collect(trees_, unknowns_);
   joint_rows_.clear();
   for (TreeProblem<T>* p : trees_)
     for (const JointRow<T>& row : p->rows)
@@ -118,6 +120,7 @@ void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
 template <class T>
 void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
   contact_rows_.add_gradient(gradient);
+  ellipsoid_rows_.add_gradient(gradient);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T slope = row.slope(rows.value);
@@ -127,7 +130,7 @@ void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
 
 template <class T>
 T InnerProblem<T>::row_slope(T t) const {
-  T slope = contact_rows_.slope(t);
+  T slope = contact_rows_.slope(t) + ellipsoid_rows_.slope(t);
   for (const JointRows& rows : joint_rows_)
     slope += rows.row.slope(rows.value + t * rows.d_value) * rows.d_value;
   return slope;
@@ -175,6 +178,7 @@ template <class T>
 void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const {
   multiply_smooth(x, y);
   contact_rows_.multiply(x, y);
+  ellipsoid_rows_.multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T curvature = row.curvature(rows.value);
@@ -190,6 +194,7 @@ template <class T>
 bool InnerProblem<T>::newton_step() {
   factor_.values() = smooth_.values();
   contact_rows_.add_curvature(factor_);
+  ellipsoid_rows_.add_curvature(unknowns_, factor_);
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T curvature = rows.in_factor = row.curvature(rows.value);
@@ -263,6 +268,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     const bool last =
         (iteration > 0 && double(length) < kShrink * report.first_length) || length < T(0.1) * tolerance;
     contact_rows_.look_along(step_);
+    ellipsoid_rows_.look_along(step_);
     for (JointRows& rows : joint_rows_) {
       const JointRow<T>& row = rows.row;
       rows.d_value = T(0);
@@ -274,7 +280,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       quadratic += step_[k] * product_[k];
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
-    const bool rowless = contact_rows_.empty() && joint_rows_.empty();  // quadratic: the step is exact
+    // Without rows the model is quadratic and the step exact.
+    const bool rowless = contact_rows_.empty() && joint_rows_.empty() && ellipsoid_rows_.empty();
     const T t = rowless ? T(1) : exact_line_search(quadratic, linear);
     for (int k = 0; k < n; ++k) {
       correction_[k] += t * step_[k];
@@ -282,6 +289,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
     contact_rows_.move(t);
+    ellipsoid_rows_.move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
     if (last || rowless) break;
     add_row_gradient(inner_gradient_);
@@ -295,13 +303,15 @@ template <class T>
 void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
   contact_rows_.look_along(correction_);
   contact_rows_.correct(contacts);
+  ellipsoid_rows_.rewind();
   for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
 }
 
 template <class T>
 double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  bool same = contact_rows_.measure(contacts);  // as the last factor holds them
+  if (!ellipsoid_rows_.measure(trees_)) return kNone;
+  bool same = contact_rows_.measure(contacts) && ellipsoid_rows_.empty();  // as the last factor holds them
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sinew/optimizer/contact_rows.h"
+#include "sinew/optimizer/ellipsoid_rows.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
@@ -91,6 +92,7 @@ class InnerProblem {
   bool geometric_ = true;
   ContactRows<T> contact_rows_;
   std::vector<JointRows> joint_rows_;
+  EllipsoidRows<T> ellipsoid_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
