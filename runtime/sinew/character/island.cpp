@@ -61,13 +61,13 @@ void meet_cuts(CharacterState<T>& s, T h) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
-  problems_.reserve(trees);
-  free_share_.reserve(trees);
-  bounce_.reserve(trees, dofs, bodies);
-  finder_.reserve(contacts, colliders);
-  lagged_.reserve(contacts);
-  solver_.reserve(dofs, bodies, contacts);
+void IslandStepper<T>::reserve(const SolveSize& most, int colliders) {
+  problems_.reserve(most.trees);
+  free_share_.reserve(most.trees);
+  bounce_.reserve(most);
+  finder_.reserve(most.contacts, colliders);
+  lagged_.reserve(most.contacts);
+  solver_.reserve(most);
 }
 
 /// Muscles pull to the animation, or along a critically damped way back to it:
@@ -273,6 +273,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+  r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.contact_signature = signature;
@@ -331,13 +332,13 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       predict_all(
           second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
     }
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     if (second && touching_changed()) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
       second = false;
       mispredicted_ = true;
       predict_all(Scheme::kBdf1, h);
-      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
     for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
@@ -373,10 +374,15 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held)
+  if (any_held) {
     for (Contact<T>& c : contacts_)
       measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
                  c);
+    for (Coupling<T>* c : couplings_) {
+      place_nodes<T>(problems_, settings_.common_origin, *c);
+      measure_elements(*c);
+    }
+  }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -420,6 +426,33 @@ double IslandStepper<T>::pose_energy() const {
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
   }
   for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  for (const Coupling<T>* c : couplings_) sum += c->energy;
+  return sum;
+}
+
+/// Tells the couplings' nodes which tree of the solve they are on, and lets what is open close by a step.
+template <class T>
+void IslandStepper<T>::begin_couplings(T h) {
+  for (Coupling<T>* c : couplings_) {
+    for (CouplingNode<T>& node : c->nodes) {
+      const auto found = std::find(indices_.begin(), indices_.end(), node.state);
+      node.tree = found == indices_.end() ? -1 : static_cast<int>(found - indices_.begin());
+      const Vec3<T> world = node.tree < 0 ? node.local : states_[node.tree]->model[node.body] * node.local;
+      node.point = world - states_[0]->model[0].translation;
+    }
+    lead_out(h, *c);
+  }
+}
+
+/// What the couplings store, J, each booked to the tree of its first node that is on one.
+template <class T>
+double IslandStepper<T>::elastic_of(int tree) const {
+  double sum = 0;
+  for (const Coupling<T>* c : couplings_) {
+    const auto moving = std::find_if(c->nodes.begin(), c->nodes.end(),
+                                     [](const CouplingNode<T>& node) { return node.tree >= 0; });
+    if (moving != c->nodes.end() && moving->tree == tree) sum += c->energy;
+  }
   return sum;
 }
 
@@ -468,11 +501,13 @@ int IslandStepper<T>::parts_of(T h) const {
 template <class T>
 void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
+                            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                            std::vector<LaggedForce<T>>& lagged_out) {
   world_ = &world;
   surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
+  couplings_ = couplings;
   frame_ = h;
   lagged_.assign(lagged.begin(), lagged.end());
   free_share_.assign(states.size(), T(1));
@@ -483,6 +518,7 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
   splits_ = parts_ = damped_ = held_ = 0;
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
+  begin_couplings(h);
   const int parts = parts_of(h);
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), world.accuracy.max_splits);

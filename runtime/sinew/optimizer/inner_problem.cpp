@@ -26,18 +26,18 @@ T dot(std::span<const T> a, std::span<const T> b) {
 }  // namespace
 
 template <class T>
-void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
-  turn_.reserve(bodies);
-  slide_.reserve(bodies);
-  unknowns_.reserve(dofs);
-  axes_.reserve(dofs);
-  smooth_.reserve(dofs);
-  factor_.reserve(dofs);
-  contact_rows_.reserve(contacts);
-  joint_rows_.reserve(dofs * 8);
+void InnerProblem<T>::reserve(const SolveSize& most) {
+  turn_.reserve(most.bodies);
+  slide_.reserve(most.bodies);
+  unknowns_.reserve(most.dofs);
+  axes_.reserve(most.dofs, most.entries);
+  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(most.dofs, most.entries);
+  contact_rows_.reserve(most.contacts);
+  coupling_rows_.reserve(most);
+  joint_rows_.reserve(most.dofs * 8);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
-    v->reserve(dofs);
+    v->reserve(most.dofs);
 }
 
 template <class T>
@@ -50,7 +50,8 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
 }
 
 template <class T>
-void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric) {
+void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
+                            bool geometric) {
   geometric_ = geometric;
   axes_.clear();
   for (const TreeProblem<T>* p : trees_)
@@ -60,7 +61,8 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric
   for (TreeProblem<T>* p : trees_)
     for (const JointRow<T>& row : p->rows)
       joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
-  assemble(contacts, geometric);
+  coupling_rows_.collect(trees_, couplings, unknowns_, axes_);
+  assemble(contacts, couplings, geometric);
   // The gradient without the rows', which are added back wherever they move.
   base_gradient_.assign(size(), T(0));
   for (const TreeProblem<T>* p : trees_)
@@ -72,7 +74,8 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, bool geometric
 }
 
 template <class T>
-void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geometric) {
+void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
+                               bool geometric) {
   smooth_.set_zero();
   for (TreeProblem<T>* p : trees_) {
     begin_composite(*p);
@@ -88,6 +91,10 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
           p->composite[c.body_b].add_force(c.material_point_b, -tangent);
         }
       }
+      for (const Coupling<T>* c : couplings)
+        for (const CouplingNode<T>& node : c->nodes)
+          if (node.tree >= 0 && trees_[node.tree] == p)
+            p->composite[node.body].add_force(node.point, node.gradient);
     }
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
                             geometric, smooth_);
@@ -95,6 +102,9 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
     if (geometric) add_joint_geometry(*p);
   }
   if (geometric) contact_rows_.add_bending(smooth_);
+  if (coupling_rows_.empty()) return;
+  local_.values() = smooth_.values();
+  coupling_rows_.add_curvature(local_);
 }
 
 template <class T>
@@ -165,6 +175,7 @@ template <class T>
 void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) const {
   smooth_.multiply(x, y);
   if (geometric_ && contact_rows_.coupled()) contact_rows_.multiply_bending(x, y);
+  if (!coupling_rows_.empty()) coupling_rows_.multiply(x, y);
 }
 
 template <class T>
@@ -184,7 +195,7 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far.
 template <class T>
 bool InnerProblem<T>::newton_step() {
-  factor_.values() = smooth_.values();
+  factor_.values() = coupling_rows_.empty() ? smooth_.values() : local_.values();
   contact_rows_.add_curvature(factor_);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
@@ -197,7 +208,7 @@ bool InnerProblem<T>::newton_step() {
   }
   ++factorisations;
   if (!factor_.factorise()) return false;
-  if (contact_rows_.coupled()) return conjugate_gradients();
+  if (coupled()) return conjugate_gradients();
   for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
   factor_.solve(step_);
   return true;
@@ -281,7 +292,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     // Without rows the model is quadratic: solved.
     if (last || (contact_rows_.empty() && joint_rows_.empty())) break;
     add_row_gradient(inner_gradient_);
-    if (!contact_rows_.coupled() && remaining_length() < kShrink * report.first_length) break;
+    if (!coupled() && remaining_length() < kShrink * report.first_length) break;
   }
   report.solved = true;
   return report;

@@ -11,10 +11,10 @@ constexpr double kCertainRate = 0.1;  ///< steps that shrink faster have entered
 }  // namespace
 
 template <class T>
-void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts) {
-  inner_.reserve(dofs, bodies, contacts);
-  plain_.reserve(dofs);
-  base_.reserve(bodies);
+void NewtonSolver<T>::reserve(const SolveSize& most) {
+  inner_.reserve(most);
+  plain_.reserve(most.dofs);
+  base_.reserve(most.bodies);
 }
 
 template <class T>
@@ -36,6 +36,11 @@ double NewtonSolver<T>::evaluate() {
       b->force[c.body_b] -= normal + tangent;
       b->moment[c.body_b] -= c.point.cross(normal) + c.material_point_b.cross(tangent);
     }
+  }
+  for (Coupling<T>* c : couplings_) {
+    place_nodes<T>(trees_, settings_->common_origin, *c);
+    energy += measure_elements(*c);
+    add_wrenches<T>(*c, trees_);
   }
   for (TreeProblem<T>* p : trees_) finish_gradient(*p);
   return energy;
@@ -118,10 +123,12 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, doub
 
 template <class T>
 SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accuracy& accuracy,
-                                   std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts) {
+                                   std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
+                                   std::span<Coupling<T>* const> couplings) {
   settings_ = &settings;
   trees_ = trees;
   contacts_ = contacts;
+  couplings_ = couplings;
   report_ = {};
   inner_.begin(settings, trees);
   double energy = evaluate();
@@ -130,11 +137,11 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   double last_length = 0;  // of the pass before, when it was a plain full step; 0 else
   while (!report_.converged && report_.outer_passes < accuracy.max_iterations) {
     ++report_.outer_passes;
-    inner_.build(contacts_, true);
+    inner_.build(contacts_, couplings_, true);
     InnerReport inner = inner_.minimise(T(tolerance));
     if (!inner.solved) {
       ++report_.plain_passes;
-      inner_.build(contacts_, false);
+      inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
       if (!inner.solved) break;
     }

@@ -58,6 +58,23 @@ struct TreeProblem {
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
 };
 
+/// Room that solves need at most.
+struct SolveSize {
+  int trees = 0, bodies = 0, dofs = 0;
+  int entries = 0;  ///< of a tree matrix
+  int contacts = 0;
+  int nodes = 0, stencils = 0, tetrahedra = 0;  ///< of couplings
+  int node_entries = 0;                         ///< of the paths of all nodes
+
+  template <class T>
+  void add(const Tree<T>& tree) {
+    ++trees;
+    bodies += tree.bodies;
+    dofs += tree.dofs;
+    entries += matrix_entries(tree);
+  }
+};
+
 /// Values that all trees of a solve share.
 template <class T>
 struct StepSettings {
