@@ -28,12 +28,13 @@ struct Linkage {
     origin.push_back(anchor);
     return skeleton.body_count++;
   }
-  /// A uniform slender rod from the joint to `end`.
+  /// A uniform round rod from the joint to `end`, m; slender ones do not resist turning about themselves.
   int add_rod(int parent, JointType type, const Vec3<double>& anchor, const Vec3<double>& end,
-              const Vec3<double>& axis, double mass) {
-    const Vec3<double> along = end - anchor;
-    const Mat3<double> inertia =
-        mass / 12 * (along.squaredNorm() * Mat3<double>::Identity() - along * along.transpose());
+              const Vec3<double>& axis, double mass, double radius = 0) {
+    const Vec3<double> along = end - anchor, unit = along.normalized();
+    const Mat3<double> across = Mat3<double>::Identity() - unit * unit.transpose();
+    const Mat3<double> inertia = mass * ((along.squaredNorm() / 12 + radius * radius / 4) * across +
+                                         radius * radius / 2 * (unit * unit.transpose()));
     return add(parent, type, anchor, axis, mass, anchor + along / 2, inertia);
   }
   /// The frame with world axes at a point of the reference pose, on a body of the first character.

@@ -401,9 +401,14 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no loop that is being closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
+  const bool closing = std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) {
+    return std::any_of(c->stencils.begin(), c->stencils.end(),
+                       [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
+  });
+  if (closing) return false;
   return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
     if (s->root_is_kinematic() || !s->impulses.empty()) return false;
     const JointLaw<T>& law = s->problem.law;

@@ -19,8 +19,8 @@ class IslandStepper {
   void reserve(const SolveSize& most, int colliders);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
-  /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step, sorted by id; new ones are appended to
-  /// `lagged_out`.
+  /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
+  /// sorted by id; new ones are appended to `lagged_out`.
   void step(const WorldSettings& world, const Surroundings& surroundings, T h,
             std::span<CharacterState<T>* const> states, std::span<const int> indices,
             std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,

@@ -28,8 +28,8 @@ struct CharacterState {
   CharacterSettings settings;
   bool is_prop = false;       ///< or a body of particles: nothing animates it
   bool is_particles = false;  ///< every body but the fixed root is a particle
-  bool parked = false;    ///< a prop out of the world
-  double total_mass = 0;  ///< kg
+  bool parked = false;        ///< a prop out of the world
+  double total_mass = 0;      ///< kg
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step

@@ -28,7 +28,7 @@ struct World<T>::Impl {
       states;                          ///< characters and props in the order they were added
   std::vector<int> characters, props;  ///< into states
   Couplings<T> couplings;
-  std::vector<int> loops;              ///< into couplings
+  std::vector<int> loops;  ///< into couplings
   std::vector<ParticleSet> particles;
   std::vector<Collider> obstacles;
   std::vector<HostObstacle> hosts;
@@ -404,8 +404,7 @@ const CharacterReport& World<T>::prop_report(int index) const {
 template <class T>
 bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
   if (a.parked || b.parked) return false;
-  const T reach =
-      a.radius + b.radius + T(0.1) + 2 * h * (a.fastest() + b.fastest());
+  const T reach = a.radius + b.radius + T(0.1) + 2 * h * (a.fastest() + b.fastest());
   return (a.middle() - b.middle()).norm() < reach;
 }
 
@@ -501,8 +500,8 @@ void World<T>::Impl::step_once(T h) {
     if (members.empty()) continue;
     CharacterState<T>& first = *members[0];
     const std::span<Coupling<T>* const> ties = couplings.of_island(states, group, g);
-    if (members.size() == 1 && ties.empty() && first.fully_driven() && first.undisturbed() && !near_obstacle(first, h) &&
-        play(first, h))
+    if (members.size() == 1 && ties.empty() && first.fully_driven() && first.undisturbed() &&
+        !near_obstacle(first, h) && play(first, h))
       continue;
     stepper.step(settings, {obstacles, hosts, couplings.apart()}, h, members, member_indices, ties, lagged,
                  lagged_new);

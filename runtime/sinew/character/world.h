@@ -148,8 +148,8 @@ class World {
   int add_loop(const LoopSettings& settings, Status& status);
   /// Opens a loop (it costs nothing then), or closes it again.
   void set_loop(int index, bool closed);
-  double loop_gap(int index) const;       ///< m, largest of its points, of what was open at first the rest
-  Vec3<T> loop_force(int index) const;    ///< N, on side a, world axes
+  double loop_gap(int index) const;     ///< m, largest of its points, of what was open at first the rest
+  Vec3<T> loop_force(int index) const;  ///< N, on side a, world axes
   /// A strand, cloth or soft tissue; returns its index, or -1. It starts at rest where its frame is now.
   int add_particles(const ParticleBody& body, Status& status);
   /// Puts a particle body back to rest in its frame (after a teleport), with its nodes at the given velocity.

@@ -185,8 +185,7 @@ void lead_out(T h, Coupling<T>& c) {
   if (!c.leads_out) return;
   for (Stencil<T>& e : c.stencils) {
     const Vec3<T> open = reach(c, e);
-    if ((open - e.offset).norm() > e.length + T(kTorn))
-      e.offset = open * (T(1) - e.length / open.norm());
+    if ((open - e.offset).norm() > e.length + T(kTorn)) e.offset = open * (T(1) - e.length / open.norm());
     const T left = e.offset.norm();
     e.offset *= left > T(kExitSpeed) * h ? T(1) - T(kExitSpeed) * h / left : T(0);
   }

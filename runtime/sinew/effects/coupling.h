@@ -114,11 +114,11 @@ TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const T
 template <class T>
 void lead_out(T h, Coupling<T>& coupling);
 
-#define SINEW_COUPLING_INSTANCES(prefix, T)                                                                 \
-  prefix Vec3<T> reach<T>(const Coupling<T>&, const Stencil<T>&);                                           \
-  prefix double measure_elements<T>(Coupling<T>&);                                                          \
-  prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                               \
-  prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&);         \
+#define SINEW_COUPLING_INSTANCES(prefix, T)                                                         \
+  prefix Vec3<T> reach<T>(const Coupling<T>&, const Stencil<T>&);                                   \
+  prefix double measure_elements<T>(Coupling<T>&);                                                  \
+  prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
+  prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
   prefix void lead_out<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)

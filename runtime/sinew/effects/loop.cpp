@@ -42,7 +42,8 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   for (const V& x : held) {
     Stencil<T>& e = loop.stencils.emplace_back();
     e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / kSink);
-    if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope) e.length = T(settings.length);
+    if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope)
+      e.length = T(settings.length);
     e.only_pulls = settings.kind == LoopKind::kRope;
     e.node[0] = static_cast<int>(loop.nodes.size());
     e.node[1] = e.node[0] + 1;

@@ -89,9 +89,8 @@ void CouplingRows<T>::note_coupling(const int* nodes, int count) {
 }
 
 template <class T>
-void CouplingRows<T>::collect(std::span<TreeProblem<T>* const> trees,
-                              std::span<Coupling<T>* const> couplings, const Unknowns& unknowns,
-                              const PathAxes<T>& axes) {
+void CouplingRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
+                              const Unknowns& unknowns, const PathAxes<T>& axes) {
   pattern_ = &unknowns.pattern;
   nodes_.clear();
   stencils_.clear();
@@ -138,7 +137,8 @@ void CouplingRows<T>::add_block(int i, int j, const Mat3<T>& block, int from, Tr
     const int e = a.first + depth;
     const Vec3<T> f = block.transpose() * Vec3<T>(along_[0][e], along_[1][e], along_[2][e]);
     T* row = matrix.row(k);
-    for (int l = from; l <= std::min(depth, last_b); ++l) row[l] += f.x() * x[l] + f.y() * y[l] + f.z() * z[l];
+    for (int l = from; l <= std::min(depth, last_b); ++l)
+      row[l] += f.x() * x[l] + f.y() * y[l] + f.z() * z[l];
   }
 }
 
@@ -161,8 +161,7 @@ void CouplingRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
     }
   };
   for (const Stencils& e : stencils_)
-    add(e.node, e.count,
-        [&](int i, int j) -> Mat3<T> { return (e.weight[i] * e.weight[j]) * e.curvature; });
+    add(e.node, e.count, [&](int i, int j) -> Mat3<T> { return (e.weight[i] * e.weight[j]) * e.curvature; });
   for (const Tetrahedra& e : tetrahedra_)
     add(e.node, 4, [&](int i, int j) -> Mat3<T> { return e.curvature.template block<3, 3>(3 * i, 3 * j); });
 }

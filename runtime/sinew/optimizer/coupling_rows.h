@@ -73,9 +73,9 @@ class CouplingRows {
   bool coupled_ = false;
 };
 
-#define SINEW_COUPLING_ROWS_INSTANCES(prefix, T)                                                      \
-  prefix class CouplingRows<T>;                                                                       \
-  prefix void place_nodes<T>(std::span<TreeProblem<T>* const>, const Vec3<T>&, Coupling<T>&);         \
+#define SINEW_COUPLING_ROWS_INSTANCES(prefix, T)                                              \
+  prefix class CouplingRows<T>;                                                               \
+  prefix void place_nodes<T>(std::span<TreeProblem<T>* const>, const Vec3<T>&, Coupling<T>&); \
   prefix void add_wrenches<T>(const Coupling<T>&, std::span<TreeProblem<T>* const>);
 SINEW_COUPLING_ROWS_INSTANCES(extern template, float)
 SINEW_COUPLING_ROWS_INSTANCES(extern template, double)

@@ -215,7 +215,9 @@ bool InnerProblem<T>::newton_step() {
 }
 
 /// Solves with the whole matrix, the factor as preconditioner. Where curvature turns negative on the way, the
-/// step so far is a descent direction (truncated Newton); false if that happens at once.
+/// step so far is a descent direction (truncated Newton); false if that happens at once, or with couplings:
+/// there a pass without geometric terms gets further (hands on a wheel: 7 passes instead of 10 at the 99th
+/// percentile, a massless spin between loops 20 instead of 60).
 template <class T>
 bool InnerProblem<T>::conjugate_gradients() {
   std::fill(step_.begin(), step_.end(), T(0));
@@ -229,7 +231,7 @@ bool InnerProblem<T>::conjugate_gradients() {
     multiply_full(direction_, product_);
     ++products;
     const T curvature = dot<T>(direction_, product_);
-    if (!(curvature > T(0))) return iteration > 0;
+    if (!(curvature > T(0))) return iteration > 0 && coupling_rows_.empty();
     const T length = energy / curvature;
     for (int k = 0; k < size(); ++k) {
       step_[k] += length * direction_[k];

@@ -65,7 +65,8 @@ class InnerProblem {
     T value = T(0), d_value = T(0);
   };
 
-  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
+  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
+                bool geometric);
   bool coupled() const { return contact_rows_.coupled() || coupling_rows_.coupled(); }
   void add_joint_geometry(TreeProblem<T>& tree);
   void add_row_gradient(std::span<T> gradient) const;
