@@ -329,16 +329,13 @@ void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
   const ParticleSet& set = impl_->particles[index];
   CharacterState<T>& s = *impl_->states[set.state];
   const Transform<T> frame = impl_->frame_of(set.place).template cast<T>();
-  Vec3<T> above = frame.translation;
-  s.target[0].translation = above;
+  s.target[0].translation = frame.translation;
   int body = 0;
   for (const ParticleNode& node : set.body.nodes) {
     if (node.fixed) continue;
-    const Vec3<T> position = frame * Vec3<T>(node.position.template cast<T>());
     JointJet<T>& jet = s.target[++body];
-    jet.translation = position - above;
-    jet.velocity = set.body.chain && body > 1 ? Vec3<T>(Vec3<T>::Zero()) : velocity;
-    if (set.body.chain) above = position;
+    jet.translation = frame.rotation * Vec3<T>(node.position.template cast<T>());
+    jet.velocity = velocity;
   }
   s.reset_to_target(Vec3<T>::Zero());
 }

@@ -69,22 +69,19 @@ Skeleton skeleton_of(const ParticleBody& body, const Transform<double>& frame) {
   Joint& root = made.joints.emplace_back();
   root.name = body.name;
   root.rest.translation = frame.translation;  // near by, so that float keeps its digits
-  Vec3<double> above = frame.translation;
   for (const ParticleNode& node : body.nodes) {
     if (node.fixed) continue;
-    const Vec3<double> position = frame * node.position;
     Joint joint;
     joint.name = body.name + std::to_string(made.joints.size());
     joint.type = JointType::kTranslation;
-    joint.parent = body.chain ? static_cast<int>(made.joints.size()) - 1 : 0;
-    joint.rest.translation = position - above;
+    joint.parent = 0;
+    joint.rest.translation = frame * node.position - frame.translation;
     joint.mass = node.mass;
     for (DofLimits& dof : joint.dofs) {
       dof.dry_friction = 0;
       dof.damping = body.damping;
     }
     made.joints.push_back(joint);
-    if (body.chain) above = position;
     if (body.radius <= 0) continue;
     Collider& ball = made.colliders.emplace_back();
     ball.joint = static_cast<int>(made.joints.size()) - 1;

@@ -27,13 +27,9 @@ struct ParticleBody {
   /// Indices of nodes. Offsets and lengths in m.
   std::vector<Stencil<double>> stencils;
   std::vector<Tetrahedron<double>> tetrahedra;
-  /// Coordinates of each free node are relative to the one before it: the elements of a strand then lie
-  /// within one path and are solved exactly, at a cost that grows with the cube of the number of nodes. Else
-  /// every particle stands for itself and conjugate gradients solve.
-  bool chain = false;
   double radius = 0.005;  ///< m, of every node as others meet it; 0: passes through everything
   double friction = 0.5;
-  double damping = 0;        ///< N·s/m of every node against the air (chain: against the node before)
+  double damping = 0;        ///< N·s/m of every node against the air
   bool meets_frame = false;  ///< may touch the body whose frame it was made in
   bool meets_itself = false;
 };
