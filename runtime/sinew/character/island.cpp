@@ -323,6 +323,8 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
     contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
+      for (CharacterState<T>* s : states_)
+        for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
       sweep<T>(states_, contacts_, settings_.common_origin, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
         if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
@@ -402,7 +404,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push, no loop that is being closed.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no loop that is being
+/// closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
   const bool closing = std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) {
@@ -412,6 +415,8 @@ bool IslandStepper<T>::passive() const {
   if (closing) return false;
   return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
     if (s->root_is_kinematic() || !s->impulses.empty()) return false;
+    for (const Effect<T>* effect : s->problem.effects)
+      if (!effect->passive()) return false;
     const JointLaw<T>& law = s->problem.law;
     return std::all_of(law.torque_plus.begin(), law.torque_plus.end(), [](T t) { return t <= T(0); }) &&
            std::all_of(law.torque_minus.begin(), law.torque_minus.end(), [](T t) { return t <= T(0); });

@@ -8,6 +8,7 @@ constexpr double kGravity = 9.81;  ///< m/s², of the weight that `stretch` spea
 }  // namespace
 
 ParticleBody make_strand(const StrandSettings& s) {
+  if (!(s.direction.norm() > 0)) return {};  // no nodes: refused
   ParticleBody body;
   body.name = "strand";
   body.frame = s.frame;

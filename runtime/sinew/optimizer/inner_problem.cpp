@@ -34,7 +34,8 @@ void InnerProblem<T>::reserve(const SolveSize& most) {
   for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(most.dofs, most.entries);
   contact_rows_.reserve(most.contacts);
   coupling_rows_.reserve(most);
-  joint_rows_.reserve(most.dofs * 8);
+  joint_rows_.reserve(most.dofs * 8 + most.effect_rows);
+  path_.resize(TreePattern::padded(most.dofs));
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
     v->reserve(most.dofs);
@@ -78,7 +79,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
                                bool geometric) {
   smooth_.set_zero();
   for (TreeProblem<T>* p : trees_) {
-    begin_composite(*p);
+    begin_composite(*settings_, *p);
     if (geometric) {
       for (const Contact<T>& c : contacts) {
         const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
@@ -99,6 +100,9 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
                             geometric, smooth_);
     add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
+    if (p->stiff)
+      add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
+                       smooth_);
     if (geometric) add_joint_geometry(*p);
   }
   if (geometric) contact_rows_.add_bending(smooth_);
@@ -227,7 +231,8 @@ bool InnerProblem<T>::conjugate_gradients() {
   direction_ = preconditioned_;
   T energy = dot<T>(residual_, preconditioned_);
   const T goal = energy * T(kCgTolerance * kCgTolerance);
-  for (int iteration = 0; iteration < kMostProducts && energy > goal; ++iteration) {
+  const int most = coupling_rows_.empty() ? kMostProducts : std::max(kMostProducts, 2 * size());
+  for (int iteration = 0; iteration < most && energy > goal; ++iteration) {
     multiply_full(direction_, product_);
     ++products;
     const T curvature = dot<T>(direction_, product_);
@@ -310,7 +315,8 @@ void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
 template <class T>
 double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  bool same = contact_rows_.measure(contacts);  // as the last factor holds them
+  // As the last factor holds them, which what leaves the tree never is.
+  bool same = contact_rows_.measure(contacts) && !coupling_rows_.coupled();
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;

@@ -101,6 +101,7 @@ class InnerProblem {
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
   std::vector<T> step_, product_, correction_, correction_product_;
   std::vector<T> residual_, preconditioned_, direction_;  ///< conjugate gradients
+  std::vector<T> path_;                                   ///< one row of add_stiffness
   mutable std::vector<Vec3<T>> turn_, slide_;             ///< [body] of displacement()
 };
 
