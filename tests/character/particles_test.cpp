@@ -116,7 +116,8 @@ TEST(Strand, BeamSagsAsBernoulliSays) {
   Scene<double> scene(make_strand(s));
   scene.run(4);
   const V tip = scene.world.particle(0, 81);
-  EXPECT_NEAR(tip.z(), -0.01, 0.05 * 0.01) << "held half a segment before the root: (1 + 1/160)^4, and as much at the tip";
+  EXPECT_NEAR(tip.z(), -0.01, 0.05 * 0.01)
+      << "held half a segment before the root: (1 + 1/160)^4, and as much at the tip";
 }
 
 TEST(Strand, WhatHangsOnABodyPullsIt) {

@@ -9,8 +9,8 @@ namespace {
 
 /// An edge and what lies beside it.
 struct Edge {
-  double area = 0;               ///< m², of its triangles
-  std::array<int, 2> across{};   ///< their third corners
+  double area = 0;              ///< m², of its triangles
+  std::array<int, 2> across{};  ///< their third corners
   int triangles = 0;
 };
 
@@ -19,7 +19,8 @@ double cotangent(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double
   return (b - a).dot(c - a) / (b - a).cross(c - a).norm();
 }
 
-/// ½ (3 B / A) |Σ wᵢ xᵢ|² of the two triangles at an edge: the square of their bend.
+/// ½ (B / A) |Σ wᵢ xᵢ|² of the two triangles at an edge: the square of their bend. The paper's 3 B / A stores
+/// 3/2 B/r² in a sheet rolled to the radius r, on equilateral and on right-angled triangles; a third is meant.
 void add_bend(const ClothSettings& s, int a, int b, const Edge& edge, ParticleBody& body) {
   const int nodes[] = {a, b, edge.across[0], edge.across[1]};
   const auto x = [&](int i) { return s.positions[nodes[i]]; };
@@ -32,7 +33,7 @@ void add_bend(const ClothSettings& s, int a, int b, const Edge& edge, ParticleBo
   e.weight[1] = at_a[0] + at_a[1];
   e.weight[2] = -at_a[0] - at_b[0];
   e.weight[3] = -at_a[1] - at_b[1];
-  e.stiffness = 3 * s.bending / edge.area;
+  e.stiffness = s.bending / edge.area;
 }
 
 }  // namespace

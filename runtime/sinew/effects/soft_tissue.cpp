@@ -12,7 +12,8 @@ void make_block(const Vec3<double>& size, const std::array<int, 3>& cells, SoftT
       for (int i = 0; i <= cells[0]; ++i)
         out.positions.emplace_back(size.x() * i / cells[0], size.y() * j / cells[1], size.z() * k / cells[2]);
   const auto node = [&](int i, int j, int k) { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; };
-  // Kuhn's six tetrahedra of a cube: one for each order in which the axes can be walked from corner to corner.
+  // Kuhn's six tetrahedra of a cube: one for each order in which the axes can be walked from corner to
+  // corner.
   constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (int k = 0; k < cells[2]; ++k)
     for (int j = 0; j < cells[1]; ++j)

@@ -1,9 +1,9 @@
 // Coupling elements as the inner problem sees them: a quadratic form of their nodes' displacements.
 //
 // Jacobians are kept per node, not per element: a product first moves the nodes, then lets the elements pull
-// on them, then projects what every node feels on its path. What one path holds (a loop to the world or up the
-// tree, each particle's own block) also goes into the tree matrix; the rest couples unknowns that no
-// path joins and is left to conjugate gradients, as with contacts between trees.
+// on them, then projects what every node feels on its path. What one path holds (a loop to the world or up
+// the tree, each particle's own block) also goes into the tree matrix; the rest couples unknowns that no path
+// joins and is left to conjugate gradients, as with contacts between trees.
 #pragma once
 
 #include <span>
