@@ -57,7 +57,7 @@ struct Scene {
   Scene(unsigned seed, const Kind& kind)
       : skeleton(clothed(seed)), tree(skeleton), problem(tree, skeleton), effect(kind.make()) {
     Random random(seed + 500);
-    settings.common_origin = {0.4, -0.3, 0.5};
+    problem.common_origin = settings.common_origin = {0.4, -0.3, 0.5};
     problem.start = fixtures::random_pose(tree, random, 0.3);
     VectorXd d(tree.dofs);
     for (double& x : d) x = random.normal(0.05);

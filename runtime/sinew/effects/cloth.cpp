@@ -20,7 +20,8 @@ double cotangent(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double
 }
 
 /// ½ (B / A) |Σ wᵢ xᵢ|² of the two triangles at an edge: the square of their bend. The paper's 3 B / A stores
-/// 3/2 B/r² in a sheet rolled to the radius r, on equilateral and on right-angled triangles; a third is meant.
+/// 3/2 B/r² in a sheet rolled to the radius r, on equilateral and on right-angled triangles; a third is
+/// meant.
 void add_bend(const ClothSettings& s, int a, int b, const Edge& edge, ParticleBody& body) {
   const int nodes[] = {a, b, edge.across[0], edge.across[1]};
   const auto x = [&](int i) { return s.positions[nodes[i]]; };

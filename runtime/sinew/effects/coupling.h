@@ -41,10 +41,11 @@ struct Place {
 /// A material point.
 template <class T>
 struct CouplingNode {
-  int state = -1;                   ///< number of its tree in the world; −1: fixed in the world
-  int body = 0;                     ///< of that tree
-  Vec3<T> local = Vec3<T>::Zero();  ///< body axes; fixed: world axes
-  int tree = -1;                    ///< of the solve; set by whoever steps
+  int state = -1;                             ///< number of its tree in the world; −1: fixed in the world
+  int body = 0;                               ///< of that tree
+  Vec3<T> local = Vec3<T>::Zero();            ///< body axes
+  Vec3<double> place = Vec3<double>::Zero();  ///< m, world; of a fixed one
+  int tree = -1;                              ///< of the solve; set by whoever steps
   // At the present pose:
   Vec3<T> point = Vec3<T>::Zero();     ///< from the common origin
   Vec3<T> gradient = Vec3<T>::Zero();  ///< of the energy by the point, N

@@ -51,7 +51,8 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
       CouplingNode<T>& node = loop.nodes.emplace_back();
       node.state = place->state;
       node.body = place->body;
-      node.local = V(place->frame * x).template cast<T>();
+      node.place = place->frame * x;
+      node.local = node.place.template cast<T>();
     }
   }
   return loop;

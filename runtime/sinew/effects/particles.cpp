@@ -100,7 +100,9 @@ Coupling<T> make_elements(const ParticleBody& body, int state, const Place& plac
     CouplingNode<T>& node = made.nodes.emplace_back();
     node.state = bodies[i] < 0 ? place.state : state;
     node.body = bodies[i] < 0 ? place.body : bodies[i];
-    if (bodies[i] < 0) node.local = Vec3<double>(place.frame * body.nodes[i].position).template cast<T>();
+    if (bodies[i] >= 0) continue;
+    node.place = place.frame * body.nodes[i].position;
+    node.local = node.place.template cast<T>();
   }
   for (const Stencil<double>& e : body.stencils) {
     Stencil<T>& out = made.stencils.emplace_back();

@@ -5,10 +5,10 @@
 namespace sinew {
 
 template <class T>
-void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<T>& common_origin, Coupling<T>& c) {
+void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin, Coupling<T>& c) {
   for (CouplingNode<T>& node : c.nodes) {
     if (node.tree < 0) {
-      node.point = node.local - common_origin;
+      node.point = (node.place - common_origin).template cast<T>();
     } else {
       const Kinematics<T>& k = trees[node.tree]->kinematics;
       node.point = k.origin[node.body] + k.rotation[node.body] * node.local;

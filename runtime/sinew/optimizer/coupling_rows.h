@@ -16,7 +16,8 @@ namespace sinew {
 
 /// Puts every node where its body is now, `common_origin` in world coordinates.
 template <class T>
-void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<T>& common_origin, Coupling<T>& coupling);
+void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin,
+                 Coupling<T>& coupling);
 
 /// Adds the nodes' gradients to the wrenches of their bodies (after begin_evaluation).
 template <class T>
@@ -73,9 +74,9 @@ class CouplingRows {
   bool coupled_ = false;
 };
 
-#define SINEW_COUPLING_ROWS_INSTANCES(prefix, T)                                              \
-  prefix class CouplingRows<T>;                                                               \
-  prefix void place_nodes<T>(std::span<TreeProblem<T>* const>, const Vec3<T>&, Coupling<T>&); \
+#define SINEW_COUPLING_ROWS_INSTANCES(prefix, T)                                                   \
+  prefix class CouplingRows<T>;                                                                    \
+  prefix void place_nodes<T>(std::span<TreeProblem<T>* const>, const Vec3<double>&, Coupling<T>&); \
   prefix void add_wrenches<T>(const Coupling<T>&, std::span<TreeProblem<T>* const>);
 SINEW_COUPLING_ROWS_INSTANCES(extern template, float)
 SINEW_COUPLING_ROWS_INSTANCES(extern template, double)
