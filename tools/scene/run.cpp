@@ -1,9 +1,11 @@
 #include "scene/run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
+#include "scene/ties.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/sampling_job.h"
 
