@@ -6,6 +6,7 @@
 
 #include "sinew/character/cut.h"
 #include "sinew/character/way_back.h"
+#include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
 namespace {
@@ -182,6 +183,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
     s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
   }
+  const T tau = T(world.accuracy.return_time), decay = std::exp(-h / tau);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
@@ -192,12 +194,17 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     Deviation<T>& d = s.deviation[i];
     T offset = T(0), rate = T(0), missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
+    for (int k = 0; k < s.tree.dof_count(i); ++k) missed = std::max(missed, std::abs(from_target[k]));
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      d.rate[k] = (from_animation[k] - d.offset[k]) / h;
+      // On the way back the rate is the path's at its end; its mean over the step would start the next part
+      // of the path too fast or too slow by an error of first order.
+      const T pull = d.rate[k] + d.offset[k] / tau;
+      const bool on_path = !d.on_animation && std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) <
+                                                  T(4) * settings_.kink_width;
+      d.rate[k] = on_path ? (d.rate[k] - pull * h / tau) * decay : (from_animation[k] - d.offset[k]) / h;
       d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
       rate = std::max(rate, std::abs(d.rate[k]));
-      missed = std::max(missed, std::abs(from_target[k]));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
@@ -213,6 +220,9 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
+  const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
+  const double error =
+      world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h, common_origin_) : 0;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, common_origin_, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.update_model();
@@ -221,6 +231,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r = {};
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
+  r.estimated_error = error_before + error;
   r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
   const std::uint64_t signature = touching(tree), limits = bearing(tree);
   for (const Contact<T>& c : contacts_) {
@@ -239,16 +250,29 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.report_totals(world.gravity);
 }
 
-/// What the animation wants at a fraction of the frame: the shorter way round between this frame's target and
-/// the last one's.
+/// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
+/// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
+/// meet. Rates that do not belong to the motion (a host that stopped its clip, or knows none) are left out.
+template <class T>
+Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
+  if ((whole - (leaving + arriving) / 2).norm() > whole.norm() / 2) return u * whole;
+  return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
+}
+
+/// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
     Transform<T> wanted{now.rotation, now.translation};
     if (fraction < T(1)) {
-      wanted.rotation = before.rotation.slerp(fraction, now.rotation);
-      wanted.translation = before.translation + fraction * (now.translation - before.translation);
+      const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
+      const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
+      wanted.rotation = before.rotation *
+                        rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega, frame_ * rate, fraction));
+      wanted.translation =
+          before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
+                                             frame_ * now.velocity, fraction);
     }
     s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }
