@@ -11,6 +11,7 @@
 #include "convert/roles.h"
 #include "scene/effect_registry.h"
 #include "scene/reader.h"
+#include "scene/ties.h"
 
 namespace sinew::scene {
 namespace {
@@ -149,7 +150,7 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
 Scene parse(const json& root, const std::filesystem::path& base, std::span<const EffectRow> registry) {
   const Reader in(root, "",
                   {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props",
-                   "obstacles", "pushes", "effects", "camera", "captions", "plot"});
+                   "obstacles", "loops", "particles", "pushes", "effects", "camera", "captions", "plot"});
   Scene s;
   s.title = in.text("title", "");
   s.duration = in.positive("duration", s.duration);
@@ -189,6 +190,12 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   const json& props = in.list("props");
   for (std::size_t i = 0; i < props.size(); ++i)
     s.props.push_back(read_prop(props[i], in.item("props", i), s));
+  const json& loops = in.list("loops");
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    s.loops.push_back(read_loop(loops[i], in.item("loops", i), s));
+  const json& particles = in.list("particles");
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    s.particles.push_back(read_particles(particles[i], in.item("particles", i), s));
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Reader o(obstacles[i], in.item("obstacles", i), {"shape", "size", "position", "friction"});

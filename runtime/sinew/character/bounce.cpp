@@ -29,18 +29,19 @@ void pretend_flight(History<T>& history, const Vec3<T>& gravity, T h) {
 }  // namespace
 
 template <class T>
-void Bounce<T>::reserve(int trees, int dofs, int bodies) {
+void Bounce<T>::reserve(const SolveSize& most) {
+  const int dofs = most.dofs;
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs);
-  mass_.reserve(dofs);
-  first_.reserve(trees);
+  axes_.reserve(dofs, most.entries);
+  mass_.reserve(dofs, most.entries);
+  first_.reserve(most.trees);
   impacts_.reserve(kMost);
   rows_.reserve(std::size_t(kMost) * dofs);
   answers_.reserve(std::size_t(kMost) * dofs);
   delassus_.reserve(kMost * kMost);
   change_.reserve(dofs);
-  turn_.reserve(bodies);
-  slide_.reserve(bodies);
+  turn_.reserve(most.bodies);
+  slide_.reserve(most.bodies);
 }
 
 template <class T>

@@ -32,14 +32,13 @@ std::uint64_t mixed(std::uint64_t id) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders,
-                               int effect_rows) {
-  problems_.reserve(trees);
-  free_share_.reserve(trees);
-  bounce_.reserve(trees, dofs, bodies);
-  finder_.reserve(contacts, colliders);
-  lagged_.reserve(contacts);
-  solver_.reserve(dofs, bodies, contacts, effect_rows);
+void IslandStepper<T>::reserve(const SolveSize& most, int colliders) {
+  problems_.reserve(most.trees);
+  free_share_.reserve(most.trees);
+  bounce_.reserve(most);
+  finder_.reserve(most.contacts, colliders);
+  lagged_.reserve(most.contacts);
+  solver_.reserve(most);
 }
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
@@ -240,6 +239,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+  r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.contact_signature = signature;
@@ -281,8 +281,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  common_origin_ = states_[0]->history.place;
-  settings_.common_origin = common_origin_;
+  settings_.common_origin = common_origin_ = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
@@ -319,13 +318,13 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       predict_all(
           second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
     }
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     if (second && touching_changed()) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
       second = false;
       mispredicted_ = true;
       predict_all(Scheme::kBdf1, h);
-      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
     for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
@@ -361,7 +360,13 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held) forget_contacts();
+  if (any_held) {
+    forget_contacts();
+    for (Coupling<T>* c : couplings_) {
+      place_nodes<T>(problems_, common_origin_, *c);
+      measure_elements(*c);
+    }
+  }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -382,9 +387,15 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no loop that is being
+/// closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
+  const bool closing = std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) {
+    return std::any_of(c->stencils.begin(), c->stencils.end(),
+                       [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
+  });
+  if (closing) return false;
   return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
     if (s->root_is_kinematic() || !s->impulses.empty()) return false;
     for (const Effect<T>* effect : s->problem.effects)
@@ -409,6 +420,38 @@ double IslandStepper<T>::pose_energy() const {
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
   }
   for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  for (const Coupling<T>* c : couplings_) sum += c->energy;
+  return sum;
+}
+
+/// Tells the couplings' nodes which tree of the solve they are on, and lets what is open close by a step.
+template <class T>
+void IslandStepper<T>::begin_couplings(T h) {
+  for (Coupling<T>* c : couplings_) {
+    for (CouplingNode<T>& node : c->nodes) {
+      const auto found = std::find(indices_.begin(), indices_.end(), node.state);
+      node.tree = found == indices_.end() ? -1 : static_cast<int>(found - indices_.begin());
+      const Vec3<double>& origin = states_[0]->history.place;
+      if (node.tree < 0) {
+        node.point = (node.place - origin).template cast<T>();
+      } else {
+        const Vec3<T> world = states_[node.tree]->model[node.body] * node.local;
+        node.point = (world.template cast<double>() - origin).template cast<T>();
+      }
+    }
+    lead_out(h, *c);
+  }
+}
+
+/// What the couplings store, J, each booked to the tree of its first node that is on one.
+template <class T>
+double IslandStepper<T>::elastic_of(int tree) const {
+  double sum = 0;
+  for (const Coupling<T>* c : couplings_) {
+    const auto moving = std::find_if(c->nodes.begin(), c->nodes.end(),
+                                     [](const CouplingNode<T>& node) { return node.tree >= 0; });
+    if (moving != c->nodes.end() && moving->tree == tree) sum += c->energy;
+  }
   return sum;
 }
 
@@ -469,11 +512,13 @@ int IslandStepper<T>::parts_of(T h) const {
 template <class T>
 void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
+                            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                            std::vector<LaggedForce<T>>& lagged_out) {
   world_ = &world;
   surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
+  couplings_ = couplings;
   frame_ = h;
   lagged_.assign(lagged.begin(), lagged.end());
   free_share_.assign(states.size(), T(1));
@@ -484,6 +529,7 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
   splits_ = parts_ = damped_ = held_ = 0;
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
+  begin_couplings(h);
   const int parts = parts_of(h);
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), world.accuracy.max_splits);

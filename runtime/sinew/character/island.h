@@ -16,14 +16,15 @@ namespace sinew {
 template <class T>
 class IslandStepper {
  public:
-  void reserve(int trees, int dofs, int bodies, int contacts, int colliders, int effect_rows);
+  void reserve(const SolveSize& most, int colliders);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
-  /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
-  /// `lagged_out`.
+  /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
+  /// sorted by id; new ones are appended to `lagged_out`.
   void step(const WorldSettings& world, const Surroundings& surroundings, T h,
             std::span<CharacterState<T>* const> states, std::span<const int> indices,
-            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out);
+            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+            std::vector<LaggedForce<T>>& lagged_out);
 
  private:
   int parts_of(T h) const;
@@ -31,6 +32,8 @@ class IslandStepper {
   SolveReport attempt(T h, T fraction);
   bool passive() const;
   double pose_energy() const;
+  void begin_couplings(T h);
+  double elastic_of(int tree) const;
   void hold(CharacterState<T>& state);
   void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
@@ -49,6 +52,7 @@ class IslandStepper {
   Surroundings surroundings_;
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
+  std::span<Coupling<T>* const> couplings_;
   T frame_ = T(0);                      ///< s, the whole step
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
   SolveReport total_;

@@ -179,6 +179,7 @@ std::uint64_t layout_of(const MovingParts<T>& world) {
     add(s->muscle_strength.size());
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
   }
+  for (const auto& c : world.couplings) add(c->stencils.size());
   return hash;
 }
 
@@ -196,12 +197,23 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   }
 }
 
+template <class T>
+void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
+  std::uint8_t active = coupling.active ? 1 : 0;
+  stream.value("loop is closed", active);
+  if (stream.reading()) coupling.active = active != 0;
+  if (!coupling.leads_out) return;
+  for (Stencil<T>& e : coupling.stencils) stream.vector("what is left open of a loop", e.offset);
+}
+
 /// The bytes behind the header.
 template <class T>
 void visit(const MovingParts<T>& world, Content content, ByteStream& stream) {
   for (const auto& s : world.states)
     content == Content::kState ? visit_state(*s, stream) : visit_inputs(*s, stream);
-  if (content == Content::kState) visit_lagged(world.lagged, stream);
+  if (content != Content::kState) return;
+  for (const auto& c : world.couplings) visit_coupling(*c, stream);
+  visit_lagged(world.lagged, stream);
 }
 
 }  // namespace
@@ -242,7 +254,7 @@ Status read_bytes(const MovingParts<T>& world, Content content, std::span<const 
     return Status::error(Code::kBadFile, "not a snapshot");
   if (header.bytes != in.size()) return Status::error(Code::kBadFile, "snapshot is cut off");
   if (header.layout != layout_of(world))
-    return Status::error(Code::kInvalidArgument, "snapshot of a world with other characters or props");
+    return Status::error(Code::kInvalidArgument, "snapshot of a world with other characters, props or loops");
   if (header.digest != digest(in.subspan(kHeaderBytes)))
     return Status::error(Code::kBadFile, "snapshot was changed");
   ByteStream body = ByteStream::reader(in.subspan(kHeaderBytes));
@@ -258,7 +270,8 @@ SnapshotField field_at(const MovingParts<T>& world, std::size_t byte) {
     visit_state(*world.states[n], stream);
     if (*stream.name()) return {static_cast<int>(n), stream.name()};
   }
-  visit_lagged(world.lagged, stream);
+  for (const auto& c : world.couplings) visit_coupling(*c, stream);
+  if (!*stream.name()) visit_lagged(world.lagged, stream);
   return {-1, stream.name()};
 }
 

@@ -105,6 +105,7 @@ template <class T>
 struct MovingParts {
   std::span<const std::unique_ptr<CharacterState<T>>> states;
   std::vector<LaggedForce<T>>& lagged;  ///< normal forces remembered for friction
+  std::span<const std::unique_ptr<Coupling<T>>> couplings;
 };
 
 enum class Content : std::uint32_t { kState = 0x314e5753, kInputs = 0x31495753 };  ///< SWN1, SWI1

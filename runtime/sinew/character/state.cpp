@@ -159,6 +159,27 @@ void CharacterState<T>::update_model() {
     model[i] = parent < 0 ? local[i] : model[parent] * local[i];
     model[i].rotation.normalize();
   }
+  if (is_particles) bound_particles();
+}
+
+/// Particles go anywhere: their bounding ball is that of the box around them.
+template <class T>
+void CharacterState<T>::bound_particles() {
+  Vec3<T> least = model[1].translation, most = least;
+  for (std::size_t i = 2; i < model.size(); ++i) {
+    least = least.cwiseMin(model[i].translation);
+    most = most.cwiseMax(model[i].translation);
+  }
+  particles_middle = T(0.5) * (least + most);
+  radius = T(0.5) * (most - least).norm() + (bound_radius.empty() ? T(0) : bound_radius[0]);
+}
+
+template <class T>
+T CharacterState<T>::fastest() const {
+  if (!is_particles) return history.velocity[0].norm();
+  T most = T(0);
+  for (const Vec3<T>& v : history.velocity) most = std::max(most, v.norm());
+  return most;
 }
 
 template <class T>
@@ -185,6 +206,9 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;
       case JointType::kFree:
         rate[i] = {v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+        break;
+      case JointType::kTranslation:
+        rate[i] = {v.x(), v.y(), v.z()};
         break;
       default:
         break;  // starts from rest: only the first guess of the first step

@@ -27,11 +27,12 @@ struct CharacterState {
   Skeleton skeleton;
   Tree<T> tree;
   CharacterSettings settings;
-  bool is_prop = false;
-  bool parked = false;    ///< a prop out of the world
-  bool carried = false;   ///< in this step, see carry_over()
-  double total_mass = 0;  ///< kg
-  bool floats = false;    ///< hangs on one free root, whose translation is `history.place` rounded
+  bool is_prop = false;       ///< or a body of particles: nothing animates it
+  bool is_particles = false;  ///< every body but the fixed root is a particle
+  bool parked = false;        ///< a prop out of the world
+  bool carried = false;       ///< in this step, see carry_over()
+  double total_mass = 0;      ///< kg
+  bool floats = false;        ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
@@ -57,7 +58,8 @@ struct CharacterState {
   std::vector<ContactPoint<T>> points;
   std::vector<int> first_point;         ///< [collider + 1] into points
   std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
-  T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
+  T radius = T(1);  ///< m, from `middle` to the furthest collider; characters and props: at rest
+  Vec3<T> particles_middle = Vec3<T>::Zero();
   std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
@@ -95,12 +97,17 @@ struct CharacterState {
   }
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
+  /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
+  Vec3<T> middle() const { return is_particles ? particles_middle : model[0].translation; }
+  /// m/s: of the root, or of the fastest particle.
+  T fastest() const;
   bool undisturbed() const;
   /// Something holds every joint: without that there is nothing to play.
   bool fully_driven() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
   void choose_self_pairs();
+  void bound_particles();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 

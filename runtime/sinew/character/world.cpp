@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/couplings.h"
 #include "sinew/character/cut.h"
 #include "sinew/character/island.h"
 #include "sinew/character/snapshot.h"
@@ -10,12 +11,26 @@
 
 namespace sinew {
 
+namespace {
+
+/// A particle body: its tree, its elements, and where its frame is fixed.
+struct ParticleSet {
+  ParticleBody body;
+  int state = 0, coupling = 0;
+  Place place;
+};
+
+}  // namespace
+
 template <class T>
 struct World<T>::Impl {
   WorldSettings settings;
   std::vector<std::unique_ptr<CharacterState<T>>>
       states;                          ///< characters and props in the order they were added
   std::vector<int> characters, props;  ///< into states
+  Couplings<T> couplings;
+  std::vector<int> loops;  ///< into couplings
+  std::vector<ParticleSet> particles;
   std::vector<Collider> obstacles;
   std::vector<HostObstacle> hosts;
   IslandStepper<T> stepper;
@@ -31,7 +46,10 @@ struct World<T>::Impl {
   bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
   bool near_obstacle(const CharacterState<T>& state, T h) const;
   void step_once(T h);
-  MovingParts<T> moving() { return {states, lagged}; }
+  MovingParts<T> moving() { return {states, lagged, couplings.all()}; }
+  Status find(const Anchor& anchor, Place& out) const;
+  Transform<double> frame_of(const Place& place) const;
+  double weight_of(const Place& place) const;
 };
 
 template <class T>
@@ -44,19 +62,21 @@ World<T>::~World() = default;
 
 template <class T>
 void World<T>::Impl::reserve() {
-  int dofs = 0, bodies = 0, points = 0, shapes = 0, effect_rows = 0;
+  SolveSize most;
+  int points = 0, shapes = 0;
   for (const auto& s : states) {
-    dofs += s->tree.dofs;
-    bodies += s->tree.bodies;
+    most.add(s->tree);
     points += static_cast<int>(s->points.size());
     shapes += static_cast<int>(s->skeleton.colliders.size());
-    for (const auto& effect : s->effects) effect_rows += effect->most_rows();
+    for (const auto& effect : s->effects) most.effect_rows += effect->most_rows();
   }
   // Every point may touch the floor, an obstacle, and a few shapes of others; what does not fit is dropped
   // furthest last.
   const int contacts = points * (2 + static_cast<int>(obstacles.size() + hosts.size())) +
                        std::min(points * shapes, 4 * points + 64);
-  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes, effect_rows);
+  most.contacts = contacts;
+  couplings.add_room(states, most);
+  stepper.reserve(most, shapes);
   lagged.reserve(contacts);
   lagged_new.reserve(contacts);
   group.reserve(states.size());
@@ -214,6 +234,174 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
 }
 
 template <class T>
+Status World<T>::Impl::find(const Anchor& anchor, Place& out) const {
+  const auto state_of = [&](const std::vector<int>& list) {
+    return anchor.index >= 0 && anchor.index < static_cast<int>(list.size()) ? list[anchor.index] : -1;
+  };
+  out = {-1, 0, anchor.frame};
+  switch (anchor.kind) {
+    case AnchorKind::kWorld:
+      return {};
+    case AnchorKind::kProp:
+      out.state = state_of(props);
+      break;
+    case AnchorKind::kCharacter: {
+      out.state = state_of(characters);
+      if (out.state < 0) break;
+      const CharacterState<T>& s = *states[out.state];
+      if (anchor.joint < 0 || anchor.joint >= static_cast<int>(s.skeleton.joints.size()))
+        return Status::error(Code::kInvalidArgument, "no such joint to fix to", anchor.joint);
+      // A joint that rides along is part of the body above it.
+      out.body = s.body_of(anchor.joint);
+      for (int j = anchor.joint; j != out.body; j = s.skeleton.joints[j].parent)
+        out.frame = s.skeleton.joints[j].rest * out.frame;
+      break;
+    }
+    case AnchorKind::kParticles: {
+      if (anchor.index < 0 || anchor.index >= static_cast<int>(particles.size())) break;
+      const ParticleSet& set = particles[anchor.index];
+      if (anchor.joint < 0 || anchor.joint >= static_cast<int>(set.body.nodes.size()))
+        return Status::error(Code::kInvalidArgument, "no such particle to fix to", anchor.joint);
+      out.state = set.state;
+      out.body = bodies_of_nodes(set.body)[anchor.joint];
+      if (out.body < 0) return Status::error(Code::kInvalidArgument, "the particle is fixed", anchor.joint);
+      break;
+    }
+  }
+  if (out.state < 0)
+    return Status::error(Code::kInvalidArgument, "nothing with this index to fix to", anchor.index);
+  return {};
+}
+
+template <class T>
+Transform<double> World<T>::Impl::frame_of(const Place& place) const {
+  if (place.state < 0) return place.frame;
+  return states[place.state]->model[place.body].template cast<double>() * place.frame;
+}
+
+/// N, of all that hangs together with a place.
+template <class T>
+double World<T>::Impl::weight_of(const Place& place) const {
+  const double mass = place.state < 0 ? 0 : states[place.state]->total_mass;
+  return mass * std::max(1.0, settings.gravity.norm());
+}
+
+template <class T>
+int World<T>::add_loop(const LoopSettings& loop, Status& status) {
+  Place a, b;
+  status = check(loop);
+  if (status) status = impl_->find(loop.a, a);
+  if (status) status = impl_->find(loop.b, b);
+  if (status && a.state < 0 && b.state < 0)
+    status = Status::error(Code::kInvalidArgument, "a loop from the world to the world");
+  if (!status) return -1;
+  const double weight = std::max(impl_->weight_of(a), impl_->weight_of(b));
+  impl_->loops.push_back(impl_->couplings.add(make_loop<T>(loop, a, b, weight)));
+  if (!loop.collide && a.state >= 0 && b.state >= 0)
+    impl_->couplings.keep_apart({a.state, a.body, b.state, b.body});
+  impl_->reserve();
+  return static_cast<int>(impl_->loops.size()) - 1;
+}
+
+template <class T>
+void World<T>::set_loop(int index, bool closed) {
+  Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
+  loop.active = closed;
+  for (CouplingNode<T>& node : loop.nodes) node.gradient.setZero();
+}
+
+template <class T>
+double World<T>::loop_gap(int index) const {
+  const Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
+  double gap = 0;
+  for (const Stencil<T>& e : loop.stencils) {
+    const double open = double((reach(loop, e) - e.offset).norm() - e.length);
+    gap = std::max(gap, e.only_pulls ? open : std::abs(open));
+  }
+  return gap;
+}
+
+template <class T>
+Vec3<T> World<T>::loop_force(int index) const {
+  const Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
+  Vec3<T> force = Vec3<T>::Zero();
+  for (std::size_t n = 0; n < loop.nodes.size(); n += 2) force -= loop.nodes[n].gradient;
+  return force;
+}
+
+template <class T>
+int World<T>::add_particles(const ParticleBody& body, Status& status) {
+  ParticleSet set;
+  set.body = body;
+  status = check(body);
+  if (status) status = impl_->find(body.frame, set.place);
+  if (!status) return -1;
+  const Skeleton skeleton = skeleton_of(body, impl_->frame_of(set.place));
+  status = validate(skeleton);
+  if (!status) return -1;
+  CharacterSettings settings;
+  settings.root = RootDrive::kFree;
+  settings.ground_contact = body.radius > 0;
+  settings.self_collision = body.meets_itself;
+  impl_->states.push_back(std::make_unique<CharacterState<T>>(skeleton, settings));
+  CharacterState<T>& s = *impl_->states.back();
+  s.is_prop = s.is_particles = true;
+  s.refresh_limits();
+  s.update_model();
+  set.state = static_cast<int>(impl_->states.size()) - 1;
+  set.coupling = impl_->couplings.add(make_elements<T>(body, set.state, set.place));
+  if (!body.meets_frame && set.place.state >= 0)
+    impl_->couplings.keep_apart({set.state, -1, set.place.state, set.place.body});
+  impl_->particles.push_back(std::move(set));
+  impl_->reserve();
+  return static_cast<int>(impl_->particles.size()) - 1;
+}
+
+template <class T>
+void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
+  const ParticleSet& set = impl_->particles[index];
+  CharacterState<T>& s = *impl_->states[set.state];
+  const Transform<T> frame = impl_->frame_of(set.place).template cast<T>();
+  s.target[0].translation = frame.translation;
+  int body = 0;
+  for (const ParticleNode& node : set.body.nodes) {
+    if (node.fixed) continue;
+    JointJet<T>& jet = s.target[++body];
+    jet.translation = frame.rotation * Vec3<T>(node.position.template cast<T>());
+    jet.velocity = velocity;
+  }
+  s.reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+Vec3<T> World<T>::particle(int index, int node) const {
+  const ParticleSet& set = impl_->particles[index];
+  int body = set.body.nodes[node].fixed ? -1 : 1;
+  for (int n = 0; n < node && body > 0; ++n) body += !set.body.nodes[n].fixed;
+  if (body > 0) return impl_->states[set.state]->model[body].translation;
+  return Vec3<double>(impl_->frame_of(set.place) * set.body.nodes[node].position).template cast<T>();
+}
+
+template <class T>
+Vec3<T> World<T>::particle_velocity(int index, int node) const {
+  const ParticleSet& set = impl_->particles[index];
+  if (set.body.nodes[node].fixed) return Vec3<T>::Zero();
+  int body = 1;
+  for (int n = 0; n < node; ++n) body += !set.body.nodes[n].fixed;
+  return impl_->states[set.state]->history.velocity[body];
+}
+
+template <class T>
+const CharacterReport& World<T>::particle_report(int index) const {
+  return impl_->states[impl_->particles[index].state]->report;
+}
+
+template <class T>
+int World<T>::particles_count() const {
+  return static_cast<int>(impl_->particles.size());
+}
+
+template <class T>
 Character<T> World<T>::character(int index) {
   return Character<T>(impl_->states[impl_->characters[index]].get());
 }
@@ -246,9 +434,8 @@ const CharacterReport& World<T>::prop_report(int index) const {
 template <class T>
 bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
   if (a.parked || b.parked || !settings.body_contact) return false;
-  const T reach =
-      a.radius + b.radius + T(0.1) + 2 * h * (a.history.velocity[0].norm() + b.history.velocity[0].norm());
-  return (a.model[0].translation - b.model[0].translation).norm() < reach;
+  const T reach = a.radius + b.radius + T(0.1) + 2 * h * (a.fastest() + b.fastest());
+  return (a.middle() - b.middle()).norm() < reach;
 }
 
 /// Whether an obstacle may be in the way of the animation.
@@ -349,6 +536,7 @@ void World<T>::Impl::step_once(T h) {
         for (int& g : group)
           if (g == from) g = to;
       }
+  couplings.join(states, group);
   lagged_new.clear();
   for (int g = 0; g < count; ++g) {
     members.clear();
@@ -360,10 +548,12 @@ void World<T>::Impl::step_once(T h) {
       }
     if (members.empty()) continue;
     CharacterState<T>& first = *members[0];
-    if (members.size() == 1 && first.fully_driven() && first.undisturbed() && !near_obstacle(first, h) &&
-        play(first, h))
+    const std::span<Coupling<T>* const> ties = couplings.of_island(states, group, g);
+    if (members.size() == 1 && ties.empty() && first.fully_driven() && first.undisturbed() &&
+        !near_obstacle(first, h) && play(first, h))
       continue;
-    stepper.step(settings, {obstacles, hosts}, h, members, member_indices, lagged, lagged_new);
+    stepper.step(settings, {obstacles, hosts, couplings.apart()}, h, members, member_indices, ties, lagged,
+                 lagged_new);
   }
   std::sort(lagged_new.begin(), lagged_new.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });

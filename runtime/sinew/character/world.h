@@ -19,6 +19,8 @@
 
 #include "sinew/animation/clip.h"
 #include "sinew/effects/effect.h"
+#include "sinew/effects/loop.h"
+#include "sinew/effects/particles.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/skeleton.h"
 
@@ -160,6 +162,21 @@ class World {
   Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
   /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
   Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0);
+
+  /// Ties two frames together; returns the loop's index, or -1. What is open closes at a walking pace.
+  int add_loop(const LoopSettings& settings, Status& status);
+  /// Opens a loop (it costs nothing then), or closes it again.
+  void set_loop(int index, bool closed);
+  double loop_gap(int index) const;     ///< m, largest of its points, of what was open at first the rest
+  Vec3<T> loop_force(int index) const;  ///< N, on side a, world axes
+  /// A strand, cloth or soft tissue; returns its index, or -1. It starts at rest where its frame is now.
+  int add_particles(const ParticleBody& body, Status& status);
+  /// Puts a particle body back to rest in its frame (after a teleport), with its nodes at the given velocity.
+  void reset_particles(int index, const Vec3<T>& velocity = Vec3<T>::Zero());
+  Vec3<T> particle(int index, int node) const;           ///< world, m
+  Vec3<T> particle_velocity(int index, int node) const;  ///< m/s; of fixed nodes 0
+  const CharacterReport& particle_report(int index) const;
+  int particles_count() const;
 
   Character<T> character(int index);
   int character_count() const;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sinew/optimizer/contact_rows.h"
+#include "sinew/optimizer/coupling_rows.h"
 #include "sinew/optimizer/ellipsoid_rows.h"
 #include "sinew/optimizer/problem.h"
 
@@ -26,7 +27,7 @@ struct InnerReport {
 template <class T>
 class InnerProblem {
  public:
-  void reserve(int dofs, int bodies, int contacts, int effect_rows = 0);
+  void reserve(const SolveSize& most);
 
   /// Numbers the unknowns of all trees.
   void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
@@ -37,7 +38,7 @@ class InnerProblem {
   }
 
   /// Model about the present pose, whose gradient and wrenches the trees hold.
-  void build(std::span<const Contact<T>> contacts, bool geometric);
+  void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
   /// Second-order correction: the model again, with gaps and slips as the contacts found them where the
@@ -72,7 +73,9 @@ class InnerProblem {
     T in_factor = T(0);  ///< curvature that the last factor holds
   };
 
-  void assemble(std::span<const Contact<T>> contacts, bool geometric);
+  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
+                bool geometric);
+  bool coupled() const { return contact_rows_.coupled() || coupling_rows_.coupled(); }
   void add_joint_geometry(TreeProblem<T>& tree);
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
@@ -88,9 +91,11 @@ class InnerProblem {
   Unknowns unknowns_;
   PathAxes<T> axes_;
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
+  TreeMatrix<T> local_{unknowns_.pattern};   ///< H₀ + what coupling elements do within a path
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
   ContactRows<T> contact_rows_;
+  CouplingRows<T> coupling_rows_;
   std::vector<JointRows> joint_rows_;
   EllipsoidRows<T> ellipsoid_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres

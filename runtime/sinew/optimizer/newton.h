@@ -43,13 +43,14 @@ template <class T>
 class NewtonSolver {
  public:
   /// Set-up for solves of at most that size; solving allocates nothing.
-  void reserve(int dofs, int bodies, int contacts, int effect_rows = 0);
+  void reserve(const SolveSize& most);
 
   /// Minimises over the free degrees of freedom of all trees together, starting at their `local`. On return
   /// every tree's kinematics, wrenches and gradient are those at the result; the energy never rose on the
   /// way.
   SolveReport solve(const StepSettings<T>& settings, const Accuracy& accuracy,
-                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts);
+                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
+                    std::span<Coupling<T>* const> couplings = {});
 
  private:
   /// What became of an outer pass's correction.
@@ -66,6 +67,7 @@ class NewtonSolver {
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
   std::span<Contact<T>> contacts_;
+  std::span<Coupling<T>* const> couplings_;
   SolveReport report_;
   InnerProblem<T> inner_;
   std::vector<T> plain_;            ///< the correction before its second-order correction

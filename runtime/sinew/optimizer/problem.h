@@ -74,6 +74,24 @@ struct TreeProblem {
   void plan(Effect<T>& effect);
 };
 
+/// Room that solves need at most.
+struct SolveSize {
+  int trees = 0, bodies = 0, dofs = 0;
+  int entries = 0;  ///< of a tree matrix
+  int contacts = 0;
+  int effect_rows = 0;
+  int nodes = 0, stencils = 0, tetrahedra = 0;  ///< of couplings
+  int node_entries = 0;                         ///< of the paths of all nodes
+
+  template <class T>
+  void add(const Tree<T>& tree) {
+    ++trees;
+    bodies += tree.bodies;
+    dofs += tree.dofs;
+    entries += matrix_entries(tree);
+  }
+};
+
 /// Values that all trees of a solve share.
 template <class T>
 struct StepSettings {
@@ -88,8 +106,13 @@ struct StepSettings {
 /// What the problem's effects see of it.
 template <class T>
 EffectPose<T> effect_pose(const StepSettings<T>& settings, const TreeProblem<T>& problem) {
-  return {*problem.tree,          problem.kinematics, problem.local, problem.start,
-          settings.common_origin, settings.gravity,   settings.h};
+  return {*problem.tree,
+          problem.kinematics,
+          problem.local,
+          problem.start,
+          settings.common_origin.template cast<T>(),
+          settings.gravity,
+          settings.h};
 }
 
 /// The effects' rows at the present pose into `problem.effect_rows`.

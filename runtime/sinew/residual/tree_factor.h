@@ -32,6 +32,8 @@ struct TreePattern {
   void clear();
   /// Appends an unknown below `above` (-1: a root). Returns its index.
   int add(int above);
+  /// The last unknown that lies on both paths, or -1 (also where one of them is -1).
+  int common(int a, int b) const;
 };
 
 /// Value array of a symmetric tree matrix: entry (k, position on the path of k).
@@ -39,9 +41,9 @@ template <class T>
 class TreeMatrix {
  public:
   explicit TreeMatrix(const TreePattern& pattern) : pattern_(&pattern) {}
-  /// Set-up for patterns of at most so many unknowns.
-  void reserve(int unknowns) {
-    values_.reserve(std::size_t(unknowns) * TreePattern::padded(unknowns));
+  /// Set-up for patterns of at most so many unknowns and entries.
+  void reserve(int unknowns, int entries) {
+    values_.reserve(entries);
     diagonal_.reserve(unknowns);
   }
   void set_zero() { values_.assign(pattern_->entries, T(0)); }

@@ -177,14 +177,17 @@ struct Pass : Solving {
   InnerProblem<float> inner;
 
   Pass(const std::string& name, int instances) : Solving(name, instances) {
-    inner.reserve(tree.dofs, tree.bodies, 0, effect ? effect->most_rows() : 0);
+    SolveSize most;
+    most.add(tree);
+    most.effect_rows = effect ? effect->most_rows() : 0;
+    inner.reserve(most);
     inner.begin(settings, trees);
   }
   void step() override {
     for (Effect<float>* e : problem.effects) e->begin_step(effect_pose(settings, problem));
     begin_evaluation(settings, problem);
     finish_gradient(problem);
-    inner.build({}, true);
+    inner.build({}, {}, true);
   }
 };
 
@@ -195,7 +198,10 @@ struct OnePass : Solving {
   std::vector<Contact<float>> contacts, fresh;
 
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
-    solver.reserve(tree.dofs, tree.bodies, kRods);
+    SolveSize most;
+    most.add(tree);
+    most.contacts = kRods;
+    solver.reserve(most);
     once.max_iterations = 1;
     for (int i = 0; i < instances; ++i) {
       Contact<float> c;
