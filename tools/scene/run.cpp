@@ -173,6 +173,7 @@ class Runner {
       if (world_.add_character(c.asset->skeleton, settings, status) < 0)
         return {"character '" + c.name + "': " + status.reason};
       recording_.characters.push_back(c.asset);
+      recording_.names.push_back(c.name);
       players_.emplace_back(c);
     }
     for (const Collider& o : s_.obstacles)

@@ -1,6 +1,7 @@
 #include "study/effects.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -46,37 +48,25 @@ std::string quoted(const std::string& path) {
   return out + "'";
 }
 
-std::string arguments(const Kind& kind, int instances, int steps) {
-  // Nothing is declared where there are no instances: what an empty declaration costs is a test's business.
-  return fmt::format(" {} {} {} {}", kind.mode, instances == 0 ? "none" : kind.effect, instances, steps);
+/// Nothing is declared where there are no instances: what an empty declaration costs is a test's business.
+std::string arguments(const Kind& kind, int instances) {
+  return fmt::format(" {} {} {}", kind.mode, instances == 0 ? "none" : kind.effect, instances);
 }
 
-/// Instructions per step, or −1.
-double count(const EffectOptions& options, const std::string& arguments) {
-  const std::string file = options.directory + "/callgrind.out";
-  (void)answer(
-      "valgrind --tool=callgrind --collect-atstart=no --toggle-collect=count_here "
-      "--callgrind-out-file=" +
-      quoted(file) + " " + quoted(options.program) + arguments);
-  std::ifstream in(file);
-  double total = -1;
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("totals: ")) total = std::strtod(line.c_str() + 8, nullptr) / kCountedSteps;
-  in.close();
-  std::remove(file.c_str());
-  return total;
-}
-
-convert::Error measure(const EffectOptions& options, bool counts, const Kind& kind, EffectCost& cost) {
+/// `counted`: answers so far; the step without effects is the same for many.
+convert::Error measure(const EffectOptions& options, bool counts, const Kind& kind,
+                       std::map<std::string, double>& counted, EffectCost& cost) {
   cost.effect = kind.effect;
   cost.mode = kind.mode;
   const int runs = options.quick ? 2 : 5, steps = options.quick ? 200 : 2000;
   for (std::size_t i = 0; i < kInstances.size(); ++i) {
-    cost.instructions[i] = counts ? count(options, arguments(kind, kInstances[i], kCountedSteps)) : -1;
+    const std::string what = arguments(kind, kInstances[i]);
+    if (counts && !counted.contains(what)) counted[what] = count_instructions(options, what);
+    cost.instructions[i] = counts ? counted[what] : -1;
     cost.microseconds[i] = 1e9;
     for (int run = 0; run < runs; ++run) {
       double microseconds = 0, bytes = 0;
-      if (!(std::istringstream(answer(quoted(options.program) + arguments(kind, kInstances[i], steps))) >>
+      if (!(std::istringstream(answer(quoted(options.program) + what + " " + std::to_string(steps))) >>
             microseconds >> bytes))
         return {options.program + ": cannot be run"};
       cost.microseconds[i] = std::min(cost.microseconds[i], microseconds);
@@ -100,6 +90,21 @@ std::string machine() {
 
 }  // namespace
 
+double count_instructions(const EffectOptions& options, const std::string& arguments) {
+  const std::string file = options.directory + "/callgrind.out." + std::to_string(getpid());
+  (void)answer(
+      "valgrind --tool=callgrind --collect-atstart=no --toggle-collect=count_here "
+      "--callgrind-out-file=" +
+      quoted(file) + " " + quoted(options.program) + " " + arguments + " " + std::to_string(kCountedSteps));
+  std::ifstream in(file);
+  double total = -1;
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("totals: ")) total = std::strtod(line.c_str() + 8, nullptr) / kCountedSteps;
+  in.close();
+  std::remove(file.c_str());
+  return total > 0 ? total : -1;
+}
+
 void fit(EffectCost& cost) {
   // y = fixed + each·n, minimising Σ((fit − y)/y)².
   double s[3] = {}, b[2] = {};
@@ -115,6 +120,7 @@ void fit(EffectCost& cost) {
   }
   cost.each = (s[0] * b[1] - s[1] * b[0]) / (s[0] * s[2] - s[1] * s[1]);
   cost.fixed = (b[0] - s[1] * cost.each) / s[0];
+  cost.misfit = 0;
   for (std::size_t i = 1; i < kInstances.size(); ++i) {
     const double y = cost.instructions[i] - cost.instructions[0];
     cost.misfit = std::max(cost.misfit, std::abs(cost.fixed + cost.each * kInstances[i] - y) / y);
@@ -127,14 +133,15 @@ convert::Error run_effects(const EffectOptions& options, const std::function<voi
   out.counted_by = answer("valgrind --version");
   const bool counts = !out.counted_by.empty();
   if (counts) {
-    out.bare = count(options, fmt::format(" bare none 0 {}", kCountedSteps));
-    out.step = count(options, fmt::format(" checked none 0 {}", kCountedSteps));
+    out.bare = count_instructions(options, "bare none 0");
+    out.step = count_instructions(options, "checked none 0");
     if (out.step < 0) out.counted_by += ", which cannot run the counting program";
   }
+  std::map<std::string, double> counted;
   const int total = static_cast<int>(std::size(kKinds));
   for (int n = 0; n < total; ++n) {
     if (progress) progress(n, total);
-    if (convert::Error error = measure(options, out.step > 0, kKinds[n], out.costs.emplace_back()))
+    if (convert::Error error = measure(options, out.step > 0, kKinds[n], counted, out.costs.emplace_back()))
       return error;
   }
   if (progress) progress(total, total);

@@ -39,6 +39,9 @@ struct EffectOptions {
 
 /// Fits the straight line, relative misfits weighing alike.
 void fit(EffectCost& cost);
+/// Instructions per step of the counting program with these arguments (MODE EFFECT INSTANCES), by callgrind;
+/// −1 where that is not to be had.
+double count_instructions(const EffectOptions& options, const std::string& arguments);
 convert::Error run_effects(const EffectOptions& options, const std::function<void(int, int)>& progress,
                            EffectStudy& out);
 

@@ -8,8 +8,8 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kWidth = 1000, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 380, kPlotHigh = 420,
-                 kGap = 110;
+constexpr double kWidth = 1000, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
+                 kGap = 130;
 constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {0.00, 0.62, 0.45}, {0.80, 0.40, 0.00},
                                {0.35, 0.70, 0.90}, {0.80, 0.47, 0.65}, {0.30, 0.30, 0.30}};  // Okabe and Ito
 
@@ -37,6 +37,7 @@ void draw_line(const Canvas& canvas, const Plot& plot, const EffectCost& cost,
                const std::array<double, 4>& values, const Colour& colour, double label_y) {
   canvas.set(colour);
   cairo_set_line_width(canvas.pen(), 1.8);
+  cairo_new_path(canvas.pen());  // text leaves a point behind
   double last = 0;
   for (std::size_t i = 1; i < kInstances.size(); ++i) {
     last = plot.y(values[i] - values[0]);
@@ -60,7 +61,7 @@ convert::Error draw_effects(const EffectStudy& study, const std::string& file) {
       kLeft, 28, 18, 0, true);
   double left = kLeft;
   for (const bool checked : {true, false}) {
-    const Plot plot = counted ? Plot{left, 1, 6} : Plot{left, -3, 2};
+    const Plot plot = counted ? Plot{left, 2, 6} : Plot{left, -3, 2};
     draw_frame(canvas, plot, checked ? "character on its animation" : "one Newton pass");
     std::vector<std::pair<double, const EffectCost*>> ends;  // from the top
     for (const EffectCost& c : study.costs)

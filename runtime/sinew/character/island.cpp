@@ -284,7 +284,8 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.common_origin = common_origin_ = states_[0]->history.place;
+  common_origin_ = states_[0]->history.place;
+  settings_.common_origin = common_origin_;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {

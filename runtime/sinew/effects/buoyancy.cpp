@@ -40,7 +40,7 @@ typename Buoyancy<T>::Floating Buoyancy<T>::floating(const FlowSpot<T>& spot,
                                                      const EffectPose<T>& pose) const {
   const Mat3<T>& turned = pose.kinematics.rotation[spot.body];
   Floating f;
-  f.level = T(settings.level) - pose.common_origin.z();
+  f.level = T(settings.level - pose.common_origin.z());
   f.radius = spot.round + (turned.row(2) * spot.extent).cwiseAbs().sum();
   f.weight = T(settings.density * settings.volume) * pose.gravity.norm() * spot.volume;
   f.drag.start = pose.point(spot.body, spot.local);

@@ -25,7 +25,7 @@ struct EffectPose {
   const Kinematics<T>& kinematics;
   std::span<const Transform<T>> local;  ///< [body] joint → parent, now
   std::span<const Transform<T>> start;  ///< [body] when the step began
-  Vec3<T> common_origin;                ///< world, m
+  Vec3<double> common_origin;           ///< world, m
   Vec3<T> gravity;                      ///< m/s²
   T h = T(0);                           ///< s
 

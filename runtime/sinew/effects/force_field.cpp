@@ -14,7 +14,7 @@ Status ForceField<T>::attach(const Skeleton& skeleton, const Tree<T>& /*tree*/) 
 
 template <class T>
 typename ForceField<T>::Place ForceField<T>::place(const EffectPose<T>& pose, int body) const {
-  const Vec3<T> center = settings.center.template cast<T>() - pose.common_origin;
+  const Vec3<T> center = (settings.center - pose.common_origin).template cast<T>();
   const Vec3<T> offset = (pose.kinematics.center[body] - center) / T(settings.reach);
   return {offset, std::sqrt(1 + offset.squaredNorm())};
 }

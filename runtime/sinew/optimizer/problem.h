@@ -89,7 +89,7 @@ template <class T>
 struct StepSettings {
   T h = T(1) / 60;                                    ///< s
   Vec3<T> gravity{0, 0, T(-9.81)};                    ///< m/s²
-  Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world: for what is fixed there
+  Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed
   T limit_stiffness = T(2000);                        ///< N·m/rad
   T stick = T(0.01) / 60;                             ///< m per step
   T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s

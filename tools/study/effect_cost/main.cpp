@@ -159,9 +159,9 @@ struct Solving : Work {
     }
     forward_kinematics<float>(tree, problem.start, Vec3<float>::Zero(), problem.kinematics);
     const Motion<float> still(tree);
-    advance_exactly<float>(tree, problem.kinematics, still, kStep, Vec3<float>::Zero(), history);
+    advance_exactly<float>(tree, problem.kinematics, still, kStep, Vec3<double>::Zero(), history);
     history.stop();
-    predict<float>(tree, history, Scheme::kBdf1, kStep, Vec3<float>::Zero(), problem.prediction);
+    predict<float>(tree, history, Scheme::kBdf1, kStep, Vec3<double>::Zero(), problem.prediction);
   }
   static BuiltIn built_in(const std::string& name, int count) {
     if (name == "muscles") return {.muscles = count};
