@@ -106,13 +106,8 @@ struct StepSettings {
 /// What the problem's effects see of it.
 template <class T>
 EffectPose<T> effect_pose(const StepSettings<T>& settings, const TreeProblem<T>& problem) {
-  return {*problem.tree,
-          problem.kinematics,
-          problem.local,
-          problem.start,
-          settings.common_origin.template cast<T>(),
-          settings.gravity,
-          settings.h};
+  return {*problem.tree,          problem.kinematics, problem.local, problem.start,
+          settings.common_origin, settings.gravity,   settings.h};
 }
 
 /// The effects' rows at the present pose into `problem.effect_rows`.
