@@ -27,7 +27,7 @@ struct Sums {
   double estimated = 0, truth = 0;
 };
 
-Sums sums_of(const std::string& scene, const std::string& option, double h, const Accuracy& accuracy = {}) {
+Sums sums_of(const std::string& scene, const std::string& option, double h) {
   Sums sums;
   for (const EstimatedFrame& frame : estimated_frames(scene_named(scene), option_named(option), h)) {
     sums.estimated += frame.estimated;
