@@ -1,10 +1,12 @@
 #include "cli/study.h"
 
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 
 #include "cli/files.h"
 #include "study/accuracy.h"
+#include "study/accuracy_dial.h"
 #include "study/maps.h"
 #include "study/study.h"
 
@@ -71,11 +73,25 @@ convert::Error StabilityCommand::run() const {
   return {};
 }
 
+/// The dial's data, as the scene loader and the runtime take it.
+convert::Error AccuracyCommand::write_presets() const {
+  const auto front = study::dial_front(study::measure_dial(quick, progress_bar("presets")));
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  const nlohmann::json dial = study::dial_json(front, study::machine(), date);
+  if (convert::Error error = write_atomically(directory + "/accuracy_presets.json", dial.dump(1) + "\n"))
+    return error;
+  return write_atomically(directory + "/presets.h", study::dial_header(dial));
+}
+
 convert::Error AccuracyCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
   const auto results = study::run_accuracy({quick, only}, progress_bar("accuracy"));
   if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
   const std::string base = directory + "/accuracy";
+  if (only.empty())
+    if (convert::Error error = write_presets()) return error;
   if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(results))) return error;
   if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results))) return error;
   for (const study::AccuracyResult& result : results)

@@ -23,8 +23,10 @@ struct AccuracyScene {
   std::function<void(Engine&, double t, double h)> drive;
 };
 
-/// Tumbling body, limp figure's drop, 50 : 1 stack, walk with pushes.
+/// Tumbling body, pendulum, limp figure's collapse and drop, 50 : 1 stack, walk with pushes.
 std::vector<AccuracyScene> accuracy_scenes();
+/// Scenes of the same kinds by which nothing was chosen: presets must keep their word here.
+std::vector<AccuracyScene> unseen_scenes();
 
 /// One setting on one scene.
 struct AccuracyPoint {
@@ -32,10 +34,12 @@ struct AccuracyPoint {
   double h = 0;                        ///< s
   Accuracy accuracy;
   bool survived = false;
-  std::string refusal;             ///< why the engine cannot do the scene
-  double error = 0;                ///< m: largest rms displacement of all mass from the converged run
-  double energy = 0;               ///< change over the largest kinetic energy; undriven scenes
-  double us = 0;                   ///< median, per simulated 1/60 s
+  std::string refusal;  ///< why the engine cannot do the scene
+  double error = 0;     ///< m: largest rms displacement of all mass from the converged run
+  double degrees = 0;   ///< largest rms of all joint angles from that run
+  double momentum = 0;  ///< relative change of the angular momentum, where the scene keeps it
+  double energy = 0;    ///< change over the kinetic energy of the start or of a metre's fall; undriven scenes
+  double us = 0;        ///< median, per simulated 1/60 s
   double us_low = 0, us_high = 0;  ///< quartiles
   double passes = 0;               ///< mean per solved step
   bool pareto = false;             ///< no point is both faster and more accurate
@@ -81,6 +85,8 @@ void mark_pareto(std::vector<AccuracyPoint>& points);
 /// Least time (µs per 1/60 s) among points of an engine within `error` metres, or a negative number.
 double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double error);
 
+/// Processor and compiler, for whoever compares.
+std::string machine();
 std::string accuracy_csv(const std::vector<AccuracyResult>& results);
 nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results);
 /// One self-contained page.

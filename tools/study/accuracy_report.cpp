@@ -12,7 +12,12 @@ namespace {
 
 constexpr double kPrices[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5};  // m
 
-/// Processor and compiler, for whoever compares.
+void replace(std::string& text, const std::string& what, const std::string& with) {
+  text.replace(text.find(what), what.size(), with);
+}
+
+}  // namespace
+
 std::string machine() {
   std::ifstream info("/proc/cpuinfo");
   std::string line, name = "unknown processor";
@@ -23,12 +28,6 @@ std::string machine() {
     }
   return name + ", one core; GCC " __VERSION__ "; medians of repeated runs, quartiles on hover.";
 }
-
-void replace(std::string& text, const std::string& what, const std::string& with) {
-  text.replace(text.find(what), what.size(), with);
-}
-
-}  // namespace
 
 std::string accuracy_csv(const std::vector<AccuracyResult>& results) {
   std::string csv =

@@ -38,6 +38,8 @@ class Engine {
   virtual double energy() const = 0;  ///< kinetic, potential and what contacts store where reported, J
   /// Joint frames in the world; `figure`'s, in the order of its skeleton.
   virtual std::vector<Transform<double>> pose(int figure) const = 0;
+  /// Of the first figure, about its centre of mass (kg·m²/s); false where the engine does not tell it.
+  virtual bool angular_momentum(Vec3<double>&) const { return false; }
   virtual double passes() const { return 0; }  ///< mean solver passes per step so far
   /// Mean rms over figures of what the last step itself reckons it went astray (m); negative: it does not
   /// say.
