@@ -45,11 +45,14 @@ struct CharacterReport {
   int unknown_dofs = 0;  ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
-  int contacts = 0;  ///< active contact points
-  int substeps = 0;  ///< parts that the step was solved in; 0 = played
-  int splits = 0;    ///< of these, halvings because a solve did not converge
-  int damped = 0;    ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
-  int held = 0;      ///< trees that were stopped where they stood: no pose could be found
+  int chords = 0;        ///< steps of simplified Newton, with the matrix of the pass before
+  int corrections = 0;   ///< second-order corrections that saved a full step
+  int plain_passes = 0;  ///< passes without the geometric terms, which made the matrix indefinite
+  int contacts = 0;      ///< active contact points
+  int substeps = 0;      ///< parts that the step was solved in; 0 = played
+  int splits = 0;        ///< of these, halvings because a solve did not converge
+  int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
+  int held = 0;          ///< trees that were stopped where they stood: no pose could be found
   bool converged = true;
   bool used_bdf2 = false;
   double kinetic_energy = 0;                             ///< J
