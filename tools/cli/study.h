@@ -24,7 +24,7 @@ struct AccuracyCommand {
   convert::Error run() const;
 
  private:
-  convert::Error write_presets() const;
+  convert::Error write_presets(nlohmann::json& dial) const;
 };
 
 }  // namespace sinew::cli

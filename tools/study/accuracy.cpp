@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "study/accuracy_store.h"
 #include "study/accuracy_trip.h"
 
 namespace sinew::study {
@@ -30,33 +31,43 @@ std::vector<std::pair<std::string, Accuracy>> settings() {
 
 class Sweep {
  public:
-  Sweep(const AccuracyScene& scene, bool quick) : scene_(scene), runs_(quick ? 5 : 21), quick_(quick) {}
+  Sweep(const AccuracyScene& scene, bool quick, ResultStore& store, const std::function<void()>& done)
+      : scene_(scene), runs_(quick ? 5 : 21), quick_(quick), store_(store), done_(done) {}
 
-  AccuracyResult run(const std::function<void()>& done) {
-    AccuracyResult result{scene_, {}, {}, -1};
-    const std::vector<EngineOption> peers = peer_options();
-    std::vector<EngineOption> all = sinew_options();
-    all.insert(all.end(), peers.begin(), peers.end());
+  AccuracyResult run() {
+    AccuracyResult result{scene_, {}, {}, -1, -1, {}};
     const double last = quick_ ? 1.0 / 240 : 1.0 / 960;
-    for (const EngineOption& option : all) {
-      for (double h = 1.0 / 30; h > 0.99 * last; h /= 2)
+    for (const EngineOption& option : options_of(scene_)) {
+      if (option.step > 0) result.points.push_back(point(option, "policy", option.step, Accuracy{}));
+      for (double h = 1.0 / 30; option.step <= 0 && h > 0.99 * last; h /= 2)
         result.points.push_back(point(option, "step", h, Accuracy{}));
-      done();
+      done_();
     }
-    for (const auto& [what, accuracy] : settings())
-      for (const EngineOption& option : sinew_options())
-        if (option.option == "bdf2 float") result.points.push_back(point(option, what, kFrame, accuracy));
-    done();
+    if (scene_.options.empty()) {
+      for (const auto& [what, accuracy] : settings())
+        result.points.push_back(point(sinew_options()[0], what, kFrame, accuracy));
+      slopes(result);
+      estimates(result);
+    }
+    compare_references(result);
+    done_();
     mark_pareto(result.points);
-    slopes(result);
-    if (!scene_.contacts && !scene_.drive && !peers.empty())
-      result.references_apart = apart(scene_, reference("Sinew"), reference(peers[0].engine));
     return result;
   }
 
-  static int parts() { return static_cast<int>(sinew_options().size() + peer_options().size()) + 1; }
+  static std::vector<EngineOption> options_of(const AccuracyScene& scene) {
+    if (!scene.options.empty()) return scene.options;
+    std::vector<EngineOption> all = sinew_options();
+    for (const EngineOption& peer : peer_options()) all.push_back(peer);
+    return all;
+  }
+  static int parts(const AccuracyScene& scene) { return static_cast<int>(options_of(scene).size()) + 1; }
 
  private:
+  std::string key(const std::string& what) const {
+    return scene_.name + "|" + what + "|" + std::to_string(runs_);
+  }
+
   /// Of our bdf2 in double, of a peer's last option (its most accurate).
   const Track& reference(const std::string& engine) {
     const auto found = references_.find(engine);
@@ -75,49 +86,99 @@ class Sweep {
     p.varied = varied;
     p.h = h;
     p.accuracy = accuracy;
-    const Trip trip = travel(scene_, option, h, accuracy, true);  // also warms up
+    const std::string name = key(point_json(p).dump());
+    if (const nlohmann::json* kept = store_.find(name)) return point_from(*kept);
+    measure(option, p);
+    store_.keep(name, point_json(p));
+    return p;
+  }
+
+  void measure(const EngineOption& option, AccuracyPoint& p) {
+    const Trip trip = travel(scene_, option, p.h, p.accuracy, true);  // also warms up
     p.survived = trip.survived;
     p.refusal = trip.refusal;
-    if (!p.survived) return p;
+    if (!p.survived) return;
     p.error = apart(scene_, trip.track, reference(option.engine));
     p.survived = std::isfinite(p.error);
+    if (!p.survived) return;
     p.degrees = degrees_apart(scene_, trip.track, reference(option.engine));
     p.energy = trip.energy;
     p.momentum = trip.momentum;
     p.passes = trip.passes;
     std::vector<double> times;
-    for (int n = 0; n < runs_; ++n) times.push_back(travel(scene_, option, h, accuracy, false).seconds);
+    for (int n = 0; n < runs_; ++n) times.push_back(travel(scene_, option, p.h, p.accuracy, false).seconds);
     std::sort(times.begin(), times.end());
     const double frames = scene_.seconds / kFrame;
     p.us = 1e6 * times[times.size() / 2] / frames;
     p.us_low = 1e6 * times[times.size() / 4] / frames;
     p.us_high = 1e6 * times[times.size() * 3 / 4] / frames;
-    return p;
   }
 
   /// Orders of the step sweeps, from runs whose solver tolerance does not show.
   void slopes(AccuracyResult& result) {
-    Accuracy solved;
-    solved.tolerance = 1e-9;  // m
     for (const EngineOption& option : scene_.settles ? std::vector<EngineOption>() : sinew_options()) {
       if (option.option.find("double") == std::string::npos) continue;
-      std::vector<AccuracyPoint> fine;
-      for (const double h : {1.0 / 240, 1.0 / 480, 1.0 / 960}) {
-        AccuracyPoint& p = fine.emplace_back();
-        p.h = h;
-        const Trip trip = travel(scene_, option, h, solved, true);
-        p.survived = trip.survived;
-        if (p.survived) p.error = apart(scene_, trip.track, reference("Sinew"));
-      }
       const bool smooth = !scene_.contacts && !scene_.drive;
-      const double expected = !smooth ? 0 : option.option.starts_with("bdf2") ? 2 : 1;
-      result.slopes.push_back({option.engine, option.option, order_of(fine), expected});
+      Slope slope{option.engine, option.option, 0,
+                  !smooth                             ? 0.0
+                  : option.option.starts_with("bdf2") ? 2.0
+                                                      : 1.0};
+      const std::string name = key("slope " + option.option);
+      if (const nlohmann::json* kept = store_.find(name))
+        slope.found = kept->get<double>();
+      else
+        store_.keep(name, slope.found = slope_of(option));
+      result.slopes.push_back(slope);
     }
+  }
+  double slope_of(const EngineOption& option) {
+    Accuracy solved;
+    solved.tolerance = 1e-9;  // m
+    std::vector<AccuracyPoint> fine;
+    for (const double h : {1.0 / 240, 1.0 / 480, 1.0 / 960}) {
+      AccuracyPoint& p = fine.emplace_back();
+      p.h = h;
+      const Trip trip = travel(scene_, option, h, solved, true);
+      p.survived = trip.survived;
+      if (p.survived) p.error = apart(scene_, trip.track, reference("Sinew"));
+    }
+    return order_of(fine);
+  }
+
+  void estimates(AccuracyResult& result) {
+    const std::string name = key("estimates");
+    if (!store_.find(name)) {
+      nlohmann::json frames = nlohmann::json::array();
+      for (const EstimatedFrame& f : estimated_frames(scene_, sinew_options()[3], kFrame))
+        frames.push_back({f.time, f.estimated, f.truth});
+      store_.keep(name, frames);
+    }
+    for (const nlohmann::json& f : *store_.find(name)) result.estimates.push_back({f[0], f[1], f[2]});
+  }
+
+  void compare_references(AccuracyResult& result) {
+    const std::string name = key("references");
+    if (!store_.find(name)) {
+      const std::vector<EngineOption> peers = peer_options();
+      const bool smooth = !scene_.contacts && !scene_.drive;
+      double between = -1, uncertain = -1;
+      if (smooth && !peers.empty()) between = apart(scene_, reference("Sinew"), reference(peers[0].engine));
+      if (!scene_.settles)
+        uncertain = apart(
+            scene_, reference("Sinew"),
+            travel(scene_, sinew_options()[3], quick_ ? 1.0 / 1920 : 1.0 / 3840, {.tolerance = 1e-9}, true)
+                .track);
+      store_.keep(name, {between, uncertain});
+    }
+    result.references_apart = (*store_.find(name))[0];
+    result.uncertainty = (*store_.find(name))[1];
   }
 
   AccuracyScene scene_;
   int runs_;
   bool quick_;
+  ResultStore& store_;
+  std::function<void()> done_;
   std::map<std::string, Track> references_;
 };
 
@@ -141,10 +202,11 @@ void mark_pareto(std::vector<AccuracyPoint>& points) {
         });
 }
 
-double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double error) {
+double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double bound,
+                double AccuracyPoint::*error) {
   double least = -1;
   for (const AccuracyPoint& p : points)
-    if (p.survived && p.engine == engine && p.error <= error && (least < 0 || p.us < least)) least = p.us;
+    if (p.survived && p.engine == engine && p.*error <= bound && (least < 0 || p.us < least)) least = p.us;
   return least;
 }
 
@@ -154,13 +216,14 @@ std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
   if (!options.only.empty())
     std::erase_if(scenes, [&](const AccuracyScene& s) { return s.name != options.only; });
   std::erase_if(scenes, [](const AccuracyScene& s) { return s.scene.figures.empty(); });
-  const int total = static_cast<int>(scenes.size()) * Sweep::parts();
-  int done = 0;
+  int total = 0, done = 0;
+  for (const AccuracyScene& scene : scenes) total += Sweep::parts(scene);
+  ResultStore store(options.store, running_build());
   std::vector<AccuracyResult> results;
   for (const AccuracyScene& scene : scenes)
-    results.push_back(Sweep(scene, options.quick).run([&] {
-      if (progress) progress(++done, total);
-    }));
+    results.push_back(Sweep(scene, options.quick, store, [&] {
+                        if (progress) progress(++done, total);
+                      }).run());
   return results;
 }
 

@@ -136,6 +136,18 @@ AccuracyScene tracking(const char* name, const char* clip_name, const std::vecto
   return s;
 }
 
+AccuracyScene levels_of_detail() {
+  AccuracyScene s = tracking(
+      "lod", "walk", {{Role::kForearmR, {250, 60, 0}, 0.3, 0.4}, {Role::kChest, {-600, 0, 0}, 0.3, 0.4}});
+  s.title = "The same walk, further away";
+  s.reading =
+      "What is saved where nobody looks closely. Solved every second or fourth frame, the pose glides in "
+      "between; "
+      "residual only still tells the loads, playback only nothing: both miss what the push does.";
+  s.options = policy_options();
+  return s;
+}
+
 /// The collapse another way.
 AccuracyScene fainting() {
   AccuracyScene s = collapse();
@@ -158,7 +170,8 @@ std::vector<AccuracyScene> accuracy_scenes() {
           tracking("tracking", "walk",
                    {{Role::kForearmR, {250, 60, 0}, 0.3, 0.4}, {Role::kChest, {-600, 0, 0}, 0.3, 0.4}}),
           tracking("running", "run",
-                   {{Role::kForearmL, {-300, 150, 0}, 0.2, 0.3}, {Role::kChest, {-300, 900, 0}, 0.4, 0.5}})};
+                   {{Role::kForearmL, {-300, 150, 0}, 0.2, 0.3}, {Role::kChest, {-300, 900, 0}, 0.4, 0.5}}),
+          levels_of_detail()};
 }
 
 std::vector<AccuracyScene> unseen_scenes() {

@@ -35,6 +35,18 @@ double mean_square_angle(const Skeleton& skeleton, const std::vector<Transform<d
   return joints ? sum / joints : 0;
 }
 
+/// What is shown between two steps of 1/15 s.
+std::vector<std::vector<Transform<double>>> halfway(const std::vector<std::vector<Transform<double>>>& a,
+                                                    const std::vector<std::vector<Transform<double>>>& b) {
+  std::vector<std::vector<Transform<double>>> out = a;
+  for (std::size_t f = 0; f < out.size(); ++f)
+    for (std::size_t i = 0; i < out[f].size(); ++i) {
+      out[f][i].rotation = a[f][i].rotation.slerp(0.5, b[f][i].rotation);
+      out[f][i].translation = (a[f][i].translation + b[f][i].translation) / 2;
+    }
+  return out;
+}
+
 }  // namespace
 
 Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Accuracy& accuracy,
@@ -44,7 +56,7 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
   trip.refusal = engine->refusal();
   if (!trip.refusal.empty()) return trip;
   const int steps = static_cast<int>(std::lround(s.seconds / h)),
-            every = static_cast<int>(std::lround(kSample / h));
+            every = std::max(1, static_cast<int>(std::lround(kSample / h)));
   const double start = engine->energy();
   double kinetic = 0, fall = 0;  // J: of the start, and of a metre's fall where that is at rest
   for (const Figure& f : s.scene.figures) {
@@ -65,9 +77,12 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
       trip.momentum = std::max(trip.momentum, (spin - spin_before).norm() / spin_before.norm());
     }
     if (!(s.settles ? n + 1 == steps : (n + 1) % every == 0)) continue;
-    trip.track.emplace_back();
+    std::vector<std::vector<Transform<double>>> poses;
     for (std::size_t f = 0; f < s.scene.figures.size(); ++f)
-      trip.track.back().push_back(engine->pose(static_cast<int>(f)));
+      poses.push_back(engine->pose(static_cast<int>(f)));
+    if (h > 1.01 * kSample)
+      trip.track.push_back(halfway(trip.track.empty() ? poses : trip.track.back(), poses));
+    trip.track.push_back(std::move(poses));
   }
   trip.energy = (engine->energy() - start) / std::max(kinetic, fall);
   trip.passes = engine->passes();

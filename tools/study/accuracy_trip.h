@@ -24,6 +24,7 @@ Trip travel(const AccuracyScene& scene, const EngineOption& with, double h, cons
 
 /// The converged run that engine `with` is measured against: steps of 1/7680 s (coarse: 1/3840) solved to the
 /// nanometre; where a scene settles, six seconds at rest.
+/// Half as fine where `coarse`.
 Track converged(const AccuracyScene& scene, const EngineOption& with, bool coarse);
 
 /// Largest rms displacement of all mass over the poses, m.

@@ -53,11 +53,14 @@ struct EngineOption {
   std::string engine;  ///< "Sinew", "MuJoCo" …
   std::string option;  ///< "bdf2 float", "RK4" …
   std::unique_ptr<Engine> (*make)(const EngineScene&, double h, const Accuracy& accuracy);
+  double step = 0;  ///< s, the only one at which it is run; 0: any
   std::string label() const { return engine + " " + option; }
 };
 
 /// Sinew's schemes in float and double; `accuracy.scheme` is overridden by the option.
 std::vector<EngineOption> sinew_options();
+/// Ours at rising distance: every frame, every second and fourth, residual only, playback only.
+std::vector<EngineOption> policy_options();
 /// Peers that this build was linked with.
 std::vector<EngineOption> peer_options();
 std::vector<EngineOption> mujoco_options();
