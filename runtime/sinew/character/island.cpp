@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/cut.h"
+#include "sinew/character/way_back.h"
 #include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
@@ -13,8 +15,7 @@ constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its tar
 constexpr double kSnapAngle =
     2e-3;  ///< rad (0.1°) and m: a returning joint this close is on the animation again
 constexpr double kSnapRate = 5e-2;  ///< 1/s
-constexpr double kCut = 0.2;     ///< rad and m: an animation that leaps further than this in one step was cut
-constexpr double kTouch = 5e-5;  ///< m; shallower contacts bear half a percent of the weight: no impact
+constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
@@ -36,33 +37,6 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
   return limit > T(0) ? std::abs(torque) / limit : T(0);
 }
 
-/// After a cut between clips, the animation came from where the new clip was a step ago, going by its
-/// velocity: the way back starts from where the joint is as seen from there. The offset from the old clip
-/// would throw it about.
-template <class T>
-void meet_cuts(CharacterState<T>& s, T h) {
-  const T cut_cosine = std::cos(T(kCut / 2));
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const JointJet<T>& now = s.target[i];
-    JointJet<T>& last = s.target_before[i];
-    const Transform<T> before{now.rotation * rotation_exp<T>(-h * now.omega),
-                              now.translation - h * now.velocity};
-    if ((before.translation - last.translation).norm() < T(kCut) &&
-        std::abs(before.rotation.dot(last.rotation)) > cut_cosine)
-      continue;
-    last.rotation = before.rotation;
-    last.translation = before.translation;
-    last.omega = now.omega;
-    last.velocity = now.velocity;
-    Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) continue;
-    const Transform<T> wanted{now.rotation, now.translation};
-    const std::array<T, 6> moved = joint_offset<T>(s.tree, i, before, wanted).value;
-    d.offset = joint_offset<T>(s.tree, i, before, s.local[i]).value;
-    for (int k = 0; k < s.tree.dof_count(i); ++k) d.rate[k] = s.rate[i][k] - moved[k] / h;
-  }
-}
-
 }  // namespace
 
 template <class T>
@@ -73,26 +47,6 @@ void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, in
   finder_.reserve(contacts, colliders);
   lagged_.reserve(contacts);
   solver_.reserve(dofs, bodies, contacts);
-}
-
-/// Muscles pull to the animation, or along a critically damped way back to it:
-/// e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the offset from the animation.
-template <class T>
-void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings& world, T h) {
-  const T tau = T(world.accuracy.return_time);
-  const T decay = std::exp(-h / tau);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T>& wanted = s.wanted[i];
-    const Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) {
-      s.problem.target[i] = wanted;
-      continue;
-    }
-    std::array<T, 6> offset{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k)
-      offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
-    s.problem.target[i] = at_offset<T>(s.tree, i, wanted, offset);
-  }
 }
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
@@ -137,7 +91,6 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     TreeProblem<T>& p = s.problem;
-    p.start[i] = s.local[i];
     const Transform<T>& wanted = s.wanted[i];
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
@@ -157,7 +110,7 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
     const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
     for (int k = 0; k < count; ++k)
       moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
-    p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
+    p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, p.start[i]), moved);
   }
 }
 
@@ -211,7 +164,7 @@ std::uint64_t IslandStepper<T>::bearing(int tree) const {
 template <class T>
 void IslandStepper<T>::predict_all(Scheme scheme, T h) {
   for (CharacterState<T>* s : states_)
-    predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
+    predict<T>(s->tree, s->history, scheme, h, common_origin_, s->problem.prediction);
 }
 
 template <class T>
@@ -233,7 +186,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   const T tau = T(world.accuracy.return_time), decay = std::exp(-h / tau);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
-    s.rate[i] = joint_offset_value<T>(s.tree, i, s.local[i], p.local[i]);
+    s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
     const Transform<T>& wanted = s.wanted[i];
     const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, wanted, p.local[i]);
@@ -241,13 +194,14 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     Deviation<T>& d = s.deviation[i];
     T offset = T(0), rate = T(0), missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
-    for (int k = 0; k < s.tree.dof_count(i); ++k) missed = std::max(missed, std::abs(from_target[k]));
-    // On the way back the rate is the path's at its end; its mean over the step would start the next part of
-    // the path too fast or too slow by an error of first order.
-    const bool on_path = !d.on_animation && missed < T(4) * settings_.kink_width;
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      const T pull = d.rate[k] + d.offset[k] / tau;
-      d.rate[k] = on_path ? (d.rate[k] - pull * h / tau) * decay : (from_animation[k] - d.offset[k]) / h;
+      missed = std::max(missed, std::abs(from_target[k]));
+      // On the critically damped way back the rate is the path's at its end; its mean over the step would
+      // start the next part of the path wrong by an error of first order.
+      const T pull = d.rate[k] + d.offset[k] / tau, path = (d.offset[k] + pull * h) * decay;
+      const bool on_path =
+          !d.on_animation && std::abs(from_animation[k] - path) < T(4) * settings_.kink_width;
+      d.rate[k] = on_path ? pull * decay - path / tau : (from_animation[k] - d.offset[k]) / h;
       d.offset[k] = from_animation[k];
       offset = std::max(offset, std::abs(d.offset[k]));
       rate = std::max(rate, std::abs(d.rate[k]));
@@ -266,12 +220,12 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
-  s.update_model();
   const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
-  const double error = world.accuracy.estimate_error
-                           ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
-                           : 0;
-  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
+  const double error =
+      world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h, common_origin_) : 0;
+  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, common_origin_, s.history);
+  if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
+  s.update_model();
 
   CharacterReport& r = s.report;
   r = {};
@@ -309,15 +263,17 @@ template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
-    s.wanted[i] = {now.rotation, now.translation};
-    if (fraction >= T(1)) continue;
-    const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
-    const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
-    s.wanted[i].rotation = before.rotation * rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega,
-                                                                           frame_ * rate, fraction));
-    s.wanted[i].translation =
-        before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
-                                           frame_ * now.velocity, fraction);
+    Transform<T> wanted{now.rotation, now.translation};
+    if (fraction < T(1)) {
+      const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
+      const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
+      wanted.rotation = before.rotation *
+                        rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega, frame_ * rate, fraction));
+      wanted.translation =
+          before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
+                                             frame_ * now.velocity, fraction);
+    }
+    s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }
 }
 
@@ -327,13 +283,16 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.common_origin = states_[0]->model[0].translation;
+  common_origin_ = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
+    s->problem.common_origin = s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(common_origin_.cast<T>());
     choose_wanted(*s, fraction);
-    choose_targets(*s, world, h);
+    std::copy_n(s->local.begin(), s->tree.bodies, s->problem.start.begin());
+    if (s->floats) s->problem.start[0].translation = (s->history.place - common_origin_).template cast<T>();
+    choose_targets<T>(*s, T(world.accuracy.return_time), h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
@@ -346,10 +305,10 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   for (int round = 0; round < kReleaseRounds; ++round) {
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
-      forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+      forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
+    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, common_origin_, h);
     if (round == 0) {
-      sweep<T>(states_, contacts_, settings_.common_origin, h, free_share_);
+      sweep<T>(states_, contacts_, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
         if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
       second = world.accuracy.scheme == Scheme::kBdf2;
@@ -401,10 +360,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held)
-    for (Contact<T>& c : contacts_)
-      measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
-                 c);
+  if (any_held) forget_contacts();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -441,8 +397,8 @@ double IslandStepper<T>::pose_energy() const {
   for (const CharacterState<T>* s : states_) {
     const Vec3<double> gravity = world_->gravity;
     for (int i = 0; i < s->tree.bodies; ++i) {
-      const Vec3<T> center = s->problem.kinematics.center[i] + settings_.common_origin;
-      sum -= double(s->tree.mass[i]) * gravity.dot(center.template cast<double>());
+      const Vec3<double> center = common_origin_ + s->problem.kinematics.center[i].template cast<double>();
+      sum -= double(s->tree.mass[i]) * gravity.dot(center);
     }
     for (const JointRow<T>& row : s->problem.rows)
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
@@ -456,14 +412,25 @@ double IslandStepper<T>::pose_energy() const {
 template <class T>
 void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
-  forward_kinematics<T>(s.tree, s.problem.local, settings_.common_origin, s.problem.kinematics);
+  forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
-  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
+  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
   ++held_;
+}
+
+/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
+/// what cannot move, without end.
+template <class T>
+void IslandStepper<T>::forget_contacts() {
+  for (Contact<T>& c : contacts_) {
+    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    c.offset -= std::min(c.gap, T(0));
+    c.gap = std::max(c.gap, T(0));
+  }
 }
 
 template <class T>

@@ -28,7 +28,9 @@ struct CharacterState {
   CharacterSettings settings;
   bool is_prop = false;
   bool parked = false;    ///< a prop out of the world
+  bool carried = false;   ///< in this step, see carry_over()
   double total_mass = 0;  ///< kg
+  bool floats = false;    ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
@@ -80,6 +82,12 @@ struct CharacterState {
   void report_totals(const Vec3<double>& gravity);
   /// Model transforms of all joints from the local ones.
   void update_model();
+  /// Joint `i` at `pose` (world where parentless) as the solve has it: a floating root's place is relative to
+  /// the common origin, so that nothing of it is lost.
+  Transform<T> in_solve(int i, const Transform<T>& pose, const Vec3<double>& common_origin) const {
+    if (i > 0 || !floats) return pose;
+    return {pose.rotation, (pose.translation.template cast<double>() - common_origin).template cast<T>()};
+  }
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
   bool undisturbed() const;

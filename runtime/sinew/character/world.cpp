@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/cut.h"
 #include "sinew/character/island.h"
 #include "sinew/character/snapshot.h"
 #include "sinew/effects/support.h"
@@ -239,7 +240,7 @@ bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
 template <class T>
 bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   TreeProblem<T>& p = s.problem;
-  const Vec3<T> origin = s.model[0].translation;
+  const Vec3<T> origin = s.target[0].translation;
   inertial_wrenches<T>(s.tree, s.target, settings.gravity.template cast<T>(), origin, p.kinematics, s.motion,
                        p.force, p.moment);
   for (const ExternalForce<T>& j : s.impulses) {
@@ -273,7 +274,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
-  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
+  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin.template cast<double>(), s.history);
   s.rate_step = T(0);
   s.contact_signature = s.limit_signature = 0;
   s.steps_unchanged = 0;
@@ -287,6 +288,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
 template <class T>
 void World<T>::Impl::step_once(T h) {
   const int count = static_cast<int>(states.size());
+  for (auto& s : states) s->carried = carry_over(*s, h);
   group.assign(count, 0);
   for (int i = 0; i < count; ++i) group[i] = i;
   // Islands: whoever is near enough to touch. Few characters per world so far, so all pairs.
@@ -319,6 +321,7 @@ void World<T>::Impl::step_once(T h) {
   for (auto& s : states) {
     s->impulses.clear();
     s->target_before = s->target;
+    s->report.carried = s->carried;
   }
 }
 

@@ -55,6 +55,7 @@ struct CharacterReport {
   int held = 0;          ///< trees that were stopped where they stood: no pose could be found
   bool converged = true;
   bool used_bdf2 = false;
+  bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
   double kinetic_energy = 0;                             ///< J
   double potential_energy = 0;                           ///< J, gravity
   double elastic_energy = 0;                             ///< J, stored in contacts and joint limits
@@ -118,6 +119,8 @@ class Character {
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
   std::span<const Transform<T>> model() const;  ///< [joint] joint → world
+  /// The root's origin, world, m: local() and model() hold it rounded to T, the simulation does not.
+  Vec3<double> position() const;
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;

@@ -28,17 +28,18 @@ bool carried_by_integration(const TreeProblem<T>& p, std::span<const T> load, in
 
 template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
-                         T h, const Vec3<T>& common_origin) {
+                         T h, const Vec3<double>& common_origin) {
   const Tree<T>& tree = *problem.tree;
   const bool second = problem.prediction.scheme == Scheme::kBdf2;
   const T w = second ? h / history.step_before : T(0);
   const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
   const T factor = second ? problem.prediction.momentum_step / 3 : h / 2;
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
   T sum = T(0), mass = T(0);
   for (int i = 0; i < tree.bodies; ++i) {
     mass += tree.mass[i];
     if (!carried_by_integration(problem, load, i)) continue;
-    const Vec3<T> moved = problem.kinematics.center[i] + common_origin - history.center[i];
+    const Vec3<T> moved = problem.kinematics.center[i] - place - history.center[i];
     const Vec3<T> velocity = (k1 * moved - k2 * (history.center[i] - history.center_before[i])) / h;
     Vec3<T> change = velocity - history.velocity[i];
     // Angular velocities in body axes, of the momenta that the scheme carries: a steady spin is no error.
@@ -59,7 +60,7 @@ double integration_error(const TreeProblem<T>& problem, const History<T>& histor
 }
 
 template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
-                                         std::span<const float>, float, const Vec3<float>&);
+                                         std::span<const float>, float, const Vec3<double>&);
 template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
                                           std::span<const double>, double, const Vec3<double>&);
 

@@ -21,10 +21,10 @@ namespace sinew {
 /// that hang on played or unsaturated joints alone are where the animation wants them: they count with 0.
 template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
-                         T h, const Vec3<T>& common_origin);
+                         T h, const Vec3<double>& common_origin);
 
 extern template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
-                                                std::span<const float>, float, const Vec3<float>&);
+                                                std::span<const float>, float, const Vec3<double>&);
 extern template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
                                                  std::span<const double>, double, const Vec3<double>&);
 
