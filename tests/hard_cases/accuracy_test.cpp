@@ -120,7 +120,7 @@ TEST(AccuracyStudy, ReportDrawsAllItsChartsInABrowserWithoutErrors) {
   std::ofstream(file) << accuracy_html({full_result(), full_result()}, {});
   for (const char* size : {"1200,900", "380,800"}) {  // a desk and a phone
     const std::string command =
-        std::string("timeout 60 chromium --headless --no-sandbox --disable-gpu --window-size=") + size +
+        std::string("timeout 100 chromium --headless --no-sandbox --disable-gpu --window-size=") + size +
         " --virtual-time-budget=3000 --dump-dom file://" + file + " 2>/dev/null";
     std::string page;
     FILE* browser = popen(command.c_str(), "r");
@@ -150,6 +150,18 @@ TEST(AccuracyStudy, GoesOnWhereItWasStoppedAndForgetsWhatAnotherBuildMade) {
   EXPECT_EQ(again.find("b"), nullptr);
   EXPECT_EQ(ResultStore(file, "two").find("a"), nullptr);
   std::filesystem::remove(file);
+}
+
+TEST(AccuracyStudy, CountedInstructionsRepeatToTheDigitAndGrowWithTheSteps) {
+  if (!can_count_instructions())
+    GTEST_SKIP() << "valgrind is not installed, or this program watches its own memory";
+  const AccuracyScene tumbling = accuracy_scenes()[0];
+  const EngineOption bdf2 = sinew_options()[0];
+  const double once = instructions_of(tumbling, bdf2, 1.0 / 30),
+               again = instructions_of(tumbling, bdf2, 1.0 / 30);
+  EXPECT_GT(once, 0);
+  EXPECT_EQ(once, again);
+  EXPECT_GT(instructions_of(tumbling, bdf2, 1.0 / 60), 1.5 * once);
 }
 
 TEST(AccuracyStudy, OnlyLevelsOfDetailThatSolveFeelThePush) {

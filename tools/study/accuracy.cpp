@@ -105,6 +105,9 @@ class Sweep {
     p.energy = trip.energy;
     p.momentum = trip.momentum;
     p.passes = trip.passes;
+    const bool counted = p.varied == "step" && std::abs(p.h - kFrame) < 1e-9 &&
+                         (!quick_ || option.label() == "Sinew bdf2 float");
+    if (counted && can_count_instructions()) p.instructions = instructions_of(scene_, option, p.h);
     std::vector<double> times;
     for (int n = 0; n < runs_; ++n) times.push_back(travel(scene_, option, p.h, p.accuracy, false).seconds);
     std::sort(times.begin(), times.end());

@@ -43,6 +43,7 @@ struct AccuracyPoint {
   double energy = 0;    ///< change over the kinetic energy of the start or of a metre's fall; undriven scenes
   double us = 0;        ///< median, per simulated 1/60 s
   double us_low = 0, us_high = 0;  ///< quartiles
+  double instructions = -1;        ///< per simulated 1/60 s, by callgrind; negative: not counted
   double passes = 0;               ///< mean per solved step
   bool pareto = false;             ///< no point is both faster and more accurate
   std::string label() const { return engine + " " + option; }
@@ -82,6 +83,12 @@ std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
 /// Meant for options in double.
 std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h,
                                              const Accuracy& accuracy = {});
+
+/// Instructions per simulated 1/60 s at the default accuracy, counted by callgrind in a program of its own:
+/// the figure that repeats. Negative where it cannot be counted.
+double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h);
+/// Whether valgrind and the program are there.
+bool can_count_instructions();
 
 /// Root mean square displacement (m) of the mass of a figure between two poses.
 double displacement(const Skeleton& skeleton, const std::vector<Transform<double>>& a,

@@ -36,16 +36,17 @@ std::string accuracy_csv(const std::vector<AccuracyResult>& results) {
       "error_m,error_deg,"
       "energy,momentum,us_per_"
       "frame,"
-      "us_q1,us_q3,passes,pareto\n";
+      "us_q1,us_q3,instructions,passes,pareto\n";
   char line[400];
   for (const AccuracyResult& result : results)
     for (const AccuracyPoint& p : result.points) {
-      std::snprintf(line, sizeof line,
-                    "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%.3g,%.3g,%d,%.6g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g,%.3f,%d\n",
-                    result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
-                    p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations,
-                    p.accuracy.sink_depth, p.accuracy.stick_speed, p.survived, p.error, p.degrees, p.energy,
-                    p.momentum, p.us, p.us_low, p.us_high, p.passes, p.pareto);
+      std::snprintf(
+          line, sizeof line,
+          "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%.3g,%.3g,%d,%.6g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g,%.9g,%.3f,%d\n",
+          result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
+          p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations, p.accuracy.sink_depth,
+          p.accuracy.stick_speed, p.survived, p.error, p.degrees, p.energy, p.momentum, p.us, p.us_low,
+          p.us_high, p.instructions, p.passes, p.pareto);
       csv += line;
     }
   return csv;
@@ -71,6 +72,7 @@ nlohmann::json point_json(const AccuracyPoint& p) {
           {"us", p.us},
           {"us_low", p.us_low},
           {"us_high", p.us_high},
+          {"instructions", p.instructions},
           {"passes", p.passes},
           {"pareto", p.pareto}};
 }
@@ -97,6 +99,7 @@ AccuracyPoint point_from(const nlohmann::json& json) {
   p.us = json.at("us");
   p.us_low = json.at("us_low");
   p.us_high = json.at("us_high");
+  p.instructions = json.at("instructions");
   p.passes = json.at("passes");
   return p;
 }

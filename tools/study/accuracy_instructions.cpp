@@ -1,0 +1,35 @@
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "study/accuracy.h"
+
+namespace sinew::study {
+
+bool can_count_instructions() {
+#ifdef __SANITIZE_ADDRESS__
+  return false;  // valgrind does not run programs that watch their own memory
+#else
+  return std::system("command -v valgrind >/dev/null 2>&1") == 0 && std::filesystem::exists(SINEW_TWIN);
+#endif
+}
+
+double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h) {
+  char step[32];
+  std::snprintf(step, sizeof step, "%.17g", h);
+  const std::string command =
+      "valgrind --tool=callgrind --callgrind-out-file=/dev/null --collect-atstart=no "
+      "--toggle-collect=sinew_twin_step '" SINEW_TWIN "' '" +
+      scene.name + "' '" + with.engine + "' '" + with.option + "' " + step + " 2>&1";
+  FILE* run = popen(command.c_str(), "r");
+  if (!run) return -1;
+  double counted = -1;
+  char line[512];
+  while (std::fgets(line, sizeof line, run))
+    if (const char* at = std::strstr(line, "Collected : ")) counted = std::atof(at + 12);
+  return pclose(run) == 0 && counted > 0 ? counted / (60 * scene.seconds) : -1;
+}
+
+}  // namespace sinew::study
