@@ -30,7 +30,6 @@ template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
                          T h, const Vec3<double>& common_origin) {
   const Tree<T>& tree = *problem.tree;
-  const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const bool second = problem.prediction.scheme == Scheme::kBdf2;
   const T w = second ? h / history.step_before : T(0);
   const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
