@@ -28,10 +28,12 @@ void print_accuracy(const study::AccuracyResult& result) {
     std::puts("");
   }
   for (const study::AccuracyPoint& p : result.points)
-    if (p.pareto)
-      std::printf("  front: %8.2f us, %9.2e m  %s 1/%.0f s, tolerance %.0e m, substeps %d, cap %d\n", p.us,
-                  p.error, p.label().c_str(), 1 / p.h, p.accuracy.tolerance, p.accuracy.substeps,
+    if (p.pareto) {
+      std::printf("  front: %8.2f us, %9.2e m  %s", p.us, p.error, p.label().c_str());
+      if (p.h > 0) std::printf(" 1/%.0f s", 1 / p.h);
+      std::printf(", tolerance %.0e, substeps %d, cap %d\n", p.accuracy.tolerance, p.accuracy.substeps,
                   p.accuracy.max_iterations);
+    }
 }
 
 }  // namespace

@@ -49,6 +49,9 @@ class Sweep {
       slopes(result);
       estimates(result);
     }
+#ifdef SINEW_PEERS
+    if (scene_.options.empty()) add_simbody(result);
+#endif
     compare_references(result);
     done_();
     mark_pareto(result.points);
@@ -61,7 +64,9 @@ class Sweep {
     for (const EngineOption& peer : peer_options()) all.push_back(peer);
     return all;
   }
-  static int parts(const AccuracyScene& scene) { return static_cast<int>(options_of(scene).size()) + 1; }
+  static int parts(const AccuracyScene& scene) {
+    return static_cast<int>(options_of(scene).size()) + 1;
+  }
 
  private:
   std::string key(const std::string& what) const {
@@ -158,6 +163,18 @@ class Sweep {
     }
     for (const nlohmann::json& f : *store_.find(name)) result.estimates.push_back({f[0], f[1], f[2]});
   }
+
+#ifdef SINEW_PEERS
+  void add_simbody(AccuracyResult& result) {
+    const std::string name = key("Simbody");
+    if (!store_.find(name)) {
+      nlohmann::json points = nlohmann::json::array();
+      for (const AccuracyPoint& p : simbody_points(scene_, runs_)) points.push_back(point_json(p));
+      store_.keep(name, points);
+    }
+    for (const nlohmann::json& p : *store_.find(name)) result.points.push_back(point_from(p));
+  }
+#endif
 
   void compare_references(AccuracyResult& result) {
     const std::string name = key("references");
