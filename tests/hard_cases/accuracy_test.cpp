@@ -162,6 +162,10 @@ TEST(AccuracyStudy, CountedInstructionsRepeatToTheDigitAndGrowWithTheSteps) {
   EXPECT_GT(once, 0);
   EXPECT_EQ(once, again);
   EXPECT_GT(instructions_of(tumbling, bdf2, 1.0 / 60), 1.5 * once);
+  const std::vector<AccuracyScene> all = accuracy_scenes();
+  const auto walk =
+      std::find_if(all.begin(), all.end(), [](const AccuracyScene& s) { return s.name == "tracking"; });
+  EXPECT_GT(instructions_of(*walk, bdf2, 1.0 / 30), once);  // a whole mannequin
 }
 
 TEST(AccuracyStudy, OnlyLevelsOfDetailThatSolveFeelThePush) {
@@ -178,6 +182,7 @@ TEST(AccuracyStudy, OnlyLevelsOfDetailThatSolveFeelThePush) {
     EXPECT_GE(error(solved), 0) << solved;
     EXPECT_LT(error(solved), 0.005) << solved;
   }
+  EXPECT_FALSE(draw_accuracy(results[0], testing::TempDir() + "lod.png"));
 }
 
 }  // namespace
