@@ -37,7 +37,7 @@ multibody::Mechanism mechanism_of(const Figure& f, const Vec3<double>& gravity) 
   std::vector<Vec3<double>> at;
   for (int i = 0; i < f.skeleton.body_count; ++i) {
     const Joint& joint = f.skeleton.joints[i];
-    at.push_back(joint.rest.translation + (joint.parent < 0 ? Vec3<double>(0, 0, 0) : at[joint.parent]));
+    at.emplace_back(joint.rest.translation + (joint.parent < 0 ? Vec3<double>(0, 0, 0) : at[joint.parent]));
     multibody::Body& body = m.bodies.emplace_back();
     body.mass = joint.mass;
     body.center_of_mass = at[i] + joint.center_of_mass;
