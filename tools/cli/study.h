@@ -27,4 +27,11 @@ struct AccuracyCommand {
   convert::Error write_presets(nlohmann::json& dial) const;
 };
 
+struct EffectsCommand {
+  std::string directory = "out/study";
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 }  // namespace sinew::cli
