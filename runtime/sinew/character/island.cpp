@@ -189,8 +189,8 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     Deviation<T>& d = s.deviation[i];
     T offset = T(0), rate = T(0), missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
-    for (int k = 0; k < s.tree.dof_count(i); ++k) missed = std::max(missed, std::abs(from_target[k]));
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
+      missed = std::max(missed, std::abs(from_target[k]));
       s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
       // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
       // would start the next part of the path too fast or too slow by an error of first order.
@@ -247,30 +247,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.report_totals(world.gravity);
 }
 
-/// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
-/// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
-/// meet. Rates that do not belong to the motion (a host that stopped its clip, or knows none) are left out.
-template <class T>
-Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
-  if ((whole - (leaving + arriving) / 2).norm() > whole.norm() / 2) return u * whole;
-  return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
-}
-
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
-    Transform<T> wanted{now.rotation, now.translation};
-    if (fraction < T(1)) {
-      const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
-      const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
-      wanted.rotation = before.rotation *
-                        rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega, frame_ * rate, fraction));
-      wanted.translation =
-          before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
-                                             frame_ * now.velocity, fraction);
-    }
+    const Transform<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction)
+                                                : Transform<T>{now.rotation, now.translation};
     s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }
 }
