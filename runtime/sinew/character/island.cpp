@@ -32,13 +32,14 @@ std::uint64_t mixed(std::uint64_t id) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
+void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders,
+                               int effect_rows) {
   problems_.reserve(trees);
   free_share_.reserve(trees);
   bounce_.reserve(trees, dofs, bodies);
   finder_.reserve(contacts, colliders);
   lagged_.reserve(contacts);
-  solver_.reserve(dofs, bodies, contacts);
+  solver_.reserve(dofs, bodies, contacts, effect_rows);
 }
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
@@ -281,6 +282,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   problems_.clear();
   settings_.h = h;
   common_origin_ = states_[0]->history.place;
+  settings_.common_origin = common_origin_;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
@@ -305,6 +307,8 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, common_origin_, h);
     if (round == 0) {
+      for (CharacterState<T>* s : states_)
+        for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
       sweep<T>(states_, contacts_, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
         if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
@@ -378,11 +382,13 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect.
 template <class T>
 bool IslandStepper<T>::passive() const {
   return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
     if (s->root_is_kinematic() || !s->impulses.empty()) return false;
+    for (const Effect<T>* effect : s->problem.effects)
+      if (!effect->passive()) return false;
     const JointLaw<T>& law = s->problem.law;
     return std::all_of(law.torque_plus.begin(), law.torque_plus.end(), [](T t) { return t <= T(0); }) &&
            std::all_of(law.torque_minus.begin(), law.torque_minus.end(), [](T t) { return t <= T(0); });

@@ -16,7 +16,7 @@ namespace sinew {
 template <class T>
 class IslandStepper {
  public:
-  void reserve(int trees, int dofs, int bodies, int contacts, int colliders);
+  void reserve(int trees, int dofs, int bodies, int contacts, int colliders, int effect_rows);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to

@@ -25,6 +25,8 @@ struct World<T>::Impl {
   std::vector<int> member_indices;
 
   void reserve();
+  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
+  void add_effect_wrenches(CharacterState<T>& state, const Vec3<T>& origin, T h) const;
   bool play(CharacterState<T>& state, T h);
   bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
   bool near_obstacle(const CharacterState<T>& state, T h) const;
@@ -42,18 +44,19 @@ World<T>::~World() = default;
 
 template <class T>
 void World<T>::Impl::reserve() {
-  int dofs = 0, bodies = 0, points = 0, shapes = 0;
+  int dofs = 0, bodies = 0, points = 0, shapes = 0, effect_rows = 0;
   for (const auto& s : states) {
     dofs += s->tree.dofs;
     bodies += s->tree.bodies;
     points += static_cast<int>(s->points.size());
     shapes += static_cast<int>(s->skeleton.colliders.size());
+    for (const auto& effect : s->effects) effect_rows += effect->most_rows();
   }
   // Every point may touch the floor, an obstacle, and a few shapes of others; what does not fit is dropped
   // furthest last.
   const int contacts = points * (2 + static_cast<int>(obstacles.size() + hosts.size())) +
                        std::min(points * shapes, 4 * points + 64);
-  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes);
+  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes, effect_rows);
   lagged.reserve(contacts);
   lagged_new.reserve(contacts);
   group.reserve(states.size());
@@ -154,6 +157,35 @@ void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velo
 }
 
 template <class T>
+Status World<T>::Impl::add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect) {
+  if (!effect) return Status::error(Code::kInvalidArgument, "no effect");
+  if (Status status = effect->attach(state.skeleton, state.tree); !status) return status;
+  state.problem.plan(*effect);
+  state.effects.push_back(std::move(effect));
+  reserve();
+  return {};
+}
+
+template <class T>
+Status World<T>::add_effect(int character, std::unique_ptr<Effect<T>> effect) {
+  return impl_->add_effect(*impl_->states[impl_->characters[character]], std::move(effect));
+}
+
+template <class T>
+Status World<T>::add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect) {
+  return impl_->add_effect(*impl_->states[impl_->props[prop]], std::move(effect));
+}
+
+template <class T>
+void World<T>::remove_effects(int character) {
+  CharacterState<T>& s = *impl_->states[impl_->characters[character]];
+  s.problem.effects.clear();
+  s.problem.effect_rows.clear();
+  s.problem.stiff = false;
+  s.effects.clear();
+}
+
+template <class T>
 void World<T>::park_prop(int index) {
   impl_->states[impl_->props[index]]->parked = true;
 }
@@ -213,7 +245,7 @@ const CharacterReport& World<T>::prop_report(int index) const {
 
 template <class T>
 bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
-  if (a.parked || b.parked) return false;
+  if (a.parked || b.parked || !settings.body_contact) return false;
   const T reach =
       a.radius + b.radius + T(0.1) + 2 * h * (a.history.velocity[0].norm() + b.history.velocity[0].norm());
   return (a.model[0].translation - b.model[0].translation).norm() < reach;
@@ -235,6 +267,23 @@ bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
                      [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
 }
 
+/// What the effects ask of a character on its animation: wrenches of the bodies, and rows of the joints.
+template <class T>
+void World<T>::Impl::add_effect_wrenches(CharacterState<T>& s, const Vec3<T>& origin, T h) const {
+  TreeProblem<T>& p = s.problem;
+  StepSettings<T> step;
+  step.h = h;
+  step.gravity = settings.gravity.template cast<T>();
+  step.common_origin = origin.template cast<double>();
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    p.start[i] = s.local[i];
+    p.local[i] = {s.target[i].rotation, s.target[i].translation};
+  }
+  for (const Effect<T>* effect : p.effects)
+    effect->add_load(effect_pose(step, p), s.motion, {p.force, p.moment});
+  measure_effect_rows(step, p);
+}
+
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
 /// they can't.
 template <class T>
@@ -248,10 +297,13 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
     p.force[j.body] -= j.force / h;
     p.moment[j.body] -= x.cross(j.force / h);
   }
-  if (settings.ground && s.settings.ground_contact)
+  if (settings.ground && settings.ground_support && s.settings.ground_contact)
     share_support<T>(s.tree, p.kinematics, s.points, T(settings.ground_height) - origin.z(), {}, p.force,
                      p.moment);
+  if (!p.effects.empty()) add_effect_wrenches(s, origin, h);
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
+  for (const JointRow<T>& row : p.effect_rows)
+    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)

@@ -26,7 +26,7 @@ struct InnerReport {
 template <class T>
 class InnerProblem {
  public:
-  void reserve(int dofs, int bodies, int contacts);
+  void reserve(int dofs, int bodies, int contacts, int effect_rows = 0);
 
   /// Numbers the unknowns of all trees.
   void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
@@ -98,6 +98,7 @@ class InnerProblem {
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
   std::vector<T> step_, product_, correction_, correction_product_;
   std::vector<T> residual_, preconditioned_, direction_;  ///< conjugate gradients
+  std::vector<T> path_;                                   ///< one row of add_stiffness
   mutable std::vector<Vec3<T>> turn_, slide_;             ///< [body] of displacement()
 };
 

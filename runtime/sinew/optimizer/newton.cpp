@@ -15,8 +15,8 @@ constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evalua
 }  // namespace
 
 template <class T>
-void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts) {
-  inner_.reserve(dofs, bodies, contacts);
+void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts, int effect_rows) {
+  inner_.reserve(dofs, bodies, contacts, effect_rows);
   plain_.reserve(dofs);
   base_.reserve(bodies);
 }
