@@ -12,6 +12,7 @@
 // Every element gives its exact energy and gradient and a positive semidefinite second derivative.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -67,10 +68,10 @@ struct Stencil {
 /// Four nodes; the rest shape enters through the gradients of its linear shape functions.
 template <class T>
 struct Tetrahedron {
-  int node[4] = {0, 0, 0, 0};
-  Vec3<T> slope[4] = {};     ///< 1/m; the deformation gradient is F = Σ xᵢ slopeᵢᵀ
-  T volume = T(0);           ///< m³, at rest
-  T mu = T(0), lame = T(0);  ///< Pa: the paper's μ and λ, see set_material
+  std::array<int, 4> node{};
+  std::array<Vec3<T>, 4> slope{};  ///< 1/m; the deformation gradient is F = Σ xᵢ slopeᵢᵀ
+  T volume = T(0);                 ///< m³, at rest
+  T mu = T(0), lame = T(0);        ///< Pa: the paper's μ and λ, see set_material
 };
 
 template <class T>

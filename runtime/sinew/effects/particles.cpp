@@ -115,7 +115,7 @@ Coupling<T> make_elements(const ParticleBody& body, int state, const Place& plac
   }
   for (const Tetrahedron<double>& e : body.tetrahedra) {
     Tetrahedron<T>& out = made.tetrahedra.emplace_back();
-    std::copy_n(e.node, 4, out.node);
+    out.node = e.node;
     for (int i = 0; i < 4; ++i) out.slope[i] = e.slope[i].template cast<T>();
     out.volume = T(e.volume);
     out.mu = T(e.mu);
