@@ -25,7 +25,7 @@ std::vector<V> places() {
   std::vector<V> all;
   for (int n = 0; n < 60; ++n) {
     const V direction = V(normal(random), normal(random), normal(random)).normalized();
-    all.push_back(direction * (n % 2 ? 0.3 : 0.002));
+    all.emplace_back(direction * (n % 2 ? 0.3 : 0.002));
   }
   return all;
 }
