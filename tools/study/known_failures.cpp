@@ -27,7 +27,7 @@ constexpr KnownFailure kKnownFailures[] = {
     {"orthogonal_hinges", kStart},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"sliding_cube", "first order in the step where it stops"},
-    {"limp_fall_counts", "more passes than the prototype"},
+    {"limp_fall_counts", "more factorisations than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"colliding_figures", "energy gained between figures"},
     {"tumbling_box", "energy rises on edges"},

@@ -21,6 +21,15 @@ bool leaps(const Transform<T>& before, const JointJet<T>& last) {
          std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
 }
 
+/// The last target becomes one that led to `now`.
+template <class T>
+void restart(const Transform<T>& before, const JointJet<T>& now, JointJet<T>& last) {
+  last.rotation = before.rotation;
+  last.translation = before.translation;
+  last.omega = now.omega;
+  last.velocity = now.velocity;
+}
+
 template <class T>
 void turn(const Mat3<T>& by, History<T>& history) {
   for (auto* vectors : {&history.center, &history.center_before, &history.velocity, &history.velocity_before,
@@ -41,10 +50,7 @@ bool carry_over(CharacterState<T>& s, T h) {
   turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
   s.local[0] = before;
-  last.rotation = before.rotation;
-  last.translation = before.translation;
-  last.omega = s.target[0].omega;
-  last.velocity = s.target[0].velocity;
+  restart(before, s.target[0], last);
   s.update_model();
   s.energy_ceiling = std::numeric_limits<double>::infinity();
   return true;
@@ -57,10 +63,7 @@ void meet_cuts(CharacterState<T>& s, T h) {
     JointJet<T>& last = s.target_before[i];
     const Transform<T> before = a_step_ago(now, h);
     if (!leaps(before, last)) continue;
-    last.rotation = before.rotation;
-    last.translation = before.translation;
-    last.omega = now.omega;
-    last.velocity = now.velocity;
+    restart(before, now, last);
     Deviation<T>& d = s.deviation[i];
     if (d.on_animation) continue;
     const Transform<T> wanted{now.rotation, now.translation};

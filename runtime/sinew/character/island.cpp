@@ -35,6 +35,7 @@ template <class T>
 void IslandStepper<T>::reserve(const SolveSize& most, int colliders) {
   problems_.reserve(most.trees);
   free_share_.reserve(most.trees);
+  is_held_.reserve(most.trees);
   bounce_.reserve(most);
   finder_.reserve(most.contacts, colliders);
   lagged_.reserve(most.contacts);
@@ -156,7 +157,7 @@ std::uint64_t IslandStepper<T>::bearing(int tree) const {
 template <class T>
 void IslandStepper<T>::predict_all(Scheme scheme, T h) {
   for (CharacterState<T>* s : states_)
-    predict<T>(s->tree, s->history, scheme, h, common_origin_, s->problem.prediction);
+    predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
 }
 
 template <class T>
@@ -218,9 +219,10 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
   const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
-  const double error =
-      world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h, common_origin_) : 0;
-  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, common_origin_, s.history);
+  const double error = world.accuracy.estimate_error
+                           ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
+                           : 0;
+  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.update_model();
 
@@ -254,7 +256,7 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
     const Transform<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction)
                                                 : Transform<T>{now.rotation, now.translation};
-    s.wanted[i] = s.in_solve(i, wanted, common_origin_);
+    s.wanted[i] = s.in_solve(i, wanted, settings_.common_origin);
   }
 }
 
@@ -264,15 +266,18 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.common_origin = common_origin_ = states_[0]->history.place;
+  settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
-    s->problem.common_origin = s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(common_origin_.cast<T>());
+    s->problem.common_origin =
+        s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(settings_.common_origin.template cast<T>());
     choose_wanted(*s, fraction);
     std::copy_n(s->local.begin(), s->tree.bodies, s->problem.start.begin());
-    if (s->floats) s->problem.start[0].translation = (s->history.place - common_origin_).template cast<T>();
+    if (s->floats)
+      s->problem.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
+    forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time), h);
     choose_unknowns(*s);
     first_guess(*s, h);
@@ -285,9 +290,10 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   mispredicted_ = false;
   for (int round = 0; round < kReleaseRounds; ++round) {
     // Which points can move depends on what was released.
-    for (CharacterState<T>* s : states_)
-      forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, common_origin_, h);
+    if (round > 0)
+      for (CharacterState<T>* s : states_)
+        forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
+    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
     if (round == 0) {
       for (CharacterState<T>* s : states_)
         for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
@@ -337,16 +343,17 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
   const double budget = booked ? energy<T>(states_, world_->gravity) : 0;
   const bool no_pose = !solved.converged && closed && pose_energy() > budget + 1e-3 * std::abs(budget);
-  bool any_held = false;
-  for (CharacterState<T>* s : states_)
-    if (no_pose || !settled(*s)) {
-      hold(*s);
-      any_held = true;
+  const int held_before = held_;
+  is_held_.assign(states_.size(), 0);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (no_pose || !settled(*states_[n])) {
+      hold(*states_[n]);
+      is_held_[n] = 1;
     }
-  if (any_held) {
+  if (held_ > held_before) {
     forget_contacts();
     for (Coupling<T>* c : couplings_) {
-      place_nodes<T>(problems_, common_origin_, *c);
+      place_nodes<T>(problems_, settings_.common_origin, *c);
       measure_elements(*c);
     }
   }
@@ -396,7 +403,8 @@ double IslandStepper<T>::pose_energy() const {
   for (const CharacterState<T>* s : states_) {
     const Vec3<double> gravity = world_->gravity;
     for (int i = 0; i < s->tree.bodies; ++i) {
-      const Vec3<double> center = common_origin_ + s->problem.kinematics.center[i].template cast<double>();
+      const Vec3<double> center =
+          settings_.common_origin + s->problem.kinematics.center[i].template cast<double>();
       sum -= double(s->tree.mass[i]) * gravity.dot(center);
     }
     for (const JointRow<T>& row : s->problem.rows)
@@ -448,7 +456,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
-  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);
+  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
   ++held_;
@@ -460,6 +468,7 @@ template <class T>
 void IslandStepper<T>::forget_contacts() {
   for (Contact<T>& c : contacts_) {
     measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
     c.offset -= std::min(c.gap, T(0));
     c.gap = std::max(c.gap, T(0));
   }

@@ -60,7 +60,7 @@ class IslandStepper {
   bool mispredicted_ = false;  ///< contacts or limits changed under bdf2
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0;
   StepSettings<T> settings_;
-  Vec3<double> common_origin_ = Vec3<double>::Zero();  ///< m, world; of everything that the solve computes
+  std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;
   ContactFinder<T> finder_;
   Bounce<T> bounce_;

@@ -12,7 +12,6 @@ constexpr double kBraking =
 template <class T>
 void sum_subtrees(CharacterState<T>& s) {
   TreeProblem<T>& p = s.problem;
-  forward_kinematics<T>(s.tree, p.start, p.common_origin, p.kinematics);
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Mat3<T>& r = p.kinematics.rotation[i];
     p.composite[i] = {};

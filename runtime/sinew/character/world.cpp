@@ -16,6 +16,7 @@ namespace {
 /// A particle body: its tree, its elements, and where its frame is fixed.
 struct ParticleSet {
   ParticleBody body;
+  std::vector<int> bodies;  ///< see bodies_of_nodes
   int state = 0, coupling = 0;
   Place place;
 };
@@ -263,7 +264,7 @@ Status World<T>::Impl::find(const Anchor& anchor, Place& out) const {
       if (anchor.joint < 0 || anchor.joint >= static_cast<int>(set.body.nodes.size()))
         return Status::error(Code::kInvalidArgument, "no such particle to fix to", anchor.joint);
       out.state = set.state;
-      out.body = bodies_of_nodes(set.body)[anchor.joint];
+      out.body = set.bodies[anchor.joint];
       if (out.body < 0) return Status::error(Code::kInvalidArgument, "the particle is fixed", anchor.joint);
       break;
     }
@@ -333,6 +334,7 @@ template <class T>
 int World<T>::add_particles(const ParticleBody& body, Status& status) {
   ParticleSet set;
   set.body = body;
+  set.bodies = bodies_of_nodes(body);
   status = check(body);
   if (status) status = impl_->find(body.frame, set.place);
   if (!status) return -1;
@@ -363,11 +365,10 @@ void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
   CharacterState<T>& s = *impl_->states[set.state];
   const Transform<T> frame = impl_->frame_of(set.place).template cast<T>();
   s.target[0].translation = frame.translation;
-  int body = 0;
-  for (const ParticleNode& node : set.body.nodes) {
-    if (node.fixed) continue;
-    JointJet<T>& jet = s.target[++body];
-    jet.translation = frame.rotation * Vec3<T>(node.position.template cast<T>());
+  for (std::size_t n = 0; n < set.bodies.size(); ++n) {
+    if (set.bodies[n] < 0) continue;
+    JointJet<T>& jet = s.target[set.bodies[n]];
+    jet.translation = frame.rotation * Vec3<T>(set.body.nodes[n].position.template cast<T>());
     jet.velocity = velocity;
   }
   s.reset_to_target(Vec3<T>::Zero());
@@ -376,19 +377,15 @@ void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
 template <class T>
 Vec3<T> World<T>::particle(int index, int node) const {
   const ParticleSet& set = impl_->particles[index];
-  int body = set.body.nodes[node].fixed ? -1 : 1;
-  for (int n = 0; n < node && body > 0; ++n) body += !set.body.nodes[n].fixed;
-  if (body > 0) return impl_->states[set.state]->model[body].translation;
+  if (set.bodies[node] >= 0) return impl_->states[set.state]->model[set.bodies[node]].translation;
   return Vec3<double>(impl_->frame_of(set.place) * set.body.nodes[node].position).template cast<T>();
 }
 
 template <class T>
 Vec3<T> World<T>::particle_velocity(int index, int node) const {
   const ParticleSet& set = impl_->particles[index];
-  if (set.body.nodes[node].fixed) return Vec3<T>::Zero();
-  int body = 1;
-  for (int n = 0; n < node; ++n) body += !set.body.nodes[n].fixed;
-  return impl_->states[set.state]->history.velocity[body];
+  if (set.bodies[node] < 0) return Vec3<T>::Zero();
+  return impl_->states[set.state]->history.velocity[set.bodies[node]];
 }
 
 template <class T>
@@ -494,7 +491,7 @@ bool World<T>::Impl::play(CharacterState<T>& s, T h) {
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
-      if (p.law.load(s.tree, i, dof, p.gradient) > T(1)) return false;
+      if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
   for (int i = 0; i < s.tree.bodies; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
       s.torque[dof] = p.gradient[dof];

@@ -43,10 +43,8 @@ typename Buoyancy<T>::Floating Buoyancy<T>::floating(const FlowSpot<T>& spot,
   f.level = T(settings.level - pose.common_origin.z());
   f.radius = spot.round + (turned.row(2) * spot.extent).cwiseAbs().sum();
   f.weight = T(settings.density * settings.volume) * pose.gravity.norm() * spot.volume;
-  f.drag.start = pose.point(spot.body, spot.local);
-  f.drag.flow = settings.flow.template cast<T>();
-  f.drag.spread = turned * spot.spread * turned.transpose();
-  f.drag.half_density = T(settings.density / 2) * share((f.level - f.drag.start.z()) / f.radius);
+  f.drag = drag_of(spot, pose, settings.flow, settings.density);
+  f.drag.half_density *= share((f.level - f.drag.start.z()) / f.radius);
   return f;
 }
 

@@ -60,18 +60,11 @@ void make_grid(double width, double height, int columns, int rows, ClothSettings
 }
 
 ParticleBody make_cloth(const ClothSettings& s) {
-  ParticleBody body;
-  body.name = "cloth";
-  body.frame = s.frame;
-  body.radius = s.radius;
-  body.friction = s.friction;
-  body.damping = s.damping;
+  ParticleBody body = particle_body("cloth", s);
   for (const Vec3<double>& x : s.positions) body.nodes.push_back({x, 0, false});
   std::map<std::pair<int, int>, Edge> edges;
-  const int count = static_cast<int>(s.positions.size());
   for (const std::array<int, 3>& t : s.triangles) {
-    if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= count)
-      return {};  // no nodes: refused
+    if (!nodes_exist(t, s.positions.size())) return {};  // no nodes: refused
     const Vec3<double>& x = s.positions[t[0]];
     const double area = (s.positions[t[1]] - x).cross(s.positions[t[2]] - x).norm() / 2;
     for (int i = 0; i < 3; ++i) {
@@ -82,10 +75,8 @@ ParticleBody make_cloth(const ClothSettings& s) {
       ++edge.triangles;
     }
   }
-  for (const int node : s.fixed) {
-    if (node < 0 || node >= count) return {};
-    body.nodes[node].fixed = true;
-  }
+  if (!nodes_exist(s.fixed, s.positions.size())) return {};
+  for (const int node : s.fixed) body.nodes[node].fixed = true;
   for (const auto& [ends, edge] : edges) {
     Stencil<double>& e = body.stencils.emplace_back();
     e.node[0] = ends.first;

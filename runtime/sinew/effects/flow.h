@@ -58,6 +58,15 @@ struct Drag {
   }
 };
 
+/// The drag of a spot that is where `pose` has it, in a fluid that streams with `flow`, kg/m³ and m/s.
+template <class T>
+Drag<T> drag_of(const FlowSpot<T>& spot, const EffectPose<T>& pose, const Vec3<double>& flow,
+                double density) {
+  const Mat3<T>& turned = pose.kinematics.rotation[spot.body];
+  return {pose.point(spot.body, spot.local), flow.template cast<T>(),
+          turned * spot.spread * turned.transpose(), T(density / 2)};
+}
+
 extern template Status flow_spots<float>(const Skeleton&, std::span<const std::string>,
                                          std::vector<FlowSpot<float>>&);
 extern template Status flow_spots<double>(const Skeleton&, std::span<const std::string>,

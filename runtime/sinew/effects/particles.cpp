@@ -16,6 +16,11 @@ Status check_nodes(const Element& element, int used, int nodes, int index) {
 
 }  // namespace
 
+bool nodes_exist(std::span<const int> nodes, std::size_t count) {
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [&](int n) { return n >= 0 && static_cast<std::size_t>(n) < count; });
+}
+
 Status check(const ParticleBody& body) {
   const int count = static_cast<int>(body.nodes.size());
   bool moves = false;

@@ -5,6 +5,7 @@
 // was made in, so it is held exactly and pulls back on that body. See particles.md.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,21 @@ struct ParticleBody {
   bool meets_frame = false;  ///< may touch the body whose frame it was made in
   bool meets_itself = false;
 };
+
+/// Without nodes: what the settings of all kinds have in common.
+template <class Settings>
+ParticleBody particle_body(const char* name, const Settings& s) {
+  ParticleBody body;
+  body.name = name;
+  body.frame = s.frame;
+  body.radius = s.radius;
+  body.friction = s.friction;
+  body.damping = s.damping;
+  return body;
+}
+
+/// Whether all of these are nodes of so many.
+bool nodes_exist(std::span<const int> nodes, std::size_t count);
 
 /// What is wrong with it: masses, indices, finiteness. `Status::index` is the node or element at fault.
 Status check(const ParticleBody& body);

@@ -32,17 +32,10 @@ void make_block(const Vec3<double>& size, const std::array<int, 3>& cells, SoftT
 }
 
 ParticleBody make_soft_tissue(const SoftTissueSettings& s) {
-  ParticleBody body;
-  body.name = "tissue";
-  body.frame = s.frame;
-  body.radius = s.radius;
-  body.friction = s.friction;
-  body.damping = s.damping;
+  ParticleBody body = particle_body("tissue", s);
   for (const Vec3<double>& x : s.positions) body.nodes.push_back({x, 0, false});
-  const int count = static_cast<int>(s.positions.size());
   for (const std::array<int, 4>& t : s.tetrahedra) {
-    if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= count)
-      return {};  // no nodes: refused
+    if (!nodes_exist(t, s.positions.size())) return {};  // no nodes: refused
     Tetrahedron<double>& e = body.tetrahedra.emplace_back();
     Vec3<double> corners[4];
     for (int i = 0; i < 4; ++i) {
@@ -53,10 +46,8 @@ ParticleBody make_soft_tissue(const SoftTissueSettings& s) {
     set_material(s.young, s.poisson, e);
     for (const int i : t) body.nodes[i].mass += s.density * e.volume / 4;
   }
-  for (const int node : s.fixed) {
-    if (node < 0 || node >= count) return {};
-    body.nodes[node].fixed = true;
-  }
+  if (!nodes_exist(s.fixed, s.positions.size())) return {};
+  for (const int node : s.fixed) body.nodes[node].fixed = true;
   return body;
 }
 

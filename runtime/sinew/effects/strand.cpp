@@ -9,12 +9,7 @@ constexpr double kGravity = 9.81;  ///< m/s², of the weight that `stretch` spea
 
 ParticleBody make_strand(const StrandSettings& s) {
   if (!(s.direction.norm() > 0)) return {};  // no nodes: refused
-  ParticleBody body;
-  body.name = "strand";
-  body.frame = s.frame;
-  body.radius = s.radius;
-  body.friction = s.friction;
-  body.damping = s.damping;
+  ParticleBody body = particle_body("strand", s);
   const double segment = s.length / s.particles;
   const Vec3<double> along = segment * s.direction.normalized();
   const int first = s.clamped ? -1 : 0;  // of the fixed nodes

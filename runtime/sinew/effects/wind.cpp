@@ -13,14 +13,8 @@ Status Wind<T>::attach(const Skeleton& skeleton, const Tree<T>& /*tree*/) {
 
 template <class T>
 void Wind<T>::begin_step(const EffectPose<T>& start) {
-  for (std::size_t n = 0; n < spots_.size(); ++n) {
-    const FlowSpot<T>& spot = spots_[n];
-    const Mat3<T>& turned = start.kinematics.rotation[spot.body];
-    drag_[n].start = start.point(spot.body, spot.local);
-    drag_[n].flow = settings.velocity.template cast<T>();
-    drag_[n].spread = turned * spot.spread * turned.transpose();
-    drag_[n].half_density = T(settings.density / 2);
-  }
+  for (std::size_t n = 0; n < spots_.size(); ++n)
+    drag_[n] = drag_of(spots_[n], start, settings.velocity, settings.density);
 }
 
 template <class T>
@@ -47,13 +41,9 @@ void Wind<T>::add_curvature(const EffectPose<T>& pose, const Curvature<T>& out) 
 template <class T>
 void Wind<T>::add_load(const EffectPose<T>& pose, const Motion<T>& motion, const Wrenches<T>& out) const {
   for (const FlowSpot<T>& spot : spots_) {
-    const Vec3<T> x = pose.point(spot.body, spot.local);
-    const Mat3<T>& turned = pose.kinematics.rotation[spot.body];
-    Drag<T> drag;
-    drag.half_density = T(settings.density / 2);
-    drag.spread = turned * spot.spread * turned.transpose();
-    const Vec3<T> slip = velocity_at(pose, motion, spot.body, x) - settings.velocity.template cast<T>();
-    out.add(spot.body, x, drag.gradient(slip));
+    const Drag<T> drag = drag_of(spot, pose, settings.velocity, settings.density);
+    const Vec3<T> slip = velocity_at(pose, motion, spot.body, drag.start) - drag.flow;
+    out.add(spot.body, drag.start, drag.gradient(slip));
   }
 }
 

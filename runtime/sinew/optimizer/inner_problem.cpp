@@ -339,6 +339,7 @@ double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
     for (int dof = 0; dof < p->tree->dofs; ++dof)
       if (const int k = unknown(*p, dof); k >= 0) inner_gradient_[k] = p->gradient[dof];
   }
+  if (n != joint_rows_.size()) return kNone;
   if (same) {
     for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
     factor_.solve(step_);

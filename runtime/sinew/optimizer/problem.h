@@ -1,6 +1,7 @@
 // The energy of one tree over one step: inertia, gravity, pushes and the scalar energies of its joints.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,6 +30,11 @@ struct JointLaw {
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
   /// Muscle limit of a degree of freedom on the side of `torque`.
   T limit(int dof, T torque) const { return torque >= T(0) ? torque_plus[dof] : torque_minus[dof]; }
+  /// Whether `torque` [dof] is more than the muscle of a degree of freedom can give. Cheaper than load().
+  bool overloaded(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
+    return ellipsoidal[body] ? load(tree, body, dof, torque) > T(1)
+                             : std::abs(torque[dof]) > limit(dof, torque[dof]);
+  }
   /// Share of its limit that a muscle gives for `torque` [dof]; 0 where there is none. An ellipsoid's three
   /// share one.
   T load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const;
