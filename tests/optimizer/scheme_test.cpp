@@ -36,7 +36,7 @@ struct FreeBody {
   FreeBody(const V& omega, const V& velocity, const V& gravity) {
     accuracy.tolerance = 1e-10;
     settings.gravity = gravity;
-    solver.reserve(6, 1, 0);
+    solver.reserve(problem.room);
     problem.free.assign(6, 1);
     Motion<double> motion(tree);
     JointJet<double> jet;

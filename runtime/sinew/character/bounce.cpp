@@ -29,18 +29,19 @@ void pretend_flight(History<T>& history, const Vec3<T>& gravity, T h) {
 }  // namespace
 
 template <class T>
-void Bounce<T>::reserve(int trees, int dofs, int bodies) {
+void Bounce<T>::reserve(const SolveRoom& room) {
+  const int dofs = room.dofs;
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs);
-  mass_.reserve(dofs);
-  first_.reserve(trees);
+  axes_.reserve(dofs, room.path_entries);
+  mass_.reserve(dofs, room.path_entries);
+  first_.reserve(room.trees);
   impacts_.reserve(kMost);
   rows_.reserve(std::size_t(kMost) * dofs);
   answers_.reserve(std::size_t(kMost) * dofs);
   delassus_.reserve(kMost * kMost);
   change_.reserve(dofs);
-  turn_.reserve(bodies);
-  slide_.reserve(bodies);
+  turn_.reserve(room.bodies);
+  slide_.reserve(room.bodies);
 }
 
 template <class T>

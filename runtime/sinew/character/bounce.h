@@ -18,7 +18,7 @@ namespace sinew {
 template <class T>
 class Bounce {
  public:
-  void reserve(int trees, int dofs, int bodies);
+  void reserve(const SolveRoom& room);
 
   /// Whether any contact both bounces and closed in this step.
   static bool possible(std::span<const Contact<T>> contacts);

@@ -61,13 +61,30 @@ void meet_cuts(CharacterState<T>& s, T h) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(int trees, int dofs, int bodies, int contacts, int colliders) {
-  problems_.reserve(trees);
-  free_share_.reserve(trees);
-  bounce_.reserve(trees, dofs, bodies);
-  finder_.reserve(contacts, colliders);
-  lagged_.reserve(contacts);
-  solver_.reserve(dofs, bodies, contacts);
+void IslandStepper<T>::reserve(const SolveRoom& room) {
+  problems_.reserve(room.trees);
+  free_share_.reserve(room.trees);
+  bounce_.reserve(room);
+  finder_.reserve(room);
+  lagged_.reserve(room.contacts);
+  room_ = room.contacts;
+  solver_.reserve(room);
+}
+
+/// Of all the world's forces, those of the island's own features: identities begin with the tree's number.
+template <class T>
+void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
+  lagged_.clear();
+  std::ptrdiff_t room = 0;
+  for (const CharacterState<T>* s : states_) room += s->problem.room.contacts;
+  room = std::min(room, room_);
+  const auto before = [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; };
+  for (const int index : indices_) {
+    const auto begin = std::lower_bound(lagged.begin(), lagged.end(), first_contact_id(index), before);
+    const auto end = std::lower_bound(begin, lagged.end(), first_contact_id(index + 1), before);
+    const auto count = std::min(end - begin, room - std::ptrdiff_t(lagged_.size()));
+    lagged_.insert(lagged_.end(), begin, begin + count);
+  }
 }
 
 /// Muscles pull to the animation, or along a critically damped way back to it:
@@ -466,15 +483,15 @@ int IslandStepper<T>::parts_of(T h) const {
 }
 
 template <class T>
-void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
-                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out) {
+int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
+                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                           std::span<const LaggedForce<T>> lagged, std::span<LaggedForce<T>> lagged_out) {
   world_ = &world;
   surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
   frame_ = h;
-  lagged_.assign(lagged.begin(), lagged.end());
+  choose_lagged(lagged);
   free_share_.assign(states.size(), T(1));
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
@@ -496,7 +513,9 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
     r.damped = damped_;
     r.held = held_;
   }
-  lagged_out.insert(lagged_out.end(), lagged_.begin(), lagged_.end());
+  const std::size_t count = std::min(lagged_.size(), lagged_out.size());
+  std::copy_n(lagged_.begin(), count, lagged_out.begin());
+  return static_cast<int>(count);
 }
 
 template class IslandStepper<float>;

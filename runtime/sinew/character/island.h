@@ -12,23 +12,25 @@
 
 namespace sinew {
 
-/// Working memory of island steps; one per world, sized when characters are added.
+/// Working memory of island steps; one per worker, sized when characters are added. Keeps nothing from one
+/// step to the next.
 template <class T>
 class IslandStepper {
  public:
-  void reserve(int trees, int dofs, int bodies, int contacts, int colliders);
+  void reserve(const SolveRoom& room);
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
-  /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are appended to
-  /// `lagged_out`.
-  void step(const WorldSettings& world, const Surroundings& surroundings, T h,
-            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-            std::span<const LaggedForce<T>> lagged, std::vector<LaggedForce<T>>& lagged_out);
+  /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are written to
+  /// `lagged_out`, as many as it takes. Returns how many.
+  int step(const WorldSettings& world, const Surroundings& surroundings, T h,
+           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+           std::span<const LaggedForce<T>> lagged, std::span<LaggedForce<T>> lagged_out);
 
  private:
   int parts_of(T h) const;
   void advance_part(T begin, T end, int splits_left);
   SolveReport attempt(T h, T fraction);
+  void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
   void hold(CharacterState<T>& state);
@@ -51,6 +53,7 @@ class IslandStepper {
   std::span<const int> indices_;
   T frame_ = T(0);                      ///< s, the whole step
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
+  std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
   SolveReport total_;
   bool all_converged_ = true;
   bool mispredicted_ = false;  ///< contacts or limits changed under bdf2

@@ -6,35 +6,7 @@
 namespace sinew {
 
 template <class T>
-CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
-    : skeleton(s),
-      tree(skeleton),
-      settings(c),
-      target(s.joints.size()),
-      target_before(s.joints.size()),
-      local(s.joints.size()),
-      model(s.joints.size()),
-      rate(s.body_count),
-      rate_before(s.body_count),
-      deviation(s.body_count),
-      joint_strength(s.body_count, T(1)),
-      torque(tree.dofs, T(0)),
-      load(tree.dofs, T(0)),
-      limit(tree.dofs, T(0)),
-      unknown(tree.dofs, 0),
-      problem(tree, skeleton),
-      guessed(tree),
-      history(tree.bodies),
-      motion(tree),
-      wanted(tree.bodies) {
-  total_mass = skeleton.total_mass();
-  impulses.reserve(64);
-  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
-    const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
-    target[i].rotation = rest.rotation;
-    target[i].translation = rest.translation;
-  }
-  target_before = target;
+Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
   for (std::size_t n = 0; n < skeleton.colliders.size(); ++n) {
     Collider on_body = skeleton.colliders[n];
     while (on_body.joint >= skeleton.body_count) {
@@ -50,18 +22,62 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
+  std::vector<Transform<T>> local;
+  for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
+  Kinematics<T> rest(tree);
+  forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
+  choose_self_pairs(rest);
+  for (const ContactPoint<T>& p : points) {
+    const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
+    radius = std::max(radius, (at - rest.origin[0]).norm() + p.radius);
+  }
+}
+
+template <class T>
+CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c)
+    : rig(std::move(of)),
+      skeleton(rig->skeleton),
+      tree(rig->tree),
+      total_mass(rig->total_mass),
+      colliders(rig->colliders),
+      bound_center(rig->bound_center),
+      bound_radius(rig->bound_radius),
+      points(rig->points),
+      first_point(rig->first_point),
+      may_touch(rig->may_touch),
+      radius(rig->radius),
+      settings(c),
+      target(skeleton.joints.size()),
+      target_before(skeleton.joints.size()),
+      local(skeleton.joints.size()),
+      model(skeleton.joints.size()),
+      rate(tree.bodies),
+      rate_before(tree.bodies),
+      deviation(tree.bodies),
+      joint_strength(tree.bodies, T(1)),
+      torque(tree.dofs, T(0)),
+      load(tree.dofs, T(0)),
+      limit(tree.dofs, T(0)),
+      unknown(tree.dofs, 0),
+      problem(tree, skeleton),
+      guessed(tree),
+      history(tree.bodies),
+      motion(tree),
+      wanted(tree.bodies) {
+  impulses.reserve(64);
+  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
+    const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
+    target[i].rotation = rest.rotation;
+    target[i].translation = rest.translation;
+  }
   report.dofs = tree.dofs;
   refresh_limits();
   reset_to_target(Vec3<T>::Zero());
-  choose_self_pairs();
-  radius = T(0.1);
-  for (const ContactPoint<T>& p : points)
-    radius = std::max(radius, (model[p.body] * p.local - model[0].translation).norm() + p.radius);
 }
 
 /// Colliders of one body, of neighbours, and those that overlap at rest never touch: joints hold them.
 template <class T>
-void CharacterState<T>::choose_self_pairs() {
+void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
   const int count = static_cast<int>(colliders.size());
   may_touch.assign(std::size_t(count) * count, 0);
   const auto moving = [&](int body) {  // the body itself, or what it is fixed to
@@ -86,7 +102,7 @@ void CharacterState<T>::choose_self_pairs() {
         c.shape = colliders[b].shape;
         c.size = colliders[b].size.template cast<T>();
         c.shape_pose = colliders[b].local.template cast<T>();
-        measure<T>(problem.kinematics, &problem.kinematics, c);
+        measure<T>(rest, &rest, c);
         apart = c.gap > T(clearance);
       }
       may_touch[std::size_t(a) * count + b] = apart;
@@ -195,6 +211,8 @@ int CharacterState<T>::body_of(int joint) const {
   return joint;
 }
 
+template struct Rig<float>;
+template struct Rig<double>;
 template struct CharacterState<float>;
 template struct CharacterState<double>;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "sinew/character/world.h"
@@ -21,14 +22,44 @@ struct Deviation {
   bool released = false;      ///< was an unknown in the last step
 };
 
+/// What all characters of one skeleton share.
 template <class T>
-struct CharacterState {
+struct Rig {
   Skeleton skeleton;
   Tree<T> tree;
+  double total_mass = 0;              ///< kg
+  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
+  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
+  std::vector<T> bound_radius;
+  std::vector<ContactPoint<T>> points;
+  std::vector<int> first_point;         ///< [collider + 1] into points
+  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
+  T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
+
+  explicit Rig(const Skeleton& skeleton);
+
+ private:
+  void choose_self_pairs(const Kinematics<T>& rest);
+};
+
+template <class T>
+struct CharacterState {
+  std::shared_ptr<const Rig<T>> rig;
+  const Skeleton& skeleton;  ///< these are the rig's
+  const Tree<T>& tree;
+  const double total_mass;  ///< kg
+  const std::vector<Collider>& colliders;
+  const std::vector<Vec3<T>>& bound_center;
+  const std::vector<T>& bound_radius;
+  const std::vector<ContactPoint<T>>& points;
+  const std::vector<int>& first_point;
+  const std::vector<std::uint8_t>& may_touch;
+  const T radius;
+
   CharacterSettings settings;
   bool is_prop = false;
-  bool parked = false;    ///< a prop out of the world
-  double total_mass = 0;  ///< kg
+  bool parked = false;   ///< out of the world
+  bool crowded = false;  ///< near one whom it was not solved together with: the island was full
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
@@ -46,13 +77,6 @@ struct CharacterState {
   Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;
-  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
-  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
-  std::vector<T> bound_radius;
-  std::vector<ContactPoint<T>> points;
-  std::vector<int> first_point;         ///< [collider + 1] into points
-  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
-  T radius = T(1);                      ///< m, from the root's origin to the furthest collider at rest
   std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
@@ -61,7 +85,7 @@ struct CharacterState {
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;
 
-  CharacterState(const Skeleton& s, const CharacterSettings& c);
+  CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c);
 
   /// N/m of one contact point: the weight of the heaviest that it may have to bear (kg, of those near, at
   /// most a hundred times its own) sinks it by the accuracy's depth.
@@ -87,10 +111,11 @@ struct CharacterState {
   bool fully_driven() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
-  void choose_self_pairs();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 
+extern template struct Rig<float>;
+extern template struct Rig<double>;
 extern template struct CharacterState<float>;
 extern template struct CharacterState<double>;
 

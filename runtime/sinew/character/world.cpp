@@ -1,63 +1,137 @@
 #include "sinew/character/world.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "sinew/character/island.h"
+#include "sinew/character/islands.h"
+#include "sinew/character/playback.h"
 #include "sinew/character/snapshot.h"
-#include "sinew/effects/support.h"
 
 namespace sinew {
+namespace {
+
+constexpr int kMostWorkers = 256;
+constexpr int kMostObstacles = 6;  ///< that one character touches at a time, for the room of its contacts
+constexpr int kSmallIsland = 8;    ///< characters that any worker has memory for; one worker has for all
+
+SolveRoom with(SolveRoom a, const SolveRoom& b) {
+  return a += b;
+}
+
+/// Room for so many, with some to spare where it must be moved.
+template <class V>
+void grow(std::vector<V>& v, int count) {
+  const std::size_t needed = static_cast<std::size_t>(count);
+  if (needed > v.capacity()) v.reserve(std::max(needed, v.capacity() + v.capacity() / 2));
+}
+
+}  // namespace
 
 template <class T>
 struct World<T>::Impl {
+  /// What one thread works in.
+  struct Worker {
+    IslandStepper<T> stepper;
+    std::vector<CharacterState<T>*> members;
+  };
+
   WorldSettings settings;
+  std::vector<std::shared_ptr<const Rig<T>>> rigs;
   std::vector<std::unique_ptr<CharacterState<T>>>
       states;                          ///< characters and props in the order they were added
   std::vector<int> characters, props;  ///< into states
   std::vector<Collider> obstacles;
   std::vector<HostObstacle> hosts;
-  IslandStepper<T> stepper;
-  std::vector<LaggedForce<T>> lagged, lagged_new;
-  std::vector<int> group;  ///< [state] island, or -1 where the state is on its own animation
-  std::vector<CharacterState<T>*> members;
-  std::vector<int> member_indices;
+  std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
+  std::vector<std::unique_ptr<Worker>> workers;
+  SolveRoom all, largest;  ///< sum and maximum over the states
+  SolveRoom share;         ///< most that a state needs per degree of freedom
+  SolveRoom small_room;    ///< of an island that any worker can step; the first one can step all
 
-  void reserve();
-  bool play(CharacterState<T>& state, T h);
-  bool near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const;
-  bool near_obstacle(const CharacterState<T>& state, T h) const;
-  void step_once(T h);
+  // Of the present step
+  T h = T(0);
+  Islands<T> islands;
+  std::vector<int> large, heavy, light;  ///< islands: for the first worker alone, to be solved, to be played
+  std::vector<LaggedForce<T>> lagged_new;
+  std::vector<int> first_lagged, lagged_count;  ///< [island] of its part of lagged_new
+  std::atomic<int> next_heavy{0}, next_light{0};
+
+  Status add(const Skeleton& skeleton, const CharacterSettings& character);
+  SolveRoom room_of_rig(const Rig<T>& rig) const;
+  void reserve(CharacterState<T>* added);
+  bool near_obstacle(const CharacterState<T>& state) const;
+  void step_island(int island, Worker& worker);
+  std::span<LaggedForce<T>> lagged_of(int island) {
+    return std::span(lagged_new)
+        .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
+  }
+  static void work(void* context, int index);
+  void step_all(T step, const ParallelFor& parallel_for);
   MovingParts<T> moving() { return {states, lagged}; }
 };
 
 template <class T>
 World<T>::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
+  for (int n = 0; n < std::clamp(settings.workers, 1, kMostWorkers); ++n)
+    impl_->workers.push_back(std::make_unique<typename Impl::Worker>());
 }
 
 template <class T>
 World<T>::~World() = default;
 
 template <class T>
-void World<T>::Impl::reserve() {
-  int dofs = 0, bodies = 0, points = 0, shapes = 0;
-  for (const auto& s : states) {
-    dofs += s->tree.dofs;
-    bodies += s->tree.bodies;
-    points += static_cast<int>(s->points.size());
-    shapes += static_cast<int>(s->skeleton.colliders.size());
+SolveRoom World<T>::Impl::room_of_rig(const Rig<T>& rig) const {
+  // Every point may be near the floor, an obstacle, and a few shapes of others.
+  const int points = static_cast<int>(rig.points.size());
+  const int around = std::min(static_cast<int>(obstacles.size() + hosts.size()), kMostObstacles);
+  return room_of(rig.tree, points * (6 + around) + 64, 2 * points + 16,
+                 static_cast<int>(rig.colliders.size()));
+}
+
+/// Memory for everything that the next step may need, after one more state, or (null) with what is around
+/// the states changed.
+template <class T>
+void World<T>::Impl::reserve(CharacterState<T>* added) {
+  const auto count_in = [&](CharacterState<T>& s) {
+    s.problem.room = room_of_rig(*s.rig);
+    all = with(all, s.problem.room);
+    share = larger(share, s.problem.room.per(std::max(s.tree.dofs, 1)));
+    largest = larger(largest, s.problem.room);
+  };
+  if (added) {
+    count_in(*added);
+  } else {
+    all = share = largest = {};
+    for (const auto& s : states) count_in(*s);
   }
-  // Every point may touch the floor, an obstacle, and a few shapes of others; what does not fit is dropped
-  // furthest last.
-  const int contacts = points * (2 + static_cast<int>(obstacles.size() + hosts.size())) +
-                       std::min(points * shapes, 4 * points + 64);
-  stepper.reserve(static_cast<int>(states.size()), dofs, bodies, contacts, shapes);
-  lagged.reserve(contacts);
-  lagged_new.reserve(contacts);
-  group.reserve(states.size());
-  members.reserve(states.size());
-  member_indices.reserve(states.size());
+  // An island has so many degrees of freedom at most, perhaps of those that need most of everything else.
+  const SolveRoom most = smaller(all, with(share.times(settings.island_dofs), largest));
+  small_room = workers.size() > 1 ? smaller(most, largest.times(kSmallIsland)) : most;
+  for (std::size_t n = 0; n < workers.size(); ++n) {
+    const SolveRoom& room = n == 0 ? most : small_room;
+    workers[n]->stepper.reserve(room);
+    workers[n]->members.reserve(room.trees);
+  }
+  for (auto* v : {&lagged, &lagged_new}) grow(*v, all.loaded);
+  const auto count = states.capacity();
+  islands.reserve(static_cast<int>(count));
+  for (auto* v : {&large, &heavy, &light}) v->reserve(count);
+  for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
+}
+
+template <class T>
+Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& character) {
+  if (states.size() >= kMostTrees)
+    return Status::error(Code::kOutOfRange, "a world has room for 65534 characters and props");
+  auto same =
+      std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
+  if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
+  states.push_back(std::make_unique<CharacterState<T>>(*same, character));
+  reserve(states.back().get());
+  return {};
 }
 
 template <class T>
@@ -69,9 +143,9 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
     status = Status::error(Code::kInvalidArgument, "strength and root drive limits must be ≥ 0");
     return -1;
   }
-  impl_->states.push_back(std::make_unique<CharacterState<T>>(skeleton, settings));
+  status = impl_->add(skeleton, settings);
+  if (!status) return -1;
   impl_->characters.push_back(static_cast<int>(impl_->states.size()) - 1);
-  impl_->reserve();
   return static_cast<int>(impl_->characters.size()) - 1;
 }
 
@@ -127,11 +201,11 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
-  impl_->states.push_back(std::make_unique<CharacterState<T>>(body, limp));
+  status = impl_->add(body, limp);
+  if (!status) return -1;
   impl_->states.back()->is_prop = true;
   impl_->states.back()->refresh_limits();
   impl_->props.push_back(static_cast<int>(impl_->states.size()) - 1);
-  impl_->reserve();
   const int index = static_cast<int>(impl_->props.size()) - 1;
   set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
            prop.angular_velocity.template cast<T>());
@@ -163,7 +237,7 @@ Status World<T>::add_obstacle(const Collider& obstacle) {
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
   impl_->obstacles.push_back(obstacle);
-  impl_->reserve();
+  impl_->reserve(nullptr);
   return {};
 }
 
@@ -176,7 +250,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
   if (!std::isfinite(probe.distance) || std::abs(probe.normal.norm() - 1) > 1e-6)
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
   impl_->hosts.push_back({&shape, friction, restitution});
-  impl_->reserve();
+  impl_->reserve(nullptr);
   return {};
 }
 
@@ -210,17 +284,9 @@ const CharacterReport& World<T>::prop_report(int index) const {
   return impl_->states[impl_->props[index]]->report;
 }
 
-template <class T>
-bool World<T>::Impl::near(const CharacterState<T>& a, const CharacterState<T>& b, T h) const {
-  if (a.parked || b.parked) return false;
-  const T reach =
-      a.radius + b.radius + T(0.1) + 2 * h * (a.history.velocity[0].norm() + b.history.velocity[0].norm());
-  return (a.model[0].translation - b.model[0].translation).norm() < reach;
-}
-
 /// Whether an obstacle may be in the way of the animation.
 template <class T>
-bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
+bool World<T>::Impl::near_obstacle(const CharacterState<T>& s) const {
   if (!s.settings.ground_contact) return false;
   const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.model[0].translation.template cast<double>();
@@ -234,101 +300,79 @@ bool World<T>::Impl::near_obstacle(const CharacterState<T>& s, T h) const {
                      [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
 }
 
-/// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
-/// they can't.
+/// Steps one island: plays it where that will do, else solves.
 template <class T>
-bool World<T>::Impl::play(CharacterState<T>& s, T h) {
-  TreeProblem<T>& p = s.problem;
-  const Vec3<T> origin = s.model[0].translation;
-  inertial_wrenches<T>(s.tree, s.target, settings.gravity.template cast<T>(), origin, p.kinematics, s.motion,
-                       p.force, p.moment);
-  for (const ExternalForce<T>& j : s.impulses) {
-    const Vec3<T> x = p.kinematics.origin[j.body] + p.kinematics.rotation[j.body] * j.local;
-    p.force[j.body] -= j.force / h;
-    p.moment[j.body] -= x.cross(j.force / h);
-  }
-  if (settings.ground && s.settings.ground_contact)
-    share_support<T>(s.tree, p.kinematics, s.points, T(settings.ground_height) - origin.z(), {}, p.force,
-                     p.moment);
-  project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
-  const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
-  for (int dof = s.root_is_kinematic() ? root_dofs : 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    if (std::abs(torque) > limit) return false;
-  }
-  for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    s.torque[dof] = torque;
-    s.limit[dof] = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = s.limit[dof] > T(0) && std::isfinite(s.limit[dof]) ? std::abs(torque) / s.limit[dof] : T(0);
-    s.unknown[dof] = 0;
-  }
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T> before = s.local[i];
-    s.local[i] = {s.target[i].rotation, s.target[i].translation};
-    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
-    for (T& r : s.rate[i]) r /= h;
-  }
-  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
-    s.local[i] = {s.target[i].rotation, s.target[i].translation};
-  s.update_model();
-  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
-  s.rate_step = T(0);
-  s.contact_signature = s.limit_signature = 0;
-  s.steps_unchanged = 0;
-  s.energy_ceiling = std::numeric_limits<double>::infinity();
-  s.report = {};
-  s.report.dofs = s.tree.dofs;
-  s.report_totals(settings.gravity);
-  return true;
-}
-
-template <class T>
-void World<T>::Impl::step_once(T h) {
-  const int count = static_cast<int>(states.size());
-  group.assign(count, 0);
-  for (int i = 0; i < count; ++i) group[i] = i;
-  // Islands: whoever is near enough to touch. Few characters per world so far, so all pairs.
-  for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j)
-      if (near(*states[i], *states[j], h)) {
-        const int from = std::max(group[i], group[j]), to = std::min(group[i], group[j]);
-        for (int& g : group)
-          if (g == from) g = to;
-      }
-  lagged_new.clear();
-  for (int g = 0; g < count; ++g) {
-    members.clear();
-    member_indices.clear();
-    for (int i = 0; i < count; ++i)
-      if (group[i] == g && !states[i]->parked) {
-        members.push_back(states[i].get());
-        member_indices.push_back(i);
-      }
-    if (members.empty()) continue;
-    CharacterState<T>& first = *members[0];
-    if (members.size() == 1 && first.fully_driven() && first.undisturbed() && !near_obstacle(first, h) &&
-        play(first, h))
-      continue;
-    stepper.step(settings, {obstacles, hosts}, h, members, member_indices, lagged, lagged_new);
-  }
-  std::sort(lagged_new.begin(), lagged_new.end(),
-            [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
-  lagged.swap(lagged_new);
-  for (auto& s : states) {
+void World<T>::Impl::step_island(int island, Worker& worker) {
+  worker.members.clear();
+  const std::span<const int> indices = islands.members(island);
+  for (const int n : indices) worker.members.push_back(states[n].get());
+  CharacterState<T>& first = *worker.members[0];
+  lagged_count[island] = 0;
+  const bool played = indices.size() == 1 && first.fully_driven() && first.undisturbed() &&
+                      !near_obstacle(first) && play(first, settings, h);
+  if (!played)
+    lagged_count[island] = worker.stepper.step(settings, {obstacles, hosts}, h, worker.members, indices,
+                                               lagged, lagged_of(island));
+  for (CharacterState<T>* s : worker.members) {
+    s->report.crowded = s->crowded;
     s->impulses.clear();
     s->target_before = s->target;
   }
 }
 
+/// What one worker does of a step: islands, as long as there are any left. Which ones is a matter of chance,
+/// and of no consequence: a worker's memory holds nothing from one island to the next.
 template <class T>
-Status World<T>::step(T h) {
+void World<T>::Impl::work(void* context, int index) {
+  Impl& world = *static_cast<Impl*>(context);
+  Worker& worker = *world.workers[index];
+  const int heavy = static_cast<int>(world.heavy.size()), light = static_cast<int>(world.light.size());
+  if (index == 0)
+    for (const int island : world.large) world.step_island(island, worker);
+  for (int n; (n = world.next_heavy.fetch_add(1)) < heavy;) world.step_island(world.heavy[n], worker);
+  constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
+  for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
+    for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
+}
+
+template <class T>
+void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
+  h = step;
+  islands.find(states, h, settings.island_dofs);
+  large.clear();
+  heavy.clear();
+  light.clear();
+  first_lagged.assign(1, 0);
+  lagged_count.assign(islands.count(), 0);
+  for (int i = 0; i < islands.count(); ++i) {
+    SolveRoom room;
+    bool plays = true;
+    for (const int n : islands.members(i)) {
+      room += states[n]->problem.room;
+      plays = plays && states[n]->undisturbed() && states[n]->impulses.empty();
+    }
+    (!room.fits(small_room) ? large : plays && room.trees == 1 ? light : heavy).push_back(i);
+    first_lagged.push_back(first_lagged.back() + room.loaded);
+  }
+  lagged_new.resize(first_lagged.back());
+  next_heavy = next_light = 0;
+  parallel_for(static_cast<int>(workers.size()), work, this);
+  lagged.clear();
+  for (int i = 0; i < islands.count(); ++i) {
+    const auto begin = lagged_new.begin() + first_lagged[i];
+    lagged.insert(lagged.end(), begin, begin + lagged_count[i]);
+  }
+  std::sort(lagged.begin(), lagged.end(),
+            [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+}
+
+template <class T>
+Status World<T>::step(T h, const ParallelFor& parallel_for) {
   if (!std::isfinite(h)) return Status::error(Code::kNotFinite, "step is not finite");
   if (h <= T(0)) return Status::error(Code::kInvalidArgument, "step must be positive");
   if (h < T(1e-5)) return Status::error(Code::kOutOfRange, "step below 1e-5 s");
   if (h > T(0.25)) return Status::error(Code::kOutOfRange, "step above 0.25 s");
-  impl_->step_once(h);
+  impl_->step_all(h, parallel_for);
   return {};
 }
 

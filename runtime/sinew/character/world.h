@@ -19,6 +19,7 @@
 
 #include "sinew/animation/clip.h"
 #include "sinew/optimizer/accuracy.h"
+#include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -45,11 +46,12 @@ struct CharacterReport {
   int unknown_dofs = 0;  ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
-  int contacts = 0;  ///< active contact points
-  int substeps = 0;  ///< parts that the step was solved in; 0 = played
-  int splits = 0;    ///< of these, halvings because a solve did not converge
-  int damped = 0;    ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
-  int held = 0;      ///< trees that were stopped where they stood: no pose could be found
+  int contacts = 0;      ///< active contact points
+  int substeps = 0;      ///< parts that the step was solved in; 0 = played
+  int splits = 0;        ///< of these, halvings because a solve did not converge
+  int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
+  int held = 0;          ///< trees that were stopped where they stood: no pose could be found
+  bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
   bool converged = true;
   bool used_bdf2 = false;
   double kinetic_energy = 0;                             ///< J
@@ -79,6 +81,9 @@ struct WorldSettings {
   bool ground = true;
   double ground_friction = 1.0;   ///< multiplies the collider's
   double ground_restitution = 0;  ///< see Collider::restitution
+  int workers = 1;         ///< threads that a step may use, through its ParallelFor; each has its own memory
+  int island_dofs = 4096;  ///< degrees of freedom that are solved together at most; beyond, neighbours pass
+                           ///< through each other. Limits the memory
 };
 
 /// Where a byte of a snapshot belongs.
@@ -154,8 +159,9 @@ class World {
   const CharacterReport& prop_report(int index) const;
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
-  /// Allocates nothing, throws nothing. On an error nothing has moved.
-  Status step(T h);
+  /// Allocates nothing, throws nothing, takes no lock. On an error nothing has moved. The result has the same
+  /// bits for any number of workers and threads.
+  Status step(T h, const ParallelFor& parallel_for = {});
 
   // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
   // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.

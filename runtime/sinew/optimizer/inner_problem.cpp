@@ -26,14 +26,16 @@ T dot(std::span<const T> a, std::span<const T> b) {
 }  // namespace
 
 template <class T>
-void InnerProblem<T>::reserve(int dofs, int bodies, int contacts) {
-  turn_.reserve(bodies);
-  slide_.reserve(bodies);
+void InnerProblem<T>::reserve(const SolveRoom& room) {
+  const int dofs = room.dofs;
+  most_entries_ = room.contact_entries;
+  turn_.reserve(room.bodies);
+  slide_.reserve(room.bodies);
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs);
-  smooth_.reserve(dofs);
-  factor_.reserve(dofs);
-  contact_rows_.reserve(contacts);
+  axes_.reserve(dofs, room.path_entries);
+  smooth_.reserve(dofs, room.path_entries);
+  factor_.reserve(dofs, room.path_entries);
+  contact_rows_.reserve(room.contacts, room.contact_entries);
   joint_rows_.reserve(dofs * 8);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
@@ -46,6 +48,9 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   trees_ = trees;
   factorisations = products = 0;
   unknowns_.clear();
+  int entries = 0;
+  for (const TreeProblem<T>* p : trees_) entries += p->room.contact_entries;
+  contact_rows_.limit(std::min(entries, most_entries_));
   for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
 }
 

@@ -25,7 +25,7 @@ struct InnerReport {
 template <class T>
 class InnerProblem {
  public:
-  void reserve(int dofs, int bodies, int contacts);
+  void reserve(const SolveRoom& room);
 
   /// Numbers the unknowns of all trees.
   void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
@@ -82,6 +82,7 @@ class InnerProblem {
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
+  int most_entries_ = 0;  ///< of contact rows, that there is memory for
   ContactRows<T> contact_rows_;
   std::vector<JointRows> joint_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres

@@ -11,10 +11,10 @@ constexpr double kCertainRate = 0.1;  ///< steps that shrink faster have entered
 }  // namespace
 
 template <class T>
-void NewtonSolver<T>::reserve(int dofs, int bodies, int contacts) {
-  inner_.reserve(dofs, bodies, contacts);
-  plain_.reserve(dofs);
-  base_.reserve(bodies);
+void NewtonSolver<T>::reserve(const SolveRoom& room) {
+  inner_.reserve(room);
+  plain_.reserve(room.dofs);
+  base_.reserve(room.bodies);
 }
 
 template <class T>

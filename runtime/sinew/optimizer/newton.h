@@ -41,7 +41,7 @@ template <class T>
 class NewtonSolver {
  public:
   /// Set-up for solves of at most that size; solving allocates nothing.
-  void reserve(int dofs, int bodies, int contacts);
+  void reserve(const SolveRoom& room);
 
   /// Minimises over the free degrees of freedom of all trees together, starting at their `local`. On return
   /// every tree's kinematics, wrenches and gradient are those at the result; the energy never rose on the

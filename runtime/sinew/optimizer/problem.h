@@ -9,6 +9,7 @@
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/muscle/joint_rows.h"
 #include "sinew/optimizer/scheme.h"
+#include "sinew/optimizer/solve_room.h"
 #include "sinew/residual/composite.h"
 
 namespace sinew {
@@ -53,6 +54,7 @@ struct TreeProblem {
   std::vector<JointRow<T>> rows;
   std::vector<Composite<T>> composite;
   std::vector<Mat3<T>> joint_curvature;  ///< [body] see measure_joint_curvature
+  SolveRoom room;                        ///< what this tree brings to a solve
   int first_unknown_map = 0;             ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);

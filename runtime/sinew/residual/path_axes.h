@@ -17,8 +17,8 @@ struct Unknowns;
 template <class T>
 class PathAxes {
  public:
-  /// Set-up for so many unknowns; nothing allocates afterwards.
-  void reserve(int unknowns);
+  /// Set-up for so many unknowns, whose tree matrix has so many entries; nothing allocates afterwards.
+  void reserve(int unknowns, int entries);
   void clear();
   /// Appends the unknowns of one tree, in the order of append_unknowns, whose answer `first` is.
   void append(const Tree<T>& tree, const Kinematics<T>& kinematics, const Unknowns& unknowns, int first);

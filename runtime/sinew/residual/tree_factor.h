@@ -39,9 +39,9 @@ template <class T>
 class TreeMatrix {
  public:
   explicit TreeMatrix(const TreePattern& pattern) : pattern_(&pattern) {}
-  /// Set-up for patterns of at most so many unknowns.
-  void reserve(int unknowns) {
-    values_.reserve(std::size_t(unknowns) * TreePattern::padded(unknowns));
+  /// Set-up for patterns of at most so many unknowns and entries.
+  void reserve(int unknowns, int entries) {
+    values_.reserve(entries);
     diagonal_.reserve(unknowns);
   }
   void set_zero() { values_.assign(pattern_->entries, T(0)); }

@@ -38,6 +38,8 @@ struct DofLimits {
   double torque_plus = 0;      ///< largest muscle torque in the positive direction, ≥ 0
   double damping = 0;          ///< N·m·s/rad
   double dry_friction = 0.02;  ///< N·m; 0.02 stopped a hand that rolled for ever (solver-prototype, claim b)
+
+  bool operator==(const DofLimits&) const = default;
 };
 
 enum class Shape : std::uint8_t { kSphere, kCapsule, kBox };
@@ -51,6 +53,8 @@ struct Collider {
                                                      ///< length of the segment; box: half extents
   double friction = 0.8;
   double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'
+
+  bool operator==(const Collider&) const = default;
 };
 
 /// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a
@@ -96,6 +100,8 @@ struct Joint {
   Vec3<double> swing_axis = Vec3<double>::UnitZ();  ///< bone direction whose swing is limited, child axes
   double twist_lower = -1e9, twist_upper = 1e9;     ///< ball with swing cone: rotation about swing_axis
   std::string source_joint;                         ///< URDF: name of the joint that moves this link
+
+  bool operator==(const Joint&) const = default;
 };
 
 /// Editable description; `validate` says what is wrong with it. Everything else in the runtime takes it as
@@ -110,6 +116,7 @@ struct Skeleton {
   int find(const char* joint_name) const;  ///< index, or -1
   int find(Role role) const;               ///< first with the role, or -1
   double total_mass() const;               ///< kg
+  bool operator==(const Skeleton&) const = default;
 };
 
 /// Checks order, indices, finiteness, unit axes, positive masses and positive-semidefinite second moments

@@ -1,0 +1,44 @@
+// Which characters and props may touch each other within a step: these are solved together, everybody else
+// on any thread. Internal to the character layer.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sinew/character/neighbour_grid.h"
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+template <class T>
+class Islands {
+ public:
+  /// Set-up for so many states; nothing allocates afterwards.
+  void reserve(int states);
+
+  /// Divides the states into islands, each named by and listing its members in ascending order. Pairs that
+  /// would bring an island above `most_dofs` degrees of freedom stay apart, the later first: they pass
+  /// through each other (see CharacterReport::crowded). O(states) where they are spread out.
+  void find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs);
+
+  int count() const { return static_cast<int>(first_.size()) - 1; }
+  std::span<const int> members(int island) const {
+    return std::span(members_).subspan(first_[island], first_[island + 1] - first_[island]);
+  }
+
+ private:
+  int root_of(int state);
+  void join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states, int most_dofs);
+
+  NeighbourGrid grid_;
+  std::vector<int> parent_;           ///< [state] union-find; towards the smallest index
+  std::vector<int> dofs_;             ///< [state] of the island whose root it is
+  std::vector<int> island_;           ///< [state] number of the island
+  std::vector<int> first_, members_;  ///< [island + 1] into members_
+};
+
+extern template class Islands<float>;
+extern template class Islands<double>;
+
+}  // namespace sinew
