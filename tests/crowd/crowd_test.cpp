@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <thread>
 
 #include "character/scenes.h"
 #include "fixtures/clips.h"
 #include "fixtures/counting_new.h"
+#include "fixtures/threads.h"
 #include "residual/random_tree.h"
 #include "sinew/effects/support.h"
 
@@ -196,16 +196,6 @@ struct Result {
   }
 };
 
-/// A pool as simple as can be: threads take the next index.
-void run_on_threads(void* host, int count, void (*task)(void*, int), void* context) {
-  std::atomic<int> next{0};
-  std::vector<std::jthread> threads;
-  for (int n = 0; n < *static_cast<int*>(host); ++n)
-    threads.emplace_back([&] {
-      for (int i = next++; i < count; i = next++) task(context, i);
-    });
-}
-
 TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
   const Scene scene;
   CrowdSettings settings;
@@ -224,8 +214,10 @@ TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
         settings.chunks = threads == 0 ? 1 : 2 * threads + 1;
         const auto crowd = scene.crowd(settings);
         for (int n = 0; n < 3; ++n)
-          ASSERT_TRUE(
-              crowd->step(kStep, threads == 0 ? ParallelFor{} : ParallelFor{run_on_threads, &threads}).ok());
+          ASSERT_TRUE(crowd
+                          ->step(kStep, threads == 0 ? ParallelFor{}
+                                                     : ParallelFor{fixtures::run_on_threads, &threads})
+                          .ok());
         EXPECT_TRUE(Result(*crowd, settings.capacity).same_bits(wanted))
             << "set " << int(set) << ", " << lanes << " lanes, " << threads << " threads";
       }
