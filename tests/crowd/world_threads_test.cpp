@@ -127,12 +127,16 @@ TEST(WorldThreads, AnIslandBeyondTheLimitIsCutAndSaysSo) {
   for (int n = 0; n < 3; ++n) {
     ASSERT_EQ(world.add_character(skeleton, limp, status), n);
     std::vector<JointJet<float>> jets = fixtures::idle<float>(skeleton, 0);
-    jets[0].translation += Vec3<float>(0.7f * float(n), 0, 0);
+    jets[0].translation += Vec3<float>(0.5f * float(n), 0, 0);
     ASSERT_TRUE(world.character(n).set_target(jets).ok());
     world.character(n).reset();
   }
-  for (int n = 0; n < 30; ++n) ASSERT_TRUE(world.step(kStep).ok());
-  EXPECT_TRUE(world.character(2).report().crowded);
+  bool crowded = false;
+  for (int n = 0; n < 30; ++n) {
+    ASSERT_TRUE(world.step(kStep).ok());
+    crowded = crowded || world.character(2).report().crowded;
+  }
+  EXPECT_TRUE(crowded);
   for (int n = 0; n < 3; ++n) EXPECT_TRUE(world.character(n).model()[0].translation.allFinite());
 }
 

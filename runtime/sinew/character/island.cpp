@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/levels.h"
+#include "sinew/character/playback.h"
+
 namespace sinew {
 namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kSnapAngle =
-    2e-3;  ///< rad (0.1°) and m: a returning joint this close is on the animation again
-constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kCut = 0.2;     ///< rad and m: an animation that leaps further than this in one step was cut
 constexpr double kTouch = 5e-5;  ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
@@ -58,6 +58,12 @@ void meet_cuts(CharacterState<T>& s, T h) {
   }
 }
 
+/// Whose step may be divided; else it is halved once where it must be.
+template <class T>
+bool gets_substeps(const CharacterState<T>* s) {
+  return allowed_level(*s) == Level::kSubsteps;
+}
+
 }  // namespace
 
 template <class T>
@@ -87,23 +93,22 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// Muscles pull to the animation, or along a critically damped way back to it:
-/// e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the offset from the animation.
+/// Muscles pull to the animation, or along a way back to it; baked joints go on by themselves, with
+/// q'' = −k·q'.
 template <class T>
 void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings& world, T h) {
   const T tau = T(world.accuracy.return_time);
-  const T decay = std::exp(-h / tau);
+  const T damping = T(world.detail.bake_damping);
+  const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
+  const bool bakes = bakes_now(s, world.detail.bake_every);
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T>& wanted = s.wanted[i];
-    const Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) {
-      s.problem.target[i] = wanted;
-      continue;
+    if (bakes && s.rig->bakes[i]) {
+      std::array<T, 6> moved{};
+      for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
+      s.problem.target[i] = at_offset<T>(s.tree, i, s.local[i], moved);
+    } else {
+      s.problem.target[i] = way_back<T>(s, i, tau, h);
     }
-    std::array<T, 6> offset{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k)
-      offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
-    s.problem.target[i] = at_offset<T>(s.tree, i, wanted, offset);
   }
 }
 
@@ -111,6 +116,7 @@ void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings&
 /// drives it.
 template <class T>
 void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
+  const bool bakes = bakes_now(s, world_->detail.bake_every), solves = allowed_level(s) >= Level::kPartial;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     bool driven = true;
@@ -119,17 +125,20 @@ void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
     const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
     const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
                            : !driven || s.deviation[i].released;
-    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free;
+    const bool given = !solves || (bakes && s.rig->bakes[i]);
+    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free && !given;
   }
 }
 
 /// Hands joints whose needed torque exceeds their muscles' limit to the solve. True if there were any.
 template <class T>
 bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
+  if (allowed_level(s) < Level::kPartial) return false;
+  const bool bakes = bakes_now(s, world_->detail.bake_every);
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    if (count == 0 || s.problem.free[first]) continue;
+    if (count == 0 || s.problem.free[first] || (bakes && s.rig->bakes[i])) continue;
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
@@ -242,32 +251,23 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
     s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
   }
+  const bool bakes = bakes_now(s, world.detail.bake_every);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, s.local[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
-    const Transform<T>& wanted = s.wanted[i];
-    const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, wanted, p.local[i]);
     const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
-    Deviation<T>& d = s.deviation[i];
-    T offset = T(0), rate = T(0), missed = T(0), load = T(0);
+    T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      d.rate[k] = (from_animation[k] - d.offset[k]) / h;
-      d.offset[k] = from_animation[k];
-      offset = std::max(offset, std::abs(d.offset[k]));
-      rate = std::max(rate, std::abs(d.rate[k]));
       missed = std::max(missed, std::abs(from_target[k]));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && p.free[first];
-    d.released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
-    d.on_animation = !d.released && offset < T(kSnapAngle) && rate < T(kSnapRate);
-    if (d.on_animation) {
-      d.offset = {};
-      d.rate = {};
-    }
+    if (!(bakes && s.rig->bakes[i]))
+      s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
+    s.update_deviation(i, p.local[i], h);
     s.local[i] = p.local[i];
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
@@ -415,12 +415,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
 /// Whether nothing can do work on the trees: no muscle, no drive, no push.
 template <class T>
 bool IslandStepper<T>::passive() const {
-  return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    if (s->root_is_kinematic() || !s->impulses.empty()) return false;
-    const JointLaw<T>& law = s->problem.law;
-    return std::all_of(law.torque_plus.begin(), law.torque_plus.end(), [](T t) { return t <= T(0); }) &&
-           std::all_of(law.torque_minus.begin(), law.torque_minus.end(), [](T t) { return t <= T(0); });
-  });
+  return std::all_of(states_.begin(), states_.end(),
+                     [](const CharacterState<T>* s) { return s->impulses.empty() && s->limp(); });
 }
 
 /// What the trees store at the present poses: gravity, contacts and joint limits, J.
@@ -467,6 +463,7 @@ bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
 template <class T>
 int IslandStepper<T>::parts_of(T h) const {
   const Accuracy& accuracy = world_->accuracy;
+  if (std::none_of(states_.begin(), states_.end(), gets_substeps<T>)) return 1;
   int parts = std::max(accuracy.substeps, 1);
   if (accuracy.max_rotation > 0) {
     T fastest = T(0);
@@ -501,8 +498,10 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
   const int parts = parts_of(h);
+  const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
+  const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
   for (int n = 0; n < parts; ++n)
-    advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), world.accuracy.max_splits);
+    advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
     CharacterReport& r = s->report;
     r.outer_passes = total_.outer_passes;

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 
+#include "sinew/character/sleep.h"
+
 namespace sinew {
+namespace {
+
+constexpr double kTouching = 0.02;  ///< m between bounding spheres, at which a sleeper wakes
+constexpr double kMargin = 0.2;     ///< m beyond what the present speed covers, as in ContactFinder
+
+}  // namespace
 
 template <class T>
 void Islands<T>::reserve(int states) {
   grid_.reserve(states);
-  for (auto* v : {&parent_, &dofs_, &island_, &members_}) v->reserve(states);
+  for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_}) v->reserve(states);
   first_.reserve(states + 1);
 }
 
@@ -31,6 +39,27 @@ void Islands<T>::join(int a, int b, std::span<const std::unique_ptr<CharacterSta
   dofs_[to] += dofs_[from];
 }
 
+/// Everybody who sleeps with a woken one.
+template <class T>
+void Islands<T>::wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states) {
+  for (std::size_t n = 0; n < states.size(); ++n) {
+    LevelState& l = states[n]->levels;
+    if (l.nap != nap) continue;
+    l.nap = -1;
+    if (!l.asleep) continue;
+    l.asleep = false;
+    l.still = 0;
+    awake_.push_back(static_cast<int>(n));
+  }
+}
+
+/// Whether two that may meet are to be stepped together, by their colliders: nobody is woken, or solved for,
+/// because somebody walks by.
+template <class T>
+bool Islands<T>::meet(const CharacterState<T>& a, const CharacterState<T>& b, T h) {
+  return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kMargin));
+}
+
 template <class T>
 void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs) {
   const int count = static_cast<int>(states.size());
@@ -38,6 +67,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   parent_.resize(count);
   dofs_.resize(count);
   island_.assign(count, -1);
+  awake_.clear();
   const auto center = [&](int n) {
     return Vec3<double>(states[n]->model[0].translation.template cast<double>());
   };
@@ -46,33 +76,46 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     return double(states[n]->radius + T(0.05) + 2 * h * states[n]->history.velocity[0].norm());
   };
   for (int n = 0; n < count; ++n) {
+    CharacterState<T>& s = *states[n];
     parent_[n] = n;
-    dofs_[n] = states[n]->tree.dofs;
-    states[n]->crowded = false;
-    if (!states[n]->parked) grid_.add(n, center(n), reach(n));
+    dofs_[n] = s.tree.dofs;
+    s.crowded = false;
+    if (is_woken(s) && s.levels.nap >= 0) wake(s.levels.nap, states);
+    s.levels.wake = false;
   }
-  grid_.build();
+  awake_.clear();
   for (int n = 0; n < count; ++n) {
     if (states[n]->parked) continue;
+    grid_.add(n, center(n), reach(n));
+    if (!states[n]->levels.asleep) awake_.push_back(n);
+  }
+  grid_.build();
+  for (std::size_t k = 0; k < awake_.size(); ++k) {  // grows by those who are woken
+    const int n = awake_[k];
     grid_.overlapping(center(n), reach(n), [&](int other) {
-      if (other > n) join(n, other, states, most_dofs);
+      CharacterState<T>& s = *states[other];
+      // From the side of the first, unless the other sleeps.
+      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(*states[n], s, h)) return;
+      if (s.levels.asleep) wake(s.levels.nap, states);
+      join(n, other, states, most_dofs);
     });
   }
   // Islands in the order of their first members; members in theirs.
   first_.assign(1, 0);
   for (int n = 0; n < count; ++n) {
-    if (states[n]->parked) continue;
+    if (!takes_part(*states[n])) continue;
     const int root = root_of(n);
     if (root == n) {
       island_[n] = static_cast<int>(first_.size()) - 1;
       first_.push_back(0);
     }
-    ++first_[island_[root] + 1];
+    island_[n] = island_[root];
+    ++first_[island_[n] + 1];
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   members_.resize(first_.back());
   for (int n = count - 1; n >= 0; --n)  // backwards: each island's end moves down to its beginning
-    if (!states[n]->parked) members_[--first_[island_[root_of(n)] + 1]] = n;
+    if (takes_part(*states[n])) members_[--first_[island_[root_of(n)] + 1]] = n;
   for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i] = first_[i + 1];
   first_.back() = static_cast<int>(members_.size());
 }

@@ -17,23 +17,30 @@ class Islands {
   /// Set-up for so many states; nothing allocates afterwards.
   void reserve(int states);
 
-  /// Divides the states into islands, each named by and listing its members in ascending order. Pairs that
-  /// would bring an island above `most_dofs` degrees of freedom stay apart, the later first: they pass
-  /// through each other (see CharacterReport::crowded). O(states) where they are spread out.
+  /// Wakes sleepers that the host or a neighbour calls for, then
+  /// divides those who are awake into islands, each named by and listing its members in ascending order.
+  /// Pairs that would bring an island above `most_dofs` degrees of freedom stay apart, the later first: they
+  /// pass through each other (see CharacterReport::crowded). O(states) where they are spread out.
   void find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs);
 
   int count() const { return static_cast<int>(first_.size()) - 1; }
+  /// Whether a state takes part in the step: it is in the world, and awake.
+  bool contains(int state) const { return island_[state] >= 0; }
   std::span<const int> members(int island) const {
     return std::span(members_).subspan(first_[island], first_[island + 1] - first_[island]);
   }
 
  private:
+  static bool takes_part(const CharacterState<T>& s) { return !s.parked && !s.levels.asleep; }
+  static bool meet(const CharacterState<T>& a, const CharacterState<T>& b, T h);
+  void wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states);
   int root_of(int state);
   void join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states, int most_dofs);
 
   NeighbourGrid grid_;
-  std::vector<int> parent_;           ///< [state] union-find; towards the smallest index
-  std::vector<int> dofs_;             ///< [state] of the island whose root it is
+  std::vector<int> parent_;  ///< [state] union-find; towards the smallest index
+  std::vector<int> dofs_;    ///< [state] of the island whose root it is
+  std::vector<int> awake_;
   std::vector<int> island_;           ///< [state] number of the island
   std::vector<int> first_, members_;  ///< [island + 1] into members_
 };

@@ -44,17 +44,84 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
   advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
-  s.rate_step = T(0);
-  s.contact_signature = s.limit_signature = 0;
-  s.steps_unchanged = 0;
-  s.energy_ceiling = std::numeric_limits<double>::infinity();
+  s.levels.stale = false;
+  s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
   s.report_totals(world.gravity);
   return true;
 }
 
-template bool play<float>(CharacterState<float>&, const WorldSettings&, float);
-template bool play<double>(CharacterState<double>&, const WorldSettings&, double);
+template <class T>
+Transform<T> way_back(const CharacterState<T>& s, int i, T tau, T h) {
+  const Deviation<T>& d = s.deviation[i];
+  if (d.on_animation) return s.wanted[i];
+  const T decay = std::exp(-h / tau);
+  std::array<T, 6> offset{};
+  for (int k = 0; k < s.tree.dof_count(i); ++k)
+    offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
+  return at_offset<T>(s.tree, i, s.wanted[i], offset);
+}
+
+template <class T>
+void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
+  const Vec3<T> root = s.model[0].translation;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Transform<T> before = s.local[i];
+    s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+    s.local[i] = way_back<T>(s, i, T(world.accuracy.return_time), h);
+    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
+    for (T& r : s.rate[i]) r /= h;
+    s.deviation[i].released = false;
+    if (!s.deviation[i].on_animation) s.update_deviation(i, s.local[i], h);
+  }
+  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.update_model();
+  std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
+  s.history.velocity[0] = (s.model[0].translation - root) / h;  // neighbours go by it
+  s.levels.stale = true;
+  s.forget_contacts();
+  s.report = {};
+  s.report.dofs = s.tree.dofs;
+}
+
+template <class T>
+void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
+  if (!s.levels.stale) return;
+  s.levels.stale = false;
+  // Speeds of the animation, and on top of them those of what is off it.
+  jets.assign(s.target_before.begin(), s.target_before.begin() + s.tree.bodies);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    JointJet<T>& jet = jets[i];
+    const Deviation<T>& d = s.deviation[i];
+    const Quat<T> turned = s.local[i].rotation.conjugate() * jet.rotation;
+    jet.rotation = s.local[i].rotation;
+    jet.translation = s.local[i].translation;
+    if (d.on_animation) continue;
+    jet.omega = turned * jet.omega;
+    switch (s.tree.type[i]) {
+      case JointType::kRevolute:
+        jet.omega += s.tree.axis[i] * d.rate[0];
+        break;
+      case JointType::kBall:
+        jet.omega += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        break;
+      case JointType::kFree:
+        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        jet.omega += Vec3<T>(d.rate[3], d.rate[4], d.rate[5]);
+        break;
+      default:
+        break;  // on the animation's speed
+    }
+  }
+  inertial_wrenches<T>(s.tree, jets, Vec3<T>::Zero(), Vec3<T>::Zero(), s.problem.kinematics, s.motion,
+                       s.problem.force, s.problem.moment);
+  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), Vec3<T>::Zero(), s.history);
+  s.history.step_before = T(0);
+}
+
+SINEW_PLAYBACK_INSTANCES(template, float)
+SINEW_PLAYBACK_INSTANCES(template, double)
 
 }  // namespace sinew

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/levels.h"
 
 namespace sinew {
 
@@ -105,6 +106,7 @@ template <class T>
 struct MovingParts {
   std::span<const std::unique_ptr<CharacterState<T>>> states;
   std::vector<LaggedForce<T>>& lagged;  ///< normal forces remembered for friction
+  BudgetState& budget;
 };
 
 enum class Content : std::uint32_t { kState = 0x314e5753, kInputs = 0x31495753 };  ///< SWN1, SWI1

@@ -4,6 +4,14 @@
 #include <cmath>
 
 namespace sinew {
+namespace {
+
+/// rad (0.1°) and m: a returning joint this close is on the animation again
+constexpr double kSnapAngle = 2e-3;
+constexpr double kSnapRate = 5e-2;  ///< 1/s
+constexpr double kLimbSpeed = 6;    ///< m/s against the root, where nobody has measured it
+
+}  // namespace
 
 template <class T>
 Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
@@ -27,10 +35,28 @@ Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleto
   Kinematics<T> rest(tree);
   forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
   choose_self_pairs(rest);
+  choose_baked();
   for (const ContactPoint<T>& p : points) {
     const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
     radius = std::max(radius, (at - rest.origin[0]).norm() + p.radius);
   }
+}
+
+/// Ends of limbs, by what they mean on a body; where nothing says so, the last joints.
+template <class T>
+void Rig<T>::choose_baked() {
+  bakes.assign(tree.bodies, 0);
+  std::vector<std::uint8_t> last(tree.bodies, 1);
+  bool any = false;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Role role = skeleton.joints[i].role;
+    bakes[i] = role == Role::kHandL || role == Role::kHandR || role == Role::kFootL || role == Role::kFootR ||
+               role == Role::kToesL || role == Role::kToesR;
+    any = any || bakes[i];
+    if (tree.parent[i] >= 0 && tree.dof_count(i) > 0) last[tree.parent[i]] = 0;
+  }
+  for (int i = 0; i < tree.bodies && !any; ++i)
+    bakes[i] = last[i] && tree.parent[i] > 0 && tree.dof_count(i) > 0;
 }
 
 template <class T>
@@ -47,6 +73,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       may_touch(rig->may_touch),
       radius(rig->radius),
       settings(c),
+      detail(c.detail),
       target(skeleton.joints.size()),
       target_before(skeleton.joints.size()),
       local(skeleton.joints.size()),
@@ -135,6 +162,10 @@ void CharacterState<T>::refresh_limits() {
       problem.law.torque_plus[dof] = plus;
     }
   }
+  driven = !is_prop;
+  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
+  for (int dof = first; dof < tree.dofs; ++dof)
+    driven = driven && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
 }
 
 template <class T>
@@ -183,11 +214,36 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
+  forget_contacts();
+  levels.wake = levels.wake || levels.asleep;  // for those who slept with it
+  levels.asleep = levels.stale = false;
+  levels.still = 0;
+  std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
+}
+
+template <class T>
+void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   energy_ceiling = std::numeric_limits<double>::infinity();
-  std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
+}
+
+template <class T>
+void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h) {
+  const std::array<T, 6> from_animation = joint_offset_value<T>(tree, i, wanted[i], at);
+  Deviation<T>& d = deviation[i];
+  T offset = T(0), speed = T(0);
+  for (int k = 0; k < tree.dof_count(i); ++k) {
+    d.rate[k] = (from_animation[k] - d.offset[k]) / h;
+    d.offset[k] = from_animation[k];
+    offset = std::max(offset, std::abs(d.offset[k]));
+    speed = std::max(speed, std::abs(d.rate[k]));
+  }
+  d.on_animation = !d.released && offset < T(kSnapAngle) && speed < T(kSnapRate);
+  if (!d.on_animation) return;
+  d.offset = {};
+  d.rate = {};
 }
 
 template <class T>
@@ -198,11 +254,19 @@ bool CharacterState<T>::undisturbed() const {
 }
 
 template <class T>
-bool CharacterState<T>::fully_driven() const {
-  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.first_dof[1] : 0;
-  for (int dof = first; dof < tree.dofs; ++dof)
-    if (!(problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0))) return false;
-  return true;
+T CharacterState<T>::fastest() const {
+  if (levels.stale) return history.velocity[0].norm() + T(kLimbSpeed);
+  T square = T(0);
+  for (const Vec3<T>& v : history.velocity) square = std::max(square, v.squaredNorm());
+  return std::sqrt(square);
+}
+
+template <class T>
+bool CharacterState<T>::limp() const {
+  const auto none = [](T most) { return most <= T(0); };
+  const JointLaw<T>& law = problem.law;
+  return !root_is_kinematic() && std::all_of(law.torque_plus.begin(), law.torque_plus.end(), none) &&
+         std::all_of(law.torque_minus.begin(), law.torque_minus.end(), none);
 }
 
 template <class T>

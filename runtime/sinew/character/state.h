@@ -22,6 +22,25 @@ struct Deviation {
   bool released = false;      ///< was an unknown in the last step
 };
 
+/// See level_of_detail.h.
+struct LevelState {
+  Level level = Level::kChecked;  ///< as reported
+  Level cap = Level::kSubsteps;   ///< of the budget
+  bool asleep = false;
+  float unneeded = 0;       ///< s since a level as high was needed
+  float cap_age = 1e6f;     ///< s since the cap changed
+  float still = 0;          ///< s at rest
+  float cost = 0;           ///< smoothed, as Budget::limit
+  float spared = 0;         ///< that the cap saves, as `cost`
+  std::int32_t nap = -1;    ///< who sleeps with it: all with the same number
+  std::uint32_t steps = 0;  ///< staggered from one character to the next
+  // Of the present step
+  Level did = Level::kChecked;
+  bool wake = false;           ///< the host changed something
+  bool stale = false;          ///< played without a check: the history is behind, see catch_up()
+  double spent = 0, work = 0;  ///< as Budget::limit; units of work
+};
+
 /// What all characters of one skeleton share.
 template <class T>
 struct Rig {
@@ -34,12 +53,14 @@ struct Rig {
   std::vector<ContactPoint<T>> points;
   std::vector<int> first_point;         ///< [collider + 1] into points
   std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
+  std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
   T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
 
   explicit Rig(const Skeleton& skeleton);
 
  private:
   void choose_self_pairs(const Kinematics<T>& rest);
+  void choose_baked();
 };
 
 template <class T>
@@ -58,6 +79,9 @@ struct CharacterState {
 
   CharacterSettings settings;
   bool is_prop = false;
+  CharacterDetail detail;
+  LevelState levels;
+  bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
 
@@ -106,9 +130,16 @@ struct CharacterState {
   void update_model();
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
+  /// Nothing touches, and the speed before the last step's is not known.
+  void forget_contacts();
+  /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
+  /// changes; on the animation where both are next to nothing.
+  void update_deviation(int body, const Transform<T>& at, T h);
   bool undisturbed() const;
-  /// Something holds every joint: without that there is nothing to play.
-  bool fully_driven() const;
+  /// Speed of the fastest body, m/s.
+  T fastest() const;
+  /// No joint has a muscle, nothing drives the root.
+  bool limp() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }

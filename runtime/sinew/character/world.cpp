@@ -6,7 +6,9 @@
 
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
+#include "sinew/character/levels.h"
 #include "sinew/character/playback.h"
+#include "sinew/character/sleep.h"
 #include "sinew/character/snapshot.h"
 
 namespace sinew {
@@ -35,6 +37,7 @@ struct World<T>::Impl {
   struct Worker {
     IslandStepper<T> stepper;
     std::vector<CharacterState<T>*> members;
+    std::vector<JointJet<T>> jets;
   };
 
   WorldSettings settings;
@@ -56,20 +59,25 @@ struct World<T>::Impl {
   std::vector<int> large, heavy, light;  ///< islands: for the first worker alone, to be solved, to be played
   std::vector<LaggedForce<T>> lagged_new;
   std::vector<int> first_lagged, lagged_count;  ///< [island] of its part of lagged_new
+  BudgetController<T> controller;
+  WorldReport report;
   std::atomic<int> next_heavy{0}, next_light{0};
 
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
   SolveRoom room_of_rig(const Rig<T>& rig) const;
   void reserve(CharacterState<T>* added);
+  void park(CharacterState<T>& state);
   bool near_obstacle(const CharacterState<T>& state) const;
+  bool play_island(std::span<CharacterState<T>* const> members);
   void step_island(int island, Worker& worker);
   std::span<LaggedForce<T>> lagged_of(int island) {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
   }
   static void work(void* context, int index);
+  void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
-  MovingParts<T> moving() { return {states, lagged}; }
+  MovingParts<T> moving() { return {states, lagged, controller.state()}; }
 };
 
 template <class T>
@@ -105,7 +113,10 @@ void World<T>::Impl::reserve(CharacterState<T>* added) {
     count_in(*added);
   } else {
     all = share = largest = {};
-    for (const auto& s : states) count_in(*s);
+    for (const auto& s : states) {
+      count_in(*s);
+      s->levels.wake = true;  // something new may be in its way
+    }
   }
   // An island has so many degrees of freedom at most, perhaps of those that need most of everything else.
   const SolveRoom most = smaller(all, with(share.times(settings.island_dofs), largest));
@@ -114,10 +125,12 @@ void World<T>::Impl::reserve(CharacterState<T>* added) {
     const SolveRoom& room = n == 0 ? most : small_room;
     workers[n]->stepper.reserve(room);
     workers[n]->members.reserve(room.trees);
+    workers[n]->jets.reserve(largest.bodies);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, all.loaded);
   const auto count = states.capacity();
   islands.reserve(static_cast<int>(count));
+  controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
 }
@@ -130,6 +143,7 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
       std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
   if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
   states.push_back(std::make_unique<CharacterState<T>>(*same, character));
+  states.back()->levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   reserve(states.back().get());
   return {};
 }
@@ -143,7 +157,8 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
     status = Status::error(Code::kInvalidArgument, "strength and root drive limits must be ≥ 0");
     return -1;
   }
-  status = impl_->add(skeleton, settings);
+  status = validate(settings.detail);
+  if (status) status = impl_->add(skeleton, settings);
   if (!status) return -1;
   impl_->characters.push_back(static_cast<int>(impl_->states.size()) - 1);
   return static_cast<int>(impl_->characters.size()) - 1;
@@ -228,7 +243,37 @@ void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velo
 
 template <class T>
 void World<T>::park_prop(int index) {
-  impl_->states[impl_->props[index]]->parked = true;
+  impl_->park(*impl_->states[impl_->props[index]]);
+}
+
+template <class T>
+void World<T>::park_character(int index) {
+  impl_->park(*impl_->states[impl_->characters[index]]);
+}
+
+template <class T>
+void World<T>::unpark_character(int index) {
+  CharacterState<T>& s = *impl_->states[impl_->characters[index]];
+  s.parked = false;
+  s.reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+bool World<T>::parked(int index) const {
+  return impl_->states[impl_->characters[index]]->parked;
+}
+
+template <class T>
+const WorldReport& World<T>::report() const {
+  return impl_->report;
+}
+
+/// Out of the world; who leant on it wakes.
+template <class T>
+void World<T>::Impl::park(CharacterState<T>& s) {
+  s.levels.wake = s.levels.asleep;
+  s.levels.asleep = false;
+  s.parked = true;
 }
 
 template <class T>
@@ -300,20 +345,51 @@ bool World<T>::Impl::near_obstacle(const CharacterState<T>& s) const {
                      [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
 }
 
-/// Steps one island: plays it where that will do, else solves.
+/// Plays an island where that will do. False, with nothing moved, where it has to be solved.
+template <class T>
+bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
+  bool follows = true;
+  for (const CharacterState<T>* s : members) follows = follows && allowed_level(*s) < Level::kPartial;
+  if (follows) {
+    for (CharacterState<T>* s : members) {
+      const bool checks = allowed_level(*s) == Level::kChecked && s->undisturbed();
+      s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
+      if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
+    }
+    return true;
+  }
+  CharacterState<T>& s = *members[0];
+  if (members.size() > 1 || !s.driven || !s.undisturbed() || near_obstacle(s)) return false;
+  const auto every = static_cast<std::uint32_t>(s.detail.check_every);
+  const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
+  if (checks && !play(s, settings, h)) return false;
+  if (!checks) follow(s, settings, h);
+  s.levels.did = Level::kChecked;
+  return true;
+}
+
 template <class T>
 void World<T>::Impl::step_island(int island, Worker& worker) {
+  const Budget& budget = settings.detail.budget;
+  const double begin = budget.clock ? budget.clock(budget.clock_context) : 0;
   worker.members.clear();
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
-  CharacterState<T>& first = *worker.members[0];
   lagged_count[island] = 0;
-  const bool played = indices.size() == 1 && first.fully_driven() && first.undisturbed() &&
-                      !near_obstacle(first) && play(first, settings, h);
-  if (!played)
+  if (!play_island(worker.members)) {
+    for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
     lagged_count[island] = worker.stepper.step(settings, {obstacles, hosts}, h, worker.members, indices,
                                                lagged, lagged_of(island));
+    for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
+  }
+  double work = 0;
+  for (CharacterState<T>* s : worker.members) work += s->levels.work = work_of(*s, s->levels.did);
+  const double spent = budget.clock ? budget.clock(budget.clock_context) - begin : work;
+  put_to_sleep<T>(worker.members, indices, settings.detail, h);
   for (CharacterState<T>* s : worker.members) {
+    s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
+    settle_level(*s, s->levels.did, h, settings.detail.dwell);
+    s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
     s->impulses.clear();
     s->target_before = s->target;
@@ -333,6 +409,17 @@ void World<T>::Impl::work(void* context, int index) {
   constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
   for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
     for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
+}
+
+/// Of the last step's contact forces, only those of sleepers still hold.
+template <class T>
+void World<T>::Impl::keep_sleepers() {
+  const auto stepped = [&](const LaggedForce<T>& f) {
+    return islands.contains(static_cast<int>(f.id / first_contact_id(0)) - 1);
+  };
+  lagged.erase(std::remove_if(lagged.begin(), lagged.end(), stepped), lagged.end());
+  for (std::size_t n = 0; n < states.size(); ++n)
+    if (!islands.contains(static_cast<int>(n))) states[n]->levels.work = states[n]->levels.spent = 0;
 }
 
 template <class T>
@@ -357,13 +444,15 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   lagged_new.resize(first_lagged.back());
   next_heavy = next_light = 0;
   parallel_for(static_cast<int>(workers.size()), work, this);
-  lagged.clear();
+  keep_sleepers();
   for (int i = 0; i < islands.count(); ++i) {
     const auto begin = lagged_new.begin() + first_lagged[i];
-    lagged.insert(lagged.end(), begin, begin + lagged_count[i]);
+    const auto room = static_cast<std::ptrdiff_t>(lagged.capacity() - lagged.size());
+    lagged.insert(lagged.end(), begin, begin + std::min<std::ptrdiff_t>(lagged_count[i], room));
   }
   std::sort(lagged.begin(), lagged.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+  controller.update(states, settings.detail, h, report);
 }
 
 template <class T>
@@ -383,6 +472,7 @@ std::size_t World<T>::snapshot_capacity() const {
 
 template <class T>
 std::size_t World<T>::save(std::span<std::byte> out) const {
+  for (const auto& s : impl_->states) catch_up(*s, impl_->workers[0]->jets);
   return write_bytes(impl_->moving(), Content::kState, out);
 }
 
@@ -408,6 +498,7 @@ Status World<T>::restore_inputs(std::span<const std::byte> inputs) {
 
 template <class T>
 SnapshotField World<T>::snapshot_field(std::size_t byte) const {
+  for (const auto& s : impl_->states) catch_up(*s, impl_->workers[0]->jets);
   return field_at(impl_->moving(), byte);
 }
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/character/level_of_detail.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -38,12 +39,14 @@ struct CharacterSettings {
   double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
+  CharacterDetail detail;
 };
 
 /// What the last step did with one character.
 struct CharacterReport {
-  int dofs = 0;          ///< degrees of freedom of the character
-  int unknown_dofs = 0;  ///< of these, handed to the optimizer; 0 = pure playback
+  Level level = Level::kChecked;  ///< see LevelOfDetail::dwell: what it needed lately, not only in this step
+  int dofs = 0;                   ///< degrees of freedom of the character
+  int unknown_dofs = 0;           ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
   int contacts = 0;      ///< active contact points
@@ -76,6 +79,7 @@ struct PropSettings {
 
 struct WorldSettings {
   Accuracy accuracy;
+  LevelOfDetail detail;
   Vec3<double> gravity{0, 0, -9.81};
   double ground_height = 0;
   bool ground = true;
@@ -112,6 +116,8 @@ class Character {
   Status set_strength(T strength);
   Status set_strength(int joint, T strength);
   void set_root_drive(RootDrive drive);
+  Status set_detail(const CharacterDetail& detail);
+  const CharacterDetail& detail() const;
   /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
   const Skeleton& skeleton() const;
@@ -157,11 +163,19 @@ class World {
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   void park_prop(int index);
   const CharacterReport& prop_report(int index) const;
+  /// Takes a character out of the world, where it costs nothing and touches nobody, until it is brought back:
+  /// onto its target then, as by reset().
+  void park_character(int index);
+  void unpark_character(int index);
+  bool parked(int index) const;
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
   /// Allocates nothing, throws nothing, takes no lock. On an error nothing has moved. The result has the same
   /// bits for any number of workers and threads.
   Status step(T h, const ParallelFor& parallel_for = {});
+
+  /// Of the last step.
+  const WorldReport& report() const;
 
   // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
   // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.
