@@ -26,6 +26,15 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
+/// Every degree of freedom of a joint has a muscle, in both directions.
+template <class T>
+bool joint_is_driven(const TreeProblem<T>& p, int body) {
+  bool driven = true;
+  for (int dof = p.tree->first_dof[body]; dof < p.tree->first_dof[body + 1]; ++dof)
+    driven = driven && p.law.torque_minus[dof] > T(0) && p.law.torque_plus[dof] > T(0);
+  return driven;
+}
+
 /// Largest ratio of needed torque to limit over a joint's degrees of freedom.
 template <class T>
 T load_of(const TreeProblem<T>& p, int dof, T torque) {
@@ -61,7 +70,7 @@ void meet_cuts(CharacterState<T>& s, T h) {
 /// Whose step may be divided; else it is halved once where it must be.
 template <class T>
 bool gets_substeps(const CharacterState<T>* s) {
-  return allowed_level(*s) == Level::kSubsteps;
+  return s->levels.allowed == Level::kSubsteps;
 }
 
 }  // namespace
@@ -93,8 +102,8 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// Muscles pull to the animation, or along a way back to it; baked joints go on by themselves, with
-/// q'' = −k·q'.
+/// Muscles pull to the animation, or along a way back to it; baked joints without muscles go on by
+/// themselves, with q'' = −k·q'.
 template <class T>
 void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings& world, T h) {
   const T tau = T(world.accuracy.return_time);
@@ -102,7 +111,9 @@ void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings&
   const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
   const bool bakes = bakes_now(s, world.detail.bake_every);
   for (int i = 0; i < s.tree.bodies; ++i) {
-    if (bakes && s.rig->bakes[i]) {
+    const bool driven = joint_is_driven(s.problem, i);
+    s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
+    if (s.baked[i] && !driven) {
       std::array<T, 6> moved{};
       for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
       s.problem.target[i] = at_offset<T>(s.tree, i, s.local[i], moved);
@@ -116,16 +127,14 @@ void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings&
 /// drives it.
 template <class T>
 void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
-  const bool bakes = bakes_now(s, world_->detail.bake_every), solves = allowed_level(s) >= Level::kPartial;
+  const bool solves = s.levels.allowed >= Level::kPartial;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    bool driven = true;
-    for (int dof = first; dof < first + count; ++dof)
-      driven = driven && s.problem.law.torque_minus[dof] > T(0) && s.problem.law.torque_plus[dof] > T(0);
+    const bool driven = joint_is_driven(s.problem, i);
     const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
     const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
                            : !driven || s.deviation[i].released;
-    const bool given = !solves || (bakes && s.rig->bakes[i]);
+    const bool given = !solves || s.baked[i];
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free && !given;
   }
 }
@@ -133,12 +142,11 @@ void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
 /// Hands joints whose needed torque exceeds their muscles' limit to the solve. True if there were any.
 template <class T>
 bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
-  if (allowed_level(s) < Level::kPartial) return false;
-  const bool bakes = bakes_now(s, world_->detail.bake_every);
+  if (s.levels.allowed < Level::kPartial) return false;
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    if (count == 0 || s.problem.free[first] || (bakes && s.rig->bakes[i])) continue;
+    if (count == 0 || s.problem.free[first] || s.baked[i]) continue;
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
@@ -163,12 +171,8 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
       T load = T(0);
-      bool driven = true;
-      for (int dof = first; dof < first + count; ++dof) {
-        driven = driven && p.law.torque_minus[dof] > T(0) && p.law.torque_plus[dof] > T(0);
-        load = std::max(load, s.load[dof]);
-      }
-      to_target = driven && load < T(0.99);
+      for (int dof = first; dof < first + count; ++dof) load = std::max(load, s.load[dof]);
+      to_target = joint_is_driven(p, i) && load < T(0.99);
     }
     if (to_target) {
       p.local[i] = p.target[i];
@@ -251,7 +255,6 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
     s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
   }
-  const bool bakes = bakes_now(s, world.detail.bake_every);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, s.local[i], p.local[i]);
@@ -265,7 +268,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && p.free[first];
-    if (!(bakes && s.rig->bakes[i]))
+    if (!s.baked[i])
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
     s.update_deviation(i, p.local[i], h);
     s.local[i] = p.local[i];

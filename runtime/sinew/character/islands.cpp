@@ -90,8 +90,8 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     if (!states[n]->levels.asleep) awake_.push_back(n);
   }
   grid_.build();
-  for (std::size_t k = 0; k < awake_.size(); ++k) {  // grows by those who are woken
-    const int n = awake_[k];
+  for (std::size_t next = 0; next < awake_.size();) {  // grows by those who are woken
+    const int n = awake_[next++];
     grid_.overlapping(center(n), reach(n), [&](int other) {
       CharacterState<T>& s = *states[other];
       // From the side of the first, unless the other sleeps.

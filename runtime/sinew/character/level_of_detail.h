@@ -34,8 +34,8 @@ struct CharacterDetail {
   /// Steps from one check of the muscles to the next, for those far away, while nothing pushes or touches
   /// them; in between they are played.
   int check_every = 1;
-  /// Hands, feet and toes are dynamic in one of LevelOfDetail::bake_every steps; in the others they go on as
-  /// they moved, and slow down.
+  /// Hands, feet and toes are dynamic in one of LevelOfDetail::bake_every steps; in the others they are on
+  /// their way back to the animation or, where limp, go on as they moved, and slow down.
   bool bake = false;
 };
 

@@ -9,10 +9,13 @@ namespace {
 constexpr double kSmoothing = 0.2;     ///< s, of a character's cost
 constexpr int kOverSteps = 2;          ///< above the limit before somebody is capped
 constexpr int kUnderSteps = 30;        ///< well below it before a cap is taken off
-constexpr double kWellBelow = 0.85;    ///< of the limit
-constexpr double kAim = 0.9;           ///< of the limit, that capping and raising keep to
+constexpr double kWellBelow = 0.75;    ///< of the limit
+constexpr double kAim = 0.85;          ///< of the limit, that capping and raising keep to
 constexpr float kPartialShare = 0.6f;  ///< of a full solve's cost, that one with baked limbs takes
-constexpr int kShare = 10;             ///< at most one in so many characters is capped in one step
+/// rad (or m) and rad/s off the animation, from which the way back leads without asking the muscles: within a
+/// step they would make less than 0.5° of difference
+constexpr double kCalmOffset = 0.15, kCalmRate = 1.5;
+constexpr int kShare = 10;  ///< at most one in so many characters is capped in one step
 
 }  // namespace
 
@@ -27,7 +30,14 @@ Status validate(const CharacterDetail& detail) {
 template <class T>
 Level allowed_level(const CharacterState<T>& s) {
   const Level cap = std::min(s.detail.most, s.levels.cap);
-  return std::max(cap, s.driven ? Level::kPlayback : Level::kPartial);
+  // What holds no joint of its own can be on no clip; nor what is still thrown about.
+  const auto far = [](const Deviation<T>& d) {
+    const auto above = [](double most) { return [most](T x) { return std::abs(double(x)) > most; }; };
+    return std::any_of(d.offset.begin(), d.offset.end(), above(kCalmOffset)) ||
+           std::any_of(d.rate.begin(), d.rate.end(), above(kCalmRate));
+  };
+  const bool thrown = cap < Level::kPartial && std::any_of(s.deviation.begin(), s.deviation.end(), far);
+  return std::max(cap, s.driven && !thrown ? Level::kPlayback : Level::kPartial);
 }
 
 template <class T>
@@ -56,7 +66,7 @@ void settle_level(CharacterState<T>& s, Level needed, T h, double dwell) {
     l.level = needed;
     l.unneeded = 0;
   }
-  l.level = std::min(l.level, allowed_level(s));
+  l.level = std::min(l.level, std::max(l.allowed, needed));
 }
 
 template <class T>
@@ -91,7 +101,7 @@ void BudgetController<T>::lower(std::span<const std::unique_ptr<CharacterState<T
     if (state_.forecast <= kAim * limit || left == 0) return;
     CharacterState<T>& s = *states[n];
     LevelState& l = s.levels;
-    const Level now = std::min(l.level, allowed_level(s));
+    const Level now = std::min(l.level, l.allowed);
     const Level to = now > Level::kPartial ? Level::kPartial : Level::kPlayback;
     if (now <= Level::kPlayback || (to < Level::kPartial && !s.driven)) continue;
     const float cost = cost_at(s, to);
@@ -129,9 +139,11 @@ void BudgetController<T>::update(std::span<const std::unique_ptr<CharacterState<
   state_.forecast = 0;
   for (const auto& s : states) {
     LevelState& l = s->levels;
+    if (s->parked) continue;
     report.cost += l.spent;
     work += l.work;
-    l.cost += share * (static_cast<float>(l.spent) - l.cost);
+    l.cost =
+        l.cost > 0 ? l.cost + share * (static_cast<float>(l.spent) - l.cost) : static_cast<float>(l.spent);
     state_.forecast += double(l.cost);
     if (s->is_prop) continue;
     ++report.characters[static_cast<std::size_t>(l.level)];

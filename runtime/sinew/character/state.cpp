@@ -90,6 +90,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       guessed(tree),
       history(tree.bodies),
       motion(tree),
+      baked(tree.bodies, 0),
       wanted(tree.bodies) {
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {

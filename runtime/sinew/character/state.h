@@ -35,7 +35,7 @@ struct LevelState {
   std::int32_t nap = -1;    ///< who sleeps with it: all with the same number
   std::uint32_t steps = 0;  ///< staggered from one character to the next
   // Of the present step
-  Level did = Level::kChecked;
+  Level allowed = Level::kSubsteps, did = Level::kChecked;
   bool wake = false;           ///< the host changed something
   bool stale = false;          ///< played without a check: the history is behind, see catch_up()
   double spent = 0, work = 0;  ///< as Budget::limit; units of work
@@ -101,6 +101,7 @@ struct CharacterState {
   Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;
+  std::vector<std::uint8_t> baked;      ///< [body] goes on by itself in this step
   std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore

@@ -271,8 +271,11 @@ const WorldReport& World<T>::report() const {
 /// Out of the world; who leant on it wakes.
 template <class T>
 void World<T>::Impl::park(CharacterState<T>& s) {
-  s.levels.wake = s.levels.asleep;
-  s.levels.asleep = false;
+  const bool woken = s.levels.asleep;
+  const std::int32_t nap = s.levels.nap;
+  s.levels = {};
+  s.levels.wake = woken;
+  s.levels.nap = nap;
   s.parked = true;
 }
 
@@ -349,10 +352,10 @@ bool World<T>::Impl::near_obstacle(const CharacterState<T>& s) const {
 template <class T>
 bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
   bool follows = true;
-  for (const CharacterState<T>* s : members) follows = follows && allowed_level(*s) < Level::kPartial;
+  for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
   if (follows) {
     for (CharacterState<T>* s : members) {
-      const bool checks = allowed_level(*s) == Level::kChecked && s->undisturbed();
+      const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
       s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
       if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
     }
@@ -364,7 +367,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
   if (checks && !play(s, settings, h)) return false;
   if (!checks) follow(s, settings, h);
-  s.levels.did = Level::kChecked;
+  s.levels.did = checks ? Level::kChecked : Level::kPlayback;
   return true;
 }
 
@@ -375,6 +378,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   worker.members.clear();
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
+  for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
@@ -388,7 +392,9 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   put_to_sleep<T>(worker.members, indices, settings.detail, h);
   for (CharacterState<T>* s : worker.members) {
     s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
-    settle_level(*s, s->levels.did, h, settings.detail.dwell);
+    // Between two checks it is at the level that checks it.
+    const Level least = s->levels.asleep ? Level::kAsleep : std::min(s->levels.allowed, Level::kChecked);
+    settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
     s->impulses.clear();
@@ -419,7 +425,11 @@ void World<T>::Impl::keep_sleepers() {
   };
   lagged.erase(std::remove_if(lagged.begin(), lagged.end(), stepped), lagged.end());
   for (std::size_t n = 0; n < states.size(); ++n)
-    if (!islands.contains(static_cast<int>(n))) states[n]->levels.work = states[n]->levels.spent = 0;
+    if (!islands.contains(static_cast<int>(n))) {
+      CharacterState<T>& s = *states[n];
+      s.levels.work = s.levels.spent = 0;
+      if (s.levels.asleep) s.report.level = s.levels.level = Level::kAsleep;
+    }
 }
 
 template <class T>
