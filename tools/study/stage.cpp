@@ -19,6 +19,7 @@ void Measurement::count(const CharacterReport& r) {
   ++solved;
   unconverged += !r.converged;
   passes += r.outer_passes;
+  chords += r.chords;
   factorisations += r.factorisations;
   most_passes = std::max(most_passes, r.outer_passes);
   most_factorisations = std::max(most_factorisations, r.factorisations);
@@ -37,6 +38,7 @@ void Measurement::merge(const Measurement& o) {
   unconverged += o.unconverged;
   solved += o.solved;
   passes += o.passes;
+  chords += o.chords;
   factorisations += o.factorisations;
   most_passes = std::max(most_passes, o.most_passes);
   most_factorisations = std::max(most_factorisations, o.most_factorisations);

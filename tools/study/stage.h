@@ -24,13 +24,14 @@ struct Measurement {
   double penetration = 0;  ///< deepest contact
   int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
-  long passes = 0, factorisations = 0;
+  long passes = 0, chords = 0, factorisations = 0;
   int most_passes = 0, most_factorisations = 0;
   std::array<int, 256> pass_histogram{};  ///< solved steps by their number of passes (the last: or more)
   double microseconds = 0;                ///< of all steps together
   std::string refused;                    ///< reason of the step that the world refused, or empty
 
   double mean_passes() const { return solved ? double(passes) / solved : 0; }
+  double mean_iterations() const { return solved ? double(passes + chords) / solved : 0; }
   double mean_factorisations() const { return solved ? double(factorisations) / solved : 0; }
   double unconverged_share() const { return solved ? double(unconverged) / solved : 0; }
   int passes_percentile(double share) const;

@@ -48,13 +48,14 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
 /// would throw it about.
 template <class T>
 void meet_cuts(CharacterState<T>& s, T h) {
+  const T cut_cosine = std::cos(T(kCut / 2));
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
     JointJet<T>& last = s.target_before[i];
     const Transform<T> before{now.rotation * rotation_exp<T>(-h * now.omega),
                               now.translation - h * now.velocity};
     if ((before.translation - last.translation).norm() < T(kCut) &&
-        before.rotation.angularDistance(last.rotation) < T(kCut))
+        std::abs(before.rotation.dot(last.rotation)) > cut_cosine)
       continue;
     last.rotation = before.rotation;
     last.translation = before.translation;
@@ -509,6 +510,9 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
     CharacterReport& r = s->report;
     r.outer_passes = total_.outer_passes;
     r.factorisations = total_.factorisations;
+    r.chords = total_.chords;
+    r.corrections = total_.corrections;
+    r.plain_passes = total_.plain_passes;
     r.converged = all_converged_;
     r.substeps = parts_;
     r.splits = splits_;

@@ -49,6 +49,9 @@ struct CharacterReport {
   int unknown_dofs = 0;           ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
+  int chords = 0;        ///< steps of simplified Newton, with the matrix of the pass before
+  int corrections = 0;   ///< second-order corrections that saved a full step
+  int plain_passes = 0;  ///< passes without the geometric terms, which made the matrix indefinite
   int contacts = 0;      ///< active contact points
   int substeps = 0;      ///< parts that the step was solved in; 0 = played
   int splits = 0;        ///< of these, halvings because a solve did not converge

@@ -150,6 +150,19 @@ void ContactRows<T>::correct(std::span<const Contact<T>> contacts) {
 }
 
 template <class T>
+bool ContactRows<T>::measure(std::span<const Contact<T>> contacts) {
+  bool same = true;
+  for (Row& row : rows_) {
+    const Contact<T>& c = contacts[row.contact];
+    same = same && !row.in_factor && c.gap >= T(0) && row.grip <= T(0);
+    row.gap = c.gap;
+    row.slip[0] = c.slip[0];
+    row.slip[1] = c.slip[1];
+  }
+  return same;
+}
+
+template <class T>
 void ContactRows<T>::add_gradient(std::span<T> gradient) const {
   for (const Row& row : rows_) {
     const T pressure = ContactLaw<T>::force(row.stiffness, row.gap);
@@ -186,10 +199,11 @@ typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
 }
 
 template <class T>
-void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
-  for (const Row& row : rows_) {
+void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) {
+  for (Row& row : rows_) {
     const Block b = block(row);
-    if (b.zero()) continue;
+    row.in_factor = !b.zero();
+    if (!row.in_factor) continue;
     for (const Side& side : row.side) {
       const T *gap = gap_.data() + side.first, *first = slip_[0].data() + side.first,
               *second = slip_[1].data() + side.first;

@@ -37,11 +37,14 @@ class ContactRows {
   /// Re-measures: as far from the chart centres as the direction leads, gaps and slips are the contacts' own
   /// (second-order correction).
   void correct(std::span<const Contact<T>> contacts);
+  /// Gaps and slips as the contacts have them now. True where that changes nothing that the last
+  /// factor holds.
+  bool measure(std::span<const Contact<T>> contacts);
 
   /// gradient += ∂E/∂d at the present gaps and slips.
   void add_gradient(std::span<T> gradient) const;
   /// Adds each side's second derivative at the present gaps and slips; what couples two sides is left out.
-  void add_curvature(TreeMatrix<T>& matrix) const;
+  void add_curvature(TreeMatrix<T>& matrix);
   /// y += the whole second derivative · x, both sides and what couples them.
   void multiply(std::span<const T> x, std::span<T> y) const;
   /// Geometric term: the surface's own bending turns the normal, −force·∇²distance. Per side, and what
@@ -61,6 +64,7 @@ class ContactRows {
     T stiffness = T(0), grip = T(0);  ///< N/m, μλ in N
     T gap = T(0), slip[2]{};          ///< at the inner solution so far
     T d_gap = T(0), d_slip[2]{};      ///< along the direction looked at
+    bool in_factor = false;           ///< the last factor holds some curvature of it
     bool bends = false;
     Mat3<T> bending = Mat3<T>::Zero();  ///< −force·∇²distance, N/m, world axes
   };

@@ -191,9 +191,9 @@ template <class T>
 bool InnerProblem<T>::newton_step() {
   factor_.values() = smooth_.values();
   contact_rows_.add_curvature(factor_);
-  for (const JointRows& rows : joint_rows_) {
+  for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = row.curvature(rows.value);
+    const T curvature = rows.in_factor = row.curvature(rows.value);
     if (curvature <= T(0)) continue;
     for (int i = 0; i < row.count; ++i)
       for (int j = 0; j <= i; ++j)
@@ -297,6 +297,32 @@ void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
   contact_rows_.look_along(correction_);
   contact_rows_.correct(contacts);
   for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
+}
+
+template <class T>
+double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  bool same = contact_rows_.measure(contacts);  // as the last factor holds them
+  std::size_t n = 0;
+  for (const TreeProblem<T>* p : trees_) {
+    if (n + p->rows.size() > joint_rows_.size()) return kNone;
+    for (const JointRow<T>& row : p->rows) {
+      JointRows& mine = joint_rows_[n++];
+      if (row.dof != mine.row.dof || row.kind != mine.row.kind || row.scalar != mine.row.scalar) return kNone;
+      same = same && mine.in_factor == row.curvature(row.value);
+      mine.value = row.value;
+    }
+    for (int dof = 0; dof < p->tree->dofs; ++dof)
+      if (const int k = unknown(*p, dof); k >= 0) inner_gradient_[k] = p->gradient[dof];
+  }
+  if (same) {
+    for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
+    factor_.solve(step_);
+  } else if (!newton_step()) {
+    return kNone;
+  }
+  correction_ = step_;
+  return double(displacement(correction_));
 }
 
 template <class T>

@@ -43,6 +43,12 @@ class InnerProblem {
   /// correction led, and the old Jacobians. Call minimise() after it.
   void correct(std::span<const Contact<T>> contacts);
 
+  /// Simplified Newton step, a chord, from where the last correction led: true gradient, rows as the trees
+  /// and `contacts` found them there, this pass's H₀ and Jacobians. It becomes correction(); the model is
+  /// spent. Returns its length (m, see displacement), infinite where there is none. Costs a factorisation
+  /// where a row has changed.
+  double chord(std::span<const Contact<T>> contacts);
+
   std::vector<T>& correction() { return correction_; }
   const std::vector<T>& correction() const { return correction_; }
   bool has_contacts() const { return !contact_rows_.empty(); }
@@ -62,6 +68,7 @@ class InnerProblem {
     JointRow<T> row;
     int unknown = 0;  ///< of the row's first degree of freedom
     T value = T(0), d_value = T(0);
+    T in_factor = T(0);  ///< curvature that the last factor holds
   };
 
   void assemble(std::span<const Contact<T>> contacts, bool geometric);

@@ -6,7 +6,11 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertainRate = 0.1;  ///< steps that shrink faster have entered Newton's basin
+/// m; after a shorter full step the pass's own matrix leads on.
+constexpr double kStillValid = 0.01;
+constexpr double kChordRate = 0.5;    ///< of the step before: chords that shrink less do not pay
+constexpr double kCautious = 0.1;     ///< of the tolerance, for a chord to be the last
+constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
 
 }  // namespace
 
@@ -39,6 +43,12 @@ double NewtonSolver<T>::evaluate() {
   }
   for (TreeProblem<T>* p : trees_) finish_gradient(*p);
   return energy;
+}
+
+template <class T>
+void NewtonSolver<T>::remember_charts() {
+  base_.clear();
+  for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
 }
 
 template <class T>
@@ -95,8 +105,7 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
 template <class T>
 typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, double& energy) {
   const T slope = inner_.slope(inner_.correction());
-  base_.clear();
-  for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
+  remember_charts();
   const double before = energy;
   T t = T(1);
   for (int attempt = 0; attempt < 14; ++attempt) {
@@ -116,6 +125,30 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, doub
   return Outcome::kRefused;
 }
 
+/// Goes on with the pass's own matrix while that shrinks the steps: an evaluation each, where a pass builds
+/// and factorises. True when one was below the tolerance.
+template <class T>
+bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double& energy) {
+  for (;;) {
+    const double next = inner_.chord(contacts_);
+    if (!(next < kChordRate * length)) return false;
+    if (next < kNegligible * tolerance) return true;
+    const T slope = inner_.slope_now(inner_.correction());
+    remember_charts();
+    try_step(T(1));
+    const double new_energy = evaluate();
+    if (!accepted(T(1), slope, energy, new_energy)) {
+      try_step(T(0));
+      energy = evaluate();
+      return false;
+    }
+    ++report_.chords;
+    energy = new_energy;
+    if (next < kCautious * tolerance) return true;
+    length = next;
+  }
+}
+
 template <class T>
 SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accuracy& accuracy,
                                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts) {
@@ -127,7 +160,6 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   double energy = evaluate();
   report_.converged = inner_.size() == 0;
   const double tolerance = accuracy.tolerance;
-  double last_length = 0;  // of the pass before, when it was a plain full step; 0 else
   while (!report_.converged && report_.outer_passes < accuracy.max_iterations) {
     ++report_.outer_passes;
     inner_.build(contacts_, true);
@@ -146,13 +178,9 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     const double length = double(inner_.displacement(inner_.correction()));
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
-    // Full Newton steps shrink at least linearly: what is left after this one is below length·rate.
-    const bool certain = last_length > 0 && length < kCertainRate * last_length &&
-                         length * (length / last_length) < 0.3 * tolerance &&
-                         inner.first_length < 1.5 * length;
     const Outcome outcome = line_search(T(tolerance), energy);
-    report_.converged = small || (certain && outcome == Outcome::kFull);
-    last_length = outcome == Outcome::kFull && longest <= T(1) ? length : 0;
+    report_.converged = small || (outcome == Outcome::kFull && length < kStillValid &&
+                                  converge_by_chords(tolerance, length, energy));
     if (outcome == Outcome::kRefused) break;
   }
   report_.factorisations = inner_.factorisations;

@@ -20,6 +20,7 @@ struct SolveReport {
   int products = 0;  ///< matrix–vector, of conjugate gradients
   int evaluations = 0;
   int plain_passes = 0;  ///< without the geometric terms, which made the matrix indefinite
+  int chords = 0;        ///< simplified Newton steps, with the matrix of the pass before
   int corrections = 0;   ///< second-order corrections that saved a step
   bool converged = false;
   double energy = 0;  ///< J, of the incremental potential at the result
@@ -31,6 +32,7 @@ struct SolveReport {
     products += later.products;
     evaluations += later.evaluations;
     plain_passes += later.plain_passes;
+    chords += later.chords;
     corrections += later.corrections;
     converged = later.converged;
     energy = later.energy;
@@ -54,7 +56,9 @@ class NewtonSolver {
   enum class Outcome { kRefused, kShortened, kCorrected, kFull };
 
   double evaluate();
+  void remember_charts();
   void try_step(T t);
+  bool converge_by_chords(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy) const;
   bool correct_step(T tolerance, double energy, double& new_energy);
   Outcome line_search(T tolerance, double& energy);

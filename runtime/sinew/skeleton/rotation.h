@@ -19,14 +19,30 @@ Mat3<T> skew(const Vec3<T>& a) {
   return m;
 }
 
-/// Rotation by the vector d (rad).
+/// Rotation by the vector d (rad). Up to one radian by series, to rounding: no library call, the same bits on
+/// every machine.
 template <class T>
 Quat<T> rotation_exp(const Vec3<T>& d) {
   const T angle2 = d.squaredNorm();
   T real, scale;  // cos(angle/2), sin(angle/2)/angle
-  if (angle2 < T(1e-6)) {
-    real = T(1) - angle2 / 8;
-    scale = T(0.5) - angle2 / 48;
+  if (angle2 < T(1)) {
+    const T u = angle2 / 4;
+    if constexpr (sizeof(T) == 4) {
+      real = 1 + u * (T(-1.0 / 2) + u * (T(1.0 / 24) + u * (T(-1.0 / 720) + u * T(1.0 / 40320))));
+      scale = T(0.5) + u * (T(-1.0 / 12) + u * (T(1.0 / 240) + u * (T(-1.0 / 10080) + u * T(1.0 / 725760))));
+    } else {
+      constexpr double kCosine[] = {1 / 479001600.0, -1 / 3628800.0, 1 / 40320.0, -1 / 720.0,
+                                    1 / 24.0,        -1 / 2.0,       1.0};
+      constexpr double kSine[] = {1 / 6227020800.0, -1 / 39916800.0, 1 / 362880.0, -1 / 5040.0,
+                                  1 / 120.0,        -1 / 6.0,        1.0};
+      T cosine = T(-1 / 87178291200.0), sine = T(-1 / 1307674368000.0);  // of the highest powers
+      for (int n = 0; n < 7; ++n) {
+        cosine = cosine * u + T(kCosine[n]);
+        sine = sine * u + T(kSine[n]);
+      }
+      real = cosine;
+      scale = sine / 2;
+    }
   } else {
     const T angle = std::sqrt(angle2);
     real = std::cos(angle / 2);
@@ -44,6 +60,10 @@ Vec3<T> rotation_log(const Quat<T>& q) {
   const T sine = v.norm();
   const T cosine = std::abs(q.w());
   if (sine < T(1e-6)) return v * (T(2) / std::max(cosine, T(0.5)));
+  if (sizeof(T) == 4 && sine < T(0.2)) {  // the series of 2·asin(sine)/sine, to rounding
+    const T u = sine * sine;
+    return v * (2 + u * (T(1.0 / 3) + u * (T(3.0 / 20) + u * (T(5.0 / 56) + u * T(35.0 / 576)))));
+  }
   return v * (T(2) * std::atan2(sine, cosine) / sine);
 }
 
