@@ -27,25 +27,6 @@ std::unique_ptr<Crowd> crowd_of(const Skeleton& skeleton, const CrowdSettings& s
   return crowd;
 }
 
-/// Sways all joints of a rig within 0.3 rad of rest.
-Clip swaying_clip(const Skeleton& skeleton, unsigned seed) {
-  const int joints = int(skeleton.joints.size());
-  Clip clip = fixtures::random_clip(
-      {.joints = joints, .duration = 4, .knot_interval = 0.5f, .moving = 1, .seed = seed});
-  Clip::Group& turns = clip.groups[0];
-  for (std::size_t n = 0; n < turns.controls.size() / 4; ++n) {
-    Eigen::Map<Quat<float>> q(turns.controls.data() + 4 * n);
-    const Quat<double> sway = Quat<double>::Identity().slerp(0.2, q.cast<double>());
-    q = (skeleton.joints[n % joints].rest.rotation * sway).cast<float>();
-  }
-  for (std::size_t n = 0; n < clip.groups[1].controls.size() / 3; ++n) {
-    Eigen::Map<Vec3<float>> x(clip.groups[1].controls.data() + 3 * n);
-    x = 0.1f * x + skeleton.joints[0].rest.translation.cast<float>();
-  }
-  for (int j = 0; j < joints; ++j) clip.constants[j] = skeleton.joints[j].rest.cast<float>();
-  return clip;
-}
-
 /// The humanoid with fingers that ride along.
 Skeleton rig_with_fingers() {
   Skeleton rig = fixtures::humanoid();
@@ -63,7 +44,8 @@ Skeleton rig_with_fingers() {
 /// A mixed crowd: clips, times, rates and places all differ.
 struct Scene {
   Skeleton rig = rig_with_fingers();
-  std::array<Clip, 3> clips = {swaying_clip(rig, 1), swaying_clip(rig, 2), swaying_clip(rig, 3)};
+  std::array<Clip, 3> clips = {fixtures::swaying_clip(rig, 1), fixtures::swaying_clip(rig, 2),
+                               fixtures::swaying_clip(rig, 3)};
 
   CrowdTrack track(int i) const {
     CrowdTrack track;
