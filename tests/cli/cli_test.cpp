@@ -1,55 +1,17 @@
 // The command as a user runs it: exit codes, one-line errors, whole files or none.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.h"
+
+namespace sinew::test {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-};
-
-Outcome sinew(const std::string& arguments) {
-  Outcome run;
-  FILE* pipe = popen((std::string(SINEW_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
-  char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
-  run.code = WEXITSTATUS(pclose(pipe));
-  return run;
-}
-
 const std::string kCharacter = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
 const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
-
-/// A directory of this process: ctest runs the cases side by side.
-std::string own_directory() {
-  std::string directory = testing::TempDir() + "sinew_cli_" + std::to_string(getpid()) + "/";
-  fs::create_directories(directory);
-  return directory;
-}
-
-std::string written(const std::string& name, const std::string& content) {
-  std::string path = own_directory() + name;
-  std::ofstream(path) << content;
-  return path;
-}
-
-void expect_refused(const std::string& arguments, const std::string& names) {
-  const Outcome run = sinew(arguments);
-  EXPECT_EQ(run.code, 1) << arguments << "\n" << run.out;
-  EXPECT_EQ(run.out.rfind("sinew: ", 0), 0u) << run.out;
-  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1) << run.out;
-  EXPECT_NE(run.out.find(names), std::string::npos) << run.out;
-}
 
 TEST(Command, UsageErrorsExitWithTwoAndHelpWithZero) {
   EXPECT_EQ(sinew("").code, 2);
@@ -75,15 +37,12 @@ TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
   expect_refused("render " + kAsset + " -o " + own_directory() + "x.avi", "x.avi");
   expect_refused("render " + kAsset + " --size 641x480 -o " + own_directory() + "x.png", "even");
   expect_refused("render " + kAsset + " --clip nothing -o " + own_directory() + "x.png", "nothing");
+  expect_refused("convert " + kCharacter + " --report /no/such/report.json -o " + out,
+                 "/no/such/report.json");
   for (const auto& entry : fs::directory_iterator(own_directory())) {
     EXPECT_EQ(entry.path().filename().string().find("never.sinew"), std::string::npos);
     EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
   }
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 TEST(Command, ConvertGivesTheSameBytesInEveryProcessAndPlace) {
@@ -198,3 +157,4 @@ TEST(Command, RendersAPictureOfAnAsset) {
 }
 
 }  // namespace
+}  // namespace sinew::test

@@ -25,7 +25,7 @@ struct Scene {
   Scene(unsigned seed, double spread, bool with_rows)
       : skeleton(dressed(seed, with_rows)), tree(skeleton), problem(tree, skeleton), random(seed + 500) {
     settings.gravity = {0.3, -0.2, -9.81};
-    settings.common_origin = {2, -1, 0.5};
+    problem.common_origin = {2, -1, 0.5};
     settings.kink_width = 0.2;  // wide, so that poses fall on both sides of the rounding
     problem.start = fixtures::random_pose(tree, random, 0.5);
     problem.target = near_start(spread);
@@ -34,7 +34,7 @@ struct Scene {
     problem.pushes.push_back({9, random.vector(0.2), random.vector(50)});
     // Inertia wants to be somewhere near, at an affine prediction that is no rotation.
     Kinematics<double> k(tree);
-    forward_kinematics<double>(tree, near_start(spread), settings.common_origin, k);
+    forward_kinematics<double>(tree, near_start(spread), problem.common_origin, k);
     problem.prediction.weight = 1 / (settings.h * settings.h);
     for (int i = 0; i < tree.bodies; ++i) {
       problem.prediction.center[i] = k.center[i];

@@ -355,7 +355,7 @@ TEST(DemoScene, OwnCharacterGetsUpAlthoughItIsHeldByLessThanItsWeight) {
   EXPECT_EQ(last.unknown_dofs, 0) << "and plays again";
 }
 
-TEST(DemoScene, MotionCaptureFallsAndReturnsToItsClip) {
+TEST(DemoScene, MotionCaptureIsOverloadedByTheBallFallsAndReturnsToItsClip) {
   const std::string bvh = "/usr/share/assimp/models/BVH/01_01.bvh";
   if (!std::filesystem::exists(bvh)) GTEST_SKIP() << "assimp-testmodels is not installed";
   auto asset = std::make_shared<Asset>();
@@ -377,6 +377,16 @@ TEST(DemoScene, MotionCaptureFallsAndReturnsToItsClip) {
     return recording.frames[static_cast<std::size_t>(t * scene.frame_rate)].characters[0].unknown_dofs;
   };
   EXPECT_EQ(unknown(1), 0);
+  const Skeleton& body = asset->skeleton;
+  const double hit = scene.props[0].launch_time + scene.props[0].from.norm() / scene.props[0].speed;
+  std::set<int> overloaded;  // joints, from the ball's arrival on
+  for (const Frame& frame : recording.frames)
+    if (frame.time > hit - 0.1 && frame.time < hit + 0.3)
+      for (int j = 0; j < body.body_count; ++j)
+        if (frame.characters[0].load[static_cast<std::size_t>(j)] > 0.99f) overloaded.insert(j);
+  EXPECT_TRUE(overloaded.count(body.find(Role::kUpperArmL))) << "the arm that it was thrown at";
+  EXPECT_GE(overloaded.size(), 2u) << "and what the arm hangs on";
+  EXPECT_EQ(unknown(hit + 0.5), 0) << "then the clip goes on";
   EXPECT_LT(pelvis(7.5), 0.5f * pelvis(1)) << "it lies";
   EXPECT_GT(pelvis(11.5), 0.8f * pelvis(1)) << "it stands again";
   EXPECT_EQ(unknown(11.5), 0);

@@ -10,12 +10,21 @@
 
 namespace sinew::cli {
 
-convert::Error write_atomically(const std::string& path, const void* data, std::size_t size) {
-  const std::string temporary = path + ".tmp" + std::to_string(getpid());
+convert::Error check_writable(const std::string& path) {
   std::error_code code;
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (!parent.empty() && !std::filesystem::is_directory(parent, code))
     return {path + ": its directory does not exist"};
+  if (access(parent.empty() ? "." : parent.c_str(), W_OK) != 0)
+    return {path + ": its directory cannot be written to"};
+  if (std::filesystem::is_directory(path, code)) return {path + ": is a directory"};
+  return {};
+}
+
+convert::Error write_atomically(const std::string& path, const void* data, std::size_t size) {
+  if (convert::Error error = check_writable(path)) return error;
+  const std::string temporary = path + ".tmp" + std::to_string(getpid());
+  std::error_code code;
   {
     std::ofstream file(temporary, std::ios::binary);
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));

@@ -8,6 +8,9 @@
 
 namespace sinew::cli {
 
+/// Why a file cannot be made there: asked before any work is done for it.
+convert::Error check_writable(const std::string& path);
+
 /// Writes to a temporary file in the same directory and renames: readers see the old file or the new one,
 /// never half.
 convert::Error write_atomically(const std::string& path, const void* data, std::size_t size);

@@ -55,6 +55,8 @@ struct ConvertCommand {
     }
     json options, report;
     Asset asset;
+    for (const std::string& path : {output, report_file})
+      if (Error error = path.empty() ? Error{} : cli::check_writable(path)) return error;
     if (Error error = source.read(options)) return error;
     if (Error error = sinew::convert::convert_files(inputs, options, asset, report)) return error;
     const std::vector<std::uint8_t> bytes = sinew::write_asset(asset);

@@ -109,7 +109,12 @@ void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, doub
 
 namespace {
 
-constexpr double kRate = 60;  // frames a second at which clips are looked at
+constexpr double kRate = 60;  ///< frames a second at which clips are looked at
+
+/// Frames for which a torque has to be asked, 50 ms: the time constant with which human muscle is activated
+/// and let go (Zajac 1989; 10–15 and 40–50 ms). What a marker's jump asks for a frame or two, up to a
+/// thousand times a person's strength, is no muscle's.
+constexpr int kSustained = 3;
 
 /// A skeleton's residual pass and what it works on.
 struct Pass {
@@ -163,30 +168,57 @@ double floor_of(const Clip& clip, Pass& pass) {
   return floor;
 }
 
+/// The largest value that a series holds for `kSustained` frames running, or 0 where it never rises above.
+double sustained_peak(const std::vector<double>& series) {
+  const int length = std::min(kSustained, static_cast<int>(series.size()));
+  double peak = 0;
+  for (auto first = series.begin(); first + length <= series.end(); ++first)
+    peak = std::max(peak, *std::min_element(first, first + length));
+  return peak;
+}
+
+/// What a clip asks of each degree of freedom, N·m: [dof][frame], both directions as positive numbers.
+struct Demand {
+  std::vector<std::vector<double>> plus, minus;
+};
+
+Demand demand_of(const Clip& clip, Pass& pass) {
+  const Tree<double>& tree = pass.tree;
+  const double floor = floor_of(clip, pass);
+  std::vector<double> torque(tree.dofs);
+  Demand demand{std::vector<std::vector<double>>(tree.dofs), std::vector<std::vector<double>>(tree.dofs)};
+  for (int f = 0; f < frames_of(clip); ++f) {
+    if (!pass.run(clip, f)) continue;
+    share_support<double>(tree, pass.kinematics, pass.points, floor, {}, pass.force, pass.moment);
+    project_wrenches<double>(tree, pass.kinematics, pass.force, pass.moment, torque);
+    for (int d = 0; d < tree.dofs; ++d) {
+      demand.plus[d].push_back(torque[d]);
+      demand.minus[d].push_back(-torque[d]);
+    }
+  }
+  return demand;
+}
+
 }  // namespace
 
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report) {
   Pass pass(skeleton);
   const Tree<double>& tree = pass.tree;
-  std::vector<double> torque(tree.dofs), highest(tree.dofs, 0.0), lowest(tree.dofs, 0.0);
+  std::vector<double> highest(tree.dofs, 0.0), lowest(tree.dofs, 0.0);
   std::vector<const Clip*> asks(tree.bodies, nullptr);
   std::vector<double> most(tree.bodies, 0.0);
   for (const Clip& clip : clips) {
-    const double floor = floor_of(clip, pass);
-    for (int f = 0; f < frames_of(clip); ++f) {
-      if (!pass.run(clip, f)) continue;
-      share_support<double>(tree, pass.kinematics, pass.points, floor, {}, pass.force, pass.moment);
-      project_wrenches<double>(tree, pass.kinematics, pass.force, pass.moment, torque);
-      for (int i = 0; i < tree.bodies; ++i)
-        for (int d = tree.first_dof[i]; d < tree.first_dof[i] + dof_count(skeleton.joints[i].type); ++d) {
-          highest[d] = std::max(highest[d], torque[d]);
-          lowest[d] = std::min(lowest[d], torque[d]);
-          if (std::abs(torque[d]) > most[i]) {
-            most[i] = std::abs(torque[d]);
-            asks[i] = &clip;
-          }
+    const Demand demand = demand_of(clip, pass);
+    for (int i = 0; i < tree.bodies; ++i)
+      for (int d = tree.first_dof[i]; d < tree.first_dof[i] + dof_count(skeleton.joints[i].type); ++d) {
+        const double plus = sustained_peak(demand.plus[d]), minus = sustained_peak(demand.minus[d]);
+        highest[d] = std::max(highest[d], plus);
+        lowest[d] = std::min(lowest[d], -minus);
+        if (std::max(plus, minus) > most[i]) {
+          most[i] = std::max(plus, minus);
+          asks[i] = &clip;
         }
-    }
+      }
   }
   report["muscles"] = nlohmann::json::array();
   for (int i = 0; i < tree.bodies; ++i) {

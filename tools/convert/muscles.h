@@ -31,8 +31,9 @@ bool anatomical_axes(Role role, const Vec3<double>& bone, const Quat<double>& re
 void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, double>& rows, double scale,
                  Joint& joint);
 
-/// Raises every muscle, each direction by itself, to the peak torque that the clips ask (recursive residual
-/// pass, feet supported) times the margin. Report "muscles": per joint the peak and the limits.
+/// Raises every muscle, each direction by itself, to the peak torque that the clips ask for 50 ms or longer
+/// (recursive residual pass, feet supported) times the margin. Report "muscles": per joint the peak and the
+/// limits.
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report);
 
 }  // namespace sinew::convert

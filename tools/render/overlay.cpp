@@ -116,20 +116,17 @@ void draw_chart(const Pen& pen, const Rect& at, const scene::Recording& rec, std
   const double u = pen.unit();
   cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
   const std::size_t first = static_cast<std::size_t>(std::max(1.0, std::ceil(begin * rec.frame_rate)));
-  const double dashes[] = {4 * u, 4 * u};
+  // A tick for every frame, not a line: the limit jumps where another axis of the joint is closest to its
+  // own.
+  const double half_frame = 0.5 / rec.frame_rate;
   for (const double side : {1.0, -1.0}) {
     if (side < 0 && low >= 0) continue;
-    cairo_set_dash(cr, dashes, 2, 0);
-    cairo_set_line_width(cr, 1.4 * u);
-    pen.set(pen.warm.faded(0.8));
-    cairo_new_path(cr);
     for (std::size_t i = first; i <= index; ++i) {
-      const float limit = rec.frames[i].characters[0].limit[joint];
-      if (!std::isfinite(limit)) continue;
-      cairo_line_to(cr, px(rec.frames[i].time) * u, py(side * double(limit)) * u);
+      const double limit = double(rec.frames[i].characters[0].limit[joint]), t = rec.frames[i].time;
+      if (std::isfinite(limit))
+        pen.line(px(t - half_frame), py(side * limit), px(t + half_frame), py(side * limit), 1.4,
+                 pen.warm.faded(0.8));
     }
-    cairo_stroke(cr);
-    cairo_set_dash(cr, nullptr, 0, 0);
   }
   cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
   for (std::size_t i = first + 1; i <= index; ++i) {

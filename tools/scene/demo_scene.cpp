@@ -43,13 +43,13 @@ std::pair<double, double> extent(const Asset& asset, int clip) {
   return lowest_highest;
 }
 
-/// The moment of a clip, s, at which the body stands as tall as it mostly does and moves least: where a
-/// fallen one may join in.
-double calmest_moment(const Asset& asset, int clip, double stature) {
+/// The moment of a clip between `begin` and `end`, s, at which the body stands as tall as it mostly does and
+/// moves least: where a fallen one may join in, and where a ball meets what it was thrown at.
+double calmest_moment(const Asset& asset, int clip, double stature, double begin, double end) {
   constexpr int kMoments = 100;
   std::vector<JointJet<double>> jets(asset.skeleton.joints.size());
   std::vector<double> unrest, heights;  // 1/s, m
-  const auto time = [&](int i) { return double(asset.clips[clip].duration) * (i + 1) / (kMoments + 1); };
+  const auto time = [&](int i) { return begin + (end - begin) * (i + 1) / (kMoments + 1); };
   for (int i = 0; i < kMoments; ++i) {
     SamplingJob<double>{&asset.clips[clip], time(i), 1, jets}.Run();
     double sum = jets[0].velocity.norm();
@@ -104,7 +104,7 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   const int own_way = first_of({"get_up_supine", "get_up", "getup", "GetUp"}, -1);
   ClipUse up{.clip = own_way >= 0 ? own_way : stand, .align = true};
   up.clip_when_prone = own_way >= 0 ? first_of({"get_up_prone"}, -1) : -1;
-  up.offset = own_way >= 0 ? 0 : calmest_moment(*asset, stand, height);
+  up.offset = own_way >= 0 ? 0 : calmest_moment(*asset, stand, height, 0, asset->clips[stand].duration);
   up.start = 7.4;
   up.blend = 2;
   up.rate = 0;
@@ -132,12 +132,13 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   SceneProp ball;
   ball.name = "ball";
   ball.settings.size = Vec3<double>::Constant(0.07 * height);
-  ball.settings.mass = 0.035 * mass;
+  ball.settings.mass = 0.1 * mass;
   ball.target_character = 0;
   ball.target_joint = body_at({Role::kUpperArmL, Role::kChest});
-  ball.speed = 7;
+  ball.speed = 14;
   ball.from = {0.6, 2.6, 1.0};
-  ball.launch_time = 2.2;
+  const double hit = calmest_moment(*asset, walk, height, 1.5, 3.5);
+  ball.launch_time = hit - ball.from.norm() / ball.speed;
   s.props.push_back(ball);
   ball.name = "heavy ball";
   ball.settings.size = Vec3<double>::Constant(0.1 * height);
@@ -148,10 +149,12 @@ Scene demo_scene(const std::shared_ptr<const Asset>& source) {
   ball.launch_time = 4.75;
   s.props.push_back(ball);
   s.duration = std::max(12.0, stands + 2);
-  s.captions = {
-      {0, "playback: nothing to solve"}, {2.4, "a ball at the shoulder: only what saturates is simulated"},
-      {3.8, "back on the animation"},    {5.0, "a harder hit: the strength is gone"},
-      {7.4, "strength returns"},         {stands + 0.3, "playback again"}};
+  s.captions = {{0, "playback: nothing to solve"},
+                {hit, "a ball at the shoulder: only what saturates is simulated"},
+                {hit + 1.2, "back on the animation"},
+                {5.0, "a harder hit: the strength is gone"},
+                {7.4, "strength returns"},
+                {stands + 0.3, "playback again"}};
   s.camera.follow_character = 0;
   s.plotted_joint = body_at({Role::kUpperArmL, Role::kChest});
   return s;

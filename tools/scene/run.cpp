@@ -170,7 +170,6 @@ class Runner {
         return {"character '" + c.name + "': " + status.reason};
       recording_.characters.push_back(c.asset);
       players_.emplace_back(c);
-      root_velocity_.emplace_back(Vec3<double>::Zero());
     }
     for (const Collider& o : s_.obstacles)
       if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
@@ -210,7 +209,7 @@ class Runner {
       if (launched_[p] || t < prop.launch_time) continue;
       launched_[p] = true;
       Vec3<double> from = prop.settings.pose.translation, velocity = prop.settings.velocity;
-      if (prop.target_character >= 0) aim(prop, from, velocity);
+      if (prop.target_character >= 0) aim(prop, t, from, velocity);
       world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
                       Vec3<T>::Zero());
     }
@@ -232,19 +231,25 @@ class Runner {
     return {};
   }
 
-  /// Ballistic launch that meets the moving joint: its velocity is taken from the root's.
-  void aim(const SceneProp& prop, Vec3<double>& from, Vec3<double>& velocity) {
-    const Character<T> c = world_.character(prop.target_character);
-    const Transform<double> root = c.model()[0].template cast<double>();
+  /// The point of a joint, in the world, that things are thrown at, when the animation is at t.
+  Vec3<double> target_of(const SceneProp& prop, double t) {
     const Skeleton& skeleton = s_.characters[prop.target_character].asset->skeleton;
-    const Vec3<double> joint = c.model()[prop.target_joint].template cast<double>() *
-                               Vec3<double>(0.5 * skeleton.joints[prop.target_joint].center_of_mass);
+    Player<T> ahead = players_[prop.target_character];
+    const auto& jets = ahead.at(t, world_.character(prop.target_character).local());
+    Vec3<double> point = 0.5 * skeleton.joints[prop.target_joint].center_of_mass;
+    for (int j = prop.target_joint; j >= 0; j = skeleton.joints[j].parent)
+      point = jets[j].rotation.template cast<double>() * point + jets[j].translation.template cast<double>();
+    return point;
+  }
+
+  /// Ballistic launch at t that meets the moving joint, as long as it stays on its animation.
+  void aim(const SceneProp& prop, double t, Vec3<double>& from, Vec3<double>& velocity) {
+    const Transform<double> root = world_.character(prop.target_character).model()[0].template cast<double>();
+    const Skeleton& skeleton = s_.characters[prop.target_character].asset->skeleton;
     const double yaw = heading(root.rotation, skeleton.joints[0].rest.rotation);
     from = upright({root.translation.x(), root.translation.y(), 0}, yaw) * prop.from;
-    const double flight = (joint - from).norm() / prop.speed;
-    const Vec3<double>& speed = root_velocity_[prop.target_character];
-    const Vec3<double> drift(speed.x(), speed.y(), 0);
-    velocity = (joint + drift * flight - from) / flight - s_.world.gravity * (flight / 2);
+    const double flight = (target_of(prop, t) - from).norm() / prop.speed;
+    velocity = (target_of(prop, t + flight) - from) / flight - s_.world.gravity * (flight / 2);
   }
 
   void record(double t, double microseconds) {
@@ -261,15 +266,13 @@ class Runner {
       for (int i = 0; i < skeleton.body_count; ++i) {
         if (skeleton.joints[i].type == JointType::kFree) continue;
         const int dofs = dof_count(skeleton.joints[i].type);
-        double most = 0;  // hinges show their sign, ball joints the size of their largest component
-        for (int k = 0; k < dofs; ++k) {
-          const int dof = c.first_dof(i) + k;
-          made.load[i] = std::max(made.load[i], float(c.load()[dof]));
-          made.limit[i] = std::max(made.limit[i], float(c.limit()[dof]));
-          most = std::max(most, std::abs(double(c.torque()[dof])));
-        }
-        made.torque[i] =
-            dofs == 1 ? float(c.torque()[static_cast<std::size_t>(c.first_dof(i))]) : float(most);
+        int most = c.first_dof(i);  // the axis that is closest to its limit speaks for the joint
+        for (int k = 1; k < dofs; ++k)
+          if (c.load()[c.first_dof(i) + k] > c.load()[most]) most = c.first_dof(i) + k;
+        made.load[i] = float(c.load()[most]);
+        made.limit[i] = float(c.limit()[most]);
+        // Hinges show their sign, ball joints the size.
+        made.torque[i] = dofs == 1 ? float(c.torque()[most]) : std::abs(float(c.torque()[most]));
       }
       for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i)
         made.load[i] = made.load[skeleton.joints[i].parent];
@@ -280,10 +283,6 @@ class Runner {
       made.microseconds = static_cast<float>(microseconds);
       made.strength = static_cast<float>(ramp_at(s_.characters[n].strength, t));
       made.root_free = value_at(s_.characters[n].root, t, RootDrive::kKinematic) == RootDrive::kFree;
-      if (!recording_.frames.empty()) {
-        const Vec3<float>& before = recording_.frames.back().characters[n].model[0].translation;
-        root_velocity_[n] = (made.model[0].translation - before).template cast<double>() * s_.frame_rate;
-      }
       TelemetryRow row;
       row.time = t;
       row.character = static_cast<int>(n);
@@ -313,7 +312,6 @@ class Runner {
   World<T> world_;
   std::vector<Player<T>> players_;
   std::vector<bool> launched_;
-  std::vector<Vec3<double>> root_velocity_;  ///< [character] m/s, of the last frame
 };
 
 }  // namespace

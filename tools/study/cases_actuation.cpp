@@ -132,9 +132,10 @@ Verdict turning_platform(const Trial& t) {
   return v;
 }
 
-/// Largest joint speed (rad/s) in the two seconds after the figure was put 1 km away and turned round.
+/// Largest joint speed (rad/s) in the two seconds after the figure was put 1 km away and turned round, and in
+/// how many steps its report says that it was carried.
 template <class T>
-double speed_after_jump(bool declared, const Trial& t, Measurement& measured) {
+double speed_after_jump(bool declared, const Trial& t, Measurement& measured, int& carried) {
   Stage<T> stage(WorldSettings{});
   const Skeleton body = humanoid();
   stage.add(body, {});
@@ -149,6 +150,7 @@ double speed_after_jump(bool declared, const Trial& t, Measurement& measured) {
   double fastest = 0;
   std::vector<Transform<T>> last(stage.character(0).local().begin(), stage.character(0).local().end());
   stage.run(2, t.h, [&](double) {
+    carried += stage.character(0).report().carried;
     const auto local = stage.character(0).local();
     for (std::size_t i = 1; i < last.size(); ++i)
       fastest = std::max(fastest, double(last[i].rotation.angularDistance(local[i].rotation)) / t.h);
@@ -161,13 +163,15 @@ double speed_after_jump(bool declared, const Trial& t, Measurement& measured) {
 template <class T>
 Verdict teleport(const Trial& t) {
   Measurement measured, ignored;
-  const double declared = speed_after_jump<T>(true, t, measured);
-  const double undeclared = speed_after_jump<T>(false, t, ignored);
+  int told = 0, noticed = 0;
+  const double declared = speed_after_jump<T>(true, t, measured, told);
+  const double undeclared = speed_after_jump<T>(false, t, ignored, noticed);
   Verdict v(measured);
   v.general();
   v.require(ignored.finite, "NaN after an undeclared jump");
   v.at_most("joint speed after a declared jump (rad/s)", declared, 1);
   v.at_most("joint speed after an undeclared jump (rad/s)", undeclared, 4);
+  v.require(told == 0 && noticed == 1, "the telemetry does not count the undeclared jump");
   return v;
 }
 

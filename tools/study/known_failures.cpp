@@ -15,7 +15,6 @@ struct KnownFailure {
 
 constexpr const char* kWobble = "bdf2's kinetic energy swings about the true one";
 constexpr const char* kPlayed = "a limp body whose residual happens to be 0 is played, not simulated";
-constexpr const char* kFloat = "float: translations of the root lose their digits";
 constexpr const char* kMissing = "not supported";
 
 constexpr KnownFailure kKnownFailures[] = {
@@ -25,7 +24,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"free_flight_10_rad_s", kWobble},
     {"free_flight_30_rad_s", kWobble},
     {"orthogonal_hinges", kPlayed},
-    {"stiff_servo", "a return time far below the step overshoots"},
     {"bricard_loop", kMissing},
     {"n_four_bar", kMissing},
     {"singular_four_bar", kMissing},
@@ -43,10 +41,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"ellipsoidal_limit", kMissing},
     {"baked_limbs", kMissing},
     {"piston", "throws the figure in float"},
-    {"teleport", "an undeclared jump is an impact"},
-    {"zero_negative_tiny_step", "steps of 1 ns do not converge in float"},
-    {"10_km_from_origin", kFloat},
-    {"100_km_from_origin", kFloat},
 };
 
 }  // namespace

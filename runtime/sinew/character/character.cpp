@@ -124,6 +124,11 @@ std::span<const Transform<T>> Character<T>::model() const {
 }
 
 template <class T>
+Vec3<double> Character<T>::position() const {
+  return state_->history.place;
+}
+
+template <class T>
 std::span<const T> Character<T>::torque() const {
   return state_->torque;
 }

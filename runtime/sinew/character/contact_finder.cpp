@@ -118,14 +118,14 @@ template <class T>
 void ContactFinder<T>::meet_hosts(int n, int collider, std::span<const HostObstacle> hosts) {
   const CharacterState<T>& s = *states_[n];
   const Bound& b = bounds_[first_bound_[n] + collider];
-  const Vec3<double> center = (b.center + common_origin_).template cast<double>();
+  const Vec3<double> center = b.center.template cast<double>() + common_origin_;
   for (std::size_t h = 0; h < hosts.size(); ++h) {
     if (hosts[h].shape->distance(center).distance > double(b.radius + b.reach)) continue;
     for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
       if (s.points[k].kind == PointKind::kAxis) continue;
       Contact<T> c = contact_of(n, s.points[k]);
       c.host = hosts[h].shape;
-      c.shape_pose.translation = -common_origin_;
+      c.host_origin = &common_origin_;
       c.friction = std::sqrt(s.points[k].friction * T(hosts[h].friction));
       c.restitution = std::max(c.restitution, T(hosts[h].restitution));
       c.id = contact_id(indices_[n], k, -1, kFirstHost + static_cast<int>(h));
@@ -138,7 +138,7 @@ template <class T>
 void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
   const std::span<const Collider> obstacles = surroundings.obstacles;
   const CharacterState<T>& s = *states_[n];
-  const T ground = T(world_->ground_height) - common_origin_.z();
+  const T ground = T(world_->ground_height - common_origin_.z());
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
     const Bound& b = bounds_[first_bound_[n] + static_cast<int>(collider)];
     if (b.moved && world_->ground && b.center.z() - b.radius - ground < b.reach)
@@ -155,8 +155,8 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
     meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
     for (std::size_t o = 0; o < obstacles.size(); ++o) {
       const Collider& obstacle = obstacles[o];
-      Transform<T> pose = obstacle.local.template cast<T>();
-      pose.translation -= common_origin_;
+      const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
+                              (obstacle.local.translation - common_origin_).template cast<T>()};
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
       if (signed_distance<T>(obstacle.shape, obstacle.size.template cast<T>(), apart).distance >
           b.radius + b.reach)
@@ -217,7 +217,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
                                              std::span<CharacterState<T>* const> states,
                                              std::span<const int> indices,
                                              std::span<const LaggedForce<T>> lagged,
-                                             const Vec3<T>& common_origin, T h) {
+                                             const Vec3<double>& common_origin, T h) {
   world_ = &world;
   states_ = states;
   indices_ = indices;

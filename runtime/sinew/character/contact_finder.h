@@ -47,7 +47,7 @@ class ContactFinder {
   /// feet would. Allocates nothing; contacts beyond the room of the trees are dropped.
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                             std::span<const LaggedForce<T>> lagged, const Vec3<T>& common_origin, T h);
+                             std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin, T h);
 
  private:
   /// Bounding sphere of a collider now, and how far its body may come within the step.
@@ -72,7 +72,7 @@ class ContactFinder {
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
   std::span<const LaggedForce<T>> lagged_;
-  Vec3<T> common_origin_ = Vec3<T>::Zero();
+  Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), heaviest_ = T(0);  ///< s; kg
   std::vector<Contact<T>> contacts_;
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
-#include "sinew/character/playback.h"
+#include "sinew/character/way_back.h"
 
 namespace sinew {
 namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kCut = 0.2;     ///< rad and m: an animation that leaps further than this in one step was cut
-constexpr double kTouch = 5e-5;  ///< m; shallower contacts bear half a percent of the weight: no impact
+constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
@@ -41,31 +41,6 @@ T load_of(const TreeProblem<T>& p, int dof, T torque) {
   const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
   if (std::isinf(limit)) return T(0);
   return limit > T(0) ? std::abs(torque) / limit : T(0);
-}
-
-/// After a cut between clips, the animation came from where the new clip was a step ago, going by its
-/// velocity: the way back starts from where the joint is as seen from there. The offset from the old clip
-/// would throw it about.
-template <class T>
-void meet_cuts(CharacterState<T>& s, T h) {
-  const T cut_cosine = std::cos(T(kCut / 2));
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const JointJet<T>& now = s.target[i];
-    JointJet<T>& last = s.target_before[i];
-    const Transform<T> before{now.rotation * rotation_exp<T>(-h * now.omega),
-                              now.translation - h * now.velocity};
-    if ((before.translation - last.translation).norm() < T(kCut) &&
-        std::abs(before.rotation.dot(last.rotation)) > cut_cosine)
-      continue;
-    last.rotation = before.rotation;
-    last.translation = before.translation;
-    Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) continue;
-    const Transform<T> wanted{now.rotation, now.translation};
-    const std::array<T, 6> moved = joint_offset<T>(s.tree, i, before, wanted).value;
-    d.offset = joint_offset<T>(s.tree, i, before, s.local[i]).value;
-    for (int k = 0; k < s.tree.dof_count(i); ++k) d.rate[k] = s.rate[i][k] - moved[k] / h;
-  }
 }
 
 /// Whose step may be divided; else it is halved once where it must be.
@@ -103,24 +78,20 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// Muscles pull to the animation, or along a way back to it; baked joints without muscles go on by
+/// Baked joints are not solved for: where something drives them they are on their target; limp ones go on by
 /// themselves, with q'' = −k·q'.
 template <class T>
-void IslandStepper<T>::choose_targets(CharacterState<T>& s, const WorldSettings& world, T h) {
-  const T tau = T(world.accuracy.return_time);
-  const T damping = T(world.detail.bake_damping);
+void IslandStepper<T>::choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
+  const T damping = T(detail.bake_damping);
   const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
-  const bool bakes = bakes_now(s, world.detail.bake_every);
+  const bool bakes = bakes_now(s, detail.bake_every);
   for (int i = 0; i < s.tree.bodies; ++i) {
     const bool driven = joint_is_driven(s.problem, i);
     s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
-    if (s.baked[i] && !driven) {
-      std::array<T, 6> moved{};
-      for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
-      s.problem.target[i] = at_offset<T>(s.tree, i, s.local[i], moved);
-    } else {
-      s.problem.target[i] = way_back<T>(s, i, tau, h);
-    }
+    if (!s.baked[i] || driven) continue;
+    std::array<T, 6> moved{};
+    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
+    s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
   }
 }
 
@@ -167,7 +138,6 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     TreeProblem<T>& p = s.problem;
-    p.start[i] = s.local[i];
     const Transform<T>& wanted = s.wanted[i];
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
@@ -183,7 +153,7 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
     const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
     for (int k = 0; k < count; ++k)
       moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
-    p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, s.local[i]), moved);
+    p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, p.start[i]), moved);
   }
 }
 
@@ -237,7 +207,7 @@ std::uint64_t IslandStepper<T>::bearing(int tree) const {
 template <class T>
 void IslandStepper<T>::predict_all(Scheme scheme, T h) {
   for (CharacterState<T>* s : states_)
-    predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
+    predict<T>(s->tree, s->history, scheme, h, common_origin_, s->problem.prediction);
 }
 
 template <class T>
@@ -258,7 +228,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
-    s.rate[i] = joint_offset_value<T>(s.tree, i, s.local[i], p.local[i]);
+    s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
     const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
     T missed = T(0), load = T(0);
@@ -277,8 +247,9 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
+  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, common_origin_, s.history);
+  if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.update_model();
-  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
 
   CharacterReport& r = s.report;
   r = {};
@@ -307,10 +278,12 @@ template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
-    s.wanted[i] = {now.rotation, now.translation};
-    if (fraction >= T(1)) continue;
-    s.wanted[i].rotation = before.rotation.slerp(fraction, now.rotation);
-    s.wanted[i].translation = before.translation + fraction * (now.translation - before.translation);
+    Transform<T> wanted{now.rotation, now.translation};
+    if (fraction < T(1)) {
+      wanted.rotation = before.rotation.slerp(fraction, now.rotation);
+      wanted.translation = before.translation + fraction * (now.translation - before.translation);
+    }
+    s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }
 }
 
@@ -320,13 +293,17 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.common_origin = states_[0]->model[0].translation;
+  common_origin_ = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
+    s->problem.common_origin = s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(common_origin_.cast<T>());
     choose_wanted(*s, fraction);
-    choose_targets(*s, world, h);
+    std::copy_n(s->local.begin(), s->tree.bodies, s->problem.start.begin());
+    if (s->floats) s->problem.start[0].translation = (s->history.place - common_origin_).template cast<T>();
+    choose_targets<T>(*s, T(world.accuracy.return_time), h);
+    choose_baked(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
@@ -339,10 +316,10 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   for (int round = 0; round < kReleaseRounds; ++round) {
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
-      forward_kinematics<T>(s->tree, s->problem.start, settings_.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+      forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
+    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, common_origin_, h);
     if (round == 0) {
-      sweep<T>(states_, contacts_, settings_.common_origin, h, free_share_);
+      sweep<T>(states_, contacts_, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
         if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
       second = world.accuracy.scheme == Scheme::kBdf2;
@@ -394,10 +371,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held)
-    for (Contact<T>& c : contacts_)
-      measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics,
-                 c);
+  if (any_held) forget_contacts();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -430,8 +404,8 @@ double IslandStepper<T>::pose_energy() const {
   for (const CharacterState<T>* s : states_) {
     const Vec3<double> gravity = world_->gravity;
     for (int i = 0; i < s->tree.bodies; ++i) {
-      const Vec3<T> center = s->problem.kinematics.center[i] + settings_.common_origin;
-      sum -= double(s->tree.mass[i]) * gravity.dot(center.template cast<double>());
+      const Vec3<double> center = common_origin_ + s->problem.kinematics.center[i].template cast<double>();
+      sum -= double(s->tree.mass[i]) * gravity.dot(center);
     }
     for (const JointRow<T>& row : s->problem.rows)
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
@@ -445,14 +419,25 @@ double IslandStepper<T>::pose_energy() const {
 template <class T>
 void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
-  forward_kinematics<T>(s.tree, s.problem.local, settings_.common_origin, s.problem.kinematics);
+  forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
-  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
+  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
   ++held_;
+}
+
+/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
+/// what cannot move, without end.
+template <class T>
+void IslandStepper<T>::forget_contacts() {
+  for (Contact<T>& c : contacts_) {
+    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    c.offset -= std::min(c.gap, T(0));
+    c.gap = std::max(c.gap, T(0));
+  }
 }
 
 template <class T>

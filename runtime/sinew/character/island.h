@@ -34,9 +34,10 @@ class IslandStepper {
   bool passive() const;
   double pose_energy() const;
   void hold(CharacterState<T>& state);
+  void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void choose_targets(CharacterState<T>& state, const WorldSettings& world, T h);
+  void choose_baked(CharacterState<T>& state, const LevelOfDetail& detail, T h);
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
   void first_guess(CharacterState<T>& state, T h, T share = T(1));
@@ -59,6 +60,7 @@ class IslandStepper {
   bool mispredicted_ = false;  ///< contacts or limits changed under bdf2
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0;
   StepSettings<T> settings_;
+  Vec3<double> common_origin_ = Vec3<double>::Zero();  ///< m, world; of everything that the solve computes
   std::vector<TreeProblem<T>*> problems_;
   ContactFinder<T> finder_;
   Bounce<T> bounce_;

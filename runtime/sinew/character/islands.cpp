@@ -68,9 +68,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   dofs_.resize(count);
   island_.assign(count, -1);
   awake_.clear();
-  const auto center = [&](int n) {
-    return Vec3<double>(states[n]->model[0].translation.template cast<double>());
-  };
+  const auto center = [&](int n) { return states[n]->history.place; };
   // Together they leave a decimetre, and twice what both may move by.
   const auto reach = [&](int n) {
     return double(states[n]->radius + T(0.05) + 2 * h * states[n]->history.velocity[0].norm());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sinew/character/way_back.h"
 #include "sinew/effects/support.h"
 
 namespace sinew {
@@ -9,7 +10,7 @@ namespace sinew {
 template <class T>
 bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
-  const Vec3<T> origin = s.model[0].translation;
+  const Vec3<T> origin = s.target[0].translation;
   inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
                        p.force, p.moment);
   for (const ExternalForce<T>& j : s.impulses) {
@@ -43,7 +44,7 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
-  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin, s.history);
+  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin.template cast<double>(), s.history);
   s.levels.stale = false;
   s.forget_contacts();
   s.report = {};
@@ -53,24 +54,18 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
 }
 
 template <class T>
-Transform<T> way_back(const CharacterState<T>& s, int i, T tau, T h) {
-  const Deviation<T>& d = s.deviation[i];
-  if (d.on_animation) return s.wanted[i];
-  const T decay = std::exp(-h / tau);
-  std::array<T, 6> offset{};
-  for (int k = 0; k < s.tree.dof_count(i); ++k)
-    offset[k] = (d.offset[k] + (d.rate[k] + d.offset[k] / tau) * h) * decay;
-  return at_offset<T>(s.tree, i, s.wanted[i], offset);
-}
-
-template <class T>
 void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
-  const Vec3<T> root = s.model[0].translation;
+  TreeProblem<T>& p = s.problem;
+  std::copy_n(s.local.begin(), s.tree.bodies, p.start.begin());
+  p.common_origin = s.local[0].translation;
+  for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+  if (s.undisturbed())
+    p.target = s.wanted;
+  else
+    choose_targets<T>(s, T(world.accuracy.return_time), h);
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T> before = s.local[i];
-    s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
-    s.local[i] = way_back<T>(s, i, T(world.accuracy.return_time), h);
-    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
+    s.local[i] = p.target[i];
+    s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], s.local[i]);
     for (T& r : s.rate[i]) r /= h;
     s.deviation[i].released = false;
     if (!s.deviation[i].on_animation) s.update_deviation(i, s.local[i], h);
@@ -79,7 +74,8 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
-  s.history.velocity[0] = (s.model[0].translation - root) / h;  // neighbours go by it
+  s.history.velocity[0] = (s.local[0].translation - p.start[0].translation) / h;  // neighbours go by it
+  s.history.place = s.local[0].translation.template cast<double>();
   s.levels.stale = true;
   s.forget_contacts();
   s.report = {};
@@ -115,9 +111,10 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
         break;  // on the animation's speed
     }
   }
-  inertial_wrenches<T>(s.tree, jets, Vec3<T>::Zero(), Vec3<T>::Zero(), s.problem.kinematics, s.motion,
-                       s.problem.force, s.problem.moment);
-  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), Vec3<T>::Zero(), s.history);
+  const Vec3<T>& origin = s.local[0].translation;
+  inertial_wrenches<T>(s.tree, jets, Vec3<T>::Zero(), origin, s.problem.kinematics, s.motion, s.problem.force,
+                       s.problem.moment);
+  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), origin.template cast<double>(), s.history);
   s.history.step_before = T(0);
 }
 

@@ -10,11 +10,6 @@ namespace sinew {
 template <class T>
 bool play(CharacterState<T>& state, const WorldSettings& world, T h);
 
-/// Where muscles pull a joint within h seconds: to the animation, or along a critically damped way back to
-/// it, e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the offset from the animation.
-template <class T>
-Transform<T> way_back(const CharacterState<T>& state, int body, T tau, T h);
-
 /// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
 template <class T>
 void follow(CharacterState<T>& state, const WorldSettings& world, T h);
@@ -24,10 +19,9 @@ void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 template <class T>
 void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 
-#define SINEW_PLAYBACK_INSTANCES(prefix, T)                             \
-  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, T);     \
-  prefix Transform<T> way_back<T>(const CharacterState<T>&, int, T, T); \
-  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);   \
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                           \
+  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, T);   \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T); \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)

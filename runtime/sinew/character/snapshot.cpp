@@ -124,6 +124,11 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
 template <class T>
 void visit_history(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
+  const Vec3<double> rounded = s.local[0].translation.template cast<double>();
+  if (stream.part("place is finer than the pose's", h.place != rounded))
+    stream.array("place", h.place.data(), 3);
+  else if (stream.reading())
+    h.place = rounded;
   stream.value("span of the history", h.step_before);
   std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
   stream.value("scheme", scheme);

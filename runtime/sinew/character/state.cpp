@@ -92,6 +92,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       motion(tree),
       baked(tree.bodies, 0),
       wanted(tree.bodies) {
+  floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
   impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
@@ -192,9 +193,10 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = {target[i].rotation, target[i].translation};
   target_before = target;
   update_model();
-  inertial_wrenches<T>(tree, target, gravity, Vec3<T>::Zero(), problem.kinematics, motion, problem.force,
+  const Vec3<T>& origin = target[0].translation;
+  inertial_wrenches<T>(tree, target, gravity, origin, problem.kinematics, motion, problem.force,
                        problem.moment);
-  advance_exactly<T>(tree, problem.kinematics, motion, T(0), Vec3<T>::Zero(), history);
+  advance_exactly<T>(tree, problem.kinematics, motion, T(0), origin.template cast<double>(), history);
   history.step_before = T(0);
   for (int i = 0; i < tree.bodies; ++i) {
     deviation[i] = {};

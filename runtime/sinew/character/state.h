@@ -84,6 +84,8 @@ struct CharacterState {
   bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
+  bool carried = false;  ///< in this step, see carry_over()
+  bool floats = false;   ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
@@ -129,6 +131,12 @@ struct CharacterState {
   void report_totals(const Vec3<double>& gravity);
   /// Model transforms of all joints from the local ones.
   void update_model();
+  /// Joint `i` at `pose` (world where parentless) as the solve has it: a floating root's place is relative to
+  /// the common origin, so that nothing of it is lost.
+  Transform<T> in_solve(int i, const Transform<T>& pose, const Vec3<double>& common_origin) const {
+    if (i > 0 || !floats) return pose;
+    return {pose.rotation, (pose.translation.template cast<double>() - common_origin).template cast<T>()};
+  }
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
   /// Nothing touches, and the speed before the last step's is not known.

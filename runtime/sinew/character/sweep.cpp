@@ -58,15 +58,15 @@ T time_of_impact(std::span<CharacterState<T>* const> states, const Contact<T>& c
 }  // namespace
 
 template <class T>
-void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-           const Vec3<T>& common_origin, T h, std::span<T> share) {
+void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts, T h,
+           std::span<T> share) {
   std::fill(share.begin(), share.end(), T(1));
   bool guessed = false;
   for (const Contact<T>& c : contacts) {
     if (!may_pass(states, c, h)) continue;
     if (!guessed)
       for (CharacterState<T>* s : states)
-        forward_kinematics<T>(s->tree, s->problem.local, common_origin, s->guessed);
+        forward_kinematics<T>(s->tree, s->problem.local, s->problem.common_origin, s->guessed);
     guessed = true;
     const T t = time_of_impact(states, c);
     share[c.tree_a] = std::min(share[c.tree_a], t);
@@ -74,9 +74,9 @@ void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T
   }
 }
 
-template void sweep<float>(std::span<CharacterState<float>* const>, std::span<const Contact<float>>,
-                           const Vec3<float>&, float, std::span<float>);
+template void sweep<float>(std::span<CharacterState<float>* const>, std::span<const Contact<float>>, float,
+                           std::span<float>);
 template void sweep<double>(std::span<CharacterState<double>* const>, std::span<const Contact<double>>,
-                            const Vec3<double>&, double, std::span<double>);
+                            double, std::span<double>);
 
 }  // namespace sinew

@@ -16,12 +16,12 @@ namespace sinew {
 /// the beginning of the step, as must the kinematics. Allocates nothing; free of cost where nothing moves
 /// further than half a thickness.
 template <class T>
-void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-           const Vec3<T>& common_origin, T h, std::span<T> share);
+void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts, T h,
+           std::span<T> share);
 
 extern template void sweep<float>(std::span<CharacterState<float>* const>, std::span<const Contact<float>>,
-                                  const Vec3<float>&, float, std::span<float>);
+                                  float, std::span<float>);
 extern template void sweep<double>(std::span<CharacterState<double>* const>, std::span<const Contact<double>>,
-                                   const Vec3<double>&, double, std::span<double>);
+                                   double, std::span<double>);
 
 }  // namespace sinew

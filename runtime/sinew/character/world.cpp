@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "sinew/character/cut.h"
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
@@ -399,6 +400,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
     s->report.crowded = s->crowded;
     s->impulses.clear();
     s->target_before = s->target;
+    s->report.carried = s->carried;
   }
 }
 
@@ -435,6 +437,7 @@ void World<T>::Impl::keep_sleepers() {
 template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
+  for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
   islands.find(states, h, settings.island_dofs);
   large.clear();
   heavy.clear();

@@ -60,6 +60,7 @@ struct CharacterReport {
   bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
   bool converged = true;
   bool used_bdf2 = false;
+  bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
   double kinetic_energy = 0;                             ///< J
   double potential_energy = 0;                           ///< J, gravity
   double elastic_energy = 0;                             ///< J, stored in contacts and joint limits
@@ -126,6 +127,8 @@ class Character {
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
   std::span<const Transform<T>> model() const;  ///< [joint] joint → world
+  /// The root's origin, world, m: local() and model() hold it rounded to T, the simulation does not.
+  Vec3<double> position() const;
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;

@@ -155,7 +155,7 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
     c.bends = false;
   } else if (c.host) {
     const SignedDistance<double> d =
-        c.host->distance((c.point - c.shape_pose.translation).template cast<double>());
+        c.host->distance(*c.host_origin + (c.point - c.shape_pose.translation).template cast<double>());
     c.normal = d.normal.template cast<T>();
     c.gap = T(d.distance) - c.radius + c.offset;
     c.bends = false;

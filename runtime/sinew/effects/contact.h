@@ -72,11 +72,11 @@ struct Contact {
       Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
   T radius = T(0);
   Shape shape = Shape::kSphere;
-  const StaticShape* host =
-      nullptr;              ///< instead of a shape; shape_pose.translation is then the world's origin
-  bool plane = false;       ///< static half space z ≤ plane_height instead of a shape
-  T plane_height = T(0);    ///< from the common origin
-  Transform<T> shape_pose;  ///< shape → body_b (or → common origin when static)
+  const StaticShape* host = nullptr;          ///< instead of a shape; shape_pose.translation then shifts it
+  const Vec3<double>* host_origin = nullptr;  ///< the common origin in the host's world
+  bool plane = false;                         ///< static half space z ≤ plane_height instead of a shape
+  T plane_height = T(0);                      ///< from the common origin
+  Transform<T> shape_pose;                    ///< shape → body_b (or → common origin when static)
   Vec3<T> size = Vec3<T>::Zero();
   T stiffness = T(1e5);          ///< N/m
   T friction = T(0.8);           ///< μ

@@ -275,7 +275,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       quadratic += step_[k] * product_[k];
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
-    const T t = exact_line_search(quadratic, linear);
+    const bool rowless = contact_rows_.empty() && joint_rows_.empty();  // quadratic: the step is exact
+    const T t = rowless ? T(1) : exact_line_search(quadratic, linear);
     for (int k = 0; k < n; ++k) {
       correction_[k] += t * step_[k];
       correction_product_[k] += t * product_[k];
@@ -283,8 +284,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     }
     contact_rows_.move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
-    // Without rows the model is quadratic: solved.
-    if (last || (contact_rows_.empty() && joint_rows_.empty())) break;
+    if (last || rowless) break;
     add_row_gradient(inner_gradient_);
     if (!contact_rows_.coupled() && remaining_length() < kShrink * report.first_length) break;
   }

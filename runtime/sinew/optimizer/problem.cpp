@@ -62,7 +62,7 @@ bool positive_definite(const Mat3<T>& m) {
 template <class T>
 double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
-  forward_kinematics<T>(tree, p.local, settings.common_origin, p.kinematics);
+  forward_kinematics<T>(tree, p.local, p.common_origin, p.kinematics);
   const T weight = p.prediction.weight;
   double energy = 0;
   for (int i = 0; i < tree.bodies; ++i) {

@@ -41,10 +41,11 @@ struct TreeProblem {
   const Tree<T>* tree;
   JointLaw<T> law;
   Prediction<T> prediction;
-  std::vector<Transform<T>> local;   ///< [body] present solution, joint → parent
-  std::vector<Transform<T>> target;  ///< [body] where the muscles pull
-  std::vector<Transform<T>> start;   ///< [body] at the beginning of the step
-  std::vector<std::uint8_t> free;    ///< [dof] 1: an unknown of the solve
+  Vec3<T> common_origin = Vec3<T>::Zero();  ///< m; subtracted from the places of parentless joints
+  std::vector<Transform<T>> local;          ///< [body] present solution, joint → parent
+  std::vector<Transform<T>> target;         ///< [body] where the muscles pull
+  std::vector<Transform<T>> start;          ///< [body] at the beginning of the step
+  std::vector<std::uint8_t> free;           ///< [dof] 1: an unknown of the solve
   std::vector<ExternalForce<T>> pushes;
   Kinematics<T> kinematics;            ///< at `local`
   std::vector<Vec3<T>> force, moment;  ///< [body] gradient wrenches; subtree sums after the projection
@@ -65,10 +66,9 @@ template <class T>
 struct StepSettings {
   T h = T(1) / 60;                  ///< s
   Vec3<T> gravity{0, 0, T(-9.81)};  ///< m/s²
-  Vec3<T> common_origin = Vec3<T>::Zero();
-  T limit_stiffness = T(2000);  ///< N·m/rad
-  T stick = T(0.01) / 60;       ///< m per step
-  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
+  T limit_stiffness = T(2000);      ///< N·m/rad
+  T stick = T(0.01) / 60;           ///< m per step
+  T kink_width = T(1e-3) / 60;      ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
 };
 
 /// Kinematics, wrenches and energy of inertia, gravity and pushes at `problem.local`; rows re-measured.

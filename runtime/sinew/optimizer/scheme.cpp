@@ -72,15 +72,16 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
 }  // namespace
 
 template <class T>
-void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h, const Vec3<T>& common_origin,
-             Prediction<T>& out) {
+void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
+             const Vec3<double>& common_origin, Prediction<T>& out) {
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const bool second = scheme == Scheme::kBdf2 && history.step_before > T(0);
   out.scheme = scheme == Scheme::kMomentum ? scheme : second ? Scheme::kBdf2 : Scheme::kBdf1;
   if (!second) {
     out.weight = T(1) / (h * h);
     out.momentum_step = h;
     for (int i = 0; i < tree.bodies; ++i) {
-      out.center[i] = history.center[i] - common_origin + h * history.velocity[i];
+      out.center[i] = place + history.center[i] + h * history.velocity[i];
       out.rotation[i] = history.rotation[i] + h * history.rotation_rate[i];
       out.momentum[i] = history.momentum[i];
       out.start[i] = history.rotation[i];
@@ -94,8 +95,8 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
   out.weight = T(1) / (beta * h * beta * h);
   out.momentum_step = beta * h;
   for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> now = history.center[i] - common_origin;
-    const Vec3<T> before = history.center_before[i] - common_origin;
+    const Vec3<T> now = place + history.center[i];
+    const Vec3<T> before = place + history.center_before[i];
     out.center[i] =
         a0 * now + a1 * before + beta * h * (a0 * history.velocity[i] + a1 * history.velocity_before[i]);
     out.momentum[i] = a0 * history.momentum[i] + a1 * history.momentum_before[i];
@@ -111,9 +112,22 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
   }
 }
 
+namespace {
+
+/// Moves a history's place on to the root of `kinematics`; returns by how much.
+template <class T>
+Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history) {
+  const Vec3<T> before = (history.place - common_origin).template cast<T>();
+  history.place = common_origin + kinematics.origin[0].template cast<double>();
+  return kinematics.origin[0] - before;
+}
+
+}  // namespace
+
 template <class T>
 void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
-             std::span<const Vec3<T>> torque, T h, const Vec3<T>& common_origin, History<T>& history) {
+             std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin, History<T>& history) {
+  const Vec3<T> moved = follow_root(kinematics, common_origin, history);
   const bool second = prediction.scheme == Scheme::kBdf2;
   // Backward difference of the last three (or two) states; the same coefficients serve positions and
   // rotations.
@@ -121,13 +135,13 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
   const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1);
   const T k2 = second ? w * w / (1 + w) : T(0);
   for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> c1 = kinematics.center[i] + common_origin;
+    const Vec3<T> c1 = kinematics.center[i] - kinematics.origin[0];
+    const Vec3<T> c0 = history.center[i] - moved, before = history.center_before[i] - moved;
     const Mat3<T>& r1 = kinematics.rotation[i];
-    const Vec3<T> velocity =
-        (k1 * (c1 - history.center[i]) - k2 * (history.center[i] - history.center_before[i])) / h;
+    const Vec3<T> velocity = (k1 * (c1 - c0) - k2 * (c0 - before)) / h;
     const Mat3<T> rate =
         (k1 * (r1 - history.rotation[i]) - k2 * (history.rotation[i] - history.rotation_before[i])) / h;
-    history.center_before[i] = history.center[i];
+    history.center_before[i] = c0;
     history.center[i] = c1;
     history.velocity_before[i] = history.velocity[i];
     history.velocity[i] = velocity;
@@ -143,11 +157,12 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
 
 template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
-                     const Vec3<T>& common_origin, History<T>& history) {
+                     const Vec3<double>& common_origin, History<T>& history) {
+  const Vec3<T> moved = follow_root(kinematics, common_origin, history);
   for (int i = 0; i < tree.bodies; ++i) {
     const Mat3<T>& r = kinematics.rotation[i];
-    history.center_before[i] = history.center[i];
-    history.center[i] = kinematics.center[i] + common_origin;
+    history.center_before[i] = history.center[i] - moved;
+    history.center[i] = kinematics.center[i] - kinematics.origin[0];
     history.velocity_before[i] = history.velocity[i];
     history.velocity[i] = motion.velocity[i];
     history.rotation_before[i] = history.rotation[i];
@@ -167,7 +182,7 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   Vec3<double> first = Vec3<double>::Zero(), about_origin = Vec3<double>::Zero();
   for (int i = 0; i < tree.bodies; ++i) {
     const double m = double(tree.mass[i]);
-    const Vec3<double> center = history.center[i].template cast<double>();
+    const Vec3<double> center = history.place + history.center[i].template cast<double>();
     const Vec3<double> velocity = history.velocity[i].template cast<double>();
     const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
     const Mat3<T>& rate = history.rotation_rate[i];

@@ -20,10 +20,12 @@
 
 namespace sinew {
 
-/// Present and previous state of every body; positions in world coordinates.
+/// Present and previous state of every body. Positions are relative to `place`, which follows the root in
+/// double precision: float keeps its digits however far from the world's origin a character is.
 template <class T>
 struct History {
-  std::vector<Vec3<T>> center, center_before;      ///< m
+  Vec3<double> place = Vec3<double>::Zero();       ///< m, world; of the root's origin
+  std::vector<Vec3<T>> center, center_before;      ///< m, from `place`
   std::vector<Vec3<T>> velocity, velocity_before;  ///< of the centre of mass, m/s
   std::vector<Mat3<T>> rotation, rotation_before;
   std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
@@ -55,19 +57,19 @@ struct Prediction {
 
 /// Fills `out` for a step of h seconds. bdf2 needs an earlier state; without one, bdf1 is used.
 template <class T>
-void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h, const Vec3<T>& common_origin,
-             Prediction<T>& out);
+void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
+             const Vec3<double>& common_origin, Prediction<T>& out);
 
 /// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
 /// gradient there (about each centre of mass).
 template <class T>
 void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
-             std::span<const Vec3<T>> torque, T h, const Vec3<T>& common_origin, History<T>& history);
+             std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin, History<T>& history);
 
 /// Moves the history on to a pose whose velocities are known exactly (playback).
 template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
-                     const Vec3<T>& common_origin, History<T>& history);
+                     const Vec3<double>& common_origin, History<T>& history);
 
 /// Sums over a tree, of the momenta that the schemes carry.
 struct Totals {
@@ -82,15 +84,15 @@ struct Totals {
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
 
-#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                   \
-  prefix struct History<T>;                                                                                 \
-  prefix struct Prediction<T>;                                                                              \
-  prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<T>&, Prediction<T>&);     \
-  prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                        \
-                         std::span<const Vec3<T>>, T, const Vec3<T>&, History<T>&);                         \
-  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                          \
-  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&, \
-                                 History<T>&);
+#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                    \
+  prefix struct History<T>;                                                                                  \
+  prefix struct Prediction<T>;                                                                               \
+  prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<double>&, Prediction<T>&); \
+  prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                         \
+                         std::span<const Vec3<T>>, T, const Vec3<double>&, History<T>&);                     \
+  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
+  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T,                  \
+                                 const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)
 SINEW_SCHEME_INSTANCES(extern template, double)
 

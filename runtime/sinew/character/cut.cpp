@@ -1,0 +1,72 @@
+#include "sinew/character/cut.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sinew {
+namespace {
+
+constexpr double kCut = 0.2;  ///< rad and m: an animation that leaps further than this in one step was cut
+
+/// Where a joint's animation was a step ago, going by its velocity.
+template <class T>
+Transform<T> a_step_ago(const JointJet<T>& now, T h) {
+  return {now.rotation * rotation_exp<T>(-h * now.omega), now.translation - h * now.velocity};
+}
+
+template <class T>
+bool leaps(const Transform<T>& before, const JointJet<T>& last) {
+  const T cut_cosine = std::cos(T(kCut / 2));
+  return (before.translation - last.translation).norm() >= T(kCut) ||
+         std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
+}
+
+template <class T>
+void turn(const Mat3<T>& by, History<T>& history) {
+  for (auto* vectors : {&history.center, &history.center_before, &history.velocity, &history.velocity_before,
+                        &history.momentum, &history.momentum_before})
+    for (Vec3<T>& v : *vectors) v = (by * v).eval();
+  for (auto* matrices : {&history.rotation, &history.rotation_before, &history.rotation_rate})
+    for (Mat3<T>& m : *matrices) m = (by * m).eval();
+}
+
+}  // namespace
+
+template <class T>
+bool carry_over(CharacterState<T>& s, T h) {
+  if (!s.root_is_kinematic() || !s.floats) return false;
+  const Transform<T> before = a_step_ago(s.target[0], h);
+  JointJet<T>& last = s.target_before[0];
+  if (!leaps(before, last)) return false;
+  turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
+  s.history.place = before.translation.template cast<double>();
+  s.local[0] = before;
+  last.rotation = before.rotation;
+  last.translation = before.translation;
+  s.update_model();
+  s.energy_ceiling = std::numeric_limits<double>::infinity();
+  return true;
+}
+
+template <class T>
+void meet_cuts(CharacterState<T>& s, T h) {
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const JointJet<T>& now = s.target[i];
+    JointJet<T>& last = s.target_before[i];
+    const Transform<T> before = a_step_ago(now, h);
+    if (!leaps(before, last)) continue;
+    last.rotation = before.rotation;
+    last.translation = before.translation;
+    Deviation<T>& d = s.deviation[i];
+    if (d.on_animation) continue;
+    const Transform<T> wanted{now.rotation, now.translation};
+    const std::array<T, 6> moved = joint_offset<T>(s.tree, i, before, wanted).value;
+    d.offset = joint_offset<T>(s.tree, i, before, s.local[i]).value;
+    for (int k = 0; k < s.tree.dof_count(i); ++k) d.rate[k] = s.rate[i][k] - moved[k] / h;
+  }
+}
+
+SINEW_CUT_INSTANCES(template, float)
+SINEW_CUT_INSTANCES(template, double)
+
+}  // namespace sinew

@@ -1,0 +1,25 @@
+// Animations that leap: cuts between clips, and teleports that no reset() declared.
+#pragma once
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// A driven root whose animation leaps further than it could have moved takes the character along: everything
+/// is set down where the new animation was a step ago, going by its velocity, and what hangs limp keeps its
+/// motion relative to the root. True if it did. Costs one comparison else.
+template <class T>
+bool carry_over(CharacterState<T>& state, T h);
+
+/// After a cut the joints' ways back start from where they are as seen from the new animation a step ago. The
+/// offset from the old one would throw them about.
+template <class T>
+void meet_cuts(CharacterState<T>& state, T h);
+
+#define SINEW_CUT_INSTANCES(prefix, T)              \
+  prefix bool carry_over<T>(CharacterState<T>&, T); \
+  prefix void meet_cuts<T>(CharacterState<T>&, T);
+SINEW_CUT_INSTANCES(extern template, float)
+SINEW_CUT_INSTANCES(extern template, double)
+
+}  // namespace sinew

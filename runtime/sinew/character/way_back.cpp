@@ -1,0 +1,72 @@
+#include "sinew/character/way_back.h"
+
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+constexpr double kBraking =
+    0.33;  ///< of a muscle's limit; the rest bears weight. Half: at the edge of an overshoot
+
+/// Each body's subtree as one rigid body, about the common origin, into `problem.composite`.
+template <class T>
+void sum_subtrees(CharacterState<T>& s) {
+  TreeProblem<T>& p = s.problem;
+  forward_kinematics<T>(s.tree, p.start, p.common_origin, p.kinematics);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = p.kinematics.rotation[i];
+    p.composite[i] = {};
+    p.composite[i].add_body(s.tree.mass[i], p.kinematics.center[i], r * s.tree.inertia[i] * r.transpose());
+  }
+  for (int i = s.tree.bodies - 1; i > 0; --i)
+    if (const int parent = s.tree.parent[i]; parent >= 0) p.composite[parent] += p.composite[i];
+}
+
+/// Inertia (kg·m², kg) that a degree of freedom moves while the rest stands still.
+template <class T>
+T inertia_of(const TreeProblem<T>& p, int body, int dof) {
+  const Vec3<T>&w = p.kinematics.w[dof], &v = p.kinematics.v[dof];
+  const Composite<T>& c = p.composite[body];
+  return c.mass * v.squaredNorm() + 2 * v.dot(w.cross(c.first)) + w.dot(c.rotational * w);
+}
+
+/// Speed towards 0 at `offset` from which `deceleration` still stops there, in steps of h.
+template <class T>
+T stoppable(T offset, T deceleration, T h) {
+  const T in_step = deceleration * h;
+  return std::sqrt(in_step * in_step + 2 * deceleration * std::abs(offset)) - in_step;
+}
+
+}  // namespace
+
+template <class T>
+void choose_targets(CharacterState<T>& s, T return_time, T h) {
+  TreeProblem<T>& p = s.problem;
+  const T decay = std::exp(-h / return_time);
+  bool summed = false;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Deviation<T>& d = s.deviation[i];
+    p.target[i] = s.wanted[i];
+    if (d.on_animation) continue;
+    std::array<T, 6> offset{};
+    for (int k = 0; k < s.tree.dof_count(i); ++k) {
+      const int dof = s.tree.first_dof[i] + k;
+      const T now = d.offset[k];
+      offset[k] = (now + (d.rate[k] + now / return_time) * h) * decay;
+      const T limit = now > T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
+      if (!(limit > T(0)) || std::isinf(limit)) continue;
+      if (!summed) sum_subtrees(s);
+      summed = true;
+      const T inertia = inertia_of(p, i, dof);
+      if (!(inertia > T(0))) continue;
+      const T most = h * stoppable<T>(now, T(kBraking) * limit / inertia, h);
+      offset[k] = now > T(0) ? std::max(offset[k], now - most) : std::min(offset[k], now + most);
+    }
+    p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], offset);
+  }
+}
+
+template void choose_targets<float>(CharacterState<float>&, float, float);
+template void choose_targets<double>(CharacterState<double>&, double, double);
+
+}  // namespace sinew
