@@ -40,6 +40,10 @@ template <class T>
 class ContactFinder {
  public:
   void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.contacts * sizeof(Contact<T>) + room.colliders * sizeof(Bound);
+  }
 
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is

@@ -18,6 +18,11 @@ template <class T>
 class IslandStepper {
  public:
   void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return ContactFinder<T>::bytes(room) + Bounce<T>::bytes(room) + NewtonSolver<T>::bytes(room) +
+           room.contacts * sizeof(LaggedForce<T>);
+  }
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are written to

@@ -10,7 +10,7 @@ void NeighbourGrid::reserve(int balls) {
   order_.reserve(balls);
   std::uint32_t buckets = 16;
   while (buckets < 2u * static_cast<std::uint32_t>(balls) && buckets < (1u << 22)) buckets *= 2;
-  first_.assign(buckets + 1, 0);
+  if (first_.size() != buckets + 1) first_.assign(buckets + 1, 0);
   mask_ = buckets - 1;
 }
 

@@ -1,6 +1,7 @@
 #include "sinew/character/world.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -8,6 +9,7 @@
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
+#include "sinew/character/memory.h"
 #include "sinew/character/playback.h"
 #include "sinew/character/sleep.h"
 #include "sinew/character/snapshot.h"
@@ -18,6 +20,12 @@ namespace {
 constexpr int kMostWorkers = 256;
 constexpr int kMostObstacles = 6;  ///< that one character touches at a time, for the room of its contacts
 constexpr int kSmallIsland = 8;    ///< characters that any worker has memory for; one worker has for all
+
+/// What the states bring to solves.
+struct Rooms {
+  SolveRoom all, largest;  ///< sum and maximum over the states
+  SolveRoom share;         ///< most that a state needs per degree of freedom
+};
 
 SolveRoom with(SolveRoom a, const SolveRoom& b) {
   return a += b;
@@ -50,9 +58,8 @@ struct World<T>::Impl {
   std::vector<HostObstacle> hosts;
   std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
   std::vector<std::unique_ptr<Worker>> workers;
-  SolveRoom all, largest;  ///< sum and maximum over the states
-  SolveRoom share;         ///< most that a state needs per degree of freedom
-  SolveRoom small_room;    ///< of an island that any worker can step; the first one can step all
+  Rooms rooms;
+  SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step
   T h = T(0);
@@ -66,7 +73,11 @@ struct World<T>::Impl {
 
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
   SolveRoom room_of_rig(const Rig<T>& rig) const;
-  void reserve(CharacterState<T>* added);
+  void count_in(CharacterState<T>& state);
+  std::array<SolveRoom, 2> rooms_of_workers() const;
+  WorldMemory memory() const;
+  void reserve();
+  void meet_surroundings();
   void park(CharacterState<T>& state);
   bool near_obstacle(const CharacterState<T>& state) const;
   bool play_island(std::span<CharacterState<T>* const> members);
@@ -100,40 +111,62 @@ SolveRoom World<T>::Impl::room_of_rig(const Rig<T>& rig) const {
                  static_cast<int>(rig.colliders.size()));
 }
 
-/// Memory for everything that the next step may need, after one more state, or (null) with what is around
-/// the states changed.
 template <class T>
-void World<T>::Impl::reserve(CharacterState<T>* added) {
-  const auto count_in = [&](CharacterState<T>& s) {
-    s.problem.room = room_of_rig(*s.rig);
-    all = with(all, s.problem.room);
-    share = larger(share, s.problem.room.per(std::max(s.tree.dofs, 1)));
-    largest = larger(largest, s.problem.room);
-  };
-  if (added) {
-    count_in(*added);
-  } else {
-    all = share = largest = {};
-    for (const auto& s : states) {
-      count_in(*s);
-      s->levels.wake = true;  // something new may be in its way
-    }
-  }
+void World<T>::Impl::count_in(CharacterState<T>& s) {
+  s.problem.room = room_of_rig(*s.rig);
+  rooms.all = with(rooms.all, s.problem.room);
+  rooms.share = larger(rooms.share, s.problem.room.per(std::max(s.tree.dofs, 1)));
+  rooms.largest = larger(rooms.largest, s.problem.room);
+}
+
+/// Of the first worker, and of the others.
+template <class T>
+std::array<SolveRoom, 2> World<T>::Impl::rooms_of_workers() const {
   // An island has so many degrees of freedom at most, perhaps of those that need most of everything else.
-  const SolveRoom most = smaller(all, with(share.times(settings.island_dofs), largest));
-  small_room = workers.size() > 1 ? smaller(most, largest.times(kSmallIsland)) : most;
+  const SolveRoom most = smaller(rooms.all, with(rooms.share.times(settings.island_dofs), rooms.largest));
+  return {most, workers.size() > 1 ? smaller(most, rooms.largest.times(kSmallIsland)) : most};
+}
+
+/// Everything but what the allocator adds.
+template <class T>
+WorldMemory World<T>::Impl::memory() const {
+  WorldMemory bytes;
+  for (const auto& rig : rigs) bytes.rigs += bytes_of(*rig);
+  for (const auto& s : states) bytes.characters += bytes_of(*s);
+  bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
+  const auto [most, small] = rooms_of_workers();
+  bytes.solving = IslandStepper<T>::bytes(most) + (workers.size() - 1) * IslandStepper<T>::bytes(small);
+  return bytes;
+}
+
+/// Memory for everything that the next step may need.
+template <class T>
+void World<T>::Impl::reserve() {
+  const auto [most, small] = rooms_of_workers();
+  small_room = small;
   for (std::size_t n = 0; n < workers.size(); ++n) {
     const SolveRoom& room = n == 0 ? most : small_room;
     workers[n]->stepper.reserve(room);
     workers[n]->members.reserve(room.trees);
-    workers[n]->jets.reserve(largest.bodies);
+    workers[n]->jets.reserve(rooms.largest.bodies);
   }
-  for (auto* v : {&lagged, &lagged_new}) grow(*v, all.loaded);
+  for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();
   islands.reserve(static_cast<int>(count));
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
+}
+
+/// What is around has changed: anybody may touch it.
+template <class T>
+void World<T>::Impl::meet_surroundings() {
+  rooms = {};
+  for (const auto& s : states) {
+    count_in(*s);
+    s->levels.wake = true;
+  }
+  reserve();
 }
 
 template <class T>
@@ -142,11 +175,26 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
     return Status::error(Code::kOutOfRange, "a world has room for 65534 characters and props");
   auto same =
       std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
-  if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
+  const bool new_rig = same == rigs.end();
+  if (new_rig) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
   states.push_back(std::make_unique<CharacterState<T>>(*same, character));
-  states.back()->levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
-  reserve(states.back().get());
+  CharacterState<T>& added = *states.back();
+  added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
+  const Rooms before = rooms;
+  count_in(added);
+  if (settings.memory_cap > 0 && memory().total() > settings.memory_cap) {
+    rooms = before;
+    states.pop_back();
+    if (new_rig) rigs.pop_back();
+    return Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
+  }
+  reserve();
   return {};
+}
+
+template <class T>
+WorldMemory World<T>::memory() const {
+  return impl_->memory();
 }
 
 template <class T>
@@ -286,7 +334,7 @@ Status World<T>::add_obstacle(const Collider& obstacle) {
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
   impl_->obstacles.push_back(obstacle);
-  impl_->reserve(nullptr);
+  impl_->meet_surroundings();
   return {};
 }
 
@@ -299,7 +347,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
   if (!std::isfinite(probe.distance) || std::abs(probe.normal.norm() - 1) > 1e-6)
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
   impl_->hosts.push_back({&shape, friction, restitution});
-  impl_->reserve(nullptr);
+  impl_->meet_surroundings();
   return {};
 }
 

@@ -89,9 +89,19 @@ struct WorldSettings {
   bool ground = true;
   double ground_friction = 1.0;   ///< multiplies the collider's
   double ground_restitution = 0;  ///< see Collider::restitution
-  int workers = 1;         ///< threads that a step may use, through its ParallelFor; each has its own memory
+  int workers = 1;  ///< threads that a step may use, through its ParallelFor; each has its own memory
+  std::size_t memory_cap = 0;  ///< bytes (see WorldMemory); who would exceed it is not added. 0: none
   int island_dofs = 4096;  ///< degrees of freedom that are solved together at most; beyond, neighbours pass
                            ///< through each other. Limits the memory
+};
+
+/// Bytes that a world has from the heap, without what the allocator adds.
+struct WorldMemory {
+  std::size_t rigs = 0;        ///< shared by all characters of a skeleton
+  std::size_t characters = 0;  ///< and props
+  std::size_t solving = 0;  ///< of the workers: the first can solve the largest island, the others small ones
+
+  std::size_t total() const { return rigs + characters + solving; }
 };
 
 /// Where a byte of a snapshot belongs.
@@ -182,6 +192,7 @@ class World {
 
   /// Of the last step.
   const WorldReport& report() const;
+  WorldMemory memory() const;
 
   // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
   // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.

@@ -18,6 +18,10 @@ class ContactRows {
  public:
   /// Set-up for so many contacts and entries of their paths; nothing allocates afterwards.
   void reserve(int contacts, int entries);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.contacts * sizeof(Row) + room.contact_entries * (sizeof(int) + 6 * sizeof(T));
+  }
   /// Of the coming solve: as many entries as its trees have room for, whoever else the memory serves.
   void limit(int entries) { most_entries_ = entries; }
 

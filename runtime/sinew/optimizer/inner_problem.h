@@ -26,6 +26,12 @@ template <class T>
 class InnerProblem {
  public:
   void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return ContactRows<T>::bytes(room) +
+           room.dofs * (8 * sizeof(JointRows) + 12 * sizeof(T) + 8 * sizeof(int)) +
+           room.path_entries * 8 * sizeof(T) + room.bodies * 2 * sizeof(Vec3<T>);
+  }
 
   /// Numbers the unknowns of all trees.
   void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
