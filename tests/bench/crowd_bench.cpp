@@ -102,7 +102,7 @@ void population_frame(benchmark::State& state, double hits_per_second, int threa
   settings.crowd.chunks = 8 * threads;
   settings.world.workers = threads;
   settings.character.root = RootDrive::kAssisted;  // so that a hit at the chest is one
-  settings.places = std::clamp(characters / 4, std::min(characters, 16), characters);
+  settings.places = std::clamp(characters / 10, std::min(characters, 16), characters);
   Status status;
   const auto people = Population::create(rig, settings, status);
   if (!people) return state.SkipWithError(status.reason);
@@ -159,8 +159,8 @@ BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(
 BENCHMARK_CAPTURE(population_frame, hit_4_threads, 0.05, 4)->Arg(1000)->Iterations(600)->UseRealTime();
 BENCHMARK_CAPTURE(population_frame, hit_1_thread, 0.05, 1)
     ->RangeMultiplier(10)
-    ->Range(10, 10000)
-    ->Iterations(120)
+    ->Range(10, 100000)
+    ->Iterations(30)
     ->UseRealTime();
 BENCHMARK_CAPTURE(population_frame, undisturbed_1_thread, 0, 1)
     ->RangeMultiplier(10)
