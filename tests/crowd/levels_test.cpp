@@ -310,7 +310,8 @@ struct Plaza {
   }
   void aim(int n) {
     auto jets = idle<float>(skeleton, frame / 60.0 + n);
-    jets[0].translation += Vec3<float>(3.f * float(n / 20), 3.f * float(n % 20), 0);
+    const int row = n / 20;
+    jets[0].translation += Vec3<float>(3.f * float(row), 3.f * float(n % 20), 0);
     EXPECT_TRUE(world.character(n).set_target(jets).ok());
   }
   /// Only the first `active` ones are in the world.

@@ -36,7 +36,9 @@ struct People {
       EXPECT_TRUE(population->play(n, {&clip, 0.1 * n, 1, place}).ok());
     }
   }
-  void step(const ParallelFor& parallel_for = {}) { ASSERT_TRUE(population->step(kStep, parallel_for).ok()); }
+  void step(const ParallelFor& parallel_for = {}) const {
+    ASSERT_TRUE(population->step(kStep, parallel_for).ok());
+  }
   std::vector<Transform<float>> pose(int n) const {
     return {population->model(n).begin(), population->model(n).end()};
   }

@@ -41,8 +41,9 @@ struct Scene {
   /// Limp ones in pairs, so near that they fall onto each other; the rest in a row.
   void aim(int n) {
     jets = fixtures::idle<float>(skeleton, frame / 60.0 + n);
+    const int pair = n / 2;
     jets[0].translation += n < 12 ? Vec3<float>(0, 2.f * float(n), 0)
-                                  : Vec3<float>(8.f + 0.8f * float(n % 2), 5.f * float(n / 2), 0.4f);
+                                  : Vec3<float>(8.f + 0.8f * float(n % 2), 5.f * float(pair), 0.4f);
     EXPECT_TRUE(world.character(n).set_target(jets).ok());
   }
   void step(const ParallelFor& parallel_for) {
