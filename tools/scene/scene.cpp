@@ -261,9 +261,10 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
   if (in.has("accuracy")) {
-    const Reader a(in.at("accuracy"), "accuracy",
-                   {"scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
-                    "sink_depth", "stick_speed", "limit_stiffness", "return_time", "precision"});
+    const Reader a(
+        in.at("accuracy"), "accuracy",
+        {"scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits", "sink_depth",
+         "stick_speed", "limit_stiffness", "return_time", "precision", "estimate_error"});
     static const std::map<std::string, Scheme> schemes{
         {"momentum", Scheme::kMomentum}, {"bdf1", Scheme::kBdf1}, {"bdf2", Scheme::kBdf2}};
     const auto scheme = schemes.find(a.text("scheme", "bdf2"));
@@ -278,6 +279,7 @@ Scene parse(const json& root, const std::filesystem::path& base) {
     s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
     s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
     s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
+    s.world.accuracy.estimate_error = a.flag("estimate_error", false);
     const std::string precision = a.text("precision", "float");
     if (precision != "float" && precision != "double") fail("accuracy.precision", "is float or double");
     s.double_precision = precision == "double";

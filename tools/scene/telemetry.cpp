@@ -66,7 +66,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
   std::string csv =
       "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,"
       "penetration_m,kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,"
-      "plotted_limit_Nm,elastic_J,substeps";
+      "plotted_limit_Nm,elastic_J,substeps,estimated_error_m";
   const std::vector<std::string> names = body_names(scene);
   for (const std::string& name : names) csv += ",load_" + field(name);
   csv += '\n';
@@ -78,8 +78,8 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
                        r.report.outer_passes, r.report.factorisations, r.report.converged, r.report.used_bdf2,
                        r.report.contacts, r.report.penetration, r.report.kinetic_energy,
                        r.report.potential_energy, field(skeleton.joints[r.loaded_joint].name), r.load);
-    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{}", r.torque, r.limit, r.plotted_torque,
-                       r.plotted_limit, r.report.elastic_energy, r.report.substeps);
+    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{},{:.3e}", r.torque, r.limit, r.plotted_torque,
+                       r.plotted_limit, r.report.elastic_energy, r.report.substeps, r.report.estimated_error);
     for (const std::string& name : names) {
       const int joint = skeleton.find(name.c_str());
       csv += joint >= 0 && joint < skeleton.body_count ? fmt::format(",{:.4f}", r.loads[joint]) : ",";
@@ -92,7 +92,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
 nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry) {
   std::vector<double> playback, solved;
   int unconverged = 0, most = 0, contacts = 0, substeps = 0;
-  double penetration = 0, load = 0;
+  double penetration = 0, load = 0, error = 0;
   std::string loaded;
   for (const TelemetryRow& r : telemetry.rows) {
     if (r.time > 0) (r.report.unknown_dofs == 0 ? playback : solved).push_back(r.microseconds);
@@ -100,6 +100,7 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
     most = std::max(most, r.report.unknown_dofs);
     contacts = std::max(contacts, r.report.contacts);
     substeps = std::max(substeps, r.report.substeps);
+    error = std::max(error, r.report.estimated_error);
     penetration = std::max(penetration, r.report.penetration);
     if (r.load > load) {
       load = r.load;
@@ -118,6 +119,7 @@ nlohmann::json telemetry_summary(const Scene& scene, const Telemetry& telemetry)
           {"most_substeps", substeps},
           {"most_contacts", contacts},
           {"deepest_penetration_m", penetration},
+          {"largest_estimated_error_m", error},
           {"largest_load", load},
           {"largest_load_joint", loaded}};
 }

@@ -63,6 +63,15 @@ struct AccuracyOptions {
 std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
                                          const std::function<void(int, int)>& progress);
 
+/// One step's own estimate of its error beside the truth, m (rms of all mass).
+struct EstimatedFrame {
+  double time = 0, estimated = 0, truth = 0;
+};
+/// Runs a scene with the estimate on; the truth of a step is 32 steps of a part of it from the same state.
+/// Meant for options in double.
+std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h,
+                                             const Accuracy& accuracy = {});
+
 /// Root mean square displacement (m) of the mass of a figure between two poses.
 double displacement(const Skeleton& skeleton, const std::vector<Transform<double>>& a,
                     const std::vector<Transform<double>>& b);

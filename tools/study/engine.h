@@ -39,6 +39,11 @@ class Engine {
   /// Joint frames in the world; `figure`'s, in the order of its skeleton.
   virtual std::vector<Transform<double>> pose(int figure) const = 0;
   virtual double passes() const { return 0; }  ///< mean solver passes per step so far
+  /// Mean rms over figures of what the last step itself reckons it went astray (m); negative: it does not
+  /// say.
+  virtual double estimated_error() const { return -1; }
+  /// Takes over the state of an engine of the same kind and scene; false where that is not possible.
+  virtual bool take_state(const Engine&) { return false; }
 };
 
 /// A way to step: an engine and one of its documented settings.

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "study/bodies.h"
 #include "study/engine.h"
 
@@ -68,6 +70,22 @@ class SinewEngine : public Engine {
     return out;
   }
   double passes() const override { return solves_ ? double(passes_) / double(solves_) : 0; }
+  double estimated_error() const override {
+    double sum = 0, mass = 0;
+    for (int c = 0; c < world_.character_count(); ++c) {
+      const double m = character(c).skeleton().total_mass();
+      sum += m * std::pow(character(c).report().estimated_error, 2);
+      mass += m;
+    }
+    return std::sqrt(sum / mass);
+  }
+  bool take_state(const Engine& from) override {
+    const auto* other = dynamic_cast<const SinewEngine*>(&from);
+    if (!other) return false;
+    snapshot_.resize(other->world_.snapshot_capacity());
+    snapshot_.resize(other->world_.save(snapshot_));
+    return bool(world_.restore(snapshot_));
+  }
 
  private:
   static WorldSettings settings(const EngineScene& scene, const Accuracy& accuracy) {
@@ -84,6 +102,7 @@ class SinewEngine : public Engine {
   std::string refusal_;
   double energy_ = 0;
   long passes_ = 0, solves_ = 0;
+  std::vector<std::byte> snapshot_;
 };
 
 template <class T, Scheme scheme>

@@ -43,6 +43,8 @@ bool carry_over(CharacterState<T>& s, T h) {
   s.local[0] = before;
   last.rotation = before.rotation;
   last.translation = before.translation;
+  last.omega = s.target[0].omega;
+  last.velocity = s.target[0].velocity;
   s.update_model();
   s.energy_ceiling = std::numeric_limits<double>::infinity();
   return true;
@@ -57,6 +59,8 @@ void meet_cuts(CharacterState<T>& s, T h) {
     if (!leaps(before, last)) continue;
     last.rotation = before.rotation;
     last.translation = before.translation;
+    last.omega = now.omega;
+    last.velocity = now.velocity;
     Deviation<T>& d = s.deviation[i];
     if (d.on_animation) continue;
     const Transform<T> wanted{now.rotation, now.translation};

@@ -7,6 +7,7 @@
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/way_back.h"
+#include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
 namespace {
@@ -241,12 +242,15 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const bool free = s.tree.dof_count(i) > 0 && p.free[first];
     if (!s.baked[i])
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
-    s.update_deviation(i, p.local[i], h);
+    s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
+  const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
+  const double error =
+      world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h, common_origin_) : 0;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, common_origin_, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.update_model();
@@ -255,6 +259,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r = {};
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
+  r.estimated_error = error_before + error;
   r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
   const std::uint64_t signature = touching(tree), limits = bearing(tree);
   for (const Contact<T>& c : contacts_) {
@@ -272,16 +277,29 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.report_totals(world.gravity);
 }
 
-/// What the animation wants at a fraction of the frame: the shorter way round between this frame's target and
-/// the last one's.
+/// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
+/// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
+/// meet. Rates that do not belong to the motion (a host that stopped its clip, or knows none) are left out.
+template <class T>
+Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
+  if ((whole - (leaving + arriving) / 2).norm() > whole.norm() / 2) return u * whole;
+  return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
+}
+
+/// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
     Transform<T> wanted{now.rotation, now.translation};
     if (fraction < T(1)) {
-      wanted.rotation = before.rotation.slerp(fraction, now.rotation);
-      wanted.translation = before.translation + fraction * (now.translation - before.translation);
+      const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
+      const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
+      wanted.rotation = before.rotation *
+                        rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega, frame_ * rate, fraction));
+      wanted.translation =
+          before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
+                                             frame_ * now.velocity, fraction);
     }
     s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }

@@ -68,7 +68,7 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], s.local[i]);
     for (T& r : s.rate[i]) r /= h;
     s.deviation[i].released = false;
-    if (!s.deviation[i].on_animation) s.update_deviation(i, s.local[i], h);
+    if (!s.deviation[i].on_animation) s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};

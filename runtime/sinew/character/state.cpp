@@ -9,6 +9,7 @@ namespace {
 /// rad (0.1°) and m: a returning joint this close is on the animation again
 constexpr double kSnapAngle = 2e-3;
 constexpr double kSnapRate = 5e-2;  ///< 1/s
+constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
 constexpr double kLimbSpeed = 6;    ///< m/s against the root, where nobody has measured it
 
 }  // namespace
@@ -233,12 +234,19 @@ void CharacterState<T>::forget_contacts() {
 }
 
 template <class T>
-void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h) {
+void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T return_time) {
   const std::array<T, 6> from_animation = joint_offset_value<T>(tree, i, wanted[i], at);
   Deviation<T>& d = deviation[i];
+  const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);
   for (int k = 0; k < tree.dof_count(i); ++k) {
-    d.rate[k] = (from_animation[k] - d.offset[k]) / h;
+    // On the way back the rate is the path's at its end; its mean over the step would start the next part
+    // of the path too fast or too slow by an error of first order.
+    const T pull = d.rate[k] + d.offset[k] / return_time;
+    const bool on_path =
+        !d.on_animation && std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
+    d.rate[k] =
+        on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
     d.offset[k] = from_animation[k];
     offset = std::max(offset, std::abs(d.offset[k]));
     speed = std::max(speed, std::abs(d.rate[k]));

@@ -142,8 +142,8 @@ struct CharacterState {
   /// Nothing touches, and the speed before the last step's is not known.
   void forget_contacts();
   /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
-  /// changes; on the animation where both are next to nothing.
-  void update_deviation(int body, const Transform<T>& at, T h);
+  /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
+  void update_deviation(int body, const Transform<T>& at, T h, T return_time);
   bool undisturbed() const;
   /// Speed of the fastest body, m/s.
   T fastest() const;

@@ -25,6 +25,8 @@ struct Accuracy {
   double stick_speed = 0.005;     ///< slip speed below which friction sticks (m/s)
   double limit_stiffness = 2000;  ///< joint limits, N·m/rad
   double return_time = 0.1;       ///< time constant of the way back to the animation (s)
+  bool estimate_error =
+      false;  ///< fill CharacterReport::estimated_error (error_estimate.h says what it costs)
 };
 
 }  // namespace sinew

@@ -1,0 +1,67 @@
+#include "sinew/optimizer/error_estimate.h"
+
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+constexpr double kSaturated =
+    0.99;  ///< of the limit: from here on a muscle does not decide where its joint goes
+
+/// Whether the joint of a body moves by integration: an unknown that no muscle holds on its target.
+template <class T>
+bool integrates(const TreeProblem<T>& p, std::span<const T> load, int body) {
+  for (int dof = p.tree->first_dof[body]; dof < p.tree->first_dof[body + 1]; ++dof) {
+    const bool limp = p.law.torque_plus[dof] <= T(0) || p.law.torque_minus[dof] <= T(0);
+    if (p.free[dof] && (limp || load[dof] >= T(kSaturated))) return true;
+  }
+  return false;
+}
+
+template <class T>
+bool carried_by_integration(const TreeProblem<T>& p, std::span<const T> load, int body) {
+  while (body >= 0 && !integrates(p, load, body)) body = p.tree->parent[body];
+  return body >= 0;
+}
+
+}  // namespace
+
+template <class T>
+double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
+                         T h, const Vec3<double>& common_origin) {
+  const Tree<T>& tree = *problem.tree;
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
+  const bool second = problem.prediction.scheme == Scheme::kBdf2;
+  const T w = second ? h / history.step_before : T(0);
+  const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
+  const T factor = second ? problem.prediction.momentum_step / 3 : h / 2;
+  T sum = T(0), mass = T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += tree.mass[i];
+    if (!carried_by_integration(problem, load, i)) continue;
+    const Vec3<T> moved = problem.kinematics.center[i] - place - history.center[i];
+    const Vec3<T> velocity = (k1 * moved - k2 * (history.center[i] - history.center_before[i])) / h;
+    Vec3<T> change = velocity - history.velocity[i];
+    // Angular velocities in body axes, of the momenta that the scheme carries: a steady spin is no error.
+    const auto spin = [&](const Mat3<T>& rotation, const Vec3<T>& momentum) {
+      return Vec3<T>(tree.inverse_inertia[i] * (rotation.transpose() * momentum));
+    };
+    const Vec3<T> momentum =
+        problem.prediction.momentum[i] + problem.prediction.momentum_step * problem.couple[i];
+    const Vec3<T> now = spin(history.rotation[i], history.momentum[i]);
+    Vec3<T> turning = spin(problem.kinematics.rotation[i], momentum) - now;
+    if (second) {
+      change -= w * (history.velocity[i] - history.velocity_before[i]);
+      turning -= w * (now - spin(history.rotation_before[i], history.momentum_before[i]));
+    }
+    sum += tree.mass[i] * change.squaredNorm() + turning.dot(tree.inertia[i] * turning);
+  }
+  return mass > T(0) ? double(factor * std::sqrt(sum / mass)) : 0;
+}
+
+template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
+                                         std::span<const float>, float, const Vec3<double>&);
+template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
+                                          std::span<const double>, double, const Vec3<double>&);
+
+}  // namespace sinew

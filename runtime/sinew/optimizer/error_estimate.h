@@ -1,0 +1,31 @@
+// How far one step goes astray because it is finite: an embedded estimate, from what the step leaves behind.
+//
+// Both schemes are the first terms of a family: the formula of one order higher, on the same states, differs
+// by
+//
+//   bdf1   h/2 · (v₁ − v₀)                              from the trapezoidal rule
+//   bdf2   βh/3 · ((v₁ − v₀) − w (v₀ − v₋₁))            from the third-order difference, w = h/h₋₁
+//
+// with v the velocity of a body's centre, or its angular velocity. No second solve: about 60 flops per body.
+// Step doubling was not taken, since it costs two more solves. What it cannot see: a solve that stopped short
+// of its tolerance (CharacterReport::converged says so), and which of two ways an impact goes.
+#pragma once
+
+#include "sinew/optimizer/problem.h"
+#include "sinew/optimizer/scheme.h"
+
+namespace sinew {
+
+/// Root mean square over all mass (m) of the local error of the step of `h` seconds that `problem` holds the
+/// solution of; to be asked before `history` moves on. `load` [dof]: |torque| / limit of the muscles. Bodies
+/// that hang on played or unsaturated joints alone are where the animation wants them: they count with 0.
+template <class T>
+double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
+                         T h, const Vec3<double>& common_origin);
+
+extern template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
+                                                std::span<const float>, float, const Vec3<double>&);
+extern template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
+                                                 std::span<const double>, double, const Vec3<double>&);
+
+}  // namespace sinew
