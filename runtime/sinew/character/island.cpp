@@ -27,15 +27,6 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
-/// Every degree of freedom of a joint has a muscle, in both directions.
-template <class T>
-bool joint_is_driven(const TreeProblem<T>& p, int body) {
-  bool driven = true;
-  for (int dof = p.tree->first_dof[body]; dof < p.tree->first_dof[body + 1]; ++dof)
-    driven = driven && p.law.torque_minus[dof] > T(0) && p.law.torque_plus[dof] > T(0);
-  return driven;
-}
-
 /// Largest ratio of needed torque to limit over a joint's degrees of freedom.
 template <class T>
 T load_of(const TreeProblem<T>& p, int dof, T torque) {
@@ -79,23 +70,6 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// Baked joints are not solved for: where something drives them they are on their target; limp ones go on by
-/// themselves, with q'' = −k·q'.
-template <class T>
-void IslandStepper<T>::choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
-  const T damping = T(detail.bake_damping);
-  const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
-  const bool bakes = bakes_now(s, detail.bake_every);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const bool driven = joint_is_driven(s.problem, i);
-    s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
-    if (!s.baked[i] || driven) continue;
-    std::array<T, 6> moved{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
-    s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
-  }
-}
-
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
 /// drives it.
 template <class T>
@@ -103,7 +77,7 @@ void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
   const bool solves = s.levels.allowed >= Level::kPartial;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    const bool driven = joint_is_driven(s.problem, i);
+    const bool driven = s.joint_is_driven(i);
     const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
     const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
                            : !driven || s.deviation[i].released;
@@ -144,7 +118,7 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
     if (!to_target) {
       T load = T(0);
       for (int dof = first; dof < first + count; ++dof) load = std::max(load, s.load[dof]);
-      to_target = joint_is_driven(p, i) && load < T(0.99);
+      to_target = s.joint_is_driven(i) && load < T(0.99);
     }
     if (to_target) {
       p.local[i] = p.target[i];
@@ -321,7 +295,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
     std::copy_n(s->local.begin(), s->tree.bodies, s->problem.start.begin());
     if (s->floats) s->problem.start[0].translation = (s->history.place - common_origin_).template cast<T>();
     choose_targets<T>(*s, T(world.accuracy.return_time), h);
-    choose_baked(*s, world.detail, h);
+    choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();

@@ -42,7 +42,6 @@ class IslandStepper {
   void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void choose_baked(CharacterState<T>& state, const LevelOfDetail& detail, T h);
   void choose_unknowns(CharacterState<T>& state);
   bool release_overloaded(CharacterState<T>& state);
   void first_guess(CharacterState<T>& state, T h, T share = T(1));

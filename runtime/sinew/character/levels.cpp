@@ -57,6 +57,21 @@ Level level_of(const CharacterState<T>& s) {
 }
 
 template <class T>
+void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
+  const T damping = T(detail.bake_damping);
+  const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
+  const bool bakes = bakes_now(s, detail.bake_every);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const bool driven = s.joint_is_driven(i);
+    s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
+    if (!s.baked[i] || driven) continue;
+    std::array<T, 6> moved{};
+    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
+    s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
+  }
+}
+
+template <class T>
 void settle_level(CharacterState<T>& s, Level needed, T h, double dwell) {
   LevelState& l = s.levels;
   ++l.steps;

@@ -265,6 +265,14 @@ bool CharacterState<T>::undisturbed() const {
 }
 
 template <class T>
+bool CharacterState<T>::joint_is_driven(int body) const {
+  bool all = true;
+  for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof)
+    all = all && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
+  return all;
+}
+
+template <class T>
 T CharacterState<T>::fastest() const {
   if (levels.stale) return history.velocity[0].norm() + T(kLimbSpeed);
   T square = T(0);

@@ -145,6 +145,8 @@ struct CharacterState {
   /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
   void update_deviation(int body, const Transform<T>& at, T h, T return_time);
   bool undisturbed() const;
+  /// Every degree of freedom of a joint has a muscle, in both directions.
+  bool joint_is_driven(int body) const;
   /// Speed of the fastest body, m/s.
   T fastest() const;
   /// No joint has a muscle, nothing drives the root.

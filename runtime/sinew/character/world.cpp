@@ -11,6 +11,7 @@
 #include "sinew/character/levels.h"
 #include "sinew/character/memory.h"
 #include "sinew/character/playback.h"
+#include "sinew/character/prop.h"
 #include "sinew/character/sleep.h"
 #include "sinew/character/snapshot.h"
 
@@ -20,16 +21,6 @@ namespace {
 constexpr int kMostWorkers = 256;
 constexpr int kMostObstacles = 6;  ///< that one character touches at a time, for the room of its contacts
 constexpr int kSmallIsland = 8;    ///< characters that any worker has memory for; one worker has for all
-
-/// What the states bring to solves.
-struct Rooms {
-  SolveRoom all, largest;  ///< sum and maximum over the states
-  SolveRoom share;         ///< most that a state needs per degree of freedom
-};
-
-SolveRoom with(SolveRoom a, const SolveRoom& b) {
-  return a += b;
-}
 
 /// Room for so many, with some to spare where it must be moved.
 template <class V>
@@ -58,7 +49,7 @@ struct World<T>::Impl {
   std::vector<HostObstacle> hosts;
   std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
   std::vector<std::unique_ptr<Worker>> workers;
-  Rooms rooms;
+  SolveRooms rooms;
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step
@@ -79,7 +70,6 @@ struct World<T>::Impl {
   void reserve();
   void meet_surroundings();
   void park(CharacterState<T>& state);
-  bool near_obstacle(const CharacterState<T>& state) const;
   bool play_island(std::span<CharacterState<T>* const> members);
   void step_island(int island, Worker& worker);
   std::span<LaggedForce<T>> lagged_of(int island) {
@@ -114,16 +104,13 @@ SolveRoom World<T>::Impl::room_of_rig(const Rig<T>& rig) const {
 template <class T>
 void World<T>::Impl::count_in(CharacterState<T>& s) {
   s.problem.room = room_of_rig(*s.rig);
-  rooms.all = with(rooms.all, s.problem.room);
-  rooms.share = larger(rooms.share, s.problem.room.per(std::max(s.tree.dofs, 1)));
-  rooms.largest = larger(rooms.largest, s.problem.room);
+  rooms.add(s.problem.room);
 }
 
 /// Of the first worker, and of the others.
 template <class T>
 std::array<SolveRoom, 2> World<T>::Impl::rooms_of_workers() const {
-  // An island has so many degrees of freedom at most, perhaps of those that need most of everything else.
-  const SolveRoom most = smaller(rooms.all, with(rooms.share.times(settings.island_dofs), rooms.largest));
+  const SolveRoom most = rooms.of_island(settings.island_dofs);
   return {most, workers.size() > 1 ? smaller(most, rooms.largest.times(kSmallIsland)) : most};
 }
 
@@ -180,7 +167,7 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
   states.push_back(std::make_unique<CharacterState<T>>(*same, character));
   CharacterState<T>& added = *states.back();
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
-  const Rooms before = rooms;
+  const SolveRooms before = rooms;
   count_in(added);
   if (settings.memory_cap > 0 && memory().total() > settings.memory_cap) {
     rooms = before;
@@ -213,52 +200,9 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
   return static_cast<int>(impl_->characters.size()) - 1;
 }
 
-namespace {
-
-/// Solid inertia of a shape about its centre, kg·m².
-Mat3<double> solid_inertia(Shape shape, const Vec3<double>& size, double mass) {
-  Vec3<double> diagonal = Vec3<double>::Zero();
-  switch (shape) {
-    case Shape::kSphere:
-      diagonal.setConstant(0.4 * mass * size.x() * size.x());
-      break;
-    case Shape::kCapsule: {  // cylinder and two half balls by volume
-      const double r = size.x(), l = 2 * size.z();
-      const double cylinder = mass * l / (l + 4.0 / 3.0 * r), caps = mass - cylinder;
-      const double along = cylinder * r * r / 2 + caps * 0.4 * r * r;
-      const double across =
-          cylinder * (r * r / 4 + l * l / 12) + caps * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
-      diagonal = {across, across, along};
-      break;
-    }
-    case Shape::kBox: {
-      const Vec3<double> square = size.cwiseProduct(size) * (mass / 3);
-      diagonal = {square.y() + square.z(), square.x() + square.z(), square.x() + square.y()};
-      break;
-    }
-  }
-  return diagonal.asDiagonal();
-}
-
-}  // namespace
-
 template <class T>
 int World<T>::add_prop(const PropSettings& prop, Status& status) {
-  Skeleton body;
-  body.name = "prop";
-  body.body_count = 1;
-  Joint& joint = body.joints.emplace_back();
-  joint.name = "prop";
-  joint.type = JointType::kFree;
-  joint.rest = prop.pose;
-  joint.mass = prop.mass;
-  joint.inertia = solid_inertia(prop.shape, prop.size, prop.mass);
-  Collider collider;
-  collider.shape = prop.shape;
-  collider.size = prop.size;
-  collider.friction = prop.friction;
-  collider.restitution = prop.restitution;
-  body.colliders.push_back(collider);
+  const Skeleton body = skeleton_of(prop);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
   if (status && !(prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
     status = Status::error(Code::kNotFinite, "prop velocity is not finite");
@@ -381,22 +325,6 @@ const CharacterReport& World<T>::prop_report(int index) const {
   return impl_->states[impl_->props[index]]->report;
 }
 
-/// Whether an obstacle may be in the way of the animation.
-template <class T>
-bool World<T>::Impl::near_obstacle(const CharacterState<T>& s) const {
-  if (!s.settings.ground_contact) return false;
-  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.model[0].translation.template cast<double>();
-  const auto near = [&](double distance) { return distance < double(reach); };
-  return std::any_of(
-             obstacles.begin(), obstacles.end(),
-             [&](const Collider& o) {
-               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
-             }) ||
-         std::any_of(hosts.begin(), hosts.end(),
-                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
-}
-
 /// Plays an island where that will do. False, with nothing moved, where it has to be solved.
 template <class T>
 bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
@@ -411,7 +339,8 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
     return true;
   }
   CharacterState<T>& s = *members[0];
-  if (members.size() > 1 || !s.driven || !s.undisturbed() || near_obstacle(s)) return false;
+  if (members.size() > 1 || !s.driven || !s.undisturbed() || near_obstacle<T>(s, {obstacles, hosts}, h))
+    return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
   if (checks && !play(s, settings, h)) return false;

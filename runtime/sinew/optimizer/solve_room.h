@@ -64,4 +64,22 @@ SolveRoom room_of(const Tree<T>& tree, int contacts, int loaded, int colliders) 
   return room;
 }
 
+/// What all trees of a world bring to solves.
+struct SolveRooms {
+  SolveRoom all, largest;  ///< sum and maximum
+  SolveRoom share;         ///< most that a tree needs per degree of freedom
+
+  void add(const SolveRoom& tree) {
+    all += tree;
+    share = larger(share, tree.per(std::max(tree.dofs, 1)));
+    largest = larger(largest, tree);
+  }
+  /// Of so many degrees of freedom at most, perhaps of those that need most of everything else.
+  SolveRoom of_island(int dofs) const {
+    SolveRoom most = share.times(dofs);
+    most += largest;
+    return smaller(all, most);
+  }
+};
+
 }  // namespace sinew
