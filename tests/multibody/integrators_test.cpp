@@ -53,26 +53,34 @@ Walk walk(Method method, int max_order, double tolerance) {
   return {(y - Vector{{std::cos(kWalkTime), -std::sin(kWalkTime)}}).norm(), integrator->counts().steps};
 }
 
-/// Slope of log(error) over log(steps) between two tolerances.
+/// Slope of log(error) over log(steps): least squares over tolerances spread evenly from loose to tight.
 double measured_order(Method method, int max_order, double loose, double tight) {
-  const Walk a = walk(method, max_order, loose), b = walk(method, max_order, tight);
-  return std::log(a.error / b.error) / std::log(static_cast<double>(b.steps) / static_cast<double>(a.steps));
+  constexpr int kWalks = 13;
+  Eigen::MatrixX2d line(kWalks, 2);
+  Vector errors(kWalks);
+  for (int i = 0; i < kWalks; ++i) {
+    const Walk w = walk(method, max_order, loose * std::pow(tight / loose, double(i) / (kWalks - 1)));
+    line.row(i) << std::log(static_cast<double>(w.steps)), 1;
+    errors[i] = std::log(w.error);
+  }
+  return -line.householderQr().solve(errors)[0];
 }
 
 TEST(Integrators, OdeSuiteAndDasslShowTheOrderTheyAreLimitedTo) {
   // Error ~ steps^−k. Half an order is the scatter of the slope; DASSL, which keeps a step until it can be
-  // doubled, scatters more, too much for order 5.
+  // doubled, scatters more, too much for order 5 (5.7 here).
   const auto slope = [](Method method, int k) {
     return k == 1 ? measured_order(method, k, 1e-4, 1e-7) : measured_order(method, k, 1e-6, 1e-9);
   };
   for (int k = 1; k <= 5; ++k) EXPECT_NEAR(slope(Method::kOde15sR, k), k, 0.5) << "ode15sR, order " << k;
-  for (int k = 1; k <= 4; ++k) EXPECT_NEAR(slope(Method::kDassl, k), k, 0.7) << "DASSL, order " << k;
+  for (int k = 1; k <= 4; ++k) EXPECT_NEAR(slope(Method::kDassl, k), k, 0.6) << "DASSL, order " << k;
 }
 
 TEST(Integrators, ShampineGordonShowsItsOrderWithLocalExtrapolation) {
-  // Predictor of order k, corrector extrapolated to k + 1.
-  for (int k = 1; k <= 6; ++k)
-    EXPECT_NEAR(measured_order(Method::kDe, k, 1e-5, 1e-9), k + 1, 0.6) << "limited to order " << k;
+  // Predictor of order k, corrector extrapolated to k + 1. From order 6 on the short steps of the start,
+  // taken at lower orders, are too large a share of all to read a slope off.
+  for (int k = 1; k <= 5; ++k)
+    EXPECT_NEAR(measured_order(Method::kDe, k, 1e-5, 1e-9), k + 1, 0.5) << "limited to order " << k;
 }
 
 TEST(Integrators, ShampineGordonUsesHighOrdersForTightTolerances) {

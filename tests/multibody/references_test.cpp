@@ -145,7 +145,10 @@ TEST(Reference, BricardKeepsEnergyAndClosureInHundredsOfSteps) {
   for (const auto& [formulation, tangent, method] :
        {std::tuple{Formulation::kDsr, Tangent::kNumeric, Method::kDe},
         {Formulation::kRr, Tangent::kAnalytic, Method::kOde15sR},
-        {Formulation::kRr, Tangent::kNumeric, Method::kOde15sR}}) {
+        {Formulation::kRr, Tangent::kNumeric, Method::kOde15sR},
+        {Formulation::kDsr, Tangent::kNumeric, Method::kDassl},
+        {Formulation::kRr, Tangent::kNumeric, Method::kDassl},
+        {Formulation::kRr, Tangent::kAnalytic, Method::kDassl}}) {
     const Deviation d = deviation("bricard", formulation, tangent, method, 1e-5);
     EXPECT_LT(d.drift, 1e-3);    // J
     EXPECT_LT(d.closure, 1e-8);  // m

@@ -204,7 +204,7 @@ TEST_P(Problem, CompositeMatrixWithGeometricTermsIsTheSecondDerivative) {
   const int n = s.tree.dofs;
   const auto base = s.problem.local;
   s.gradient();
-  begin_composite(s.problem);
+  begin_composite(s.settings, s.problem);
   Unknowns all;
   const int first = append_unknowns<double>(s.tree, s.problem.free, all);
   TreeMatrix<double> matrix(all.pattern);
@@ -244,7 +244,7 @@ TEST_P(Problem, MatrixOverSomeUnknownsIsTheSubmatrix) {
   const auto assemble = [&](const Unknowns& unknowns, int first) {
     TreeMatrix<double> matrix(unknowns.pattern);
     matrix.set_zero();
-    begin_composite(s.problem);
+    begin_composite(s.settings, s.problem);
     PathAxes<double> axes;
     axes.append(s.tree, s.problem.kinematics, unknowns, first);
     assemble_tree_matrix<double>(s.tree, s.problem.kinematics, axes, s.problem.composite, unknowns, first,

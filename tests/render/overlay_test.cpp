@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "render/figure.h"
 #include "render/pen.h"
 
@@ -60,6 +62,35 @@ TEST(Overlay, DrawsOnlyInsideItsParts) {
       }
     EXPECT_GT(inside, std::size_t(width) * std::size_t(height) / 20) << width << "x" << height;
     EXPECT_EQ(outside, 0u) << width << "x" << height;
+  }
+}
+
+TEST(Overlay, ShowsEveryCharacterOfASceneAndSumsUpThoseThatFindNoRow) {
+  const auto cast_of = [](std::size_t characters, std::size_t solved) {
+    scene::Recording rec = swinging(skinned_humanoid(), 1);
+    for (scene::Frame& frame : rec.frames) {
+      frame.characters.resize(1);
+      while (frame.characters.size() < characters) frame.characters.push_back(frame.characters[0]);
+      for (scene::CharacterFrame& c : frame.characters) c.unknown_dofs = 0;
+      if (solved < characters) frame.characters[solved].unknown_dofs = 3;
+    }
+    while (rec.characters.size() < characters) rec.characters.push_back(rec.characters[0]);
+    Image image{1280, 720, std::vector<std::uint8_t>(1280 * 720 * 4, 100)};
+    draw_overlay(rec, 1, true, image);
+    const Rect room = Layout(1280, 720).cast;
+    std::vector<std::uint8_t> part;
+    for (int y = static_cast<int>(room.y); y < static_cast<int>(room.y + room.height); ++y)
+      for (int x = static_cast<int>(room.x); x < static_cast<int>(room.x + room.width); ++x)
+        part.push_back(image.pixels[(static_cast<std::size_t>(y) * 1280 + static_cast<std::size_t>(x)) * 4]);
+    return part;
+  };
+  const auto empty = cast_of(1, 9);
+  EXPECT_EQ(std::count(empty.begin(), empty.end(), 100), static_cast<long>(empty.size()))
+      << "one has no list";
+  for (const std::size_t characters : {2, 40}) {
+    const auto calm = cast_of(characters, characters);
+    EXPECT_NE(calm, empty);
+    EXPECT_NE(cast_of(characters, characters - 1), calm) << "the last of " << characters << " is solved for";
   }
 }
 

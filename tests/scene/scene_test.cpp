@@ -1,4 +1,5 @@
 // Scenes on the project's own character: what a scene file says is what happens.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -390,6 +391,72 @@ TEST(DemoScene, MotionCaptureIsOverloadedByTheBallFallsAndReturnsToItsClip) {
   EXPECT_LT(pelvis(7.5), 0.5f * pelvis(1)) << "it lies";
   EXPECT_GT(pelvis(11.5), 0.8f * pelvis(1)) << "it stands again";
   EXPECT_EQ(unknown(11.5), 0);
+}
+
+/// Torque that the animation asks of a joint at the end of a scene, as the telemetry shows it.
+double last_torque(const Result& r, const char* joint) {
+  return double(r.recording.frames.back().characters[0].torque[r.joint(joint)]);
+}
+
+TEST(SceneEffects, DeclaringAllThatIsBuiltInChangesNothing) {
+  const std::string body = R"(, "clips": [{"clip": "walk"}], "strength": [[0, 1], [0.3, 0.05]])";
+  const Result plain = run(body), declared = run(body, R"(, "effects": ["standard"])");
+  for (std::size_t f = 0; f < plain.recording.frames.size(); ++f) {
+    const auto &one = plain.recording.frames[f].characters[0].model,
+               &two = declared.recording.frames[f].characters[0].model;
+    for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i].translation, two[i].translation) << f;
+  }
+}
+
+TEST(SceneEffects, WhatTheListLeavesOutDoesNotAct) {
+  // A ragdoll without gravity stays where it was let go; without ground it falls through.
+  const std::string limp = R"(, "strength": [[0, 0]], "root": [[0, "free"]])";
+  const auto height = [](const Result& r) {
+    return r.recording.frames.back().characters[0].model[0].translation.z();
+  };
+  const Result weightless = run(limp, R"(, "effects": ["muscles", "joint_limits", "ground", "friction"])");
+  const Result bottomless = run(limp, R"(, "effects": ["gravity", "joint_limits"])", 2);
+  const Result lying = run(limp, R"(, "effects": ["gravity", "joint_limits", "ground"])", 2);
+  EXPECT_NEAR(height(weightless), weightless.recording.frames[0].characters[0].model[0].translation.z(),
+              0.05);
+  EXPECT_LT(height(bottomless), -10);
+  EXPECT_GT(height(lying), 0);
+}
+
+TEST(SceneEffects, WindIsFeltByTheMusclesAndBlowsALimpBodyAway) {
+  const std::string still = R"(, "effects": ["standard"])",
+                    breeze = R"(, "effects": ["standard", {"effect": "wind", "velocity": [-12, 0, 0]}])",
+                    other = R"(, "effects": ["standard", {"effect": "wind", "velocity": [-12, 0, 0],
+                               "joints": ["head"]}])";
+  const std::string walk = R"(, "clips": [{"clip": "walk"}])";
+  const double calm = last_torque(run(walk, still), "upperarm_l");
+  EXPECT_NE(last_torque(run(walk, breeze), "upperarm_l"), calm);
+  EXPECT_EQ(last_torque(run(walk, other), "upperarm_l"), calm);
+  const std::string limp = R"(, "strength": [[0, 0]], "root": [[0, "free"]])";
+  const auto x = [](const Result& r) {
+    return r.recording.frames.back().characters[0].model[0].translation.x();
+  };
+  EXPECT_LT(x(run(limp, R"(, "effects": ["standard", {"effect": "wind", "velocity": [-60, 0, 0]}])")),
+            x(run(limp, still)) - 1);
+}
+
+TEST(SceneEffects, FaultsAreNamed) {
+  const auto fault = [](const std::string& effects) {
+    Scene unused;
+    return load_scene(written("effects.json", R"({"characters": [{"asset": ")" + kAsset +
+                                                  R"("}], "effects": )" + effects + "}"),
+                      unused)
+        .message;
+  };
+  EXPECT_THAT(fault(R"(["gravty"])"),
+              testing::HasSubstr("unknown effect \"gravty\", known are: standard, grav"));
+  EXPECT_THAT(fault(R"([{"effect": "wind", "speed": 3}])"), testing::HasSubstr("unknown key 'speed'"));
+  EXPECT_THAT(fault(R"([{"effect": "gravity", "z": 3}])"), testing::HasSubstr("'gravity' has no settings"));
+  EXPECT_THAT(fault(R"([{"effect": "wind", "joints": ["wing"]}])"),
+              testing::HasSubstr("unknown joint 'wing' (effects[0])"));
+  EXPECT_THAT(fault(R"([{"effect": "wind", "characters": ["nobody"]}])"),
+              testing::HasSubstr("unknown character \"nobody\" (effects[0].characters[0])"));
+  EXPECT_THAT(fault(R"([7])"), testing::HasSubstr("expected an effect's name"));
 }
 
 }  // namespace

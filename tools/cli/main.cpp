@@ -314,6 +314,13 @@ int main(int argc, char** argv) try {
   cost->add_option("--scene", accuracy.only, "tumbling, drop, stack or tracking");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
+  cli::EffectsCommand effects;
+  auto* each = study->add_subcommand(
+      "effects",
+      "what every effect costs, in instructions and time\nExample: sinew study effects -o out/study");
+  each->add_option("-o,--output", effects.directory, "directory for CSV and pictures (out/study)");
+  each->add_flag("--quick", effects.quick, "fewer timed steps");
+  each->add_flag("--json", effects.json_output);
 
   try {
     app.parse(argc, argv);
@@ -337,6 +344,8 @@ int main(int argc, char** argv) try {
     error = tables.run();
   else if (cost->parsed())
     error = accuracy.run();
+  else if (each->parsed())
+    error = effects.run();
   else
     error = render.run();
   if (!error) return 0;

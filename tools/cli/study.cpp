@@ -5,6 +5,7 @@
 
 #include "cli/files.h"
 #include "study/accuracy.h"
+#include "study/effects.h"
 #include "study/maps.h"
 #include "study/study.h"
 
@@ -88,6 +89,27 @@ convert::Error AccuracyCommand::run() const {
   }
   for (const study::AccuracyResult& result : results) print_accuracy(result);
   std::printf("%s.html\n", base.c_str());
+  return {};
+}
+
+convert::Error EffectsCommand::run() const {
+  if (convert::Error error = make_directory(directory)) return error;
+  std::error_code unknown;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+  const std::string program = (here / "sinew-effect-cost").string();
+  if (!std::filesystem::exists(program, unknown))
+    return {program + ": the counting program does not stand beside sinew"};
+  study::EffectStudy found;
+  if (convert::Error error = study::run_effects({program, directory, quick}, progress_bar("effects"), found))
+    return error;
+  const std::string base = directory + "/effects";
+  if (convert::Error error = write_atomically(base + ".csv", study::effects_csv(found))) return error;
+  for (const char* ending : {".svg", ".png"})
+    if (convert::Error error = study::draw_effects(found, base + ending)) return error;
+  if (json_output)
+    std::puts(study::effects_json(found).dump().c_str());
+  else
+    std::printf("%s\n%s.png\n", study::effects_table(found).c_str(), base.c_str());
   return {};
 }
 

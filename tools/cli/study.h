@@ -24,4 +24,11 @@ struct AccuracyCommand {
   convert::Error run() const;
 };
 
+struct EffectsCommand {
+  std::string directory = "out/study";
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 }  // namespace sinew::cli

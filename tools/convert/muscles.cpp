@@ -168,9 +168,9 @@ double floor_of(const Clip& clip, Pass& pass) {
   return floor;
 }
 
-/// The largest value that a series holds for `kSustained` frames running, or 0 where it never rises above.
-double sustained_peak(const std::vector<double>& series) {
-  const int length = std::min(kSustained, static_cast<int>(series.size()));
+/// The largest value that a series holds for `frames` running, or 0 where it never rises above.
+double peak_held(const std::vector<double>& series, int frames) {
+  const int length = std::min(frames, static_cast<int>(series.size()));
   double peak = 0;
   for (auto first = series.begin(); first + length <= series.end(); ++first)
     peak = std::max(peak, *std::min_element(first, first + length));
@@ -206,16 +206,18 @@ void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleto
   const Tree<double>& tree = pass.tree;
   std::vector<double> highest(tree.dofs, 0.0), lowest(tree.dofs, 0.0);
   std::vector<const Clip*> asks(tree.bodies, nullptr);
-  std::vector<double> most(tree.bodies, 0.0);
+  std::vector<double> most(tree.bodies, 0.0), most_held(tree.bodies, 0.0);
   for (const Clip& clip : clips) {
     const Demand demand = demand_of(clip, pass);
     for (int i = 0; i < tree.bodies; ++i)
       for (int d = tree.first_dof[i]; d < tree.first_dof[i] + dof_count(skeleton.joints[i].type); ++d) {
-        const double plus = sustained_peak(demand.plus[d]), minus = sustained_peak(demand.minus[d]);
+        const double plus = peak_held(demand.plus[d], kSustained),
+                     minus = peak_held(demand.minus[d], kSustained);
         highest[d] = std::max(highest[d], plus);
         lowest[d] = std::min(lowest[d], -minus);
-        if (std::max(plus, minus) > most[i]) {
-          most[i] = std::max(plus, minus);
+        most[i] = std::max({most[i], peak_held(demand.plus[d], 1), peak_held(demand.minus[d], 1)});
+        if (std::max(plus, minus) > most_held[i]) {
+          most_held[i] = std::max(plus, minus);
           asks[i] = &clip;
         }
       }
@@ -237,6 +239,7 @@ void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleto
     }
     report["muscles"].push_back({{"joint", joint.name},
                                  {"clips_peak_Nm", most[i]},
+                                 {"clips_held_Nm", most_held[i]},
                                  {"peak_in_clip", asks[i] ? asks[i]->name : ""},
                                  {"limits_Nm", limits},
                                  {"raised_for_clips", raised}});

@@ -32,8 +32,8 @@ void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, doub
                  Joint& joint);
 
 /// Raises every muscle, each direction by itself, to the peak torque that the clips ask for 50 ms or longer
-/// (recursive residual pass, feet supported) times the margin. Report "muscles": per joint the peak and the
-/// limits.
+/// (recursive residual pass, feet supported) times the margin. Report "muscles": per joint the peak, what
+/// is held so long, and the limits.
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report);
 
 }  // namespace sinew::convert

@@ -29,13 +29,19 @@ double usual_cost(const scene::Recording& rec, std::size_t index) {
   return double(last[last.size() / 2]);
 }
 
+std::string name_of(const scene::Recording& rec, std::size_t character) {
+  const bool named = character < rec.names.size() && !rec.names[character].empty();
+  return named ? rec.names[character] : rec.characters[character]->skeleton.name;
+}
+
 void draw_state(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
   const scene::Frame& frame = rec.frames[index];
   const scene::CharacterFrame& c = frame.characters[0];
   const Skeleton& skeleton = rec.characters[0]->skeleton;
   const double left = at.x + 18, right = at.x + at.width - 18;
   pen.box(at);
-  pen.write(left, at.y + 32, 20, pen.fitted(20, rec.title, 200, true), pen.text, true);
+  const std::string heading = rec.frames[index].characters.size() > 1 ? name_of(rec, 0) : rec.title;
+  pen.write(left, at.y + 32, 20, pen.fitted(20, heading, 200, true), pen.text, true);
   pen.write_right(right, at.y + 32, 15, text("%.2f s", frame.time), pen.dim);
   const bool playback = c.unknown_dofs == 0;
   const Color state = playback ? pen.calm : pen.warm;
@@ -53,6 +59,34 @@ void draw_state(const Pen& pen, const Rect& at, const scene::Recording& rec, std
   pen.write_right(right, at.y + 118, 15, text("%.0f %% of its limit", 100.0 * double(load)),
                   load >= 0.995f ? pen.stress(1) : pen.dim);
   pen.ramp({left, at.y + 130, right - left, 4}, double(load));
+}
+
+constexpr double kRow = 26;            ///< of the cast
+constexpr std::size_t kMostRows = 10;  ///< fits above the caption
+
+/// Where there are several: a row for each with its load and its unknown DOFs. The other panels speak of the
+/// first.
+void draw_cast(const Pen& pen, const Rect& room, const scene::Recording& rec, std::size_t index) {
+  const std::vector<scene::CharacterFrame>& all = rec.frames[index].characters;
+  const std::size_t rows = std::min(all.size(), kMostRows);
+  const std::size_t each = all.size() > rows ? rows - 1 : rows;  // the last row may be for the rest
+  const double left = room.x + 18, right = room.x + room.width - 18;
+  pen.box({room.x, room.y, room.width, kRow * static_cast<double>(rows) + 16});
+  const auto row = [&](std::size_t i, const std::string& name, int unknown, int dofs) {
+    const double y = room.y + 8 + kRow * static_cast<double>(i) + 18;
+    pen.write(left, y, 14, pen.fitted(14, name, 120), pen.dim);
+    pen.write_right(right, y, 14, text("%.0f of %.0f", unknown, dofs), unknown > 0 ? pen.warm : pen.calm);
+    return y;
+  };
+  for (std::size_t i = 0; i < each; ++i) {
+    const double y = row(i, name_of(rec, i), all[i].unknown_dofs, all[i].total_dofs);
+    const int j = all[i].most_loaded_joint;
+    pen.ramp({left + 130, y - 7, 70, 4}, j >= 0 ? double(all[i].load[static_cast<std::size_t>(j)]) : 0);
+  }
+  if (each == rows) return;
+  int unknown = 0, dofs = 0;
+  for (std::size_t i = each; i < all.size(); ++i) unknown += all[i].unknown_dofs, dofs += all[i].total_dofs;
+  row(each, text("and %.0f more", static_cast<double>(all.size() - each)), unknown, dofs);
 }
 
 void draw_legend(const Pen& pen, const Rect& at) {
@@ -143,6 +177,13 @@ void draw_chart(const Pen& pen, const Rect& at, const scene::Recording& rec, std
   }
 }
 
+/// Share of all characters' DOFs that are unknown.
+double unknown_share(const scene::Frame& frame) {
+  int unknown = 0, dofs = 0;
+  for (const scene::CharacterFrame& c : frame.characters) unknown += c.unknown_dofs, dofs += c.total_dofs;
+  return dofs > 0 ? static_cast<double>(unknown) / dofs : 0;
+}
+
 /// Share of unknown DOFs over the whole recording: the past in colour, what comes fainter.
 void draw_timeline(const Pen& pen, const Rect& at, const scene::Recording& rec, std::size_t index) {
   pen.box(at);
@@ -152,14 +193,12 @@ void draw_timeline(const Pen& pen, const Rect& at, const scene::Recording& rec, 
   const double base = at.y + at.height - 6, room = at.height - 11;
   const std::size_t count = rec.frames.size();
   const double step = (right - left) / double(count), u = pen.unit();
-  const auto solved = [&](std::size_t i) { return rec.frames[i].characters[0].unknown_dofs > 0; };
+  const auto solved = [&](std::size_t i) { return unknown_share(rec.frames[i]) > 0; };
   for (std::size_t i = 0; i < count;) {  // one area for each run of one colour
     const std::size_t begin = i;
     cairo_move_to(pen.cairo(), (left + step * double(begin)) * u, base * u);
     for (; i < count && solved(i) == solved(begin) && (i <= index) == (begin <= index); ++i) {
-      const scene::CharacterFrame& c = rec.frames[i].characters[0];
-      const double share = c.total_dofs > 0 ? double(c.unknown_dofs) / c.total_dofs : 0;
-      const double y = (base - 2 - (room - 2) * share) * u;
+      const double y = (base - 2 - (room - 2) * unknown_share(rec.frames[i])) * u;
       cairo_line_to(pen.cairo(), (left + step * double(i)) * u, y);
       cairo_line_to(pen.cairo(), (left + step * double(i + 1)) * u, y);
     }
@@ -202,6 +241,7 @@ Layout::Layout(int pixels_wide, int pixels_high)
       height(pixels_high / unit) {
   constexpr double kGap = 10;
   state = {kMargin, kMargin, 330, 146};
+  cast = {kMargin, state.y + state.height + kGap, state.width, kRow * kMostRows + 16};
   legend = {width - kMargin - 210, kMargin, 210, 44};
   timeline = {kMargin, height - 16 - 34, width - 2 * kMargin, 34};
   const double lowest = timeline.y - kGap;
@@ -214,6 +254,7 @@ void draw_overlay(const scene::Recording& rec, std::size_t index, bool dark, Ima
   const Layout layout(image.width, image.height);
   const Pen pen(image, layout.unit, dark);
   draw_state(pen, layout.state, rec, index);
+  if (rec.frames[index].characters.size() > 1) draw_cast(pen, layout.cast, rec, index);
   draw_legend(pen, layout.legend);
   draw_chart(pen, layout.chart, rec, index);
   draw_timeline(pen, layout.timeline, rec, index);

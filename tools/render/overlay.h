@@ -17,14 +17,15 @@ struct Rect {
 struct Layout {
   double unit, width, height;  ///< picture size in units
   Rect state, legend, chart, timeline;
+  Rect cast;     ///< room for a row per character where there are several
   Rect caption;  ///< the room that it has; its panel takes what it needs from the lower left corner
 
   Layout(int pixels_wide, int pixels_high);
-  std::array<Rect, 5> parts() const { return {state, legend, chart, timeline, caption}; }
+  std::array<Rect, 6> parts() const { return {state, legend, chart, timeline, cast, caption}; }
 };
 
-/// Frame `index` of the recording: state, load ramp, torque against its limit, unknown DOFs over the whole
-/// time, caption.
+/// Frame `index` of the recording: state, load ramp and torque against its limit of the first character, a
+/// row for each where there are several, unknown DOFs of all over the whole time, caption.
 void draw_overlay(const scene::Recording& recording, std::size_t index, bool dark, Image& image);
 
 /// What the asset is: name, joints, degrees of freedom, mass, clips.

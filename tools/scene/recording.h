@@ -54,6 +54,7 @@ struct Recording {
   std::string title;
   double frame_rate = 60;
   std::vector<std::shared_ptr<const Asset>> characters;
+  std::vector<std::string> names;  ///< [character] as the scene calls them; empty: as their assets are called
   std::vector<Prop> props;
   std::vector<Frame> frames;
   Camera camera;

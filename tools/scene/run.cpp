@@ -169,6 +169,7 @@ class Runner {
       if (world_.add_character(c.asset->skeleton, settings, status) < 0)
         return {"character '" + c.name + "': " + status.reason};
       recording_.characters.push_back(c.asset);
+      recording_.names.push_back(c.name);
       players_.emplace_back(c);
     }
     for (const Collider& o : s_.obstacles)
@@ -181,9 +182,22 @@ class Runner {
       launched_.push_back(p.launch_time <= 0);
       if (!launched_.back()) world_.park_prop(prop);
     }
+    if (convert::Error error = add_effects()) return error;
     telemetry_.plotted_joint = recording_.plotted_joint = s_.plotted_joint;
     if (s_.plotted_joint >= 0)
       telemetry_.plotted_name = s_.characters[0].asset->skeleton.joints[s_.plotted_joint].name;
+    return {};
+  }
+
+  convert::Error add_effects() {
+    for (const SceneEffect& effect : s_.effects) {
+      Status status;
+      for (const int c : effect.characters)
+        if (status) status = world_.add_effect(c, effect.make<T>(s_.characters[c].asset->skeleton));
+      for (const int p : effect.props)
+        if (status) status = world_.add_prop_effect(p, effect.make<T>({}));
+      if (!status) return {"effect '" + effect.name + "': " + status.reason};
+    }
     return {};
   }
 

@@ -9,101 +9,13 @@
 #include <stdexcept>
 
 #include "convert/roles.h"
+#include "scene/effect_registry.h"
+#include "scene/reader.h"
 
 namespace sinew::scene {
 namespace {
 
 using nlohmann::json;
-
-[[noreturn]] void fail(const std::string& where, const std::string& what) {
-  throw std::runtime_error(what + " (" + where + ")");
-}
-
-/// An object whose keys must all be known; remembers where it stands for messages.
-class Reader {
- public:
-  Reader(const json& value, std::string where, std::initializer_list<const char*> keys)
-      : value_(value), where_(std::move(where)) {
-    if (!value.is_object()) fail(where_, "expected an object");
-    const std::set<std::string> known(keys.begin(), keys.end());
-    std::string list;
-    for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
-    for (const auto& [key, v] : value.items())
-      if (!known.count(key)) fail(where_, "unknown key '" + key + "', known are: " + list);
-  }
-  bool has(const char* key) const { return value_.contains(key); }
-  const json& at(const char* key) const {
-    if (!has(key)) fail(where_, std::string("'") + key + "' is missing");
-    return value_[key];
-  }
-  double number(const char* key, double otherwise) const {
-    return has(key) ? number_of(value_[key], inside(key)) : otherwise;
-  }
-  double positive(const char* key, double otherwise) const {
-    const double v = number(key, otherwise);
-    if (!(v > 0)) fail(inside(key), "must be positive");
-    return v;
-  }
-  int count(const char* key, int otherwise, int least, int most) const {
-    const double v = number(key, otherwise);
-    if (v != std::floor(v) || v < least || v > most)
-      fail(inside(key),
-           "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-    return static_cast<int>(v);
-  }
-  double time(const char* key, double otherwise) const {
-    const double v = number(key, otherwise);
-    if (v < 0) fail(inside(key), "must not be negative");
-    return v;
-  }
-  std::string text(const char* key, const std::string& otherwise) const {
-    if (!has(key)) return otherwise;
-    if (!value_[key].is_string()) fail(inside(key), "expected a text");
-    return value_[key].get<std::string>();
-  }
-  bool flag(const char* key, bool otherwise) const {
-    if (!has(key)) return otherwise;
-    if (!value_[key].is_boolean()) fail(inside(key), "expected true or false");
-    return value_[key].get<bool>();
-  }
-  Vec3<double> vector(const char* key, const Vec3<double>& otherwise) const {
-    return has(key) ? vector_of(value_[key], inside(key)) : otherwise;
-  }
-  const json& list(const char* key) const {
-    static const json none = json::array();
-    if (!has(key)) return none;
-    if (!value_[key].is_array()) fail(inside(key), "expected a list");
-    return value_[key];
-  }
-  std::string inside(const char* key) const { return where_.empty() ? key : where_ + "." + key; }
-  std::string item(const char* key, std::size_t i) const {
-    return inside(key) + "[" + std::to_string(i) + "]";
-  }
-
-  static double number_of(const json& v, const std::string& where) {
-    if (!v.is_number()) fail(where, "expected a number");
-    const double x = v.get<double>();
-    if (!std::isfinite(x)) fail(where, "is not finite");
-    return x;
-  }
-  static Vec3<double> vector_of(const json& v, const std::string& where) {
-    if (!v.is_array() || v.size() != 3) fail(where, "expected three numbers");
-    return {number_of(v[0], where), number_of(v[1], where), number_of(v[2], where)};
-  }
-
- private:
-  const json& value_;
-  std::string where_;
-};
-
-int joint_of(const Asset& asset, const std::string& name, const std::string& where) {
-  int joint = asset.skeleton.find(name.c_str());
-  if (joint < 0)
-    if (const Role role = convert::role_from_name(name); role != Role::kNone)
-      joint = asset.skeleton.find(role);
-  if (joint < 0) fail(where, "unknown joint '" + name + "'");
-  return joint;
-}
 
 RootDrive drive_of(const json& v, const std::string& where) {
   const std::string text = v.is_string() ? v.get<std::string>() : "";
@@ -141,15 +53,6 @@ Shape shape_of(const Reader& in) {
   if (shape == "capsule") return Shape::kCapsule;
   if (shape == "box") return Shape::kBox;
   fail(in.inside("shape"), "unknown shape '" + shape + "'");
-}
-
-void check_effects(const Reader& in) {
-  static const std::set<std::string> known{"gravity",  "muscles", "joint_limits", "joint_damping", "ground",
-                                           "friction", "contact", "impulses",     "support"};
-  const json& list = in.list("effects");
-  for (std::size_t i = 0; i < list.size(); ++i)
-    if (!list[i].is_string() || !known.count(list[i].get<std::string>()))
-      fail(in.item("effects", i), "unknown effect " + list[i].dump());
 }
 
 SceneCharacter read_character(const json& value, const std::string& where,
@@ -196,7 +99,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
   const json& groups = in.list("group_strength");
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Reader group(groups[i], in.item("group_strength", i), {"joint", "strength"});
-    const int joint = joint_of(*asset, group.text("joint", ""), group.inside("joint"));
+    const int joint = joint_of(asset->skeleton, group.text("joint", ""), group.inside("joint"));
     if (joint >= asset->skeleton.body_count) fail(group.inside("joint"), "the joint is not simulated");
     c.group_strength.emplace_back(joint, timeline<double>(group, "strength", {{0, 1}}, strength_of));
   }
@@ -212,14 +115,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
 }
 
 int character_of(const Scene& scene, const Reader& in, const char* key) {
-  if (!in.has(key)) return 0;
-  const json& v = in.at(key);
-  if (v.is_number_integer() && v.get<int>() >= 0 && v.get<int>() < static_cast<int>(scene.characters.size()))
-    return v.get<int>();
-  if (v.is_string())
-    for (std::size_t i = 0; i < scene.characters.size(); ++i)
-      if (scene.characters[i].name == v.get<std::string>()) return static_cast<int>(i);
-  fail(in.inside(key), "unknown character " + v.dump());
+  return in.has(key) ? character_named(scene, in.at(key), in.inside(key)) : 0;
 }
 
 SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
@@ -241,8 +137,8 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
     const Reader at(in.at("throw_at"), in.inside("throw_at"),
                     {"character", "joint", "time", "speed", "from"});
     p.target_character = character_of(scene, at, "character");
-    p.target_joint =
-        joint_of(*scene.characters[p.target_character].asset, at.text("joint", "chest"), at.inside("joint"));
+    p.target_joint = joint_of(scene.characters[p.target_character].asset->skeleton, at.text("joint", "chest"),
+                              at.inside("joint"));
     p.speed = at.positive("speed", 8);
     p.from = at.vector("from", p.from);
     p.launch_time = at.time("time", 0);
@@ -250,7 +146,7 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
   return p;
 }
 
-Scene parse(const json& root, const std::filesystem::path& base) {
+Scene parse(const json& root, const std::filesystem::path& base, std::span<const EffectRow> registry) {
   const Reader in(root, "",
                   {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props",
                    "obstacles", "pushes", "effects", "camera", "captions", "plot"});
@@ -286,7 +182,6 @@ Scene parse(const json& root, const std::filesystem::path& base) {
   }
   s.world.gravity = in.vector("gravity", s.world.gravity);
   s.world.ground = in.flag("ground", true);
-  check_effects(in);
   const json& characters = in.list("characters");
   for (std::size_t i = 0; i < characters.size(); ++i)
     s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
@@ -313,7 +208,8 @@ Scene parse(const json& root, const std::filesystem::path& base) {
     push.duration = p.time("duration", 0);
     push.point = p.vector("point", push.point);
     push.character = character_of(s, p, "character");
-    push.joint = joint_of(*s.characters[push.character].asset, p.text("joint", "chest"), p.inside("joint"));
+    push.joint =
+        joint_of(s.characters[push.character].asset->skeleton, p.text("joint", "chest"), p.inside("joint"));
     push.impulse = p.vector("impulse", push.impulse);
     s.pushes.push_back(push);
   }
@@ -329,17 +225,40 @@ Scene parse(const json& root, const std::filesystem::path& base) {
     s.camera.frame_automatically = c.flag("frame_automatically", !c.has("eye"));
     s.camera.follow_character = c.flag("follow", false) ? 0 : -1;
   }
-  if (in.has("plot")) s.plotted_joint = joint_of(*s.characters[0].asset, in.text("plot", ""), "plot");
+  declare_effects(in, registry, s);
+  if (in.has("plot"))
+    s.plotted_joint = joint_of(s.characters[0].asset->skeleton, in.text("plot", ""), "plot");
   return s;
 }
 
 }  // namespace
 
+int joint_of(const Skeleton& skeleton, const std::string& name, const std::string& where) {
+  int joint = skeleton.find(name.c_str());
+  if (joint < 0)
+    if (const Role role = convert::role_from_name(name); role != Role::kNone) joint = skeleton.find(role);
+  if (joint < 0) fail(where, "unknown joint '" + name + "'");
+  return joint;
+}
+
+int character_named(const Scene& scene, const json& v, const std::string& where) {
+  if (v.is_number_integer() && v.get<int>() >= 0 && v.get<int>() < static_cast<int>(scene.characters.size()))
+    return v.get<int>();
+  if (v.is_string())
+    for (std::size_t i = 0; i < scene.characters.size(); ++i)
+      if (scene.characters[i].name == v.get<std::string>()) return static_cast<int>(i);
+  fail(where, "unknown character " + v.dump());
+}
+
 convert::Error load_scene(const std::string& path, Scene& out) {
+  return load_scene(path, effect_registry(), out);
+}
+
+convert::Error load_scene(const std::string& path, std::span<const EffectRow> registry, Scene& out) {
   std::ifstream file(path);
   if (!file) return {path + ": file cannot be opened"};
   try {
-    out = parse(json::parse(file, nullptr, true, true), std::filesystem::path(path).parent_path());
+    out = parse(json::parse(file, nullptr, true, true), std::filesystem::path(path).parent_path(), registry);
   } catch (const json::exception& e) {
     return {path + ": not JSON: " + e.what()};
   } catch (const std::exception& e) {

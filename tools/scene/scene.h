@@ -1,8 +1,11 @@
 // Scene files: who is there, what they play, what happens to them. Schema: tools/scene/README.md.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -55,6 +58,22 @@ struct Push {
   Vec3<double> impulse = Vec3<double>::Zero();  ///< N·s in total, world
 };
 
+/// An effect of the runtime that acts on some characters and props, each of which gets its own.
+struct SceneEffect {
+  std::string name;
+  std::vector<int> characters, props;
+  std::function<std::unique_ptr<Effect<float>>(const Skeleton&)> make_float;
+  std::function<std::unique_ptr<Effect<double>>(const Skeleton&)> make_double;
+
+  template <class T>
+  std::unique_ptr<Effect<T>> make(const Skeleton& skeleton) const {
+    if constexpr (std::is_same_v<T, float>)
+      return make_float(skeleton);
+    else
+      return make_double(skeleton);
+  }
+};
+
 struct Scene {
   std::string title;
   double duration = 5;
@@ -65,6 +84,7 @@ struct Scene {
   std::vector<SceneProp> props;
   std::vector<Collider> obstacles;
   std::vector<Push> pushes;
+  std::vector<SceneEffect> effects;
   Timeline<std::string> captions;
   Camera camera;
   int plotted_joint = -1;
@@ -72,6 +92,10 @@ struct Scene {
 
 /// Reads and checks a scene file; assets are looked up relative to it. One line names the file and the fault.
 convert::Error load_scene(const std::string& path, Scene& out);
+
+struct EffectRow;
+/// The same with other effects than effect_registry()'s.
+convert::Error load_scene(const std::string& path, std::span<const EffectRow> registry, Scene& out);
 
 /// The demo's story for any asset: playback, a ball at the shoulder, a harder hit that fells it, strength
 /// returns.

@@ -286,6 +286,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   problems_.clear();
   settings_.h = h;
   common_origin_ = states_[0]->history.place;
+  settings_.common_origin = common_origin_;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
@@ -311,6 +312,8 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, common_origin_, h);
     if (round == 0) {
+      for (CharacterState<T>* s : states_)
+        for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
       sweep<T>(states_, contacts_, h, free_share_);
       for (std::size_t n = 0; n < states_.size(); ++n)
         if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
@@ -382,11 +385,14 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect.
 template <class T>
 bool IslandStepper<T>::passive() const {
-  return std::all_of(states_.begin(), states_.end(),
-                     [](const CharacterState<T>* s) { return s->impulses.empty() && s->limp(); });
+  const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
+  return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
+    const auto& effects = s->problem.effects;
+    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+  });
 }
 
 /// What the trees store at the present poses: gravity, contacts and joint limits, J.

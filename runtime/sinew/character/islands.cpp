@@ -61,7 +61,8 @@ bool Islands<T>::meet(const CharacterState<T>& a, const CharacterState<T>& b, T 
 }
 
 template <class T>
-void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs) {
+void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs,
+                      bool body_contact) {
   const int count = static_cast<int>(states.size());
   grid_.clear();
   parent_.resize(count);
@@ -88,7 +89,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     if (!states[n]->levels.asleep) awake_.push_back(n);
   }
   grid_.build();
-  for (std::size_t next = 0; next < awake_.size();) {  // grows by those who are woken
+  for (std::size_t next = 0; body_contact && next < awake_.size();) {  // grows by those who are woken
     const int n = awake_[next++];
     grid_.overlapping(center(n), reach(n), [&](int other) {
       CharacterState<T>& s = *states[other];

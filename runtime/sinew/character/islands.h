@@ -21,7 +21,8 @@ class Islands {
   /// divides those who are awake into islands, each named by and listing its members in ascending order.
   /// Pairs that would bring an island above `most_dofs` degrees of freedom stay apart, the later first: they
   /// pass through each other (see CharacterReport::crowded). O(states) where they are spread out.
-  void find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs);
+  void find(std::span<const std::unique_ptr<CharacterState<T>>> states, T h, int most_dofs,
+            bool body_contact);
 
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Whether a state takes part in the step: it is in the world, and awake.

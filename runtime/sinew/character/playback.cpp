@@ -8,6 +8,27 @@
 
 namespace sinew {
 
+namespace {
+
+/// What the effects ask of a character on its animation: wrenches of the bodies, and rows of the joints.
+template <class T>
+void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const Vec3<T>& origin, T h) {
+  TreeProblem<T>& p = s.problem;
+  StepSettings<T> step;
+  step.h = h;
+  step.gravity = world.gravity.template cast<T>();
+  step.common_origin = origin.template cast<double>();
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    p.start[i] = s.local[i];
+    p.local[i] = {s.target[i].rotation, s.target[i].translation};
+  }
+  for (const Effect<T>* effect : p.effects)
+    effect->add_load(effect_pose(step, p), s.motion, {p.force, p.moment});
+  measure_effect_rows(step, p);
+}
+
+}  // namespace
+
 template <class T>
 bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
@@ -19,10 +40,13 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
     p.force[j.body] -= j.force / h;
     p.moment[j.body] -= x.cross(j.force / h);
   }
-  if (world.ground && s.settings.ground_contact)
+  if (world.ground && world.ground_support && s.settings.ground_contact)
     share_support<T>(s.tree, p.kinematics, s.points, T(world.ground_height) - origin.z(), {}, p.force,
                      p.moment);
+  if (!p.effects.empty()) add_effect_wrenches(s, world, origin, h);
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
+  for (const JointRow<T>& row : p.effect_rows)
+    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   for (int dof = s.root_is_kinematic() ? root_dofs : 0; dof < s.tree.dofs; ++dof) {
     const T torque = p.gradient[dof];

@@ -10,6 +10,8 @@ namespace {
 template <class T>
 bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
   if (!s.impulses.empty() || s.crowded) return false;
+  for (const Effect<T>* effect : s.problem.effects)
+    if (!effect->passive()) return false;  // wind rises again
   if (!s.limp()) {
     const auto same = [](const JointJet<T>& a, const JointJet<T>& b) {
       return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;

@@ -100,6 +100,7 @@ struct CharacterState {
   std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
+  std::vector<std::unique_ptr<Effect<T>>> effects;  ///< declared for this tree, in the plan or not
   Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;

@@ -69,6 +69,7 @@ struct World<T>::Impl {
   WorldMemory memory() const;
   void reserve();
   void meet_surroundings();
+  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
   bool play_island(std::span<CharacterState<T>* const> members);
   void step_island(int island, Worker& worker);
@@ -104,6 +105,7 @@ SolveRoom World<T>::Impl::room_of_rig(const Rig<T>& rig) const {
 template <class T>
 void World<T>::Impl::count_in(CharacterState<T>& s) {
   s.problem.room = room_of_rig(*s.rig);
+  for (const auto& effect : s.effects) s.problem.room.effect_rows += effect->most_rows();
   rooms.add(s.problem.room);
 }
 
@@ -232,6 +234,36 @@ void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velo
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
   s.reset_to_target(Vec3<T>::Zero());
+}
+
+template <class T>
+Status World<T>::Impl::add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect) {
+  if (!effect) return Status::error(Code::kInvalidArgument, "no effect");
+  if (Status status = effect->attach(state.skeleton, state.tree); !status) return status;
+  state.problem.plan(*effect);
+  state.effects.push_back(std::move(effect));
+  meet_surroundings();
+  return {};
+}
+
+template <class T>
+Status World<T>::add_effect(int character, std::unique_ptr<Effect<T>> effect) {
+  return impl_->add_effect(*impl_->states[impl_->characters[character]], std::move(effect));
+}
+
+template <class T>
+Status World<T>::add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect) {
+  return impl_->add_effect(*impl_->states[impl_->props[prop]], std::move(effect));
+}
+
+template <class T>
+void World<T>::remove_effects(int character) {
+  CharacterState<T>& s = *impl_->states[impl_->characters[character]];
+  s.problem.effects.clear();
+  s.problem.effect_rows.clear();
+  s.problem.stiff = false;
+  s.effects.clear();
+  s.levels.wake = true;
 }
 
 template <class T>
@@ -415,7 +447,7 @@ template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
   for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
-  islands.find(states, h, settings.island_dofs);
+  islands.find(states, h, settings.island_dofs, settings.body_contact);
   large.clear();
   heavy.clear();
   light.clear();

@@ -19,6 +19,7 @@
 
 #include "sinew/animation/clip.h"
 #include "sinew/character/level_of_detail.h"
+#include "sinew/effects/effect.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -92,6 +93,8 @@ struct WorldSettings {
   bool ground = true;
   double ground_friction = 1.0;   ///< multiplies the collider's
   double ground_restitution = 0;  ///< see Collider::restitution
+  bool body_contact = true;       ///< characters and props meet each other
+  bool ground_support = true;     ///< the floor bears what a driven root would (see effects/support.h)
   int workers = 1;  ///< threads that a step may use, through its ParallelFor; each has its own memory
   std::size_t memory_cap = 0;  ///< bytes (see WorldMemory); who would exceed it is not added. 0: none
   int island_dofs = 4096;  ///< degrees of freedom that are solved together at most; beyond, neighbours pass
@@ -179,6 +182,12 @@ class World {
   Vec3<T> prop_velocity(int index) const;
   void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
                 const Vec3<T>& angular_velocity);
+  /// Set-up: lets an effect act on a character or a prop; each needs its own. Refused with what the effect
+  /// says about its settings. The address stays good while the world lives and the effect is not taken away.
+  Status add_effect(int character, std::unique_ptr<Effect<T>> effect);
+  Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect);
+  void remove_effects(int character);
+
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   void park_prop(int index);
   const CharacterReport& prop_report(int index) const;

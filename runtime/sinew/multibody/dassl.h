@@ -3,6 +3,9 @@
 // Source: Brenan, Campbell & Petzold, "Numerical Solution of Initial-Value Problems in Differential-Algebraic
 // Equations", 1989, chapter 5, routine DDASTP: modified divided differences φ of the solution, coefficients
 // ψ, α, β, γ, σ; Newton's method with an old matrix scaled by 2/(1 + c_j/c_old); errors at k−2 … k+1.
+// Two things differ: the norm, which the routine lets its user replace, is the worst component instead of the
+// root mean square, so that a tolerance means the same here as in the other methods; and a rate of
+// convergence counts in the step in which it was measured only.
 #pragma once
 
 #include <array>
@@ -36,7 +39,7 @@ class Dassl : public Integrator {
   IntegratorSettings settings_;
   double end_;
   double t_, h_ = 0, h_old_ = 0;
-  double c_ = 0, c_factored_ = 0, error_factor_ = 0, rate_bound_ = 100;
+  double c_ = 0, c_factored_ = 0, error_factor_ = 0;
   int k_ = 1, k_old_ = 0, same_steps_ = 0, order_change_ = 0;
   bool started_ = false, first_phase_ = true, need_tangent_ = true;
   Coefficients psi_{}, alpha_{}, beta_{}, gamma_{}, sigma_{};

@@ -34,7 +34,7 @@ std::string FixedBdf::step() {
     system_->solve(r);
     y -= r;
     yp -= c * r;
-    const double size = weighted_norm(r, y_, settings_);
+    const double size = worst_component(r, y_, settings_);
     if (!std::isfinite(size)) break;
     converged = size <= std::max(kNewtonTolerance, h * system_->noise() / settings_.atol);
   }

@@ -1,6 +1,5 @@
 #include "sinew/multibody/integrator.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "sinew/multibody/dassl.h"
@@ -27,13 +26,8 @@ std::unique_ptr<Integrator> start(Method method, System& system, double t0, cons
   return std::make_unique<FixedBdf>(system, t0, y0, method == Method::kBdf1 ? 1 : 2, settings);
 }
 
-double weighted_norm(const Vector& x, const Vector& scale, const IntegratorSettings& s) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double e = x[i] / (s.atol + s.rtol * std::abs(scale[i]));
-    sum += e * e;
-  }
-  return std::sqrt(sum / static_cast<double>(x.size()));
+double worst_component(const Vector& x, const Vector& scale, const IntegratorSettings& s) {
+  return (x.array().abs() / (s.atol + s.rtol * scale.array().abs())).maxCoeff();
 }
 
 std::string stopped(double t, const char* reason) {

@@ -54,8 +54,8 @@ enum class Method {
 std::unique_ptr<Integrator> start(Method method, System& system, double t0, const Vector& y0, double end,
                                   const IntegratorSettings& settings);
 
-/// √(mean((x/(atol + rtol·|scale|))²)): ≤ 1 is accurate enough.
-double weighted_norm(const Vector& x, const Vector& scale, const IntegratorSettings& settings);
+/// Largest |x|/(atol + rtol·|scale|) of a component: ≤ 1 is accurate enough.
+double worst_component(const Vector& x, const Vector& scale, const IntegratorSettings& settings);
 
 constexpr const char* kTooAccurate = "the tolerance is below what double precision can resolve";
 constexpr const char* kStepTooSmall =

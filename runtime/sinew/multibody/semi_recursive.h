@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sinew/multibody/recursive_residual.h"
+#include "sinew/residual/tree_factor.h"
 
 namespace sinew::multibody {
 
@@ -15,19 +16,26 @@ struct AccumulatedInertia {
 class SemiRecursive {
  public:
   explicit SemiRecursive(const Model& model);
+  SemiRecursive(const SemiRecursive&) = delete;
+  SemiRecursive& operator=(const SemiRecursive&) = delete;
   /// HᵀMΣH [N×N], symmetric, all entries written. Poses of `motion` must be set.
   void mass_matrix(const BodyMotion& motion, Matrix& mass);
   /// HᵀQΣ [N]: forces on the coordinates at the accelerations that `motion` holds, negated residual.
   void forces(const BodyMotion& motion, const AppliedForces& applied, Eigen::Ref<Vector> out);
-  /// Accelerations of an open chain; overwrites those of `motion`.
+  /// Accelerations of an open chain; overwrites those of `motion`. The factor keeps the zeros of (30): the
+  /// runtime's own, O(N·depth²).
   void evaluate(BodyMotion& motion, const AppliedForces& applied, Eigen::Ref<Vector> qdd);
 
  private:
+  /// Accumulates the inertias and gives each entry of the lower triangle to `put(row, column, value)`.
+  template <class Put>
+  void accumulate(const BodyMotion& motion, const Put& put);
+
   const Model* model_;
   std::vector<AccumulatedInertia> sums_;
   RecursiveResidual residual_;
-  Matrix mass_;
-  Eigen::LLT<Matrix> factor_;
+  TreePattern pattern_;  ///< one unknown per body
+  TreeMatrix<double> mass_;
   Vector zero_;
 };
 

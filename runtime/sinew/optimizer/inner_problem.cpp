@@ -36,7 +36,8 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   smooth_.reserve(dofs, room.path_entries);
   factor_.reserve(dofs, room.path_entries);
   contact_rows_.reserve(room.contacts, room.contact_entries);
-  joint_rows_.reserve(dofs * 8);
+  joint_rows_.reserve(dofs * 8 + room.effect_rows);
+  path_.resize(TreePattern::padded(dofs));
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
     v->reserve(dofs);
@@ -80,7 +81,7 @@ template <class T>
 void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geometric) {
   smooth_.set_zero();
   for (TreeProblem<T>* p : trees_) {
-    begin_composite(*p);
+    begin_composite(*settings_, *p);
     if (geometric) {
       for (const Contact<T>& c : contacts) {
         const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
@@ -97,6 +98,9 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, bool geomet
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
                             geometric, smooth_);
     add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
+    if (p->stiff)
+      add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
+                       smooth_);
     if (geometric) add_joint_geometry(*p);
   }
   if (geometric) contact_rows_.add_bending(smooth_);

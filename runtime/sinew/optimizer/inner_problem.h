@@ -30,7 +30,8 @@ class InnerProblem {
   static std::size_t bytes(const SolveRoom& room) {
     return ContactRows<T>::bytes(room) +
            room.dofs * (8 * sizeof(JointRows) + 12 * sizeof(T) + 8 * sizeof(int)) +
-           room.path_entries * 8 * sizeof(T) + room.bodies * 2 * sizeof(Vec3<T>);
+           room.effect_rows * sizeof(JointRows) + room.path_entries * 8 * sizeof(T) +
+           room.bodies * 2 * sizeof(Vec3<T>);
   }
 
   /// Numbers the unknowns of all trees.
@@ -103,6 +104,7 @@ class InnerProblem {
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
   std::vector<T> step_, product_, correction_, correction_product_;
   std::vector<T> residual_, preconditioned_, direction_;  ///< conjugate gradients
+  std::vector<T> path_;                                   ///< one row of add_stiffness
   mutable std::vector<Vec3<T>> turn_, slide_;             ///< [body] of displacement()
 };
 

@@ -48,6 +48,21 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
   rows.reserve(6 * t.dofs + 3 * t.bodies);
 }
 
+template <class T>
+void TreeProblem<T>::plan(Effect<T>& effect) {
+  if (effect.instances() == 0) return;
+  effects.push_back(&effect);
+  stiffness.resize(tree->bodies);
+  effect_rows.reserve(effect_rows.capacity() + effect.most_rows());
+  rows.reserve(rows.capacity() + effect.most_rows());
+}
+
+template <class T>
+void measure_effect_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
+  p.effect_rows.clear();
+  for (const Effect<T>* effect : p.effects) effect->add_rows(effect_pose(settings, p), p.effect_rows);
+}
+
 namespace {
 
 /// Of a symmetric matrix, by its leading minors.
@@ -94,6 +109,13 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
     p.moment[push.body] -= x.cross(push.force);
   }
   measure_joint_rows(settings, p);
+  if (!p.effects.empty()) {
+    for (const Effect<T>* effect : p.effects)
+      energy += effect->add_gradient(effect_pose(settings, p), {p.force, p.moment});
+    measure_effect_rows(settings, p);
+    for (const JointRow<T>& row : p.effect_rows)
+      if (p.free[row.dof]) p.rows.push_back(row);
+  }
   for (const JointRow<T>& row : p.rows) energy += double(row.energy(row.value));
   return energy;
 }
@@ -105,10 +127,15 @@ void finish_gradient(TreeProblem<T>& p) {
     const T slope = row.slope(row.value);
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += slope * row.gradient[a];
   }
+  for (const JointRow<T>& row : p.effect_rows) {
+    if (p.free[row.dof]) continue;  // in `rows`
+    const T slope = row.slope(row.value);
+    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += slope * row.gradient[a];
+  }
 }
 
 template <class T>
-void begin_composite(TreeProblem<T>& p) {
+void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
   const T weight = p.prediction.weight;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -128,6 +155,11 @@ void begin_composite(TreeProblem<T>& p) {
     const Vec3<T> x = p.kinematics.origin[push.body] + p.kinematics.rotation[push.body] * push.local;
     p.composite[push.body].add_force(x, -push.force);
   }
+  if (p.effects.empty()) return;
+  if (p.stiff) std::fill(p.stiffness.begin(), p.stiffness.end(), SpatialStiffness<T>{});
+  p.stiff = false;
+  for (const Effect<T>* effect : p.effects)
+    effect->add_curvature(effect_pose(settings, p), {p.composite, p.stiffness, p.stiff});
 }
 
 SINEW_PROBLEM_INSTANCES(template, float)

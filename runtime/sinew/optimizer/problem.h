@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/effects/contact.h"
+#include "sinew/effects/effect.h"
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/muscle/joint_rows.h"
 #include "sinew/optimizer/scheme.h"
@@ -54,25 +55,44 @@ struct TreeProblem {
   std::vector<T> gradient;             ///< [dof] ∂E/∂d in the chart centred at `local`
   std::vector<JointRow<T>> rows;
   std::vector<Composite<T>> composite;
-  std::vector<Mat3<T>> joint_curvature;  ///< [body] see measure_joint_curvature
-  SolveRoom room;                        ///< what this tree brings to a solve
-  int first_unknown_map = 0;             ///< where this tree's part of Unknowns::of_dof begins
+  std::vector<Mat3<T>> joint_curvature;        ///< [body] see measure_joint_curvature
+  std::vector<Effect<T>*> effects;             ///< the step's plan: those with instances on this tree
+  std::vector<JointRow<T>> effect_rows;        ///< all of the effects'; those of unknowns are in `rows` too
+  std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
+  bool stiff = false;                          ///< some of them is not zero
+  SolveRoom room;                              ///< what this tree brings to a solve
+  int first_unknown_map = 0;                   ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
+  /// Set-up: puts an effect, attached to this tree, into the plan if it has instances.
+  void plan(Effect<T>& effect);
 };
 
 /// Values that all trees of a solve share.
 template <class T>
 struct StepSettings {
-  T h = T(1) / 60;                  ///< s
-  Vec3<T> gravity{0, 0, T(-9.81)};  ///< m/s²
-  T limit_stiffness = T(2000);      ///< N·m/rad
-  T stick = T(0.01) / 60;           ///< m per step
-  T kink_width = T(1e-3) / 60;      ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
+  T h = T(1) / 60;                                    ///< s
+  Vec3<T> gravity{0, 0, T(-9.81)};                    ///< m/s²
+  Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed
+  T limit_stiffness = T(2000);                        ///< N·m/rad
+  T stick = T(0.01) / 60;                             ///< m per step
+  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
 };
 
-/// Kinematics, wrenches and energy of inertia, gravity and pushes at `problem.local`; rows re-measured.
-/// Contacts add their wrenches afterwards; then finish_gradient projects. Returns the energy (J).
+/// What the problem's effects see of it.
+template <class T>
+EffectPose<T> effect_pose(const StepSettings<T>& settings, const TreeProblem<T>& problem) {
+  return {*problem.tree,          problem.kinematics, problem.local, problem.start,
+          settings.common_origin, settings.gravity,   settings.h};
+}
+
+/// The effects' rows at the present pose into `problem.effect_rows`.
+template <class T>
+void measure_effect_rows(const StepSettings<T>& settings, TreeProblem<T>& problem);
+
+/// Kinematics, wrenches and energy of inertia, gravity, pushes and effects at `problem.local`; rows
+/// re-measured. Contacts add their wrenches afterwards; then finish_gradient projects. Returns the energy
+/// (J).
 template <class T>
 double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& problem);
 
@@ -80,16 +100,18 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& problem
 template <class T>
 void finish_gradient(TreeProblem<T>& problem);
 
-/// Fills `problem.composite` from inertia and (for the geometric terms) the forces on the bodies.
+/// Fills `problem.composite` and, where there are effects, `problem.stiffness` from inertia and (for the
+/// geometric terms) the forces on the bodies.
 template <class T>
-void begin_composite(TreeProblem<T>& problem);
+void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& problem);
 
-#define SINEW_PROBLEM_INSTANCES(prefix, T)                                    \
-  prefix struct JointLaw<T>;                                                  \
-  prefix struct TreeProblem<T>;                                               \
-  prefix double begin_evaluation<T>(const StepSettings<T>&, TreeProblem<T>&); \
-  prefix void finish_gradient<T>(TreeProblem<T>&);                            \
-  prefix void begin_composite<T>(TreeProblem<T>&);
+#define SINEW_PROBLEM_INSTANCES(prefix, T)                                     \
+  prefix struct JointLaw<T>;                                                   \
+  prefix struct TreeProblem<T>;                                                \
+  prefix void measure_effect_rows<T>(const StepSettings<T>&, TreeProblem<T>&); \
+  prefix double begin_evaluation<T>(const StepSettings<T>&, TreeProblem<T>&);  \
+  prefix void finish_gradient<T>(TreeProblem<T>&);                             \
+  prefix void begin_composite<T>(const StepSettings<T>&, TreeProblem<T>&);
 SINEW_PROBLEM_INSTANCES(extern template, float)
 SINEW_PROBLEM_INSTANCES(extern template, double)
 

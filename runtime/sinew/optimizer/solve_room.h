@@ -15,14 +15,20 @@ struct SolveRoom {
   int contact_entries = 0;  ///< of contact rows; a side that finds no room stands still in the inner problem
   int loaded = 0;           ///< contacts that bear something
   int colliders = 0;
+  int effect_rows = 0;  ///< of joints, that effects bring
 
   /// Member by member.
   template <class Function>
   static SolveRoom combined(const SolveRoom& a, const SolveRoom& b, Function f) {
-    return {f(a.trees, b.trees),       f(a.dofs, b.dofs),
-            f(a.bodies, b.bodies),     f(a.path_entries, b.path_entries),
-            f(a.contacts, b.contacts), f(a.contact_entries, b.contact_entries),
-            f(a.loaded, b.loaded),     f(a.colliders, b.colliders)};
+    return {f(a.trees, b.trees),
+            f(a.dofs, b.dofs),
+            f(a.bodies, b.bodies),
+            f(a.path_entries, b.path_entries),
+            f(a.contacts, b.contacts),
+            f(a.contact_entries, b.contact_entries),
+            f(a.loaded, b.loaded),
+            f(a.colliders, b.colliders),
+            f(a.effect_rows, b.effect_rows)};
   }
   SolveRoom& operator+=(const SolveRoom& other) {
     return *this = combined(*this, other, [](int a, int b) { return a + b; });
@@ -51,7 +57,7 @@ inline bool SolveRoom::fits(const SolveRoom& into) const {
 /// Of one tree with so many contacts, of which so many bear something, and so many colliders.
 template <class T>
 SolveRoom room_of(const Tree<T>& tree, int contacts, int loaded, int colliders) {
-  SolveRoom room{1, tree.dofs, tree.bodies, 0, contacts, 0, loaded, colliders};
+  SolveRoom room{1, tree.dofs, tree.bodies, 0, contacts, 0, loaded, colliders, 0};
   int longest = 0;
   for (int dof = 0; dof < tree.dofs; ++dof) {
     int path = 1;

@@ -1,0 +1,95 @@
+// Absence is free, and cost is a straight line: instructions counted by callgrind, symbols listed by nm.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "study/effects.h"
+
+namespace sinew::study {
+namespace {
+
+const EffectOptions kFull{SINEW_EFFECT_COST, SINEW_BINARY_DIR},
+    kBare{SINEW_EFFECT_COST_BARE, SINEW_BINARY_DIR};
+
+/// Empty where callgrind can count.
+std::string why_not() {
+#ifdef __SANITIZE_ADDRESS__
+  return "valgrind does not run what the address sanitizer is in";
+#else
+  return std::system("valgrind --version >/dev/null 2>&1") == 0 ? "" : "valgrind is not installed";
+#endif
+}
+
+std::string symbols(const std::string& program) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("nm -C '" + program + "'").c_str(), "r"), pclose);
+  std::string text;
+  std::array<char, 4096> part{};
+  while (std::fgets(part.data(), part.size(), pipe.get())) text += part.data();
+  return text;
+}
+
+TEST(EffectCost, SymbolsOfAnUndeclaredEffectAreAbsent) {
+  const std::string full = symbols(kFull.program), bare = symbols(kBare.program);
+  ASSERT_NE(bare.find("sinew::World<float>::step"), std::string::npos) << "nm listed nothing";
+  for (const char* effect :
+       {"sinew::Wind<", "sinew::Buoyancy<", "sinew::JointSpring<", "sinew::ForceField<"}) {
+    EXPECT_NE(full.find(effect), std::string::npos) << effect;
+    EXPECT_EQ(bare.find(effect), std::string::npos) << effect;
+  }
+}
+
+TEST(EffectCost, UndeclaredEffectCostsNoInstruction) {
+  if (const std::string why = why_not(); !why.empty()) GTEST_SKIP() << why;
+  for (const char* mode : {"checked none 0", "pass none 0", "solve none 0"}) {
+    const double full = count_instructions(kFull, mode), bare = count_instructions(kBare, mode);
+    ASSERT_GT(bare, 1000) << mode;
+    EXPECT_NEAR(full, bare, 1e-4 * bare) << mode;
+  }
+}
+
+TEST(EffectCost, DeclaredButEmptyCostsAtMostFiftyInstructions) {
+  if (const std::string why = why_not(); !why.empty()) GTEST_SKIP() << why;
+  for (const std::string mode : {"checked", "pass"}) {
+    const double undeclared = count_instructions(kFull, mode + " none 0");
+    ASSERT_GT(undeclared, 1000);
+    for (const char* effect : {"wind", "buoyancy", "joint_spring"})  // a force field acts on every body
+      EXPECT_LE(count_instructions(kFull, mode + " " + effect + " 0"), undeclared + 50)
+          << mode << " " << effect;
+  }
+}
+
+TEST(EffectCost, IsAStraightLineFromOneInstanceTo64) {
+  if (const std::string why = why_not(); !why.empty()) GTEST_SKIP() << why;
+  EffectOptions quick = kFull;
+  quick.quick = true;
+  EffectStudy found;
+  const convert::Error error = run_effects(quick, {}, found);
+  ASSERT_FALSE(error) << error.message;
+  ASSERT_GE(found.costs.size(), 13u);
+  for (const EffectCost& cost : found.costs) {
+    const std::string what = cost.effect + " " + cost.mode;
+    ASSERT_GT(cost.instructions[0], 1000) << what;
+    EXPECT_GT(cost.each, 50) << what;  // it acts
+    EXPECT_LT(cost.misfit, 0.02) << what;
+  }
+}
+
+TEST(EffectCost, FitFindsTheLine) {
+  EffectCost cost;
+  for (std::size_t i = 0; i < kInstances.size(); ++i)
+    cost.instructions[i] = 1000 + (i == 0 ? 0 : 70 + 5 * kInstances[i]);
+  fit(cost);
+  EXPECT_NEAR(cost.fixed, 70, 1e-9);
+  EXPECT_NEAR(cost.each, 5, 1e-9);
+  EXPECT_NEAR(cost.misfit, 0, 1e-12);
+  cost.instructions[3] *= 2;
+  fit(cost);
+  EXPECT_GT(cost.misfit, 0.1);
+}
+
+}  // namespace
+}  // namespace sinew::study

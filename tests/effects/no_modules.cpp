@@ -1,0 +1,11 @@
+// The counting program without any effect.
+#include "study/effect_cost/modules.h"
+
+namespace sinew::study {
+
+std::unique_ptr<Effect<float>> make_module(const std::string& /*name*/,
+                                           const std::vector<std::string>& /*joints*/) {
+  return nullptr;
+}
+
+}  // namespace sinew::study
