@@ -177,7 +177,9 @@ struct Pass : Solving {
   InnerProblem<float> inner;
 
   Pass(const std::string& name, int instances) : Solving(name, instances) {
-    inner.reserve(tree.dofs, tree.bodies, 0, effect ? effect->most_rows() : 0);
+    SolveRoom room = room_of(tree, 0, 0, 0);
+    room.effect_rows = effect ? effect->most_rows() : 0;
+    inner.reserve(room);
     inner.begin(settings, trees);
   }
   void step() override {
@@ -195,7 +197,8 @@ struct OnePass : Solving {
   std::vector<Contact<float>> contacts, fresh;
 
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
-    solver.reserve(tree.dofs, tree.bodies, kRods);
+    problem.room = room_of(tree, kRods, kRods, 0);
+    solver.reserve(problem.room);
     once.max_iterations = 1;
     for (int i = 0; i < instances; ++i) {
       Contact<float> c;
