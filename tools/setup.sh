@@ -8,7 +8,7 @@ packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flat
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
-tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev ccache clang-format clang-tidy valgrind)
+tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev ccache clang-format clang-tidy chromium valgrind)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 for option in "$@"; do
   [ "$option" = --tests ] && packages+=("${tests[@]}")

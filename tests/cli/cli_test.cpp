@@ -107,6 +107,22 @@ TEST(Command, SimulateWritesTelemetryOfAScene) {
   EXPECT_EQ(std::count(std::istreambuf_iterator<char>(csv), {}, '\n'), 91);
 }
 
+TEST(Command, SimulateTakesItsAccuracyFromTheDial) {
+  const std::string scene =
+      R"({"duration": 0.1, "accuracy": "reference", "characters": [{"asset": ")" + kCharacter + R"("}]})";
+  const std::string path = written("dial.json", scene), out = own_directory() + "dial.csv";
+  for (const char* dial : {"", "--preset game", "--max-error 2cm", "--max-error 2deg", "--budget 20us"})
+    EXPECT_EQ(sinew("simulate " + path + " " + dial + " -o " + out).code, 0) << dial;
+  expect_refused("simulate " + path + " --preset perfect -o " + out, "unknown preset 'perfect'");
+  expect_refused("simulate " + path + " --max-error 3 -o " + out, "'3' is no error such as");
+  expect_refused("simulate " + path + " --max-error 1um -o " + out, "'1um' is no error such as");
+  expect_refused("simulate " + path + " --max-error 0.001mm -o " + out, "the most accurate promises");
+  expect_refused("simulate " + path + " --budget 0.1us -o " + out, "the cheapest takes");
+  EXPECT_EQ(sinew("simulate " + path + " --budget 20us --preset game -o " + out).code, 2);
+  const std::string vague = written("vague.json", R"({"accuracy": "good", "characters": []})");
+  expect_refused("simulate " + vague + " -o " + out, "unknown preset 'good'");
+}
+
 TEST(Command, EvaluatePrintsWhatItPromises) {
   const std::string urdf =
       written("pendulum.urdf",

@@ -200,7 +200,8 @@ TEST(Body, OptionsOverrideMassesAndTorquesByNameOrRole) {
   const nlohmann::json options = {
       {"total_mass", 75},
       {"muscles", {{"neck_rotation", 9}}},
-      {"joints", {{"head", {{"mass", 6}}}, {"thigh_l", {{"torque", {11, 22}}, {"swing", 40}}}}}};
+      {"joints",
+       {{"head", {{"mass", 6}}}, {"thigh_l", {{"torque", {11, 22}}, {"swing", 40}, {"ellipsoid", true}}}}}};
   ASSERT_FALSE(convert_files({file}, options, asset, report));
   const Skeleton& s = asset.skeleton;
   const Joint& head = s.joints[static_cast<std::size_t>(s.find(Role::kHead))];
@@ -211,6 +212,7 @@ TEST(Body, OptionsOverrideMassesAndTorquesByNameOrRole) {
   EXPECT_EQ(thigh.dofs[1].torque_minus, 11);
   EXPECT_EQ(thigh.dofs[1].torque_plus, 22);
   EXPECT_NEAR(thigh.swing_limit, 40 * std::acos(-1.0) / 180, 1e-12);
+  EXPECT_TRUE(thigh.ellipsoidal_limit);
   const Error unknown = convert_files({file}, {{"joints", {{"tail", {{"mass", 1}}}}}}, asset, report);
   EXPECT_NE(unknown.message.find("tail"), std::string::npos);
   const Error row = convert_files({file}, {{"muscles", {{"biceps", 1}}}}, asset, report);

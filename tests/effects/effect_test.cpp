@@ -57,7 +57,7 @@ struct Scene {
   Scene(unsigned seed, const Kind& kind)
       : skeleton(clothed(seed)), tree(skeleton), problem(tree, skeleton), effect(kind.make()) {
     Random random(seed + 500);
-    settings.common_origin = {0.4, -0.3, 0.5};
+    problem.common_origin = settings.common_origin = {0.4, -0.3, 0.5};
     problem.start = fixtures::random_pose(tree, random, 0.3);
     VectorXd d(tree.dofs);
     for (double& x : d) x = random.normal(0.05);
@@ -65,8 +65,8 @@ struct Scene {
     std::fill(problem.free.begin(), problem.free.end(), std::uint8_t{1});
     EXPECT_TRUE(effect->attach(skeleton, tree).ok());
     problem.plan(*effect);
-    forward_kinematics<double>(tree, problem.start, settings.common_origin, problem.kinematics);
-    effect->begin_step({tree, problem.kinematics, problem.start, problem.start, settings.common_origin,
+    forward_kinematics<double>(tree, problem.start, problem.common_origin, problem.kinematics);
+    effect->begin_step({tree, problem.kinematics, problem.start, problem.start, problem.common_origin,
                         settings.gravity, settings.h});
     problem.prediction.weight = 0;  // no inertia, no gravity: only the effect
     settings.gravity = V::Zero();
@@ -173,7 +173,7 @@ TEST_P(EveryEffect, LoadOfAMovingCharacterIsTheGradientAtTheSameSpeed) {
     Kinematics<double> kinematics(s.tree);
     Motion<double> motion(s.tree);
     std::vector<V> force(s.tree.bodies), moment(s.tree.bodies);
-    inertial_wrenches<double>(s.tree, jets, V::Zero(), s.settings.common_origin, kinematics, motion, force,
+    inertial_wrenches<double>(s.tree, jets, V::Zero(), s.problem.common_origin, kinematics, motion, force,
                               moment);
     for (int i = 0; i < s.tree.bodies; ++i) {
       force[i] = moment[i] = V::Zero();
@@ -181,18 +181,18 @@ TEST_P(EveryEffect, LoadOfAMovingCharacterIsTheGradientAtTheSameSpeed) {
       s.problem.local[i].translation = jets[i].translation + s.settings.h * jets[i].velocity;
     }
     s.settings.gravity = {0, 0, -9.81};
-    forward_kinematics<double>(s.tree, s.problem.start, s.settings.common_origin, s.problem.kinematics);
+    forward_kinematics<double>(s.tree, s.problem.start, s.problem.common_origin, s.problem.kinematics);
     const EffectPose<double> start{s.tree,
                                    kinematics,
                                    s.problem.start,
                                    s.problem.start,
-                                   s.settings.common_origin,
+                                   s.problem.common_origin,
                                    s.settings.gravity,
                                    s.settings.h};
     s.effect->begin_step(start);
     s.effect->add_load(start, motion, {force, moment});
     std::vector<V> force_in_step(s.tree.bodies, V::Zero()), moment_in_step = force_in_step;
-    forward_kinematics<double>(s.tree, s.problem.local, s.settings.common_origin, s.problem.kinematics);
+    forward_kinematics<double>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
     s.effect->add_gradient(effect_pose(s.settings, s.problem), {force_in_step, moment_in_step});
     for (int i = 0; i < s.tree.bodies; ++i) {
       EXPECT_LT((force[i] - force_in_step[i]).norm(), 1e-3 * (1 + force[i].norm())) << kind.name << i;

@@ -2,12 +2,17 @@
 #include "study/accuracy.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "sinew/skeleton/rotation.h"
+#include "study/accuracy_store.h"
 #include "study/bodies.h"
 
 namespace sinew::study {
@@ -75,13 +80,13 @@ TEST(AccuracyStudy, ReportIsOnePageWithItsDataAndNothingToLoad) {
   result.scene = accuracy_scenes()[0];
   result.points = {point(1, 1e-3), point(10, 1e-5)};
   for (AccuracyPoint& p : result.points) p.varied = "step", p.option = "</script>";
-  const std::string page = accuracy_html({result});
+  const std::string page = accuracy_html({result}, {});
   for (const char* hole : {"@DATA@", "@UPLOT_JS@", "@UPLOT_CSS@", "<script src", "<link"})
     EXPECT_EQ(page.find(hole), std::string::npos) << hole;
   EXPECT_NE(page.find(result.scene.title), std::string::npos);
   std::size_t ends = 0;
   for (std::size_t at = 0; (at = page.find("</script>", at)) != std::string::npos; ++at) ++ends;
-  EXPECT_EQ(ends, 2u) << "data ended a script early";
+  EXPECT_EQ(ends, 3u) << "data ended a script early";
   const std::string csv = accuracy_csv({result});
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   for (const char* ending : {"png", "svg"}) {
@@ -90,6 +95,94 @@ TEST(AccuracyStudy, ReportIsOnePageWithItsDataAndNothingToLoad) {
     EXPECT_GT(std::filesystem::file_size(file), 5000u);
   }
   EXPECT_TRUE(run_accuracy({true, "no such scene"}, {}).empty());
+}
+
+/// A scene's result with something in every part of the page.
+AccuracyResult full_result() {
+  AccuracyResult result;
+  result.scene = accuracy_scenes()[0];
+  result.scene.drive = [](Engine&, double, double) {};  // has angles
+  for (const double us : {1.0, 10.0, 100.0}) {
+    result.points.push_back(point(us, 1e-2 / us));
+    result.points.push_back(point(3 * us, 2e-2 / us, "Peer"));
+  }
+  for (AccuracyPoint& p : result.points)
+    p.varied = "step", p.option = p.engine == "Peer" ? "RK4" : "bdf2 float";
+  result.slopes = {{"Sinew", "bdf2 double", 1.98, 2}};
+  for (const double truth : {1e-6, 1e-5, 1e-4, 1e-3}) result.estimates.push_back({0, 1.3 * truth, truth});
+  result.uncertainty = 1e-6;
+  return result;
+}
+
+TEST(AccuracyStudy, ReportDrawsAllItsChartsInABrowserWithoutErrors) {
+  if (std::system("command -v chromium >/dev/null") != 0) GTEST_SKIP() << "chromium is not installed";
+  const std::string file = testing::TempDir() + "accuracy_" + std::to_string(getpid()) + ".html";
+  std::ofstream(file) << accuracy_html({full_result(), full_result()}, {});
+  for (const char* size : {"1200,900", "380,800"}) {  // a desk and a phone
+    const std::string command =
+        std::string("timeout 100 chromium --headless --no-sandbox --disable-gpu --window-size=") + size +
+        " --virtual-time-budget=3000 --dump-dom file://" + file + " 2>/dev/null";
+    std::string page;
+    FILE* browser = popen(command.c_str(), "r");
+    char buffer[4096];
+    for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, browser)) > 0;) page.append(buffer, n);
+    pclose(browser);
+    const std::string head = page.substr(0, 300);
+    EXPECT_NE(head.find("data-errors=\"0\""), std::string::npos) << head;
+    EXPECT_NE(head.find("data-charts=\"4\""), std::string::npos) << head;  // two per scene
+    EXPECT_NE(head.find("data-drawn=\"4\""), std::string::npos) << head;
+    EXPECT_NE(page.find("bdf2 double 1.98 (theory 2)"), std::string::npos);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(AccuracyStudy, GoesOnWhereItWasStoppedAndForgetsWhatAnotherBuildMade) {
+  const std::string file = testing::TempDir() + "points_" + std::to_string(getpid()) + ".jsonl";
+  std::filesystem::remove(file);
+  AccuracyPoint made = point(3, 1e-3);
+  made.option = "bdf2", made.varied = "step", made.degrees = 2;
+  ResultStore(file, "one").keep("a", point_json(made));
+  std::ofstream(file, std::ios::app)
+      << "{\"build\": \"one\", \"key\": \"b\", \"res";  // stopped while writing
+  const ResultStore again(file, "one");
+  ASSERT_NE(again.find("a"), nullptr);
+  EXPECT_EQ(point_json(point_from(*again.find("a"))), point_json(made));
+  EXPECT_EQ(again.find("b"), nullptr);
+  EXPECT_EQ(ResultStore(file, "two").find("a"), nullptr);
+  std::filesystem::remove(file);
+}
+
+TEST(AccuracyStudy, CountedInstructionsRepeatToTheDigitAndGrowWithTheSteps) {
+  if (!can_count_instructions())
+    GTEST_SKIP() << "valgrind is not installed, or this program watches its own memory";
+  const AccuracyScene tumbling = accuracy_scenes()[0];
+  const EngineOption bdf2 = sinew_options()[0];
+  const double once = instructions_of(tumbling, bdf2, 1.0 / 30),
+               again = instructions_of(tumbling, bdf2, 1.0 / 30);
+  EXPECT_GT(once, 0);
+  EXPECT_EQ(once, again);
+  EXPECT_GT(instructions_of(tumbling, bdf2, 1.0 / 60), 1.5 * once);
+  const std::vector<AccuracyScene> all = accuracy_scenes();
+  const auto walk =
+      std::find_if(all.begin(), all.end(), [](const AccuracyScene& s) { return s.name == "tracking"; });
+  EXPECT_GT(instructions_of(*walk, bdf2, 1.0 / 30), once);  // a whole mannequin
+}
+
+TEST(AccuracyStudy, OnlyLevelsOfDetailThatSolveFeelThePush) {
+  const std::vector<AccuracyResult> results = run_accuracy({true, "lod"}, {});
+  ASSERT_EQ(results.size(), 1u);
+  const auto error = [&](const std::string& option) {
+    for (const AccuracyPoint& p : results[0].points)
+      if (p.option == option) return p.survived ? p.error : -1;
+    return -1.0;
+  };
+  // An arm and a back that give way move all mass by 15 mm (rms); who solves in time knows that to 2 mm.
+  for (const char* blind : {"residual only", "playback only"}) EXPECT_GT(error(blind), 0.01) << blind;
+  for (const char* solved : {"every frame", "every 2nd frame"}) {
+    EXPECT_GE(error(solved), 0) << solved;
+    EXPECT_LT(error(solved), 0.005) << solved;
+  }
+  EXPECT_FALSE(draw_accuracy(results[0], testing::TempDir() + "lod.png"));
 }
 
 }  // namespace

@@ -17,6 +17,9 @@ Asset sample_asset() {
   Asset asset;
   asset.skeleton = fixtures::humanoid();
   const int joints = static_cast<int>(asset.skeleton.joints.size());
+  const int arm = asset.skeleton.find("upperarm_l");
+  asset.skeleton.joints[std::size_t(arm)].ellipsoidal_limit = true;
+  asset.skeleton.muscles.push_back({"deltoid", "arms", arm, 1, 15, 25});
   Clip clip;
   clip.name = "nod";
   clip.duration = 1;
@@ -54,6 +57,11 @@ TEST(Asset, ComesBackAsItWasWritten) {
   EXPECT_EQ(write_asset(back), bytes);
   EXPECT_EQ(back.find_clip("nod"), 0);
   EXPECT_EQ(back.skeleton.joints[3].mass, fixtures::humanoid().joints[3].mass);
+  const int deltoid = back.skeleton.find_muscle("deltoid");
+  ASSERT_EQ(deltoid, 0);
+  EXPECT_EQ(back.skeleton.muscles[0].group, "arms");
+  EXPECT_EQ(back.skeleton.muscles[0].torque_plus, 25);
+  EXPECT_TRUE(back.skeleton.joints[std::size_t(back.skeleton.muscles[0].joint)].ellipsoidal_limit);
 }
 
 TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {

@@ -51,6 +51,7 @@ struct Scene {
   static Skeleton dressed(unsigned seed, bool with_rows) {
     Skeleton s = fixtures::random_skeleton(seed);
     Random random(seed + 900);
+    bool every_other = true;
     for (Joint& joint : s.joints) {
       for (DofLimits& dof : joint.dofs) {
         dof.dry_friction = with_rows ? 5 : 0;
@@ -67,6 +68,9 @@ struct Scene {
         joint.twist_lower = -0.2;
         joint.twist_upper = 0.1;
       }
+      if (!with_rows || joint.type != JointType::kBall) continue;
+      joint.ellipsoidal_limit = every_other;
+      every_other = !every_other;
     }
     return s;
   }
@@ -141,6 +145,7 @@ TEST_P(Problem, JointCurvatureIsTheSecondDerivativeOfTheRowsScalars) {
   s.gradient();
   const auto base = s.problem.local;
   const std::vector<JointRow<double>> rows = s.problem.rows;
+  const std::vector<EllipsoidRow<double>> ellipsoids = s.problem.ellipsoids;
   measure_joint_curvature(s.problem);
   const std::vector<Mat3<double>> curvature = s.problem.joint_curvature;
   constexpr double step = 1e-5;
@@ -151,12 +156,14 @@ TEST_P(Problem, JointCurvatureIsTheSecondDerivativeOfTheRowsScalars) {
     Mat3<double> difference = Mat3<double>::Zero();
     for (int k = 0; k < 3; ++k) {
       std::vector<JointRow<double>> side[2];
+      std::vector<EllipsoidRow<double>> shared[2];
       for (const int n : {0, 1}) {
         VectorXd d = VectorXd::Zero(s.tree.dofs);
         d[first + k] = n == 0 ? step : -step;
         s.problem.local = fixtures::displaced_pose(s.tree, base, d.data());
         begin_evaluation(s.settings, s.problem);
         side[n] = s.problem.rows;
+        shared[n] = s.problem.ellipsoids;
         ASSERT_EQ(side[n].size(), rows.size());
       }
       for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -165,6 +172,10 @@ TEST_P(Problem, JointCurvatureIsTheSecondDerivativeOfTheRowsScalars) {
         for (int a = 0; a < 3; ++a)
           difference(a, k) += slope * (side[0][r].gradient[a] - side[1][r].gradient[a]) / (2 * step);
       }
+      for (std::size_t e = 0; e < ellipsoids.size(); ++e)
+        if (ellipsoids[e].dof == first)
+          difference.col(k) += (shared[0][e].gradient - shared[1][e].gradient).transpose() *
+                               ellipsoids[e].slope(ellipsoids[e].value) / (2 * step);
     }
     difference = (0.5 * (difference + difference.transpose())).eval();
     largest = std::max(largest, difference.norm());

@@ -116,6 +116,27 @@ std::vector<Fault> faults() {
          s.joints[2].twist_upper = -0.5;
        },
        invalid, 2},
+      {"EllipsoidOfAHinge", [](Skeleton& s) { s.joints[3].ellipsoidal_limit = true; }, invalid, 3},
+      {"MuscleOfNoJoint",
+       [](Skeleton& s) {
+         s.muscles.push_back({"m", "", 14, 0, 1, 1});
+       },
+       invalid, 14},
+      {"MuscleOfNoFreedom",
+       [](Skeleton& s) {
+         s.muscles.push_back({"m", "", 3, 1, 1, 1});
+       },
+       invalid, 3},
+      {"MuscleOnTheFreeRoot",
+       [](Skeleton& s) {
+         s.muscles.push_back({"m", "", 0, 0, 1, 1});
+       },
+       invalid, 0},
+      {"AddedMuscleNan",
+       [](Skeleton& s) {
+         s.muscles.push_back({"m", "", 2, 0, 1, kNan});
+       },
+       invalid, 2},
       {"UniversalAxesNotSquare",
        [](Skeleton& s) {
          s.joints[3].type = JointType::kUniversal;

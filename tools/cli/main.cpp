@@ -13,6 +13,7 @@
 #include "cli/tables.h"
 #include "convert/convert.h"
 #include "render/render.h"
+#include "scene/presets.h"
 #include "scene/run.h"
 
 namespace {
@@ -135,7 +136,7 @@ struct EvaluateCommand {
 };
 
 struct SimulateCommand {
-  std::string scene_file, output;
+  std::string scene_file, output, preset, max_error, budget;
   bool json_output = false, plot = false;
   sinew::mechanism::SimulateOptions mechanism;
 
@@ -144,6 +145,7 @@ struct SimulateCommand {
       return cli::run_mechanism(scene_file, mechanism, output, json_output);
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
+    if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
     if (Error error = sinew::scene::run_scene(scene, recording, telemetry, cli::progress_bar("simulate")))
@@ -165,6 +167,30 @@ struct SimulateCommand {
                   output.c_str(), summary["frames_playback"].get<int>(),
                   summary["median_us_playback"].get<double>(), summary["frames_solved"].get<int>(),
                   summary["median_us_solved"].get<double>(), summary["unconverged_steps"].get<int>());
+    return {};
+  }
+
+ private:
+  /// What --preset, --max-error or --budget ask for, instead of the scene's own accuracy.
+  Error turn_dial(sinew::scene::Scene& scene) const {
+    sinew::scene::MeasuredAccuracy chosen;
+    Error error;
+    if (!preset.empty())
+      error = sinew::scene::find_preset(preset, chosen);
+    else if (!max_error.empty())
+      error = sinew::scene::within_error(max_error, chosen);
+    else if (!budget.empty())
+      error = sinew::scene::within_budget(budget, chosen);
+    else
+      return {};
+    if (error) return error;
+    sinew::scene::set_accuracy(chosen, scene.frame_rate, scene.world.accuracy, scene.double_precision);
+    if (!json_output)
+      std::printf("%s, %d substeps, tolerance %g m, %s: measured within %.2g mm and %.2g degrees, %.3g us\n",
+                  chosen.accuracy.scheme == sinew::Scheme::kBdf1 ? "bdf1" : "bdf2",
+                  scene.world.accuracy.substeps, chosen.accuracy.tolerance,
+                  chosen.double_precision ? "double" : "float", 1e3 * chosen.error, chosen.degrees,
+                  chosen.us);
     return {};
   }
 };
@@ -265,6 +291,13 @@ int main(int argc, char** argv) try {
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
+  auto* preset = s->add_option("--preset", simulate.preset, "crowd, game, cinematic or reference");
+  auto* within = s->add_option("--max-error", simulate.max_error,
+                               "cheapest measured setting that stays within, such as 1cm or 2deg");
+  auto* budget = s->add_option("--budget", simulate.budget,
+                               "most accurate measured setting per character and 1/60 s, such as 20us");
+  preset->excludes(within)->excludes(budget);
+  within->excludes(budget);
   cli::add_mechanism_options(*s, simulate.mechanism);
 
   RenderCommand render;
@@ -311,7 +344,7 @@ int main(int argc, char** argv) try {
   auto* cost = study->add_subcommand(
       "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
   cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
-  cost->add_option("--scene", accuracy.only, "tumbling, drop, stack or tracking");
+  cost->add_option("--scene", accuracy.only, "tumbling, pendulum, collapse, drop, stack or tracking");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
   cli::EffectsCommand effects;

@@ -1,10 +1,12 @@
 #include "cli/study.h"
 
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 
 #include "cli/files.h"
 #include "study/accuracy.h"
+#include "study/accuracy_dial.h"
 #include "study/effects.h"
 #include "study/maps.h"
 #include "study/study.h"
@@ -27,10 +29,12 @@ void print_accuracy(const study::AccuracyResult& result) {
     std::puts("");
   }
   for (const study::AccuracyPoint& p : result.points)
-    if (p.pareto)
-      std::printf("  front: %8.2f us, %9.2e m  %s 1/%.0f s, tolerance %.0e m, substeps %d, cap %d\n", p.us,
-                  p.error, p.label().c_str(), 1 / p.h, p.accuracy.tolerance, p.accuracy.substeps,
+    if (p.pareto) {
+      std::printf("  front: %8.2f us, %9.2e m  %s", p.us, p.error, p.label().c_str());
+      if (p.h > 0) std::printf(" 1/%.0f s", 1 / p.h);
+      std::printf(", tolerance %.0e, substeps %d, cap %d\n", p.accuracy.tolerance, p.accuracy.substeps,
                   p.accuracy.max_iterations);
+    }
 }
 
 }  // namespace
@@ -72,19 +76,36 @@ convert::Error StabilityCommand::run() const {
   return {};
 }
 
+/// The dial's data, as the scene loader and the runtime take it.
+convert::Error AccuracyCommand::write_presets(nlohmann::json& dial) const {
+  const auto front = study::dial_front(study::measure_dial(quick, progress_bar("presets")));
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  dial = study::dial_json(front, study::machine(), date);
+  if (convert::Error error = write_atomically(directory + "/accuracy_presets.json", dial.dump(1) + "\n"))
+    return error;
+  return write_atomically(directory + "/presets.h", study::dial_header(dial));
+}
+
 convert::Error AccuracyCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
-  const auto results = study::run_accuracy({quick, only}, progress_bar("accuracy"));
+  const auto results =
+      study::run_accuracy({quick, only, directory + "/accuracy_points.jsonl"}, progress_bar("accuracy"));
   if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
   const std::string base = directory + "/accuracy";
+  nlohmann::json dial;
+  if (only.empty())
+    if (convert::Error error = write_presets(dial)) return error;
   if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(results))) return error;
-  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results))) return error;
+  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results, dial)))
+    return error;
   for (const study::AccuracyResult& result : results)
     for (const char* ending : {".svg", ".png"})
       if (convert::Error error = study::draw_accuracy(result, base + "_" + result.scene.name + ending))
         return error;
   if (json_output) {
-    std::puts(study::accuracy_json(results).dump().c_str());
+    std::puts(study::accuracy_json(results, dial).dump().c_str());
     return {};
   }
   for (const study::AccuracyResult& result : results) print_accuracy(result);

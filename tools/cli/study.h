@@ -22,6 +22,9 @@ struct AccuracyCommand {
   bool quick = false, json_output = false;
 
   convert::Error run() const;
+
+ private:
+  convert::Error write_presets(nlohmann::json& dial) const;
 };
 
 struct EffectsCommand {

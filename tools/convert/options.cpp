@@ -40,6 +40,8 @@ JointOptions parse_joint(const nlohmann::json& json, const std::string& joint) {
     } else if (key == "swing") {
       o.swing = value.get<double>() * kDegree;
       if (*o.swing <= 0) throw BadOption("option '" + name + "' is not positive");
+    } else if (key == "ellipsoid") {
+      o.ellipsoid = value.get<bool>();
     } else {
       throw BadOption("unknown option '" + name + "'");
     }
@@ -105,7 +107,7 @@ std::string reference_options() {
   // What you know better, by joint name or role: { "head": { "mass": 5, "torque": [30, 50], "swing": 50,
   // "twist": [-60, 60] }, "shin_l": { "range": [-5, 150] } }. Masses in kg (the other joints make up the total),
   // torques in N·m (negative and positive direction; one number: both), angles in degrees: range of a hinge, swing
-  // and twist of a ball joint.
+  // and twist of a ball joint. "ellipsoid": true lets a ball joint's torques fill an ellipsoid with those half axes.
   "joints": {},
   // Muscles are made at least this many times as strong as the character's own clips ask.
   "strength_margin": 1.5,
@@ -221,6 +223,7 @@ void override_limits(const Options& options, Skeleton& skeleton) {
       }
       if (joint.type != JointType::kBall) return;
       if (o.swing) joint.swing_limit = *o.swing;
+      joint.ellipsoidal_limit = o.ellipsoid;
       if (o.twist) {
         joint.twist_lower = (*o.twist)[0];
         joint.twist_upper = (*o.twist)[1];

@@ -19,6 +19,7 @@ struct JointOptions {
   std::optional<std::array<double, 2>> range;   ///< rad, of a hinge
   std::optional<std::array<double, 2>> twist;   ///< rad, of a ball about its bone
   std::optional<double> swing;                  ///< rad, of a ball
+  bool ellipsoid = false;                       ///< of a ball: Joint::ellipsoidal_limit
 };
 
 struct Options {

@@ -106,6 +106,9 @@ std::span<const EffectRow> effect_registry() {
       built_in(
           "self_collision", "within each character", [](Scene& s) { self_collision(s, false); },
           [](Scene& s) { self_collision(s, true); }),
+      built_in("loops", "the scene's loops", [](Scene& s) { s.loops.clear(); }),
+      built_in("particles", "the scene's strands, cloth and soft tissue",
+               [](Scene& s) { s.particles.clear(); }),
       built_in("impulses", "the scene's pushes", [](Scene& s) { s.pushes.clear(); }),
       effect_row<Wind>("wind", "moving or still air drags on colliders"),
       effect_row<Buoyancy>("buoyancy", "water lifts colliders and drags on them"),

@@ -1,9 +1,11 @@
 #include "scene/run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
+#include "scene/ties.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/sampling_job.h"
 
@@ -139,6 +141,8 @@ class Runner {
       const double t = f / s_.frame_rate;
       for (std::size_t c = 0; c < s_.characters.size(); ++c)
         if (convert::Error error = drive(static_cast<int>(c), t, f == 0)) return error;
+      if (f == 0)
+        for (int p = 0; p < world_.particles_count(); ++p) world_.reset_particles(p);
       double microseconds = 0;
       if (f > 0) {
         launch(t - 1 / s_.frame_rate);
@@ -183,10 +187,38 @@ class Runner {
       if (!launched_.back()) world_.park_prop(prop);
     }
     if (convert::Error error = add_effects()) return error;
+    if (convert::Error error = add_ties()) return error;
     telemetry_.plotted_joint = recording_.plotted_joint = s_.plotted_joint;
     if (s_.plotted_joint >= 0)
       telemetry_.plotted_name = s_.characters[0].asset->skeleton.joints[s_.plotted_joint].name;
     return {};
+  }
+
+  convert::Error add_ties() {
+    Status status;
+    for (const LoopSettings& loop : s_.loops)
+      if (world_.add_loop(loop, status) < 0) return {std::string("loop: ") + status.reason};
+    for (const ParticleBody& body : s_.particles) {
+      if (world_.add_particles(body, status) < 0) return {"particles '" + body.name + "': " + status.reason};
+      edges_.push_back(drawn_edges(body));
+      for (const auto& [a, b] : edges_.back()) {
+        const double length = (body.nodes[a].position - body.nodes[b].position).norm();
+        const auto radius = static_cast<float>(std::max(0.3 * body.radius, 1e-3));
+        recording_.props.push_back({body.name, Shape::kCapsule, {radius, radius, float(length / 2)}, 0});
+      }
+    }
+    return {};
+  }
+
+  /// Capsules between the nodes, as long as they are at rest.
+  void record_particles(Frame& frame) const {
+    for (int p = 0; p < world_.particles_count(); ++p)
+      for (const auto& [a, b] : edges_[static_cast<std::size_t>(p)]) {
+        const Vec3<float> from = world_.particle(p, a).template cast<float>();
+        const Vec3<float> to = world_.particle(p, b).template cast<float>();
+        frame.props.push_back(
+            {{Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), to - from), 0.5f * (from + to)}});
+      }
   }
 
   convert::Error add_effects() {
@@ -317,6 +349,7 @@ class Runner {
       frame.props.push_back({world_.prop_pose(p).template cast<float>()});
       if (!launched_[p]) frame.props.back().world.translation.z() = kHidden;
     }
+    record_particles(frame);
     recording_.frames.push_back(std::move(frame));
   }
 
@@ -326,6 +359,7 @@ class Runner {
   World<T> world_;
   std::vector<Player<T>> players_;
   std::vector<bool> launched_;
+  std::vector<std::vector<std::array<int, 2>>> edges_;  ///< [particle body] drawn, after the props
 };
 
 }  // namespace

@@ -10,7 +10,9 @@
 
 #include "convert/roles.h"
 #include "scene/effect_registry.h"
+#include "scene/presets.h"
 #include "scene/reader.h"
+#include "scene/ties.h"
 
 namespace sinew::scene {
 namespace {
@@ -146,40 +148,51 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
   return p;
 }
 
+/// "game", or an object whose "preset" the other keys change.
+void read_accuracy(const json& value, Scene& s) {
+  MeasuredAccuracy preset;
+  const json named = value.is_string() ? json{{"preset", value}} : value;
+  const Reader a(
+      named, "accuracy",
+      {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
+       "sink_depth", "stick_speed", "limit_stiffness", "return_time", "precision", "estimate_error"});
+  if (a.has("preset")) {
+    if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
+    set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);
+  }
+  static const std::map<std::string, Scheme> schemes{
+      {"momentum", Scheme::kMomentum}, {"bdf1", Scheme::kBdf1}, {"bdf2", Scheme::kBdf2}};
+  if (a.has("scheme")) {
+    const auto scheme = schemes.find(a.text("scheme", ""));
+    if (scheme == schemes.end()) fail("accuracy.scheme", "is momentum, bdf1 or bdf2");
+    s.world.accuracy.scheme = scheme->second;
+  }
+  s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
+  s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);
+  s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
+  s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);
+  s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
+  s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1, 1000);
+  s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
+  s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
+  s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
+  s.world.accuracy.estimate_error = a.flag("estimate_error", false);
+  const std::string precision = a.text("precision", s.double_precision ? "double" : "float");
+  if (precision != "float" && precision != "double") fail("accuracy.precision", "is float or double");
+  s.double_precision = precision == "double";
+}
+
 Scene parse(const json& root, const std::filesystem::path& base, std::span<const EffectRow> registry) {
   const Reader in(root, "",
                   {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props",
-                   "obstacles", "pushes", "effects", "camera", "captions", "plot"});
+                   "obstacles", "loops", "particles", "pushes", "effects", "camera", "captions", "plot"});
   Scene s;
   s.title = in.text("title", "");
   s.duration = in.positive("duration", s.duration);
   s.frame_rate = in.positive("frame_rate", s.frame_rate);
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
-  if (in.has("accuracy")) {
-    const Reader a(
-        in.at("accuracy"), "accuracy",
-        {"scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits", "sink_depth",
-         "stick_speed", "limit_stiffness", "return_time", "precision", "estimate_error"});
-    static const std::map<std::string, Scheme> schemes{
-        {"momentum", Scheme::kMomentum}, {"bdf1", Scheme::kBdf1}, {"bdf2", Scheme::kBdf2}};
-    const auto scheme = schemes.find(a.text("scheme", "bdf2"));
-    if (scheme == schemes.end()) fail("accuracy.scheme", "is momentum, bdf1 or bdf2");
-    s.world.accuracy.scheme = scheme->second;
-    s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
-    s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);
-    s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
-    s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);
-    s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
-    s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1, 1000);
-    s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
-    s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
-    s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
-    s.world.accuracy.estimate_error = a.flag("estimate_error", false);
-    const std::string precision = a.text("precision", "float");
-    if (precision != "float" && precision != "double") fail("accuracy.precision", "is float or double");
-    s.double_precision = precision == "double";
-  }
+  if (in.has("accuracy")) read_accuracy(in.at("accuracy"), s);
   s.world.gravity = in.vector("gravity", s.world.gravity);
   s.world.ground = in.flag("ground", true);
   const json& characters = in.list("characters");
@@ -189,6 +202,12 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   const json& props = in.list("props");
   for (std::size_t i = 0; i < props.size(); ++i)
     s.props.push_back(read_prop(props[i], in.item("props", i), s));
+  const json& loops = in.list("loops");
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    s.loops.push_back(read_loop(loops[i], in.item("loops", i), s));
+  const json& particles = in.list("particles");
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    s.particles.push_back(read_particles(particles[i], in.item("particles", i), s));
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Reader o(obstacles[i], in.item("obstacles", i), {"shape", "size", "position", "friction"});

@@ -84,6 +84,8 @@ struct Scene {
   std::vector<SceneProp> props;
   std::vector<Collider> obstacles;
   std::vector<Push> pushes;
+  std::vector<LoopSettings> loops;
+  std::vector<ParticleBody> particles;
   std::vector<SceneEffect> effects;
   Timeline<std::string> captions;
   Camera camera;

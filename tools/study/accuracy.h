@@ -18,13 +18,17 @@ struct AccuracyScene {
   double seconds = 1;                ///< of the trajectory that is compared
   EngineScene scene;
   bool contacts = false;
-  bool settles = false;  ///< only the pose at the end counts, against that of a long run at rest
+  std::vector<EngineOption> options;  ///< that are compared; empty: all that there are
+  bool settles = false;               ///< only the pose at the end counts, against that of a long run at rest
   /// Targets and pushes of the step from t to t + h; empty where nothing is driven.
   std::function<void(Engine&, double t, double h)> drive;
 };
 
-/// Tumbling body, limp figure's drop, 50 : 1 stack, walk with pushes.
+/// Tumbling body, pendulum, limp figure's collapse and drop, 50 : 1 stack, walk and run with pushes, levels
+/// of detail.
 std::vector<AccuracyScene> accuracy_scenes();
+/// Scenes of the same kinds by which nothing was chosen: presets must keep their word here.
+std::vector<AccuracyScene> unseen_scenes();
 
 /// One setting on one scene.
 struct AccuracyPoint {
@@ -32,11 +36,14 @@ struct AccuracyPoint {
   double h = 0;                        ///< s
   Accuracy accuracy;
   bool survived = false;
-  std::string refusal;             ///< why the engine cannot do the scene
-  double error = 0;                ///< m: largest rms displacement of all mass from the converged run
-  double energy = 0;               ///< change over the largest kinetic energy; undriven scenes
-  double us = 0;                   ///< median, per simulated 1/60 s
+  std::string refusal;  ///< why the engine cannot do the scene
+  double error = 0;     ///< m: largest rms displacement of all mass from the converged run
+  double degrees = 0;   ///< largest rms of all joint angles from that run
+  double momentum = 0;  ///< relative change of the angular momentum, where the scene keeps it
+  double energy = 0;    ///< change over the kinetic energy of the start or of a metre's fall; undriven scenes
+  double us = 0;        ///< median, per simulated 1/60 s
   double us_low = 0, us_high = 0;  ///< quartiles
+  double instructions = -1;        ///< per simulated 1/60 s, by callgrind; negative: not counted
   double passes = 0;               ///< mean per solved step
   bool pareto = false;             ///< no point is both faster and more accurate
   std::string label() const { return engine + " " + option; }
@@ -47,30 +54,41 @@ struct Slope {
   double found = 0, expected = 0;  ///< order in h; expected 0: no theory claimed
 };
 
+/// One step's own estimate of its error beside the truth, m (rms of all mass).
+struct EstimatedFrame {
+  double time = 0, estimated = 0, truth = 0;
+};
+
 struct AccuracyResult {
   AccuracyScene scene;
   std::vector<AccuracyPoint> points;
   std::vector<Slope> slopes;
   double references_apart = -1;  ///< m, between ours and the peer's converged run; < 0: not comparable
+  double uncertainty =
+      -1;  ///< m, between our converged run and one of twice its step: finer errors mean nothing
+  std::vector<EstimatedFrame> estimates;  ///< of our bdf2 at 1/60 s
 };
 
 struct AccuracyOptions {
   bool quick = false;
-  std::string only;  ///< scene; empty: all
+  std::string only = {};   ///< scene; empty: all
+  std::string store = {};  ///< file of finished points, to go on where a study was stopped; empty: none
 };
 
 /// `progress(done, total)` may be empty.
 std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
                                          const std::function<void(int, int)>& progress);
 
-/// One step's own estimate of its error beside the truth, m (rms of all mass).
-struct EstimatedFrame {
-  double time = 0, estimated = 0, truth = 0;
-};
 /// Runs a scene with the estimate on; the truth of a step is 32 steps of a part of it from the same state.
 /// Meant for options in double.
 std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h,
                                              const Accuracy& accuracy = {});
+
+/// Instructions per simulated 1/60 s at the default accuracy, counted by callgrind in a program of its own:
+/// the figure that repeats. Negative where it cannot be counted.
+double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h);
+/// Whether valgrind and the program are there.
+bool can_count_instructions();
 
 /// Root mean square displacement (m) of the mass of a figure between two poses.
 double displacement(const Skeleton& skeleton, const std::vector<Transform<double>>& a,
@@ -78,13 +96,20 @@ double displacement(const Skeleton& skeleton, const std::vector<Transform<double
 /// Least squares slope of log error over log h.
 double order_of(const std::vector<AccuracyPoint>& points);
 void mark_pareto(std::vector<AccuracyPoint>& points);
-/// Least time (µs per 1/60 s) among points of an engine within `error` metres, or a negative number.
-double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double error);
+/// Least time (µs per 1/60 s) among points of an engine within `bound` (metres, or degrees of
+/// &AccuracyPoint::degrees), or a negative number.
+double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double bound,
+                double AccuracyPoint::*error = &AccuracyPoint::error);
 
+/// Processor and compiler, for whoever compares.
+std::string machine();
+nlohmann::json point_json(const AccuracyPoint& point);
+AccuracyPoint point_from(const nlohmann::json& json);
 std::string accuracy_csv(const std::vector<AccuracyResult>& results);
-nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results);
+/// `dial`: see dial_json; may be null.
+nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const nlohmann::json& dial);
 /// One self-contained page.
-std::string accuracy_html(const std::vector<AccuracyResult>& results);
+std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial);
 /// One scene's work-precision diagram in a light theme, .png or .svg.
 convert::Error draw_accuracy(const AccuracyResult& result, const std::string& file);
 

@@ -71,7 +71,8 @@ void draw_axes(const Canvas& canvas, const Axis& x, const Axis& y) {
 std::vector<const AccuracyPoint*> sweep_of(const AccuracyResult& result, const std::string& label) {
   std::vector<const AccuracyPoint*> line;
   for (const AccuracyPoint& p : result.points)
-    if (p.label() == label && p.varied == "step" && p.survived && p.us > 0) line.push_back(&p);
+    if (p.label() == label && (p.varied == "step" || p.varied == "policy") && p.survived && p.us > 0)
+      line.push_back(&p);
   return line;
 }
 

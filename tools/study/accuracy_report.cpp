@@ -10,9 +10,15 @@
 namespace sinew::study {
 namespace {
 
+constexpr double kAngles[] = {5, 2, 1, 0.5, 0.2};                   // degrees
 constexpr double kPrices[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5};  // m
 
-/// Processor and compiler, for whoever compares.
+void replace(std::string& text, const std::string& what, const std::string& with) {
+  text.replace(text.find(what), what.size(), with);
+}
+
+}  // namespace
+
 std::string machine() {
   std::ifstream info("/proc/cpuinfo");
   std::string line, name = "unknown processor";
@@ -24,71 +30,116 @@ std::string machine() {
   return name + ", one core; GCC " __VERSION__ "; medians of repeated runs, quartiles on hover.";
 }
 
-void replace(std::string& text, const std::string& what, const std::string& with) {
-  text.replace(text.find(what), what.size(), with);
-}
-
-}  // namespace
-
 std::string accuracy_csv(const std::vector<AccuracyResult>& results) {
   std::string csv =
-      "scene,engine,option,varied,h_s,tolerance_m,substeps,max_iterations,survived,error_m,energy,us_per_"
+      "scene,engine,option,varied,h_s,tolerance_m,substeps,max_iterations,sink_depth_m,stick_speed,survived,"
+      "error_m,error_deg,"
+      "energy,momentum,us_per_"
       "frame,"
-      "us_q1,us_q3,passes,pareto\n";
-  char line[300];
+      "us_q1,us_q3,instructions,passes,pareto\n";
+  char line[400];
   for (const AccuracyResult& result : results)
     for (const AccuracyPoint& p : result.points) {
-      std::snprintf(line, sizeof line, "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%d,%.6g,%.6g,%.4g,%.4g,%.4g,%.3f,%d\n",
-                    result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
-                    p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations, p.survived, p.error,
-                    p.energy, p.us, p.us_low, p.us_high, p.passes, p.pareto);
+      std::snprintf(
+          line, sizeof line,
+          "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%.3g,%.3g,%d,%.6g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g,%.9g,%.3f,%d\n",
+          result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
+          p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations, p.accuracy.sink_depth,
+          p.accuracy.stick_speed, p.survived, p.error, p.degrees, p.energy, p.momentum, p.us, p.us_low,
+          p.us_high, p.instructions, p.passes, p.pareto);
       csv += line;
     }
   return csv;
 }
 
-nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results) {
+nlohmann::json point_json(const AccuracyPoint& p) {
+  return {{"engine", p.engine},
+          {"option", p.option},
+          {"varied", p.varied},
+          {"h", p.h},
+          {"tolerance", p.accuracy.tolerance},
+          {"substeps", p.accuracy.substeps},
+          {"max_iterations", p.accuracy.max_iterations},
+          {"max_splits", p.accuracy.max_splits},
+          {"sink_depth", p.accuracy.sink_depth},
+          {"stick_speed", p.accuracy.stick_speed},
+          {"survived", p.survived},
+          {"refusal", p.refusal},
+          {"error", p.error},
+          {"degrees", p.degrees},
+          {"energy", p.energy},
+          {"momentum", p.momentum},
+          {"us", p.us},
+          {"us_low", p.us_low},
+          {"us_high", p.us_high},
+          {"instructions", p.instructions},
+          {"passes", p.passes},
+          {"pareto", p.pareto}};
+}
+
+AccuracyPoint point_from(const nlohmann::json& json) {
+  AccuracyPoint p;
+  p.engine = json.at("engine");
+  p.option = json.at("option");
+  p.varied = json.at("varied");
+  p.h = json.at("h");
+  p.accuracy.tolerance = json.at("tolerance");
+  p.accuracy.substeps = json.at("substeps");
+  p.accuracy.max_iterations = json.at("max_iterations");
+  p.accuracy.max_splits = json.at("max_splits");
+  p.accuracy.sink_depth = json.at("sink_depth");
+  p.accuracy.stick_speed = json.at("stick_speed");
+  p.survived = json.at("survived");
+  p.refusal = json.at("refusal");
+  if (!p.survived) return p;  // what it did then is no number
+  p.error = json.at("error");
+  p.degrees = json.at("degrees");
+  p.energy = json.at("energy");
+  p.momentum = json.at("momentum");
+  p.us = json.at("us");
+  p.us_low = json.at("us_low");
+  p.us_high = json.at("us_high");
+  p.instructions = json.at("instructions");
+  p.passes = json.at("passes");
+  return p;
+}
+
+nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const nlohmann::json& dial) {
   nlohmann::json scenes = nlohmann::json::array();
   for (const AccuracyResult& result : results) {
-    nlohmann::json points = nlohmann::json::array(), slopes = points, prices = points;
-    for (const AccuracyPoint& p : result.points)
-      points.push_back({{"engine", p.engine},
-                        {"option", p.option},
-                        {"varied", p.varied},
-                        {"h", p.h},
-                        {"tolerance", p.accuracy.tolerance},
-                        {"substeps", p.accuracy.substeps},
-                        {"max_iterations", p.accuracy.max_iterations},
-                        {"survived", p.survived},
-                        {"refusal", p.refusal},
-                        {"error", p.error},
-                        {"energy", p.energy},
-                        {"us", p.us},
-                        {"us_low", p.us_low},
-                        {"us_high", p.us_high},
-                        {"passes", p.passes},
-                        {"pareto", p.pareto}});
+    nlohmann::json points = nlohmann::json::array(), slopes = points, prices = points, angles = points,
+                   estimates = points;
+    for (const AccuracyPoint& p : result.points) points.push_back(point_json(p));
     for (const Slope& s : result.slopes)
       slopes.push_back(
           {{"engine", s.engine}, {"option", s.option}, {"found", s.found}, {"expected", s.expected}});
-    for (const double error : kPrices) {
-      nlohmann::json row = {{"error", error}};
-      for (const AccuracyPoint& p : result.points) row[p.engine] = price_of(result.points, p.engine, error);
-      prices.push_back(row);
-    }
+    const auto price = [&](double bound, double AccuracyPoint::*error) {
+      nlohmann::json row = {{"error", bound}};
+      for (const AccuracyPoint& p : result.points)
+        row[p.engine] = price_of(result.points, p.engine, bound, error);
+      return row;
+    };
+    for (const double error : kPrices) prices.push_back(price(error, &AccuracyPoint::error));
+    for (const double angle : kAngles)
+      if (result.scene.drive) angles.push_back(price(angle, &AccuracyPoint::degrees));
+    for (const EstimatedFrame& f : result.estimates)
+      if (f.estimated > 0 && f.truth > 0) estimates.push_back({f.truth, f.estimated});
     scenes.push_back({{"name", result.scene.name},
                       {"title", result.scene.title},
                       {"reading", result.scene.reading},
                       {"references_apart", result.references_apart},
+                      {"uncertainty", result.uncertainty},
                       {"points", points},
                       {"slopes", slopes},
-                      {"prices", prices}});
+                      {"prices", prices},
+                      {"angles", angles},
+                      {"estimates", estimates}});
   }
-  return {{"machine", machine()}, {"scenes", scenes}};
+  return {{"machine", machine()}, {"scenes", scenes}, {"dial", dial}};
 }
 
-std::string accuracy_html(const std::vector<AccuracyResult>& results) {
-  std::string page = web::kReport, data = accuracy_json(results).dump();
+std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial) {
+  std::string page = web::kReport, data = accuracy_json(results, dial).dump();
   for (std::size_t at; (at = data.find("</")) != std::string::npos;) data.replace(at, 2, "<\\/");
   replace(page, "@UPLOT_CSS@", web::kChartStyle);
   replace(page, "@UPLOT_JS@", web::kChartScript);

@@ -11,6 +11,8 @@
 namespace sinew::study {
 namespace {
 
+constexpr double kQuarter = 1.5707963267948966;  // rad
+
 AccuracyScene tumbling_body() {
   AccuracyScene s;
   s.name = "tumbling";
@@ -81,17 +83,41 @@ AccuracyScene stack() {
   return s;
 }
 
-AccuracyScene tracking() {
+AccuracyScene pendulum(const char* name, int links, JointType joint, const Vec3<double>& lifted) {
   AccuracyScene s;
-  s.name = "tracking";
-  s.title = "Muscles follow a walk and are pushed";
+  s.name = name;
+  s.title = "A pendulum of " + std::to_string(links) + " bars";
   s.reading =
-      "The mannequin walks on its clip; forearm and chest are pushed for 0.1 s, harder than muscles hold. "
-      "Ours hands joints over to "
-      "the "
-      "solver only where a muscle is too weak; MuJoCo tracks with servos of the same strength.";
+      "No contact, no muscle, no damping: joints hold bars of a metre together that swing down from a "
+      "quarter "
+      "turn. Whoever integrates in joint coordinates has an easy time here; compared for a second, before "
+      "chaos.";
+  s.scene.ground = false;
+  ChainShape shape;
+  shape.links = links;
+  shape.joint = shape.root = joint;
+  Figure figure = resting(chain(shape));
+  bend(figure.skeleton, figure.jets, 0, lifted);
+  s.scene.figures.push_back(figure);
+  return s;
+}
+
+/// Newtons (world axes) on a body, from one time to another.
+struct Shove {
+  Role role;
+  Vec3<double> force;
+  double begin, end;  ///< s
+};
+
+AccuracyScene tracking(const char* name, const char* clip_name, const std::vector<Shove>& shoves) {
+  AccuracyScene s;
+  s.name = name;
+  s.title = std::string("Muscles follow a ") + clip_name + " and are pushed";
+  s.reading =
+      "The mannequin moves on its clip; it is pushed for 0.1 s, harder than muscles hold. Ours hands joints "
+      "over to the solver only where a muscle is too weak; MuJoCo tracks with servos of the same strength.";
   const Asset* asset = mannequin();
-  const int clip = asset ? asset->find_clip("walk") : -1;
+  const int clip = asset ? asset->find_clip(clip_name) : -1;
   if (clip < 0) return s;
   const auto sample = [asset, clip](double time) {
     std::vector<JointJet<double>> jets(asset->skeleton.joints.size());
@@ -100,21 +126,62 @@ AccuracyScene tracking() {
   };
   s.scene.figures.push_back({asset->skeleton, sample(0), true});
   make_frictionless(s.scene.figures[0].skeleton);
-  const int arm = asset->skeleton.find(Role::kForearmR), chest = asset->skeleton.find(Role::kChest);
-  s.drive = [sample, arm, chest](Engine& engine, double t, double h) {
+  s.drive = [sample, asset, shoves](Engine& engine, double t, double h) {
     engine.aim(0, sample(t + h));
-    const double pushed = std::max(0.0, std::min(t + h, 0.4) - std::max(t, 0.3));  // s of this step
-    if (pushed <= 0) return;
-    engine.push(0, arm, Vec3<double>(250, 60, 0) * pushed);
-    engine.push(0, chest, Vec3<double>(-600, 0, 0) * pushed);
+    for (const Shove& shove : shoves) {
+      const double pushed = std::max(0.0, std::min(t + h, shove.end) - std::max(t, shove.begin));
+      if (pushed > 0) engine.push(0, asset->skeleton.find(shove.role), shove.force * pushed);
+    }
   };
+  return s;
+}
+
+AccuracyScene levels_of_detail() {
+  AccuracyScene s = tracking(
+      "lod", "walk", {{Role::kForearmR, {250, 60, 0}, 0.3, 0.4}, {Role::kChest, {-600, 0, 0}, 0.3, 0.4}});
+  s.title = "The same walk, further away";
+  s.reading =
+      "What is saved where nobody looks closely. Solved every second or fourth frame, the pose glides in "
+      "between; "
+      "residual only still tells the loads, playback only nothing: both miss what the push does.";
+  s.options = policy_options();
+  return s;
+}
+
+/// The collapse another way.
+AccuracyScene fainting() {
+  AccuracyScene s = collapse();
+  s.name = "faint";
+  s.title = "A figure faints sideways";
+  s.scene.figures[0].jets[0].omega = {0.7, 0.4, 0};
+  s.scene.figures[0].jets[0].velocity = {0.144, -0.252, 0};
+  s.scene.figures[0].jets[1].omega = {-0.7, -0.4, 0};
   return s;
 }
 
 }  // namespace
 
 std::vector<AccuracyScene> accuracy_scenes() {
-  return {tumbling_body(), collapse(), ragdoll_drop(), stack(), tracking()};
+  return {tumbling_body(),
+          pendulum("pendulum", 5, JointType::kRevolute, {0, kQuarter, 0}),
+          collapse(),
+          ragdoll_drop(),
+          stack(),
+          tracking("tracking", "walk",
+                   {{Role::kForearmR, {250, 60, 0}, 0.3, 0.4}, {Role::kChest, {-600, 0, 0}, 0.3, 0.4}}),
+          tracking("running", "run",
+                   {{Role::kForearmL, {-300, 150, 0}, 0.2, 0.3}, {Role::kChest, {-300, 900, 0}, 0.4, 0.5}}),
+          levels_of_detail()};
+}
+
+std::vector<AccuracyScene> unseen_scenes() {
+  AccuracyScene spun = tumbling_body();
+  spun.name = "spun";
+  spun.scene.figures[0].skeleton = free_body(2, box_inertia(2, {0.3, 0.12, 0.2}));
+  spun.scene.figures[0].jets[0].omega = {4, 0.7, 3};
+  return {spun, pendulum("rope", 3, JointType::kBall, {0.4, kQuarter, 0}), fainting(),
+          tracking("jostled", "walk",
+                   {{Role::kChest, {200, 700, 0}, 0.2, 0.3}, {Role::kForearmL, {-250, 150, 0}, 0.5, 0.6}})};
 }
 
 }  // namespace sinew::study

@@ -331,7 +331,6 @@ Verdict limits_that_meet(const Trial& t) {
 }  // namespace
 
 std::vector<HardCase> mass_cases() {
-  const char* loops = "not supported: loop closures in the runtime's step";
   return {
       {"rope_with_heavy_tip",
        "13",
@@ -410,25 +409,6 @@ std::vector<HardCase> mass_cases() {
        {1.0 / 60},
        contact_stiffness_sweep<float>,
        contact_stiffness_sweep<double>},
-      {"bricard_loop", "24", "seed paper", "closure below 0.5 mm", {}, nullptr, nullptr, loops},
-      {"n_four_bar",
-       "25",
-       "MBSbenchmarksInOpenSim A02",
-       "no spike at the dead point",
-       {},
-       nullptr,
-       nullptr,
-       loops},
-      {"singular_four_bar", "26", "mujoco#172; EXUDYN#39", "finite forces", {}, nullptr, nullptr, loops},
-      {"hands_on_a_wheel", "27", "seed paper", "closure below 0.5 mm for 60 s", {}, nullptr, nullptr, loops},
-      {"weld_declared_thrice",
-       "28",
-       "seed talk; arXiv 1905.10828",
-       "motion as with one",
-       {},
-       nullptr,
-       nullptr,
-       loops},
       {"coplanar_contacts",
        "29",
        "research 1.7",

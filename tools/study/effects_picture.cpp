@@ -8,7 +8,7 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kWidth = 1000, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
+constexpr double kWidth = 1060, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
                  kGap = 130;
 constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {0.00, 0.62, 0.45}, {0.80, 0.40, 0.00},
                                {0.35, 0.70, 0.90}, {0.80, 0.47, 0.65}, {0.30, 0.30, 0.30}};  // Okabe and Ito

@@ -38,6 +38,8 @@ class Engine {
   virtual double energy() const = 0;  ///< kinetic, potential and what contacts store where reported, J
   /// Joint frames in the world; `figure`'s, in the order of its skeleton.
   virtual std::vector<Transform<double>> pose(int figure) const = 0;
+  /// Of the first figure, about its centre of mass (kg·m²/s); false where the engine does not tell it.
+  virtual bool angular_momentum(Vec3<double>&) const { return false; }
   virtual double passes() const { return 0; }  ///< mean solver passes per step so far
   /// Mean rms over figures of what the last step itself reckons it went astray (m); negative: it does not
   /// say.
@@ -51,11 +53,14 @@ struct EngineOption {
   std::string engine;  ///< "Sinew", "MuJoCo" …
   std::string option;  ///< "bdf2 float", "RK4" …
   std::unique_ptr<Engine> (*make)(const EngineScene&, double h, const Accuracy& accuracy);
+  double step = 0;  ///< s, the only one at which it is run; 0: any
   std::string label() const { return engine + " " + option; }
 };
 
 /// Sinew's schemes in float and double; `accuracy.scheme` is overridden by the option.
 std::vector<EngineOption> sinew_options();
+/// Ours at rising distance: every frame, every second and fourth, residual only, playback only.
+std::vector<EngineOption> policy_options();
 /// Peers that this build was linked with.
 std::vector<EngineOption> peer_options();
 std::vector<EngineOption> mujoco_options();

@@ -69,6 +69,10 @@ class SinewEngine : public Engine {
     for (const Transform<T>& joint : character(figure).model()) out.push_back(joint.template cast<double>());
     return out;
   }
+  bool angular_momentum(Vec3<double>& out) const override {
+    out = character(0).report().angular_momentum;
+    return true;
+  }
   double passes() const override { return solves_ ? double(passes_) / double(solves_) : 0; }
   double estimated_error() const override {
     double sum = 0, mass = 0;

@@ -60,6 +60,7 @@ std::vector<HardCase> hard_cases();
 
 std::vector<HardCase> rotation_cases();
 std::vector<HardCase> mass_cases();
+std::vector<HardCase> loop_cases();
 std::vector<HardCase> contact_cases();
 std::vector<HardCase> pile_cases();
 std::vector<HardCase> muscle_cases();

@@ -14,7 +14,8 @@ struct KnownFailure {
 };
 
 constexpr const char* kWobble = "bdf2's kinetic energy swings about the true one";
-constexpr const char* kPlayed = "a limp body whose residual happens to be 0 is played, not simulated";
+constexpr const char* kStart =
+    "the two steps of bdf1 after a reset cost 1.2 mm; bdf2 sooner harms stiff damping";
 constexpr const char* kMissing = "not supported";
 
 constexpr KnownFailure kKnownFailures[] = {
@@ -23,24 +24,16 @@ constexpr KnownFailure kKnownFailures[] = {
     {"free_flight_3_rad_s", kWobble},
     {"free_flight_10_rad_s", kWobble},
     {"free_flight_30_rad_s", kWobble},
-    {"orthogonal_hinges", kPlayed},
-    {"bricard_loop", kMissing},
-    {"n_four_bar", kMissing},
-    {"singular_four_bar", kMissing},
-    {"hands_on_a_wheel", kMissing},
-    {"weld_declared_thrice", kMissing},
+    {"orthogonal_hinges", kStart},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"sliding_cube", "first order in the step where it stops"},
-    {"bounce_1", "float and double lose 2.4 % of the height at 1/60 s"},
     {"limp_fall_counts", "more passes than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"colliding_figures", "energy gained between figures"},
     {"tumbling_box", "energy rises on edges"},
     {"figure_on_stairs", "energy rises on edges"},
-    {"several_muscles_on_a_joint", kMissing},
-    {"ellipsoidal_limit", kMissing},
     {"baked_limbs", kMissing},
-    {"piston", "throws the figure in float"},
+    {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };
 
 }  // namespace

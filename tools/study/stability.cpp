@@ -25,8 +25,8 @@ double per_step(double sum, const Measurement& m) {
 
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
-  for (const auto& part : {rotation_cases(), mass_cases(), contact_cases(), pile_cases(), muscle_cases(),
-                           actuation_cases(), input_cases()})
+  for (const auto& part : {rotation_cases(), mass_cases(), loop_cases(), contact_cases(), pile_cases(),
+                           muscle_cases(), actuation_cases(), input_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

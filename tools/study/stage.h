@@ -57,6 +57,9 @@ class Stage {
   /// The state has been set from outside (teleport, reset): the books start afresh at the next step.
   void forget() { fresh_ = true; }
 
+  /// Ends the run: something could not be set up.
+  void refuse(const std::string& reason) { m_.refused = reason; }
+
   bool step(double h);
   /// Steps for `seconds`, calling before(t) ahead of each step.
   template <class Before>

@@ -52,11 +52,11 @@ bool Bounce<T>::possible(std::span<const Contact<T>> contacts) {
 }
 
 template <class T>
-void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
                         const Vec3<double>& gravity, T h) {
   impacts_.clear();
   const T slowest = std::max(T(kSlowest), 2 * h * T(gravity.norm()));
-  for (const Contact<T>& c : contacts) {
+  for (Contact<T>& c : contacts) {
     if (!c.fresh || c.gap >= T(0) || c.restitution <= T(0) || c.approach < slowest) continue;
     if (impacts_.size() == kMost) return;
     // The fall over what was left of the gap belongs to the impact, the rise from the depth to the bounce.
@@ -125,6 +125,20 @@ void Bounce<T>::solve_impulses() {
     }
 }
 
+/// What a contact stored in the impact is part of what the bounce gives back: it opens within the next step,
+/// whose implicit force would return nothing of it. The surface is let down to where the feature is, and
+/// comes back as for what begins inside something.
+template <class T>
+void Bounce<T>::unload(std::span<CharacterState<T>* const> states) {
+  for (const Impact& impact : impacts_) {
+    if (!(impact.impulse > T(0))) continue;
+    Contact<T>& c = *impact.contact;
+    states[c.tree_a]->report.elastic_energy -= double(ContactLaw<T>::energy(c.stiffness, c.gap));
+    c.offset -= c.gap;
+    c.gap = T(0);
+  }
+}
+
 /// Largest share of the impulses whose work stays within `allowed` (J): with J v the speeds that are there,
 /// the work is s·pᵀJv + ½s²·pᵀJM⁻¹Jᵀp.
 template <class T>
@@ -167,7 +181,7 @@ void Bounce<T>::move(CharacterState<T>& s, int first) {
 }
 
 template <class T>
-bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
                       const Vec3<double>& gravity, T h, double budget) {
   collect(states, contacts, gravity, h);
   if (impacts_.empty() || !factorise(states)) return false;
@@ -185,6 +199,7 @@ bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<cons
     for (std::size_t j = 0; j < m; ++j)
       for (std::size_t k = 0; k < n; ++k) delassus_[i * m + j] += rows_[i * n + k] * answers_[j * n + k];
   solve_impulses();
+  unload(states);
   const T share = affordable(budget - energy<T>(states, gravity));
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)

@@ -30,22 +30,23 @@ class Bounce {
   /// Changes the velocities of the trees' histories where contacts closed in the step of h seconds that led
   /// to the problems' kinematics. `budget` is the energy before that step. True if anything bounced. Costs
   /// one tree solve per bouncing contact.
-  bool apply(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+  bool apply(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
              const Vec3<double>& gravity, T h, double budget);
 
  private:
   static constexpr int kMost = 48;  ///< bouncing contacts of one step; more stay inelastic
 
-  void collect(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+  void collect(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
                const Vec3<double>& gravity, T h);
   bool factorise(std::span<CharacterState<T>* const> states);
   void project(std::span<CharacterState<T>* const> states, const Contact<T>& contact, std::span<T> row) const;
   void solve_impulses();
+  void unload(std::span<CharacterState<T>* const> states);
   T affordable(double allowed) const;
   void move(CharacterState<T>& state, int first);
 
   struct Impact {
-    const Contact<T>* contact = nullptr;
+    Contact<T>* contact = nullptr;
     T left = T(0);     ///< parting speed that the solve left, m/s
     T wanted = T(0);   ///< what is missing to the bounce's, m/s
     T impulse = T(0);  ///< N·s

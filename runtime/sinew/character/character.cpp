@@ -88,6 +88,39 @@ Status Character<T>::set_strength(int joint, T strength) {
 }
 
 template <class T>
+Status Character<T>::set_muscle_strength(int muscle, T strength) {
+  if (muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size()))
+    return Status::error(Code::kInvalidArgument, "no such muscle", muscle);
+  if (std::isnan(strength) || strength < T(0))
+    return Status::error(Code::kInvalidArgument, "strength must be ≥ 0", muscle);
+  state_->muscle_strength[muscle] = strength;
+  state_->refresh_limits();
+  return {};
+}
+
+template <class T>
+Status Character<T>::set_group_strength(const char* group, T strength) {
+  const std::vector<Muscle>& muscles = state_->skeleton.muscles;
+  bool any = false;
+  for (std::size_t m = 0; m < muscles.size(); ++m) {
+    if (muscles[m].group.empty() || muscles[m].group != group) continue;
+    if (Status status = set_muscle_strength(static_cast<int>(m), strength); !status) return status;
+    any = true;
+  }
+  return any ? Status{} : Status::error(Code::kInvalidArgument, "no muscle of that group");
+}
+
+template <class T>
+T Character<T>::muscle_torque(int muscle) const {
+  const Muscle& of = state_->skeleton.muscles[muscle];
+  const int dof = state_->tree.first_dof[of.joint] + of.dof;
+  const T torque = state_->torque[dof], all = state_->problem.law.limit(dof, torque);
+  const T own = state_->muscle_limit(muscle, torque >= T(0) ? of.torque_plus : of.torque_minus);
+  if (!(all > T(0))) return T(0);
+  return std::isinf(own) ? torque : torque * (own / all);
+}
+
+template <class T>
 void Character<T>::set_root_drive(RootDrive drive) {
   state_->settings.root = drive;
   state_->refresh_limits();

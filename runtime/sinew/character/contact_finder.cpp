@@ -176,6 +176,18 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
   }
 }
 
+template <class T>
+bool ContactFinder<T>::kept_apart(int n, int body, int m, int other) const {
+  const auto is = [](int state, int b, int wanted_state, int wanted) {
+    return state == wanted_state && (wanted < 0 || b == wanted);
+  };
+  const int first = indices_[n], second = indices_[m];
+  return std::any_of(apart_.begin(), apart_.end(), [&](const BodyPair& p) {
+    return (is(first, body, p.state_a, p.body_a) && is(second, other, p.state_b, p.body_b)) ||
+           (is(first, body, p.state_b, p.body_b) && is(second, other, p.state_a, p.body_a));
+  });
+}
+
 /// The points of one collider of tree n against the shape of one of tree m.
 template <class T>
 void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
@@ -184,6 +196,7 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const Collider& shape = t.colliders[other];
+  if (kept_apart(n, s.colliders[collider].joint, m, shape.joint)) return;
   // Two axes need to meet once only.
   const bool second = m < n || (m == n && other < collider);
   for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
@@ -222,6 +235,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   states_ = states;
   indices_ = indices;
   lagged_ = lagged;
+  apart_ = surroundings.apart;
   common_origin_ = common_origin;
   h_ = h;
   heaviest_ = T(0);

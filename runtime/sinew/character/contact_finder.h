@@ -30,10 +30,17 @@ struct HostObstacle {
   double friction = 0.8, restitution = 0;
 };
 
-/// What stands around, apart from the floor.
+/// Two bodies, by their trees' numbers in the world; body −1: every body of the tree.
+struct BodyPair {
+  int state_a = 0, body_a = -1;
+  int state_b = 0, body_b = -1;
+};
+
+/// What stands around, apart from the floor, and who never touches whom.
 struct Surroundings {
   std::span<const Collider> obstacles;
   std::span<const HostObstacle> hosts;
+  std::span<const BodyPair> apart;
 };
 
 template <class T>
@@ -65,6 +72,7 @@ class ContactFinder {
   void meet_static(int n, const Surroundings& surroundings);
   void meet_hosts(int n, int collider, std::span<const HostObstacle> hosts);
   void meet_tree(int n, int m);
+  bool kept_apart(int n, int body, int m, int other) const;
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
   void remember(Contact<T>& contact) const;
@@ -76,6 +84,7 @@ class ContactFinder {
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
   std::span<const LaggedForce<T>> lagged_;
+  std::span<const BodyPair> apart_;
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), heaviest_ = T(0);  ///< s; kg
   std::vector<Contact<T>> contacts_;

@@ -27,14 +27,6 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
-/// Largest ratio of needed torque to limit over a joint's degrees of freedom.
-template <class T>
-T load_of(const TreeProblem<T>& p, int dof, T torque) {
-  const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-  if (std::isinf(limit)) return T(0);
-  return limit > T(0) ? std::abs(torque) / limit : T(0);
-}
-
 /// Whose step may be divided; else it is halved once where it must be.
 template <class T>
 bool gets_substeps(const CharacterState<T>* s) {
@@ -97,7 +89,7 @@ bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
-      load = std::max(load, load_of(s.problem, dof, s.problem.gradient[dof]));
+      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.problem.gradient));
     if (load <= T(1)) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
@@ -196,10 +188,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const T slope = row.slope(row.value);
     for (int a = 0; a < row.count; ++a) s.torque[row.dof + a] -= slope * row.gradient[a];
   }
+  for (const EllipsoidRow<T>& row : p.ellipsoids) {
+    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
+    for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
+  }
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     s.unknown[dof] = p.free[dof];
-    s.limit[dof] = s.torque[dof] >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = std::min(load_of(p, dof, s.torque[dof]), T(1));
+    s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
@@ -210,6 +205,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
       missed = std::max(missed, std::abs(from_target[k]));
+      s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
@@ -244,6 +240,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+  r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.contact_signature = signature;
@@ -251,30 +248,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.report_totals(world.gravity);
 }
 
-/// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
-/// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
-/// meet. Rates that do not belong to the motion (a host that stopped its clip, or knows none) are left out.
-template <class T>
-Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
-  if ((whole - (leaving + arriving) / 2).norm() > whole.norm() / 2) return u * whole;
-  return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
-}
-
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.target_before[i];
-    Transform<T> wanted{now.rotation, now.translation};
-    if (fraction < T(1)) {
-      const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
-      const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
-      wanted.rotation = before.rotation *
-                        rotation_exp<T>(on_the_way<T>(turn, frame_ * before.omega, frame_ * rate, fraction));
-      wanted.translation =
-          before.translation + on_the_way<T>(now.translation - before.translation, frame_ * before.velocity,
-                                             frame_ * now.velocity, fraction);
-    }
+    const Transform<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction)
+                                                : Transform<T>{now.rotation, now.translation};
     s.wanted[i] = s.in_solve(i, wanted, common_origin_);
   }
 }
@@ -285,8 +265,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  common_origin_ = states_[0]->history.place;
-  settings_.common_origin = common_origin_;
+  settings_.common_origin = common_origin_ = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = T(1e-3) * h;
   for (CharacterState<T>* s : states_) {
@@ -324,13 +303,13 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       predict_all(
           second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
     }
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     if (second && touching_changed()) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
       second = false;
       mispredicted_ = true;
       predict_all(Scheme::kBdf1, h);
-      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_));
+      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
     for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
@@ -366,7 +345,13 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
       hold(*s);
       any_held = true;
     }
-  if (any_held) forget_contacts();
+  if (any_held) {
+    forget_contacts();
+    for (Coupling<T>* c : couplings_) {
+      place_nodes<T>(problems_, common_origin_, *c);
+      measure_elements(*c);
+    }
+  }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -378,16 +363,22 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
   }
   lagged_.clear();
-  for (const Contact<T>& c : contacts_)
-    if (const T force = ContactLaw<T>::force(c.stiffness, c.gap); force > T(0))
-      lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  for (const Contact<T>& c : contacts_) {
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
+    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
+    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+  }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no loop that is being
+/// closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
+  const bool closing =
+      std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) { return c->closes(); });
+  if (closing) return false;
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
@@ -409,6 +400,38 @@ double IslandStepper<T>::pose_energy() const {
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
   }
   for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  for (const Coupling<T>* c : couplings_) sum += c->energy;
+  return sum;
+}
+
+/// Tells the couplings' nodes which tree of the solve they are on, and lets what is open close by a step.
+template <class T>
+void IslandStepper<T>::begin_couplings(T h) {
+  for (Coupling<T>* c : couplings_) {
+    for (CouplingNode<T>& node : c->nodes) {
+      const auto found = std::find(indices_.begin(), indices_.end(), node.state);
+      node.tree = found == indices_.end() ? -1 : static_cast<int>(found - indices_.begin());
+      const Vec3<double>& origin = states_[0]->history.place;
+      if (node.tree < 0) {
+        node.point = (node.place - origin).template cast<T>();
+      } else {
+        const Vec3<T> world = states_[node.tree]->model[node.body] * node.local;
+        node.point = (world.template cast<double>() - origin).template cast<T>();
+      }
+    }
+    lead_out(h, *c);
+  }
+}
+
+/// What the couplings store, J, each booked to the tree of its first node that is on one.
+template <class T>
+double IslandStepper<T>::elastic_of(int tree) const {
+  double sum = 0;
+  for (const Coupling<T>* c : couplings_) {
+    const auto moving = std::find_if(c->nodes.begin(), c->nodes.end(),
+                                     [](const CouplingNode<T>& node) { return node.tree >= 0; });
+    if (moving != c->nodes.end() && moving->tree == tree) sum += c->energy;
+  }
   return sum;
 }
 
@@ -419,6 +442,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
   forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
+  s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
   predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, common_origin_, s.problem.prediction);
@@ -469,11 +493,13 @@ int IslandStepper<T>::parts_of(T h) const {
 template <class T>
 int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                           std::span<const LaggedForce<T>> lagged, std::span<LaggedForce<T>> lagged_out) {
+                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                           std::span<LaggedForce<T>> lagged_out) {
   world_ = &world;
   surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
+  couplings_ = couplings;
   frame_ = h;
   choose_lagged(lagged);
   free_share_.assign(states.size(), T(1));
@@ -484,6 +510,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   splits_ = parts_ = damped_ = held_ = 0;
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
+  begin_couplings(h);
   const int parts = parts_of(h);
   const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);

@@ -25,11 +25,12 @@ class IslandStepper {
   }
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
-  /// identities); `lagged` the normal forces of the last step, sorted by id; new ones are written to
-  /// `lagged_out`, as many as it takes. Returns how many.
+  /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
+  /// sorted by id; new ones are written to `lagged_out`, as many as it takes. Returns how many.
   int step(const WorldSettings& world, const Surroundings& surroundings, T h,
            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-           std::span<const LaggedForce<T>> lagged, std::span<LaggedForce<T>> lagged_out);
+           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+           std::span<LaggedForce<T>> lagged_out);
 
  private:
   int parts_of(T h) const;
@@ -38,6 +39,8 @@ class IslandStepper {
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
+  void begin_couplings(T h);
+  double elastic_of(int tree) const;
   void hold(CharacterState<T>& state);
   void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
@@ -56,6 +59,7 @@ class IslandStepper {
   Surroundings surroundings_;
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
+  std::span<Coupling<T>* const> couplings_;
   T frame_ = T(0);                      ///< s, the whole step
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
   std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for

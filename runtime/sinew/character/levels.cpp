@@ -30,14 +30,14 @@ Status validate(const CharacterDetail& detail) {
 template <class T>
 Level allowed_level(const CharacterState<T>& s) {
   const Level cap = std::min(s.detail.most, s.levels.cap);
-  // What holds no joint of its own can be on no clip; nor what is still thrown about.
+  // What holds no joint of its own can be on no clip; nor what is tied to something or thrown about.
   const auto far = [](const Deviation<T>& d) {
     const auto above = [](double most) { return [most](T x) { return std::abs(double(x)) > most; }; };
     return std::any_of(d.offset.begin(), d.offset.end(), above(kCalmOffset)) ||
            std::any_of(d.rate.begin(), d.rate.end(), above(kCalmRate));
   };
   const bool thrown = cap < Level::kPartial && std::any_of(s.deviation.begin(), s.deviation.end(), far);
-  return std::max(cap, s.driven && !thrown ? Level::kPlayback : Level::kPartial);
+  return std::max(cap, s.driven && !s.tied && !thrown ? Level::kPlayback : Level::kPartial);
 }
 
 template <class T>
@@ -118,7 +118,7 @@ void BudgetController<T>::lower(std::span<const std::unique_ptr<CharacterState<T
     LevelState& l = s.levels;
     const Level now = std::min(l.level, l.allowed);
     const Level to = now > Level::kPartial ? Level::kPartial : Level::kPlayback;
-    if (now <= Level::kPlayback || (to < Level::kPartial && !s.driven)) continue;
+    if (now <= Level::kPlayback || (to < Level::kPartial && (!s.driven || s.tied))) continue;
     const float cost = cost_at(s, to);
     l.spared += l.cost - cost;
     state_.forecast -= double(l.cost - cost);

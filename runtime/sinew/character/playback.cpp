@@ -48,18 +48,16 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   for (const JointRow<T>& row : p.effect_rows)
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
-  for (int dof = s.root_is_kinematic() ? root_dofs : 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    const T limit = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    if (std::abs(torque) > limit) return false;
-  }
-  for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    const T torque = p.gradient[dof];
-    s.torque[dof] = torque;
-    s.limit[dof] = torque >= T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-    s.load[dof] = s.limit[dof] > T(0) && std::isfinite(s.limit[dof]) ? std::abs(torque) / s.limit[dof] : T(0);
-    s.unknown[dof] = 0;
-  }
+  for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
+      if (p.law.load(s.tree, i, dof, p.gradient) > T(1)) return false;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
+      s.torque[dof] = p.gradient[dof];
+      s.limit[dof] = p.law.limit(dof, p.gradient[dof]);
+      s.load[dof] = p.law.load(s.tree, i, dof, p.gradient);
+      s.unknown[dof] = 0;
+    }
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Transform<T> before = s.local[i];
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
@@ -93,7 +91,10 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], s.local[i]);
     for (T& r : s.rate[i]) r /= h;
     s.deviation[i].released = false;
-    if (!s.deviation[i].on_animation) s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
+    if (s.deviation[i].on_animation) continue;
+    // Nobody measures what the way back takes: no muscle counts as saturated.
+    std::fill_n(s.load.begin() + s.tree.first_dof[i], s.tree.dof_count(i), T(0));
+    s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
@@ -127,6 +128,9 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
         break;
       case JointType::kBall:
         jet.omega += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        break;
+      case JointType::kTranslation:
+        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
         break;
       case JointType::kFree:
         jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);

@@ -48,13 +48,14 @@ bool colliders_near(const CharacterState<T>& a, const CharacterState<T>& b, T h,
 
 template <class T>
 void put_to_sleep(std::span<CharacterState<T>* const> members, std::span<const int> indices,
-                  const LevelOfDetail& detail, T h) {
+                  std::span<Coupling<T>* const> ties, const LevelOfDetail& detail, T h) {
   if (detail.sleep_after <= 0) return;
-  bool all = true;
+  bool all = std::none_of(ties.begin(), ties.end(), [](const Coupling<T>* c) { return c->closes(); });
+  const bool may = all;
   for (const CharacterState<T>* s : members)  // who plays is no burden, and may leap at any time
     if (s->driven && s->undisturbed()) return;
   for (CharacterState<T>* s : members) {
-    s->levels.still = rests(*s, detail) ? s->levels.still + static_cast<float>(h) : 0;
+    s->levels.still = may && rests(*s, detail) ? s->levels.still + static_cast<float>(h) : 0;
     all = all && double(s->levels.still) >= detail.sleep_after;
   }
   if (!all) return;

@@ -161,17 +161,20 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t root = static_cast<std::uint8_t>(s.settings.root);
   stream.value("root drive", root);
   std::uint8_t parked = s.parked ? 1 : 0;
-  stream.value("prop is out of the world", parked);
-  if (stream.reading()) s.parked = s.is_prop && parked != 0;
+  stream.value("out of the world", parked);
+  if (stream.reading()) s.parked = parked != 0;
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kFree))
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
-  const bool strengths =
-      std::any_of(s.joint_strength.begin(), s.joint_strength.end(), [](T x) { return x != T(1); });
-  if (stream.part("joints have strengths of their own", strengths))
-    stream.array("strength of a joint", s.joint_strength.data(), s.joint_strength.size());
-  else if (stream.reading())
-    std::fill(s.joint_strength.begin(), s.joint_strength.end(), T(1));
+  const auto visit_strengths = [&](const char* name, std::vector<T>& strengths) {
+    const bool some = std::any_of(strengths.begin(), strengths.end(), [](T x) { return x != T(1); });
+    if (stream.part("has strengths of its own", some))
+      stream.array(name, strengths.data(), strengths.size());
+    else if (stream.reading())
+      std::fill(strengths.begin(), strengths.end(), T(1));
+  };
+  visit_strengths("strength of a joint", s.joint_strength);
+  visit_strengths("strength of a muscle", s.muscle_strength);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
@@ -237,8 +240,10 @@ std::uint64_t layout_of(const MovingParts<T>& world) {
   add(sizeof(T));
   for (const auto& s : world.states) {
     add(s->local.size());
+    add(s->muscle_strength.size());
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
   }
+  for (const auto& c : world.couplings) add(c->stencils.size());
   return hash;
 }
 
@@ -263,15 +268,29 @@ void visit_budget(BudgetState& budget, ByteStream& stream) {
   stream.value("steps below it", budget.under);
 }
 
+template <class T>
+void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
+  std::uint8_t active = coupling.active ? 1 : 0;
+  stream.value("loop is closed", active);
+  if (stream.reading()) coupling.active = active != 0;
+  if (!coupling.leads_out) return;
+  for (Stencil<T>& e : coupling.stencils) stream.vector("what is left open of a loop", e.offset);
+}
+
+/// What belongs to nobody.
+template <class T>
+void visit_world(const MovingParts<T>& world, ByteStream& stream) {
+  visit_budget(world.budget, stream);
+  for (const auto& c : world.couplings) visit_coupling(*c, stream);
+  visit_lagged(world.lagged, stream);
+}
+
 /// The bytes behind the header.
 template <class T>
 void visit(const MovingParts<T>& world, Content content, ByteStream& stream) {
   for (const auto& s : world.states)
     content == Content::kState ? visit_state(*s, stream) : visit_inputs(*s, stream);
-  if (content == Content::kState) {
-    visit_budget(world.budget, stream);
-    visit_lagged(world.lagged, stream);
-  }
+  if (content == Content::kState) visit_world(world, stream);
 }
 
 }  // namespace
@@ -312,7 +331,7 @@ Status read_bytes(const MovingParts<T>& world, Content content, std::span<const 
     return Status::error(Code::kBadFile, "not a snapshot");
   if (header.bytes != in.size()) return Status::error(Code::kBadFile, "snapshot is cut off");
   if (header.layout != layout_of(world))
-    return Status::error(Code::kInvalidArgument, "snapshot of a world with other characters or props");
+    return Status::error(Code::kInvalidArgument, "snapshot of a world with other characters, props or loops");
   if (header.digest != digest(in.subspan(kHeaderBytes)))
     return Status::error(Code::kBadFile, "snapshot was changed");
   ByteStream body = ByteStream::reader(in.subspan(kHeaderBytes));
@@ -328,8 +347,7 @@ SnapshotField field_at(const MovingParts<T>& world, std::size_t byte) {
     visit_state(*world.states[n], stream);
     if (*stream.name()) return {static_cast<int>(n), stream.name()};
   }
-  visit_budget(world.budget, stream);
-  visit_lagged(world.lagged, stream);
+  visit_world(world, stream);
   return {-1, stream.name()};
 }
 

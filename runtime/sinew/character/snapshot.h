@@ -13,6 +13,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/levels.h"
+#include "sinew/effects/coupling.h"
 
 namespace sinew {
 
@@ -107,6 +108,7 @@ struct MovingParts {
   std::span<const std::unique_ptr<CharacterState<T>>> states;
   std::vector<LaggedForce<T>>& lagged;  ///< normal forces remembered for friction
   BudgetState& budget;
+  std::span<const std::unique_ptr<Coupling<T>>> couplings;
 };
 
 enum class Content : std::uint32_t { kState = 0x314e5753, kInputs = 0x31495753 };  ///< SWN1, SWI1

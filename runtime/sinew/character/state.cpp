@@ -83,6 +83,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       rate_before(tree.bodies),
       deviation(tree.bodies),
       joint_strength(tree.bodies, T(1)),
+      muscle_strength(skeleton.muscles.size(), T(1)),
       torque(tree.dofs, T(0)),
       load(tree.dofs, T(0)),
       limit(tree.dofs, T(0)),
@@ -144,11 +145,25 @@ void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
     }
 }
 
+namespace {
+
+/// Of 0 and infinity, 0 wins: a dead muscle stays dead in a character that only plays.
+template <class T>
+T scaled(double limit_at_rest, T strength) {
+  return limit_at_rest > 0 && strength > T(0) ? T(limit_at_rest) * strength : T(0);
+}
+
+}  // namespace
+
+template <class T>
+T CharacterState<T>::muscle_limit(int muscle, double limit_at_rest) const {
+  const T own = scaled<T>(limit_at_rest, muscle_strength[muscle]);
+  const T joint = scaled<T>(double(own), joint_strength[skeleton.muscles[muscle].joint]);
+  return scaled<T>(double(joint), T(settings.strength));
+}
+
 template <class T>
 void CharacterState<T>::refresh_limits() {
-  const auto scaled = [](double limit_at_rest, T strength) {
-    return limit_at_rest > 0 ? T(limit_at_rest) * strength : T(0);
-  };
   for (int i = 0; i < tree.bodies; ++i) {
     const Joint& joint = skeleton.joints[i];
     const bool root = joint.type == JointType::kFree;
@@ -164,6 +179,12 @@ void CharacterState<T>::refresh_limits() {
       problem.law.torque_minus[dof] = minus;
       problem.law.torque_plus[dof] = plus;
     }
+  }
+  for (std::size_t m = 0; m < skeleton.muscles.size(); ++m) {
+    const Muscle& muscle = skeleton.muscles[m];
+    const int dof = tree.first_dof[muscle.joint] + muscle.dof;
+    problem.law.torque_minus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_minus);
+    problem.law.torque_plus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_plus);
   }
   driven = !is_prop;
   const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
@@ -187,6 +208,24 @@ void CharacterState<T>::update_model() {
     model[i] = parent < 0 ? local[i] : model[parent] * local[i];
     model[i].rotation.normalize();
   }
+  if (is_particles) bound_particles();
+}
+
+/// Particles go anywhere: their bounding ball is that of the box around them.
+template <class T>
+void CharacterState<T>::bound_particles() {
+  Vec3<T> least = model[1].translation, most = least;
+  for (std::size_t i = 2; i < model.size(); ++i) {
+    least = least.cwiseMin(model[i].translation);
+    most = most.cwiseMax(model[i].translation);
+  }
+  particles_middle = T(0.5) * (least + most);
+  radius = T(0.5) * (most - least).norm() + (bound_radius.empty() ? T(0) : bound_radius[0]);
+}
+
+template <class T>
+T CharacterState<T>::pace() const {
+  return is_particles ? fastest() : history.velocity[0].norm();
 }
 
 template <class T>
@@ -214,6 +253,9 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
       case JointType::kFree:
         rate[i] = {v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
         break;
+      case JointType::kTranslation:
+        rate[i] = {v.x(), v.y(), v.z()};
+        break;
       default:
         break;  // starts from rest: only the first guess of the first step
     }
@@ -240,11 +282,11 @@ void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T r
   const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);
   for (int k = 0; k < tree.dof_count(i); ++k) {
-    // On the way back the rate is the path's at its end; its mean over the step would start the next part
-    // of the path too fast or too slow by an error of first order.
+    // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
+    // would start the next part of the path too fast or too slow by an error of first order.
     const T pull = d.rate[k] + d.offset[k] / return_time;
-    const bool on_path =
-        !d.on_animation && std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
+    const bool on_path = !d.on_animation && load[tree.first_dof[i] + k] < T(0.99) &&
+                         std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
     d.rate[k] =
         on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
     d.offset[k] = from_animation[k];

@@ -75,13 +75,16 @@ struct CharacterState {
   const std::vector<ContactPoint<T>>& points;
   const std::vector<int>& first_point;
   const std::vector<std::uint8_t>& may_touch;
-  const T radius;
+  T radius;  ///< m, from `middle` to the furthest collider; characters and props: the rig's
+  Vec3<T> particles_middle = Vec3<T>::Zero();
 
   CharacterSettings settings;
-  bool is_prop = false;
+  bool is_prop = false;       ///< or a body of particles: nothing animates it
+  bool is_particles = false;  ///< every body but the fixed root is a particle
   CharacterDetail detail;
   LevelState levels;
   bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
+  bool tied = false;     ///< in this step, by a coupling: it has to be solved
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
   bool carried = false;  ///< in this step, see carry_over()
@@ -95,6 +98,7 @@ struct CharacterState {
   T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
   std::vector<Deviation<T>> deviation;        ///< [body]
   std::vector<T> joint_strength;              ///< [body]
+  std::vector<T> muscle_strength;             ///< [muscle of the skeleton]
   std::vector<T> torque, load, limit;         ///< [dof]
   std::vector<std::uint8_t> unknown;          ///< [dof]
   std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
@@ -121,6 +125,8 @@ struct CharacterState {
     const double bears = std::clamp(double(heaviest), total_mass, 100 * total_mass);
     return T(bears * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
   }
+  /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
+  T muscle_limit(int muscle, double limit_at_rest) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
   /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.
@@ -145,6 +151,12 @@ struct CharacterState {
   /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
   /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
   void update_deviation(int body, const Transform<T>& at, T h, T return_time);
+  /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
+  Vec3<double> middle() const {
+    return is_particles ? Vec3<double>(particles_middle.template cast<double>()) : history.place;
+  }
+  /// m/s: of the root, or of the fastest particle.
+  T pace() const;
   bool undisturbed() const;
   /// Every degree of freedom of a joint has a muscle, in both directions.
   bool joint_is_driven(int body) const;
@@ -154,6 +166,7 @@ struct CharacterState {
   bool limp() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
+  void bound_particles();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 

@@ -12,6 +12,15 @@ namespace sinew {
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T h);
 
+/// The animation at a fraction of a frame of `frame` seconds between two targets: the cubic with the
+/// velocities at both ends.
+template <class T>
+Transform<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction);
+
+extern template Transform<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&,
+                                                         float, float);
+extern template Transform<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
+                                                           double, double);
 extern template void choose_targets<float>(CharacterState<float>&, float, float);
 extern template void choose_targets<double>(CharacterState<double>&, double, double);
 

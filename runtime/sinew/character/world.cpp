@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "sinew/character/cut.h"
-#include "sinew/character/island.h"
-#include "sinew/character/islands.h"
-#include "sinew/character/levels.h"
 #include "sinew/character/memory.h"
 #include "sinew/character/playback.h"
 #include "sinew/character/prop.h"
 #include "sinew/character/sleep.h"
-#include "sinew/character/snapshot.h"
+#include "sinew/character/world_impl.h"
 
 namespace sinew {
 namespace {
@@ -30,58 +26,6 @@ void grow(std::vector<V>& v, int count) {
 }
 
 }  // namespace
-
-template <class T>
-struct World<T>::Impl {
-  /// What one thread works in.
-  struct Worker {
-    IslandStepper<T> stepper;
-    std::vector<CharacterState<T>*> members;
-    std::vector<JointJet<T>> jets;
-  };
-
-  WorldSettings settings;
-  std::vector<std::shared_ptr<const Rig<T>>> rigs;
-  std::vector<std::unique_ptr<CharacterState<T>>>
-      states;                          ///< characters and props in the order they were added
-  std::vector<int> characters, props;  ///< into states
-  std::vector<Collider> obstacles;
-  std::vector<HostObstacle> hosts;
-  std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
-  std::vector<std::unique_ptr<Worker>> workers;
-  SolveRooms rooms;
-  SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
-
-  // Of the present step
-  T h = T(0);
-  Islands<T> islands;
-  std::vector<int> large, heavy, light;  ///< islands: for the first worker alone, to be solved, to be played
-  std::vector<LaggedForce<T>> lagged_new;
-  std::vector<int> first_lagged, lagged_count;  ///< [island] of its part of lagged_new
-  BudgetController<T> controller;
-  WorldReport report;
-  std::atomic<int> next_heavy{0}, next_light{0};
-
-  Status add(const Skeleton& skeleton, const CharacterSettings& character);
-  SolveRoom room_of_rig(const Rig<T>& rig) const;
-  void count_in(CharacterState<T>& state);
-  std::array<SolveRoom, 2> rooms_of_workers() const;
-  WorldMemory memory() const;
-  void reserve();
-  void meet_surroundings();
-  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
-  void park(CharacterState<T>& state);
-  bool play_island(std::span<CharacterState<T>* const> members);
-  void step_island(int island, Worker& worker);
-  std::span<LaggedForce<T>> lagged_of(int island) {
-    return std::span(lagged_new)
-        .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
-  }
-  static void work(void* context, int index);
-  void keep_sleepers();
-  void step_all(T step, const ParallelFor& parallel_for);
-  MovingParts<T> moving() { return {states, lagged, controller.state()}; }
-};
 
 template <class T>
 World<T>::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
@@ -109,6 +53,13 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   rooms.add(s.problem.room);
 }
 
+template <class T>
+void World<T>::Impl::count_all() {
+  rooms = {};
+  for (const auto& s : states) count_in(*s);
+  couplings.count_in(states, rooms);
+}
+
 /// Of the first worker, and of the others.
 template <class T>
 std::array<SolveRoom, 2> World<T>::Impl::rooms_of_workers() const {
@@ -122,6 +73,7 @@ WorldMemory World<T>::Impl::memory() const {
   WorldMemory bytes;
   for (const auto& rig : rigs) bytes.rigs += bytes_of(*rig);
   for (const auto& s : states) bytes.characters += bytes_of(*s);
+  for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   const auto [most, small] = rooms_of_workers();
   bytes.solving = IslandStepper<T>::bytes(most) + (workers.size() - 1) * IslandStepper<T>::bytes(small);
@@ -137,11 +89,12 @@ void World<T>::Impl::reserve() {
     const SolveRoom& room = n == 0 ? most : small_room;
     workers[n]->stepper.reserve(room);
     workers[n]->members.reserve(room.trees);
+    workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();
-  islands.reserve(static_cast<int>(count));
+  islands.reserve(static_cast<int>(count), static_cast<int>(couplings.all().size()));
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
@@ -150,12 +103,36 @@ void World<T>::Impl::reserve() {
 /// What is around has changed: anybody may touch it.
 template <class T>
 void World<T>::Impl::meet_surroundings() {
-  rooms = {};
-  for (const auto& s : states) {
-    count_in(*s);
-    s->levels.wake = true;
-  }
+  count_all();
+  for (const auto& s : states) s->levels.wake = true;
   reserve();
+}
+
+template <class T>
+bool World<T>::Impl::over_cap() const {
+  return settings.memory_cap > 0 && memory().total() > settings.memory_cap;
+}
+
+/// Whoever was added last, and the rig that nobody else uses.
+template <class T>
+void World<T>::Impl::drop_last() {
+  states.pop_back();
+  if (rigs.back().use_count() == 1) rigs.pop_back();
+}
+
+/// Returns the coupling's index.
+template <class T>
+int World<T>::Impl::tie(Coupling<T> coupling, Status& status) {
+  const int index = couplings.add(std::move(coupling));
+  count_all();
+  if (over_cap()) {
+    couplings.drop_last();
+    count_all();
+    status = Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
+    return -1;
+  }
+  meet_surroundings();
+  return index;
 }
 
 template <class T>
@@ -164,17 +141,15 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
     return Status::error(Code::kOutOfRange, "a world has room for 65534 characters and props");
   auto same =
       std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
-  const bool new_rig = same == rigs.end();
-  if (new_rig) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
+  if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
   states.push_back(std::make_unique<CharacterState<T>>(*same, character));
   CharacterState<T>& added = *states.back();
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   const SolveRooms before = rooms;
   count_in(added);
-  if (settings.memory_cap > 0 && memory().total() > settings.memory_cap) {
+  if (over_cap()) {
     rooms = before;
-    states.pop_back();
-    if (new_rig) rigs.pop_back();
+    drop_last();
     return Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
   }
   reserve();
@@ -371,7 +346,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
     return true;
   }
   CharacterState<T>& s = *members[0];
-  if (members.size() > 1 || !s.driven || !s.undisturbed() || near_obstacle<T>(s, {obstacles, hosts}, h))
+  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || near_obstacle<T>(s, surroundings(), h))
     return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
@@ -386,20 +361,22 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   const Budget& budget = settings.detail.budget;
   const double begin = budget.clock ? budget.clock(budget.clock_context) : 0;
   worker.members.clear();
+  worker.ties.clear();
+  for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
-    lagged_count[island] = worker.stepper.step(settings, {obstacles, hosts}, h, worker.members, indices,
-                                               lagged, lagged_of(island));
+    lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members, indices,
+                                               worker.ties, lagged, lagged_of(island));
     for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
   }
   double work = 0;
   for (CharacterState<T>* s : worker.members) work += s->levels.work = work_of(*s, s->levels.did);
   const double spent = budget.clock ? budget.clock(budget.clock_context) - begin : work;
-  put_to_sleep<T>(worker.members, indices, settings.detail, h);
+  put_to_sleep<T>(worker.members, indices, worker.ties, settings.detail, h);
   for (CharacterState<T>* s : worker.members) {
     s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
     // Between two checks it is at the level that checks it.
@@ -447,7 +424,8 @@ template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
   for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
-  islands.find(states, h, settings.island_dofs, settings.body_contact);
+  couplings.begin_step(states);
+  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact);
   large.clear();
   heavy.clear();
   light.clear();
@@ -458,8 +436,9 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     bool plays = true;
     for (const int n : islands.members(i)) {
       room += states[n]->problem.room;
-      plays = plays && states[n]->undisturbed() && states[n]->impulses.empty();
+      plays = plays && !states[n]->tied && states[n]->undisturbed() && states[n]->impulses.empty();
     }
+    for (const int n : islands.ties(i)) room += couplings.room(n);
     (!room.fits(small_room) ? large : plays && room.trees == 1 ? light : heavy).push_back(i);
     first_lagged.push_back(first_lagged.back() + room.loaded);
   }
@@ -524,6 +503,8 @@ SnapshotField World<T>::snapshot_field(std::size_t byte) const {
   return field_at(impl_->moving(), byte);
 }
 
+template struct World<float>::Impl;
+template struct World<double>::Impl;
 template class World<float>;
 template class World<double>;
 

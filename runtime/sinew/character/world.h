@@ -20,6 +20,8 @@
 #include "sinew/animation/clip.h"
 #include "sinew/character/level_of_detail.h"
 #include "sinew/effects/effect.h"
+#include "sinew/effects/loop.h"
+#include "sinew/effects/particles.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -135,6 +137,12 @@ class Character {
   /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
   Status set_strength(T strength);
   Status set_strength(int joint, T strength);
+  /// Strength of one of Skeleton::muscles, or of all of a group, ≥ 0; the character's and the joint's
+  /// multiply it.
+  Status set_muscle_strength(int muscle, T strength);
+  Status set_group_strength(const char* group, T strength);
+  /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle.
+  T muscle_torque(int muscle) const;
   void set_root_drive(RootDrive drive);
   Status set_detail(const CharacterDetail& detail);
   const CharacterDetail& detail() const;
@@ -148,9 +156,10 @@ class Character {
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;
-  std::span<const T> load() const;                ///< 0 where the DOF has no muscle (root); 1 = saturated
-  std::span<const T> limit() const;               ///< of the direction in which it pulls now
-  int first_dof(int joint) const;                 ///< index into the spans above; joint < body_count
+  std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
+                                     ///< three of an ellipsoidal limit
+  std::span<const T> limit() const;  ///< of the direction in which it pulls now
+  int first_dof(int joint) const;    ///< index into the spans above; joint < body_count
   std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
   bool on_animation() const;                      ///< every joint is exactly where the clip wants it
   const CharacterReport& report() const;
@@ -174,6 +183,21 @@ class World {
   Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
   /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
   Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0);
+
+  /// Ties two frames together; returns the loop's index, or -1. What is open closes at a walking pace.
+  int add_loop(const LoopSettings& settings, Status& status);
+  /// Opens a loop (it costs nothing then), or closes it again.
+  void set_loop(int index, bool closed);
+  double loop_gap(int index) const;     ///< m, largest of its points, of what was open at first the rest
+  Vec3<T> loop_force(int index) const;  ///< N, on side a, world axes
+  /// A strand, cloth or soft tissue; returns its index, or -1. It starts at rest where its frame is now.
+  int add_particles(const ParticleBody& body, Status& status);
+  /// Puts a particle body back to rest in its frame (after a teleport), with its nodes at the given velocity.
+  void reset_particles(int index, const Vec3<T>& velocity = Vec3<T>::Zero());
+  Vec3<T> particle(int index, int node) const;           ///< world, m
+  Vec3<T> particle_velocity(int index, int node) const;  ///< m/s; of fixed nodes 0
+  const CharacterReport& particle_report(int index) const;
+  int particles_count() const;
 
   Character<T> character(int index);
   int character_count() const;

@@ -1,6 +1,7 @@
 #include "sinew/crowd/rig.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/effects/contact.h"
 #include "sinew/effects/support.h"
@@ -57,9 +58,12 @@ CrowdRig::CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings) {
   for (int i = 0; i < skeleton.body_count; ++i) {
     RigBody body = body_of(skeleton.joints[i]);
     body.first_dof = int(torque_plus.size());
+    // The box that fits into an ellipsoid: what leaves it may still be played, by the world.
+    const double share = skeleton.joints[i].ellipsoidal_limit ? std::sqrt(1.0 / 3) : 1;
     for (int k = 0; k < body.dof_count; ++k) {
-      torque_plus.push_back(float(skeleton.joints[i].dofs[k].torque_plus));
-      torque_minus.push_back(float(skeleton.joints[i].dofs[k].torque_minus));
+      const auto [minus, plus] = skeleton.torque_limits(i, k);
+      torque_plus.push_back(float(share * plus));
+      torque_minus.push_back(float(share * minus));
     }
     body.first_point = int(points.size());
     for (const ContactPoint<double>& contact : contacts) {

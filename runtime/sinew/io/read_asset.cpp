@@ -68,6 +68,7 @@ Status unpack(const fb::Joint& in, int index, Joint& out) {
   out.swing_axis = unpack(*in.swing_axis());
   out.twist_lower = in.twist_lower();
   out.twist_upper = in.twist_upper();
+  out.ellipsoidal_limit = in.ellipsoidal_limit();
   if (std::isnan(out.swing_limit) || std::isnan(out.twist_lower) || std::isnan(out.twist_upper))
     return bad("swing or twist limit is NaN", index);
   return {};
@@ -85,6 +86,11 @@ Status unpack(const fb::Skeleton& in, Skeleton& out) {
     if (c.shape() > static_cast<int>(Shape::kBox)) return bad("unknown collider shape", c.joint());
     out.colliders.push_back(
         {c.joint(), static_cast<Shape>(c.shape()), unpack(c.local()), unpack(c.size()), c.friction()});
+  }
+  for (unsigned i = 0; i < size_of(in.muscles()); ++i) {
+    const fb::Muscle& m = *in.muscles()->Get(i);
+    out.muscles.push_back({m.name()->str(), m.group() ? m.group()->str() : std::string(), m.joint(), m.dof(),
+                           m.torque_minus(), m.torque_plus()});
   }
   return validate(out);
 }

@@ -4,6 +4,6 @@
 namespace sinew {
 
 inline constexpr int kSchemaMajor = 1;
-inline constexpr int kSchemaMinor = 0;
+inline constexpr int kSchemaMinor = 1;  // 1: ellipsoidal limits, muscles
 
 }  // namespace sinew

@@ -39,7 +39,7 @@ Offset<fb::Joint> pack(FlatBufferBuilder& b, const Joint& joint) {
   return fb::CreateJoint(b, name, source, joint.parent, static_cast<std::uint8_t>(joint.type),
                          static_cast<std::uint8_t>(joint.role), &rest, &axis, &axis2, joint.mass, &center,
                          inertia_offset, dofs_offset, joint.swing_limit, &swing, joint.twist_lower,
-                         joint.twist_upper);
+                         joint.twist_upper, joint.ellipsoidal_limit);
 }
 
 Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
@@ -52,7 +52,13 @@ Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
   const auto name = b.CreateString(skeleton.name);
   const auto joints_offset = b.CreateVector(joints);
   const auto colliders_offset = b.CreateVectorOfStructs(colliders);
-  return fb::CreateSkeleton(b, name, skeleton.body_count, joints_offset, colliders_offset);
+  std::vector<Offset<fb::Muscle>> muscles;
+  for (const Muscle& m : skeleton.muscles) {
+    const auto muscle_name = b.CreateString(m.name), group = b.CreateString(m.group);
+    muscles.push_back(fb::CreateMuscle(b, muscle_name, group, m.joint, m.dof, m.torque_minus, m.torque_plus));
+  }
+  const auto muscles_offset = b.CreateVector(muscles);
+  return fb::CreateSkeleton(b, name, skeleton.body_count, joints_offset, colliders_offset, muscles_offset);
 }
 
 Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip) {

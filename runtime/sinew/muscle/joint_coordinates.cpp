@@ -51,6 +51,9 @@ std::array<T, 6> joint_offset_value(const Tree<T>& tree, int i, const Transform<
       value = {shift.x(), shift.y(), shift.z(), r.x(), r.y(), r.z()};
       break;
     }
+    case JointType::kTranslation:
+      value = {shift.x(), shift.y(), shift.z()};
+      break;
   }
   return value;
 }
@@ -86,6 +89,7 @@ Transform<T> rebased(const Tree<T>& tree, int i, const Transform<T>& reference, 
     case JointType::kFixed:
       return reference;
     case JointType::kFree:
+    case JointType::kTranslation:
       return local;
     case JointType::kBall:
       return {local.rotation, reference.translation};

@@ -14,15 +14,6 @@ inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b,
     for (int j = block; j < block + TreePattern::kBlock; ++j) path[j] += a * x[j] + b * y[j] + c * z[j];
 }
 
-int common_ancestor(const TreePattern& pattern, int a, int b) {
-  while (a != b) {
-    if (a < 0 || b < 0) return -1;
-    int& deeper = pattern.depth[a] >= pattern.depth[b] ? a : b;
-    deeper = pattern.parent[deeper];
-  }
-  return a;
-}
-
 }  // namespace
 
 template <class T>
@@ -41,7 +32,8 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int 
   if (leaf < 0 || leaf == above) return side;
   const int whole = pattern.depth[leaf] + 1;
   const std::size_t begin = unknown_.size(), size = begin + TreePattern::padded(whole);
-  if (size > static_cast<std::size_t>(most_entries_)) return side;  // full: this side stands still in the inner problem
+  if (size > static_cast<std::size_t>(most_entries_))
+    return side;  // full: this side stands still in the inner problem
   unknown_.resize(size);
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->resize(size);
   // What moves both sides alike, up to `above`, is left out.
@@ -87,7 +79,7 @@ void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<c
     };
     const int leaf_a = leaf(c.tree_a, c.body_a), leaf_b = leaf(c.tree_b, c.body_b);
     // What moves both sides alike moves neither gap nor slip.
-    const int shared = c.tree_a == c.tree_b ? common_ancestor(unknowns.pattern, leaf_a, leaf_b) : -1;
+    const int shared = c.tree_a == c.tree_b ? unknowns.pattern.common(leaf_a, leaf_b) : -1;
     row.side[0] = add_side(c, leaf_a, c.material_point, T(1), shared, unknowns.pattern, axes);
     if (c.tree_b >= 0)
       row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);

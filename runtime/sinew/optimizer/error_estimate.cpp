@@ -30,11 +30,11 @@ template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
                          T h, const Vec3<double>& common_origin) {
   const Tree<T>& tree = *problem.tree;
-  const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const bool second = problem.prediction.scheme == Scheme::kBdf2;
   const T w = second ? h / history.step_before : T(0);
   const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
   const T factor = second ? problem.prediction.momentum_step / 3 : h / 2;
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
   T sum = T(0), mass = T(0);
   for (int i = 0; i < tree.bodies; ++i) {
     mass += tree.mass[i];

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "sinew/optimizer/contact_rows.h"
+#include "sinew/optimizer/coupling_rows.h"
+#include "sinew/optimizer/ellipsoid_rows.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
@@ -28,9 +30,10 @@ class InnerProblem {
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
   static std::size_t bytes(const SolveRoom& room) {
-    return ContactRows<T>::bytes(room) +
-           room.dofs * (8 * sizeof(JointRows) + 12 * sizeof(T) + 8 * sizeof(int)) +
-           room.effect_rows * sizeof(JointRows) + room.path_entries * 8 * sizeof(T) +
+    return ContactRows<T>::bytes(room) + CouplingRows<T>::bytes(room) +
+           EllipsoidRows<T>::bytes(room.dofs / 3) +
+           room.dofs * (8 * sizeof(JointRows) + 13 * sizeof(T) + 8 * sizeof(int)) +
+           room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
            room.bodies * 2 * sizeof(Vec3<T>);
   }
 
@@ -43,7 +46,7 @@ class InnerProblem {
   }
 
   /// Model about the present pose, whose gradient and wrenches the trees hold.
-  void build(std::span<const Contact<T>> contacts, bool geometric);
+  void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
   /// Second-order correction: the model again, with gaps and slips as the contacts found them where the
@@ -78,7 +81,9 @@ class InnerProblem {
     T in_factor = T(0);  ///< curvature that the last factor holds
   };
 
-  void assemble(std::span<const Contact<T>> contacts, bool geometric);
+  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
+                bool geometric);
+  bool coupled() const { return contact_rows_.coupled() || coupling_rows_.coupled(); }
   void add_joint_geometry(TreeProblem<T>& tree);
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
@@ -94,11 +99,14 @@ class InnerProblem {
   Unknowns unknowns_;
   PathAxes<T> axes_;
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
+  TreeMatrix<T> local_{unknowns_.pattern};   ///< H₀ + what coupling elements do within a path
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
   ContactRows<T> contact_rows_;
+  CouplingRows<T> coupling_rows_;
   std::vector<JointRows> joint_rows_;
+  EllipsoidRows<T> ellipsoid_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far

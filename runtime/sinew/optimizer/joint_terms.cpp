@@ -39,6 +39,20 @@ void append_limit(T stiffness, T violation_of_upper, T violation_of_lower, Joint
   }
 }
 
+template <class T>
+void append_ellipsoid(const StepSettings<T>& settings, int i, const JointOffset<T>& from_target,
+                      TreeProblem<T>& p) {
+  EllipsoidRow<T>& row = p.ellipsoids.emplace_back();
+  row.dof = p.tree->first_dof[i];
+  row.gradient = from_target.rotational;
+  row.width = settings.kink_width;
+  for (int a = 0; a < 3; ++a) {
+    row.value[a] = from_target.value[a];
+    row.minus[a] = p.law.torque_minus[row.dof + a];
+    row.plus[a] = p.law.torque_plus[row.dof + a];
+  }
+}
+
 /// Swing cone and twist range of a ball joint, about the bone direction a at rest. With b the direction now,
 /// the swing angle changes by n·w, n = (a × b)/|a × b|, the twist by (a + b)·w/(1 + a·b); w in rest axes.
 template <class T>
@@ -102,6 +116,7 @@ template <class T>
 void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
   p.rows.clear();
+  p.ellipsoids.clear();
   for (int i = 0; i < tree.bodies; ++i) {
     const int first = tree.first_dof[i], count = tree.dof_count(i);
     if (count == 0 || !p.free[first]) continue;
@@ -122,11 +137,13 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
     const JointOffset<T> from_target = offset(muscles, p.target[i]);
     const JointOffset<T> from_start = offset(passive, p.start[i]);
     const JointOffset<T> from_rest = offset(boxed, tree.rest[i]);
+    const bool ellipsoid = muscles && p.law.ellipsoidal[i];
+    if (ellipsoid) append_ellipsoid(settings, i, from_target, p);
     for (int k = 0; k < count; ++k) {
       const int dof = first + k;
       JointRow<T> row;
       row.component = k - std::max(rotational, 0);
-      if (p.law.torque_minus[dof] > T(0) || p.law.torque_plus[dof] > T(0)) {
+      if (!ellipsoid && (p.law.torque_minus[dof] > T(0) || p.law.torque_plus[dof] > T(0))) {
         set_gradient(from_target, rotational, k, first, row);
         row.value = from_target.value[k];
         row.minus = p.law.torque_minus[dof];
@@ -167,7 +184,7 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
 template <class T>
 void measure_joint_curvature(TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
-  std::size_t r = 0;
+  std::size_t r = 0, e = 0;
   for (int i = 0; i < tree.bodies; ++i) {
     Mat3<T>& curvature = p.joint_curvature[i];
     curvature.setZero();
@@ -185,6 +202,10 @@ void measure_joint_curvature(TreeProblem<T>& p) {
         twist += slope;
       else
         offset[static_cast<int>(row.scalar)][row.component] += slope;
+    }
+    if (e < p.ellipsoids.size() && p.ellipsoids[e].dof == rotational && ball) {
+      offset[0] += p.ellipsoids[e].slope(p.ellipsoids[e].value);
+      ++e;
     }
     const Transform<T>* reference[3] = {&p.target[i], &p.start[i], &tree.rest[i]};
     for (int f = 0; f < 3; ++f)

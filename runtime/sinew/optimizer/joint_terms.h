@@ -5,7 +5,8 @@
 
 namespace sinew {
 
-/// Fills `problem.rows` for all free joints at `problem.local`, in the order of the bodies. O(free DOFs).
+/// Fills `problem.rows` and `problem.ellipsoids` for all free joints at `problem.local`, in the order of the
+/// bodies. O(free DOFs).
 template <class T>
 void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& problem);
 

@@ -41,6 +41,11 @@ double NewtonSolver<T>::evaluate() {
       b->moment[c.body_b] -= c.point.cross(normal) + c.material_point_b.cross(tangent);
     }
   }
+  for (Coupling<T>* c : couplings_) {
+    place_nodes<T>(trees_, settings_->common_origin, *c);
+    energy += measure_elements(*c);
+    add_wrenches<T>(*c, trees_);
+  }
   for (TreeProblem<T>* p : trees_) finish_gradient(*p);
   return energy;
 }
@@ -151,10 +156,12 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
 
 template <class T>
 SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accuracy& accuracy,
-                                   std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts) {
+                                   std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
+                                   std::span<Coupling<T>* const> couplings) {
   settings_ = &settings;
   trees_ = trees;
   contacts_ = contacts;
+  couplings_ = couplings;
   report_ = {};
   inner_.begin(settings, trees);
   double energy = evaluate();
@@ -162,11 +169,11 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   const double tolerance = accuracy.tolerance;
   while (!report_.converged && report_.outer_passes < accuracy.max_iterations) {
     ++report_.outer_passes;
-    inner_.build(contacts_, true);
+    inner_.build(contacts_, couplings_, true);
     InnerReport inner = inner_.minimise(T(tolerance));
     if (!inner.solved) {
       ++report_.plain_passes;
-      inner_.build(contacts_, false);
+      inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
       if (!inner.solved) break;
     }

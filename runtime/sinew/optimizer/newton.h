@@ -53,7 +53,8 @@ class NewtonSolver {
   /// every tree's kinematics, wrenches and gradient are those at the result; the energy never rose on the
   /// way.
   SolveReport solve(const StepSettings<T>& settings, const Accuracy& accuracy,
-                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts);
+                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
+                    std::span<Coupling<T>* const> couplings = {});
 
  private:
   /// What became of an outer pass's correction.
@@ -70,6 +71,7 @@ class NewtonSolver {
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
   std::span<Contact<T>> contacts_;
+  std::span<Coupling<T>* const> couplings_;
   SolveReport report_;
   InnerProblem<T> inner_;
   std::vector<T> plain_;            ///< the correction before its second-order correction

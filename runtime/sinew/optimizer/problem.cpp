@@ -1,6 +1,7 @@
 #include "sinew/optimizer/problem.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/optimizer/joint_terms.h"
 
@@ -23,7 +24,19 @@ JointLaw<T>::JointLaw(const Tree<T>& tree, const Skeleton& skeleton) {
     swing_axis.push_back(joint.swing_axis.cast<T>());
     twist_lower.push_back(T(joint.twist_lower));
     twist_upper.push_back(T(joint.twist_upper));
+    ellipsoidal.push_back(joint.ellipsoidal_limit);
   }
+}
+
+template <class T>
+T JointLaw<T>::load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
+  const auto share = [&](int n) {
+    const T most = limit(n, torque[n]);
+    return most > T(0) && std::isfinite(most) ? std::abs(torque[n]) / most : T(0);
+  };
+  if (!ellipsoidal[body]) return share(dof);
+  const int first = tree.first_dof[body];
+  return Vec3<T>(share(first), share(first + 1), share(first + 2)).norm();
 }
 
 template <class T>
@@ -46,6 +59,7 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
   pushes.reserve(64);
   room = room_of(t, 0, 0, 0);
   rows.reserve(6 * t.dofs + 3 * t.bodies);
+  ellipsoids.reserve(t.bodies);
 }
 
 template <class T>
@@ -117,6 +131,7 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
       if (p.free[row.dof]) p.rows.push_back(row);
   }
   for (const JointRow<T>& row : p.rows) energy += double(row.energy(row.value));
+  for (const EllipsoidRow<T>& row : p.ellipsoids) energy += double(row.energy(row.value));
   return energy;
 }
 
@@ -131,6 +146,10 @@ void finish_gradient(TreeProblem<T>& p) {
     if (p.free[row.dof]) continue;  // in `rows`
     const T slope = row.slope(row.value);
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += slope * row.gradient[a];
+  }
+  for (const EllipsoidRow<T>& row : p.ellipsoids) {
+    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
+    for (int a = 0; a < 3; ++a) p.gradient[row.dof + a] += torque[a];
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "sinew/effects/contact.h"
 #include "sinew/effects/effect.h"
+#include "sinew/muscle/ellipsoid_row.h"
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/muscle/joint_rows.h"
 #include "sinew/optimizer/scheme.h"
@@ -24,8 +25,14 @@ struct JointLaw {
   std::vector<T> swing_limit;                ///< [body] rad, < 0: none
   std::vector<Vec3<T>> swing_axis;           ///< [body]
   std::vector<T> twist_lower, twist_upper;   ///< [body]
+  std::vector<std::uint8_t> ellipsoidal;     ///< [body] 1: the three limits are an ellipsoid's half axes
 
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
+  /// Muscle limit of a degree of freedom on the side of `torque`.
+  T limit(int dof, T torque) const { return torque >= T(0) ? torque_plus[dof] : torque_minus[dof]; }
+  /// Share of its limit that a muscle gives for `torque` [dof]; 0 where there is none. An ellipsoid's three
+  /// share one.
+  T load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const;
 };
 
 /// A force (N) on a material point of a body, constant over the step.
@@ -54,6 +61,7 @@ struct TreeProblem {
   std::vector<Vec3<T>> couple;         ///< [body] rotational part of the inertial gradient
   std::vector<T> gradient;             ///< [dof] ∂E/∂d in the chart centred at `local`
   std::vector<JointRow<T>> rows;
+  std::vector<EllipsoidRow<T>> ellipsoids;
   std::vector<Composite<T>> composite;
   std::vector<Mat3<T>> joint_curvature;        ///< [body] see measure_joint_curvature
   std::vector<Effect<T>*> effects;             ///< the step's plan: those with instances on this tree

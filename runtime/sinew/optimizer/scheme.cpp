@@ -6,17 +6,18 @@
 
 namespace sinew {
 
+// Zeros, not garbage: what lies before the first state is multiplied by 0, which NaN would survive.
 template <class T>
 History<T>::History(int bodies)
-    : center(bodies),
-      center_before(bodies),
-      velocity(bodies),
-      velocity_before(bodies),
-      rotation(bodies),
-      rotation_before(bodies),
-      rotation_rate(bodies),
-      momentum(bodies),
-      momentum_before(bodies) {}
+    : center(bodies, Vec3<T>::Zero()),
+      center_before(center),
+      velocity(center),
+      velocity_before(center),
+      rotation(bodies, Mat3<T>::Identity()),
+      rotation_before(rotation),
+      rotation_rate(bodies, Mat3<T>::Zero()),
+      momentum(center),
+      momentum_before(center) {}
 
 template <class T>
 void History<T>::stop() {

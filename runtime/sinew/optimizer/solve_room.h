@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "sinew/residual/tree.h"
-#include "sinew/residual/tree_factor.h"
+#include "sinew/residual/composite.h"
 
 namespace sinew {
 
@@ -15,7 +14,9 @@ struct SolveRoom {
   int contact_entries = 0;  ///< of contact rows; a side that finds no room stands still in the inner problem
   int loaded = 0;           ///< contacts that bear something
   int colliders = 0;
-  int effect_rows = 0;  ///< of joints, that effects bring
+  int effect_rows = 0;                          ///< of joints, that effects bring
+  int nodes = 0, stencils = 0, tetrahedra = 0;  ///< of couplings
+  int node_entries = 0;                         ///< of the paths of all nodes
 
   /// Member by member.
   template <class Function>
@@ -28,7 +29,11 @@ struct SolveRoom {
             f(a.contact_entries, b.contact_entries),
             f(a.loaded, b.loaded),
             f(a.colliders, b.colliders),
-            f(a.effect_rows, b.effect_rows)};
+            f(a.effect_rows, b.effect_rows),
+            f(a.nodes, b.nodes),
+            f(a.stencils, b.stencils),
+            f(a.tetrahedra, b.tetrahedra),
+            f(a.node_entries, b.node_entries)};
   }
   SolveRoom& operator+=(const SolveRoom& other) {
     return *this = combined(*this, other, [](int a, int b) { return a + b; });
@@ -57,28 +62,34 @@ inline bool SolveRoom::fits(const SolveRoom& into) const {
 /// Of one tree with so many contacts, of which so many bear something, and so many colliders.
 template <class T>
 SolveRoom room_of(const Tree<T>& tree, int contacts, int loaded, int colliders) {
-  SolveRoom room{1, tree.dofs, tree.bodies, 0, contacts, 0, loaded, colliders, 0};
+  SolveRoom room;
+  room.trees = 1;
+  room.dofs = tree.dofs;
+  room.bodies = tree.bodies;
+  room.path_entries = matrix_entries(tree);
+  room.contacts = contacts;
+  room.loaded = loaded;
+  room.colliders = colliders;
   int longest = 0;
-  for (int dof = 0; dof < tree.dofs; ++dof) {
-    int path = 1;
-    for (int above = tree.dof_parent[dof]; above >= 0; above = tree.dof_parent[above]) ++path;
-    room.path_entries += TreePattern::padded(path);
-    longest = std::max(longest, TreePattern::padded(path));
-  }
+  for (int i = 0; i < tree.bodies; ++i) longest = std::max(longest, path_entries(tree, i));
   // Most contacts are with something static and near the ends of limbs: one whole path each.
   room.contact_entries = contacts * longest;
   return room;
 }
 
-/// What all trees of a world bring to solves.
+/// What all trees of a world, and what ties them together, bring to solves.
 struct SolveRooms {
   SolveRoom all, largest;  ///< sum and maximum
-  SolveRoom share;         ///< most that a tree needs per degree of freedom
+  SolveRoom share;         ///< most that a tree, or several tied together, need per degree of freedom
 
   void add(const SolveRoom& tree) {
     all += tree;
-    share = larger(share, tree.per(std::max(tree.dofs, 1)));
-    largest = larger(largest, tree);
+    include(tree);
+  }
+  /// What can be solved as one: a tree, or trees that have been added and couplings whose room has been.
+  void include(const SolveRoom& part) {
+    share = larger(share, part.per(std::max(part.dofs, 1)));
+    largest = larger(largest, part);
   }
   /// Of so many degrees of freedom at most, perhaps of those that need most of everything else.
   SolveRoom of_island(int dofs) const {

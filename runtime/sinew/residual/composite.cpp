@@ -29,6 +29,20 @@ int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unk
 }
 
 template <class T>
+int path_entries(const Tree<T>& tree, int body) {
+  int dofs = 0;
+  for (int i = body; i >= 0; i = tree.parent[i]) dofs += tree.dof_count(i);
+  return TreePattern::padded(dofs);
+}
+
+template <class T>
+int matrix_entries(const Tree<T>& tree) {
+  int entries = 0;
+  for (int i = 0; i < tree.bodies; ++i) entries += tree.dof_count(i) * path_entries(tree, i);
+  return entries;
+}
+
+template <class T>
 int unknown_above(const Tree<T>& tree, int body, const Unknowns& unknowns, int first) {
   int dof = -1;
   for (int i = body; i >= 0 && dof < 0; i = tree.parent[i])

@@ -61,6 +61,14 @@ struct Unknowns {
 template <class T>
 int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unknowns& out);
 
+/// Entries of a tree matrix in which every degree of freedom is an unknown.
+template <class T>
+int matrix_entries(const Tree<T>& tree);
+
+/// Room that the path of a body's last degree of freedom takes.
+template <class T>
+int path_entries(const Tree<T>& tree, int body);
+
 /// The last unknown at or above a body, of the tree whose part of `of_dof` begins at `first`; −1 where
 /// nothing moves it.
 template <class T>
@@ -91,6 +99,8 @@ void add_floor(const Tree<T>& tree, const Kinematics<T>& kinematics, std::span<c
   prefix void add_floor<T>(const Tree<T>&, const Kinematics<T>&, std::span<const Composite<T>>, \
                            const Unknowns&, int, TreeMatrix<T>&);                               \
   prefix int unknown_above<T>(const Tree<T>&, int, const Unknowns&, int);                       \
+  prefix int matrix_entries<T>(const Tree<T>&);                                                 \
+  prefix int path_entries<T>(const Tree<T>&, int);                                              \
   prefix void assemble_tree_matrix<T>(const Tree<T>&, const Kinematics<T>&, const PathAxes<T>&, \
                                       std::span<Composite<T>>, const Unknowns&, int, bool, TreeMatrix<T>&);
 SINEW_COMPOSITE_INSTANCES(extern template, float)

@@ -63,6 +63,11 @@ JointJet<double> joint_jet(const Joint& joint, const JointState& s) {
       jet.omega = s.rotation.conjugate() * V(s.v[3], s.v[4], s.v[5]);
       jet.alpha = s.rotation.conjugate() * V(s.a[3], s.a[4], s.a[5]);
       break;
+    case JointType::kTranslation:
+      jet.translation += V(s.q[0], s.q[1], s.q[2]);
+      jet.velocity = v;
+      jet.acceleration = a;
+      break;
   }
   return jet;
 }

@@ -17,7 +17,7 @@ struct Unknowns;
 template <class T>
 class PathAxes {
  public:
-  /// Set-up for so many unknowns, whose tree matrix has so many entries; nothing allocates afterwards.
+  /// Set-up for so many unknowns, whose paths have so many entries; nothing allocates afterwards.
   void reserve(int unknowns, int entries);
   void clear();
   /// Appends the unknowns of one tree, in the order of append_unknowns, whose answer `first` is.

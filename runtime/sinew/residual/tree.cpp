@@ -106,6 +106,11 @@ void motion_axes(const Tree<T>& tree, int i, const Transform<T>& local, Kinemati
       }
       break;
     }
+    case JointType::kTranslation: {
+      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
+      for (int a = 0; a < 3; ++a) slide(first + a, frame.col(a));
+      break;
+    }
   }
 }
 
@@ -162,6 +167,9 @@ Transform<T> displaced(const Tree<T>& tree, int i, const Transform<T>& local, co
       moved.translation += Vec3<T>(d[0], d[1], d[2]);
       moved.rotation = rotation_exp<T>({d[3], d[4], d[5]}) * local.rotation;
       break;
+    case JointType::kTranslation:
+      moved.translation += Vec3<T>(d[0], d[1], d[2]);
+      return moved;
   }
   moved.rotation.normalize();
   return moved;

@@ -26,6 +26,15 @@ int TreePattern::add(int above) {
   return size++;
 }
 
+int TreePattern::common(int a, int b) const {
+  while (a != b) {
+    if (a < 0 || b < 0) return -1;
+    int& deeper = depth[a] >= depth[b] ? a : b;
+    deeper = parent[deeper];
+  }
+  return a;
+}
+
 template <class T>
 void TreeMatrix<T>::multiply(std::span<const T> x, std::span<T> y) const {
   const TreePattern& p = *pattern_;

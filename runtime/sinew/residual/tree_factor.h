@@ -32,6 +32,8 @@ struct TreePattern {
   void clear();
   /// Appends an unknown below `above` (-1: a root). Returns its index.
   int add(int above);
+  /// The last unknown that lies on both paths, or -1 (also where one of them is -1).
+  int common(int a, int b) const;
 };
 
 /// Value array of a symmetric tree matrix: entry (k, position on the path of k).

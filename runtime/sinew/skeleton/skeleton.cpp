@@ -23,6 +23,23 @@ int Skeleton::find(Role role) const {
   return -1;
 }
 
+int Skeleton::find_muscle(const char* muscle_name) const {
+  for (std::size_t i = 0; i < muscles.size(); ++i)
+    if (muscles[i].name == muscle_name) return static_cast<int>(i);
+  return -1;
+}
+
+std::array<double, 2> Skeleton::torque_limits(int joint, int dof) const {
+  const DofLimits& own = joints[joint].dofs[dof];
+  std::array<double, 2> sum{own.torque_minus, own.torque_plus};
+  for (const Muscle& muscle : muscles) {
+    if (muscle.joint != joint || muscle.dof != dof) continue;
+    sum[0] += muscle.torque_minus;
+    sum[1] += muscle.torque_plus;
+  }
+  return sum;
+}
+
 double Skeleton::total_mass() const {
   double total = 0;
   for (const Joint& joint : joints) total += joint.mass;
@@ -84,10 +101,24 @@ Status check_joint(const Skeleton& skeleton, int i) {
     return Status::error(Code::kInvalidArgument, "axes of a universal joint are not square to each other", i);
   if (std::isnan(joint.swing_limit) || std::isnan(joint.twist_lower) || std::isnan(joint.twist_upper))
     return Status::error(Code::kNotFinite, "swing or twist limit is NaN", i);
+  if (joint.ellipsoidal_limit && joint.type != JointType::kBall)
+    return Status::error(Code::kInvalidArgument, "ellipsoidal limit of a joint that is no ball joint", i);
   if (joint.twist_lower > joint.twist_upper)
     return Status::error(Code::kInvalidArgument, "lower twist limit above upper", i);
   for (int k = 0; k < dof_count(joint.type); ++k)
     if (Status status = check_dof(joint.dofs[k], i); !status) return status;
+  return {};
+}
+
+Status check_muscle(const Skeleton& skeleton, const Muscle& muscle) {
+  const int joint = muscle.joint;
+  if (joint < 0 || joint >= skeleton.body_count)
+    return Status::error(Code::kInvalidArgument, "muscle on a joint that is not simulated", joint);
+  const JointType type = skeleton.joints[joint].type;
+  if (type == JointType::kFree || muscle.dof < 0 || muscle.dof >= dof_count(type))
+    return Status::error(Code::kInvalidArgument, "muscle on a degree of freedom that does not exist", joint);
+  if (!(muscle.torque_minus >= 0) || !(muscle.torque_plus >= 0))
+    return Status::error(Code::kInvalidArgument, "muscle's limit is negative or NaN", joint);
   return {};
 }
 
@@ -109,6 +140,8 @@ Status validate(const Skeleton& skeleton) {
     if (subtree[i] <= 0 && dof_count(skeleton.joints[i].type) > 0)
       return Status::error(Code::kInvalidArgument, "joint moves no mass", i);
   }
+  for (const Muscle& muscle : skeleton.muscles)
+    if (Status status = check_muscle(skeleton, muscle); !status) return status;
   for (const Collider& collider : skeleton.colliders) {
     if (collider.joint < 0 || collider.joint >= count)
       return Status::error(Code::kInvalidArgument, "collider on a joint that does not exist", collider.joint);

@@ -8,6 +8,7 @@
 // parent.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,11 +21,21 @@ namespace sinew {
 /// How a simulated joint may move relative to its rest frame.
 /// Degrees of freedom, in this order: revolute/prismatic 1 (along `axis`), universal 2 (about `axis`, then
 /// `axis2`), ball 3 (rotation vector in child axes), planar 3 (translation along the two axes normal to
-/// `axis`, then rotation about it), free 6 (translation in parent axes, then rotation vector in parent axes).
-enum class JointType : std::uint8_t { kFixed, kRevolute, kPrismatic, kUniversal, kBall, kPlanar, kFree };
+/// `axis`, then rotation about it), free 6 (translation in parent axes, then rotation vector in parent axes),
+/// translation 3 (in parent axes: a particle).
+enum class JointType : std::uint8_t {
+  kFixed,
+  kRevolute,
+  kPrismatic,
+  kUniversal,
+  kBall,
+  kPlanar,
+  kFree,
+  kTranslation
+};
 
 constexpr int dof_count(JointType type) {
-  constexpr int counts[] = {0, 1, 1, 2, 3, 3, 6};
+  constexpr int counts[] = {0, 1, 1, 2, 3, 3, 6, 3};
   return counts[static_cast<int>(type)];
 }
 
@@ -99,9 +110,25 @@ struct Joint {
   double swing_limit = -1;  ///< ball: half angle of the cone about rest, rad; < 0 none
   Vec3<double> swing_axis = Vec3<double>::UnitZ();  ///< bone direction whose swing is limited, child axes
   double twist_lower = -1e9, twist_upper = 1e9;     ///< ball with swing cone: rotation about swing_axis
-  std::string source_joint;                         ///< URDF: name of the joint that moves this link
+  bool ellipsoidal_limit =
+      false;                 ///< ball: torques obey Σ (torque/limit)² ≤ 1 over the three axes, as strong
+                             ///< in a slanting direction as along an axis; else each axis has its own
+  std::string source_joint;  ///< URDF: name of the joint that moves this link
 
   bool operator==(const Joint&) const = default;
+};
+
+/// A muscle that works on one degree of freedom besides the one that DofLimits describes. The rule: limits
+/// add up, each scaled by its own strength; all muscles of a degree of freedom pull together, each by the
+/// same share of its limit. So none exceeds its own, and the sum never exceeds the sum of the limits.
+struct Muscle {
+  std::string name;
+  std::string group;                         ///< strengthened and weakened together; "": none
+  int joint = 0;                             ///< simulated, not free
+  int dof = 0;                               ///< of the joint
+  double torque_minus = 0, torque_plus = 0;  ///< as DofLimits
+
+  bool operator==(const Muscle&) const = default;
 };
 
 /// Editable description; `validate` says what is wrong with it. Everything else in the runtime takes it as
@@ -111,11 +138,15 @@ struct Skeleton {
   std::vector<Joint> joints;  ///< parents first; simulated joints first
   int body_count = 0;         ///< number of simulated joints
   std::vector<Collider> colliders;
+  std::vector<Muscle> muscles;  ///< besides the one of every degree of freedom
 
   int dof_total() const;
-  int find(const char* joint_name) const;  ///< index, or -1
-  int find(Role role) const;               ///< first with the role, or -1
-  double total_mass() const;               ///< kg
+  int find(const char* joint_name) const;          ///< index, or -1
+  int find(Role role) const;                       ///< first with the role, or -1
+  int find_muscle(const char* muscle_name) const;  ///< index, or -1
+  double total_mass() const;                       ///< kg
+  /// Largest torques (minus, plus; N·m) of a degree of freedom with all its muscles at strength 1.
+  std::array<double, 2> torque_limits(int joint, int dof) const;
   bool operator==(const Skeleton&) const = default;
 };
 

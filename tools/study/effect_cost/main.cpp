@@ -186,7 +186,7 @@ struct Pass : Solving {
     for (Effect<float>* e : problem.effects) e->begin_step(effect_pose(settings, problem));
     begin_evaluation(settings, problem);
     finish_gradient(problem);
-    inner.build({}, true);
+    inner.build({}, {}, true);
   }
 };
 

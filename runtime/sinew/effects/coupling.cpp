@@ -1,0 +1,197 @@
+#include "sinew/effects/coupling.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+constexpr double kExitSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts lead out
+constexpr double kTorn = 0.02;       ///< m; a hundred times what the weight pulls a loop apart
+
+template <class T>
+Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {
+  Mat3<T> f = Mat3<T>::Zero();
+  // Relative to one corner: far from the common origin differences keep their digits.
+  const Vec3<T>& base = c.nodes[e.node[0]].point;
+  for (int i = 1; i < 4; ++i) f += (c.nodes[e.node[i]].point - base) * e.slope[i].transpose();
+  return f;
+}
+
+/// J at which the volume term is at rest: α = 1 + μ/λ − μ/(4λ).
+template <class T>
+T rest_volume(const Tetrahedron<T>& e) {
+  return T(1) + T(0.75) * e.mu / e.lame;
+}
+
+/// ∂det F/∂F: the columns' cross products.
+template <class T>
+Mat3<T> cofactors(const Mat3<T>& f) {
+  Mat3<T> m;
+  m.col(0) = f.col(1).cross(f.col(2));
+  m.col(1) = f.col(2).cross(f.col(0));
+  m.col(2) = f.col(0).cross(f.col(1));
+  return m;
+}
+
+/// Energy density by (13) of the paper, less its value at rest, J/m³, and the stress P = ∂/∂F by (18).
+template <class T>
+T density(const Tetrahedron<T>& e, const Mat3<T>& f, Mat3<T>& stress) {
+  const T squares = f.squaredNorm(), off = f.determinant() - rest_volume(e);
+  const T rest = T(1) - rest_volume(e);
+  stress = e.mu * (T(1) - T(1) / (squares + 1)) * f + e.lame * off * cofactors(f);
+  return T(0.5) * e.mu * (squares - 3 - std::log((squares + 1) / 4)) +
+         T(0.5) * e.lame * (off - rest) * (off + rest);
+}
+
+/// F = U diag(σ) Vᵀ with rotations U and V: the smallest σ is negative where the element is inside out.
+template <class T>
+void rotation_svd(const Mat3<T>& f, Mat3<T>& u, Vec3<T>& sigma, Mat3<T>& v) {
+  const Eigen::JacobiSVD<Mat3<T>> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.info() != Eigen::Success) {  // not finite: whatever this trial is, it will be refused
+    u = v = Mat3<T>::Identity();
+    sigma.setZero();
+    return;
+  }
+  u = svd.matrixU();
+  v = svd.matrixV();
+  sigma = svd.singularValues();
+  for (Mat3<T>* r : {&u, &v})
+    if (r->determinant() < T(0)) {
+      r->col(2) *= T(-1);
+      sigma[2] = -sigma[2];
+    }
+}
+
+}  // namespace
+
+bool set_rest_shape(const Vec3<double> corners[4], Tetrahedron<double>& out) {
+  Mat3<double> edges;
+  for (int i = 0; i < 3; ++i) edges.col(i) = corners[i + 1] - corners[0];
+  out.volume = edges.determinant() / 6;
+  const double size = edges.norm();
+  if (!(out.volume > 1e-9 * size * size * size)) return false;
+  const Mat3<double> inverse = edges.inverse();
+  out.slope[0].setZero();
+  for (int i = 0; i < 3; ++i) {
+    out.slope[i + 1] = inverse.row(i);
+    out.slope[0] -= out.slope[i + 1];
+  }
+  return true;
+}
+
+void set_material(double young, double poisson, Tetrahedron<double>& out) {
+  const double mu = young / (2 * (1 + poisson));
+  const double lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  // Equation (16) of the paper: in these the small-strain law is Hooke's.
+  out.mu = 4 * mu / 3;
+  out.lame = lame + 5 * mu / 6;
+}
+
+template <class T>
+Vec3<T> reach(const Coupling<T>& c, const Stencil<T>& e) {
+  // Relative to the first node, since the weights add up to zero: points far away keep their digits.
+  const Vec3<T>& base = c.nodes[e.node[0]].point;
+  Vec3<T> sum = Vec3<T>::Zero();
+  for (int i = 1; i < e.count; ++i) sum += e.weight[i] * (c.nodes[e.node[i]].point - base);
+  return sum;
+}
+
+template <class T>
+double measure_elements(Coupling<T>& c) {
+  double energy = 0;
+  for (CouplingNode<T>& node : c.nodes) node.gradient.setZero();
+  for (const Stencil<T>& e : c.stencils) {
+    const Vec3<T> s = reach(c, e) - e.offset;
+    const T size = s.norm(), stretch = size - e.length;
+    if (size <= T(0) || (e.only_pulls && stretch <= T(0))) continue;
+    energy += double(T(0.5) * e.stiffness * stretch * stretch);
+    const Vec3<T> pull = (e.stiffness * stretch / size) * s;
+    for (int i = 0; i < e.count; ++i) c.nodes[e.node[i]].gradient += e.weight[i] * pull;
+  }
+  for (const Tetrahedron<T>& e : c.tetrahedra) {
+    Mat3<T> stress;
+    energy += double(e.volume * density(e, deformation(c, e), stress));
+    for (int i = 0; i < 4; ++i) c.nodes[e.node[i]].gradient += e.volume * (stress * e.slope[i]);
+  }
+  c.energy = energy;
+  return energy;
+}
+
+template <class T>
+Mat3<T> stencil_curvature(const Coupling<T>& c, const Stencil<T>& e) {
+  if (e.length <= T(0)) return e.stiffness * Mat3<T>::Identity();
+  const Vec3<T> s = reach(c, e) - e.offset;
+  const T size = s.norm();
+  if (size <= T(0) || (e.only_pulls && size <= e.length)) return Mat3<T>::Zero();
+  const T across = std::max(T(1) - e.length / size, T(0));  // a compressed spring would buckle: cut off
+  const Vec3<T> along = s / size;
+  return e.stiffness * (across * Mat3<T>::Identity() + (T(1) - across) * (along * along.transpose()));
+}
+
+template <class T>
+TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& c, const Tetrahedron<T>& e) {
+  Mat3<T> u, v;
+  Vec3<T> sigma;
+  rotation_svd(deformation(c, e), u, sigma, v);
+  const T squares = sigma.squaredNorm(), off = sigma.prod() - rest_volume(e);
+  const T shear = e.mu * (T(1) - T(1) / (squares + 1));
+  const Vec3<T> others(sigma[1] * sigma[2], sigma[0] * sigma[2], sigma[0] * sigma[1]);
+  // Stretches along the principal axes couple with each other …
+  Mat3<T> stretch = (2 * e.mu / ((squares + 1) * (squares + 1))) * (sigma * sigma.transpose()) +
+                    e.lame * (others * others.transpose());
+  // … and in each plane one turn and one shear stand alone: half of their sum and difference.
+  Mat3<T> same = Mat3<T>::Zero(), crossed = Mat3<T>::Zero();
+  for (int a = 0; a < 3; ++a) {
+    stretch(a, a) += shear;
+    for (int b = 0; b < 3; ++b) {
+      if (a == b) continue;
+      const T third = e.lame * off * sigma[3 - a - b];
+      stretch(a, b) += third;
+      const T turn = std::max(shear + third, T(0)), flip = std::max(shear - third, T(0));
+      same(a, b) = T(0.5) * (turn + flip);
+      crossed(a, b) = T(0.5) * (flip - turn);
+    }
+  }
+  Eigen::SelfAdjointEigenSolver<Mat3<T>> modes(stretch);
+  stretch = modes.eigenvectors() * modes.eigenvalues().cwiseMax(T(0)).asDiagonal() *
+            modes.eigenvectors().transpose();
+  Vec3<T> slope[4];
+  for (int i = 0; i < 4; ++i) slope[i] = v.transpose() * e.slope[i];
+  TetrahedronHessian<T> out;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j <= i; ++j) {
+      Mat3<T> block;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          block(a, b) = stretch(a, b) * slope[i][a] * slope[j][b];
+          if (a != b) block(a, b) += crossed(a, b) * slope[i][b] * slope[j][a];
+        }
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+          if (a != b) block(a, a) += same(a, b) * slope[i][b] * slope[j][b];
+      const Mat3<T> turned = e.volume * (u * block * u.transpose());
+      out.template block<3, 3>(3 * i, 3 * j) = turned;
+      out.template block<3, 3>(3 * j, 3 * i) = turned.transpose();
+    }
+  return out;
+}
+
+template <class T>
+void lead_out(T h, Coupling<T>& c) {
+  if (!c.leads_out) return;
+  for (Stencil<T>& e : c.stencils) {
+    const Vec3<T> open = reach(c, e);
+    if ((open - e.offset).norm() > e.length + T(kTorn)) e.offset = open * (T(1) - e.length / open.norm());
+    const T left = e.offset.norm();
+    e.offset *= left > T(kExitSpeed) * h ? T(1) - T(kExitSpeed) * h / left : T(0);
+  }
+}
+
+SINEW_COUPLING_INSTANCES(template, float)
+SINEW_COUPLING_INSTANCES(template, double)
+
+}  // namespace sinew

@@ -1,0 +1,134 @@
+// Elastic elements between material points: what loops, strands, cloth and soft tissue are made of.
+//
+// A node is a material point of a body (or of the world); an element's energy depends on where its nodes are
+// at the END of the step, so stiffness costs no stability. "Just another Jacobian" (Wu): nodes move with the
+// unknowns of their body's path, particles are bodies whose path is three translations. Two kinds of element:
+//
+//   stencil      ½ k (|Σ wᵢ xᵢ| − length)², Σ wᵢ = 0: a closed joint or a spring (1, −1), a rope that only
+//                pulls, the bending of a strand (1, −2, 1) or of two triangles of cloth (four weights). The
+//                force lies along Σ wᵢ xᵢ: momentum and angular momentum are kept to rounding.
+//   tetrahedron  stable Neo-Hookean solid (Smith, de Goes & Kim, "Stable Neo-Hookean Flesh Simulation", 2018)
+//
+// Every element gives its exact energy and gradient and a positive semidefinite second derivative.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "sinew/residual/tree.h"
+
+namespace sinew {
+
+/// What a node or a loop is fixed to.
+enum class AnchorKind : std::uint8_t { kWorld, kCharacter, kProp, kParticles };
+
+/// A frame that rides on something: on a joint of a character, a prop, a particle (`joint` is then the node;
+/// particles do not turn), or on nothing.
+struct Anchor {
+  AnchorKind kind = AnchorKind::kWorld;
+  int index = 0;            ///< of the character, prop or particle body
+  int joint = 0;            ///< of the character; node of the particle body
+  Transform<double> frame;  ///< in the joint's axes; of the world: in the world's
+};
+
+/// An anchor found: a tree of the world, one of its bodies, and the frame in that body's axes.
+struct Place {
+  int state = -1;  ///< −1: the world
+  int body = 0;
+  Transform<double> frame;
+};
+
+/// A material point.
+template <class T>
+struct CouplingNode {
+  int state = -1;                             ///< number of its tree in the world; −1: fixed in the world
+  int body = 0;                               ///< of that tree
+  Vec3<T> local = Vec3<T>::Zero();            ///< body axes
+  Vec3<double> place = Vec3<double>::Zero();  ///< m, world; of a fixed one
+  int tree = -1;                              ///< of the solve; set by whoever steps
+  // At the present pose:
+  Vec3<T> point = Vec3<T>::Zero();     ///< from the common origin
+  Vec3<T> gradient = Vec3<T>::Zero();  ///< of the energy by the point, N
+};
+
+/// ½ k (|Σ wᵢ xᵢ − offset| − length)².
+template <class T>
+struct Stencil {
+  int count = 2;
+  int node[4] = {0, 0, 0, 0};
+  T weight[4] = {T(1), T(-1), T(0), T(0)};  ///< sum 0
+  T stiffness = T(0);                       ///< N/m
+  T length = T(0);                          ///< m
+  bool only_pulls = false;                  ///< no energy while shorter than `length`
+  /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
+  Vec3<T> offset = Vec3<T>::Zero();
+};
+
+/// Four nodes; the rest shape enters through the gradients of its linear shape functions.
+template <class T>
+struct Tetrahedron {
+  int node[4] = {0, 0, 0, 0};
+  Vec3<T> slope[4] = {};     ///< 1/m; the deformation gradient is F = Σ xᵢ slopeᵢᵀ
+  T volume = T(0);           ///< m³, at rest
+  T mu = T(0), lame = T(0);  ///< Pa: the paper's μ and λ, see set_material
+};
+
+template <class T>
+using TetrahedronHessian = Eigen::Matrix<T, 12, 12>;
+
+/// Elements that live and die together: one loop, one strand, one piece of cloth or tissue.
+template <class T>
+struct Coupling {
+  std::vector<CouplingNode<T>> nodes;
+  std::vector<Stencil<T>> stencils;
+  std::vector<Tetrahedron<T>> tetrahedra;
+  bool active = true;
+  bool leads_out = false;  ///< stencils that begin open close at a walking pace (loops)
+  double energy = 0;       ///< J, when last measured
+
+  /// Whether something that began open is still being led out: that does work.
+  bool closes() const {
+    return std::any_of(stencils.begin(), stencils.end(),
+                       [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
+  }
+};
+
+/// Rest shape of a tetrahedron from four corners (m). False where it has no volume or is inside out.
+bool set_rest_shape(const Vec3<double> corners[4], Tetrahedron<double>& out);
+/// Material from Young's modulus (Pa) and Poisson's ratio (0 … below ½), so that small strains are Hooke's.
+void set_material(double young, double poisson, Tetrahedron<double>& out);
+
+/// Σ wᵢ xᵢ at the nodes' present points.
+template <class T>
+Vec3<T> reach(const Coupling<T>& coupling, const Stencil<T>& stencil);
+
+/// Energy (J) of all elements at the nodes' present points, kept in `energy` too; every node's gradient is
+/// overwritten.
+template <class T>
+double measure_elements(Coupling<T>& coupling);
+
+/// Second derivative by Σ wᵢ xᵢ, N/m, without what makes it indefinite: node pair (i, j) sees wᵢwⱼ times it.
+template <class T>
+Mat3<T> stencil_curvature(const Coupling<T>& coupling, const Stencil<T>& stencil);
+
+/// Second derivative by the four points (x₀, y₀, z₀, x₁, …), N/m, negative eigenvalues cut off (analytic
+/// eigensystem of the paper).
+template <class T>
+TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const Tetrahedron<T>& element);
+
+/// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a
+/// teleport) begins anew. Call at the start of a part of a step, at the pose there.
+template <class T>
+void lead_out(T h, Coupling<T>& coupling);
+
+#define SINEW_COUPLING_INSTANCES(prefix, T)                                                         \
+  prefix Vec3<T> reach<T>(const Coupling<T>&, const Stencil<T>&);                                   \
+  prefix double measure_elements<T>(Coupling<T>&);                                                  \
+  prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
+  prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
+  prefix void lead_out<T>(T, Coupling<T>&);
+SINEW_COUPLING_INSTANCES(extern template, float)
+SINEW_COUPLING_INSTANCES(extern template, double)
+
+}  // namespace sinew

@@ -1,0 +1,213 @@
+#include "sinew/optimizer/coupling_rows.h"
+
+#include <algorithm>
+
+namespace sinew {
+
+template <class T>
+void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin, Coupling<T>& c) {
+  for (CouplingNode<T>& node : c.nodes) {
+    if (node.tree < 0) {
+      node.point = (node.place - common_origin).template cast<T>();
+    } else {
+      const Kinematics<T>& k = trees[node.tree]->kinematics;
+      node.point = k.origin[node.body] + k.rotation[node.body] * node.local;
+    }
+  }
+}
+
+template <class T>
+void add_wrenches(const Coupling<T>& c, std::span<TreeProblem<T>* const> trees) {
+  for (const CouplingNode<T>& node : c.nodes) {
+    if (node.tree < 0) continue;
+    TreeProblem<T>& p = *trees[node.tree];
+    p.force[node.body] += node.gradient;
+    p.moment[node.body] += node.point.cross(node.gradient);
+  }
+}
+
+template <class T>
+void CouplingRows<T>::reserve(const SolveRoom& room) {
+  nodes_.reserve(room.nodes);
+  moved_.reserve(room.nodes);
+  pulled_.reserve(room.nodes);
+  stencils_.reserve(room.stencils);
+  tetrahedra_.reserve(room.tetrahedra);
+  for (std::vector<T>& v : along_) v.reserve(room.node_entries);
+}
+
+template <class T>
+void CouplingRows<T>::add_node(const CouplingNode<T>& source, std::span<TreeProblem<T>* const> trees,
+                               const Unknowns& unknowns, const PathAxes<T>& axes) {
+  Node node;
+  if (source.tree >= 0) {
+    const TreeProblem<T>& p = *trees[source.tree];
+    node.leaf = unknown_above<T>(*p.tree, source.body, unknowns, p.first_unknown_map);
+  }
+  if (node.leaf >= 0) {
+    const Tree<T>& tree = *trees[source.tree]->tree;
+    const int last = pattern_->depth[node.leaf], size = TreePattern::padded(last + 1);
+    node.first = static_cast<int>(along_[0].size());
+    for (int a = 0; a < 3; ++a) {
+      along_[a].resize(along_[a].size() + size);
+      const Vec3<T> axis = Vec3<T>::Unit(a);
+      axes.project(node.leaf, axis, source.point.cross(axis), last, along_[a].data() + node.first);
+    }
+    const int parent = tree.parent[source.body];
+    node.single = last == 2 && tree.type[source.body] == JointType::kTranslation &&
+                  (parent < 0 || trees[source.tree]->kinematics.rotation[parent].isIdentity(T(0)));
+  }
+  nodes_.push_back(node);
+}
+
+/// Depth from which on the unknowns of one node's path belong to one of the element's branches each. 0 where
+/// no path parts from it.
+template <class T>
+int CouplingRows<T>::cut(const int* nodes, int count, int node) const {
+  const int own = nodes_[node].leaf;
+  int depth = 0;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < i; ++j) {
+      const Node &a = nodes_[nodes[i]], &b = nodes_[nodes[j]];
+      if (a.single || b.single) continue;
+      const int shared = pattern_->common(a.leaf, b.leaf);
+      if (shared >= 0 && shared != a.leaf && shared != b.leaf && pattern_->common(own, shared) >= 0)
+        depth = std::max(depth, pattern_->depth[shared] + 1);
+    }
+  return depth;
+}
+
+template <class T>
+void CouplingRows<T>::note_coupling(const int* nodes, int count) {
+  for (int i = 0; i < count && !coupled_; ++i)
+    for (int j = 0; j < i; ++j) {
+      const int a = nodes_[nodes[i]].leaf, b = nodes_[nodes[j]].leaf;
+      if (a < 0 || b < 0) continue;
+      const int shared = pattern_->common(a, b);
+      coupled_ = coupled_ || (shared != a && shared != b);
+    }
+}
+
+template <class T>
+void CouplingRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
+                              const Unknowns& unknowns, const PathAxes<T>& axes) {
+  pattern_ = &unknowns.pattern;
+  nodes_.clear();
+  stencils_.clear();
+  tetrahedra_.clear();
+  for (std::vector<T>& v : along_) v.clear();
+  coupled_ = false;
+  for (const Coupling<T>* c : couplings) {
+    const int first = static_cast<int>(nodes_.size());
+    for (const CouplingNode<T>& node : c->nodes) add_node(node, trees, unknowns, axes);
+    for (const Stencil<T>& e : c->stencils) {
+      Stencils& made = stencils_.emplace_back();
+      made.count = e.count;
+      for (int i = 0; i < e.count; ++i) {
+        made.node[i] = first + e.node[i];
+        made.weight[i] = e.weight[i];
+      }
+      made.curvature = stencil_curvature(*c, e);
+      note_coupling(made.node, made.count);
+    }
+    for (const Tetrahedron<T>& e : c->tetrahedra) {
+      Tetrahedra& made = tetrahedra_.emplace_back();
+      for (int i = 0; i < 4; ++i) made.node[i] = first + e.node[i];
+      made.curvature = tetrahedron_curvature(*c, e);
+      note_coupling(made.node, 4);
+    }
+  }
+  moved_.resize(nodes_.size());
+  pulled_.resize(nodes_.size());
+}
+
+/// matrix += Jᵢᵀ block Jⱼ where it lies within a path, unknowns from depth `from` on. For i ≠ j the caller
+/// adds the transposed pair too.
+template <class T>
+void CouplingRows<T>::add_block(int i, int j, const Mat3<T>& block, int from, TreeMatrix<T>& matrix) const {
+  const Node &a = nodes_[i], &b = nodes_[j];
+  const int shared = i == j ? a.leaf : pattern_->common(a.leaf, b.leaf);
+  if (shared < 0 || (shared != a.leaf && shared != b.leaf)) return;  // paths that part share no branch
+  const int last_b = std::min(pattern_->depth[b.leaf], pattern_->depth[shared]);
+  const T* x = along_[0].data() + b.first;
+  const T* y = along_[1].data() + b.first;
+  const T* z = along_[2].data() + b.first;
+  int k = a.leaf;
+  for (int depth = pattern_->depth[a.leaf]; depth >= from; --depth, k = pattern_->parent[k]) {
+    const int e = a.first + depth;
+    const Vec3<T> f = block.transpose() * Vec3<T>(along_[0][e], along_[1][e], along_[2][e]);
+    T* row = matrix.row(k);
+    for (int l = from; l <= std::min(depth, last_b); ++l)
+      row[l] += f.x() * x[l] + f.y() * y[l] + f.z() * z[l];
+  }
+}
+
+template <class T>
+void CouplingRows<T>::add_curvature(TreeMatrix<T>& matrix) const {
+  const auto add = [&](const int* node, int count, const auto& block_of) {
+    for (int i = 0; i < count; ++i) {
+      const Node& own = nodes_[node[i]];
+      if (own.leaf < 0) continue;
+      if (own.single) {  // nobody else is on its path
+        const Mat3<T> block = block_of(i, i);
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b <= a; ++b) matrix.row(own.leaf - 2 + a)[b] += block(a, b);
+        continue;
+      }
+      const int from = cut(node, count, node[i]);
+      for (int j = 0; j < count; ++j)
+        if (nodes_[node[j]].leaf >= 0 && !nodes_[node[j]].single)
+          add_block(node[i], node[j], block_of(i, j), from, matrix);
+    }
+  };
+  for (const Stencils& e : stencils_)
+    add(e.node, e.count, [&](int i, int j) -> Mat3<T> { return (e.weight[i] * e.weight[j]) * e.curvature; });
+  for (const Tetrahedra& e : tetrahedra_)
+    add(e.node, 4, [&](int i, int j) -> Mat3<T> { return e.curvature.template block<3, 3>(3 * i, 3 * j); });
+}
+
+template <class T>
+void CouplingRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Node& node = nodes_[n];
+    Vec3<T>& moved = moved_[n];
+    moved.setZero();
+    pulled_[n].setZero();
+    if (node.single) {
+      moved = {x[node.leaf - 2], x[node.leaf - 1], x[node.leaf]};
+      continue;
+    }
+    int e = node.leaf < 0 ? 0 : node.first + pattern_->depth[node.leaf];
+    for (int k = node.leaf; k >= 0; k = pattern_->parent[k], --e)
+      moved += x[k] * Vec3<T>(along_[0][e], along_[1][e], along_[2][e]);
+  }
+  for (const Stencils& e : stencils_) {
+    Vec3<T> sum = Vec3<T>::Zero();
+    for (int i = 0; i < e.count; ++i) sum += e.weight[i] * moved_[e.node[i]];
+    const Vec3<T> pull = e.curvature * sum;
+    for (int i = 0; i < e.count; ++i) pulled_[e.node[i]] += e.weight[i] * pull;
+  }
+  for (const Tetrahedra& e : tetrahedra_) {
+    Eigen::Matrix<T, 12, 1> moved;
+    for (int i = 0; i < 4; ++i) moved.template segment<3>(3 * i) = moved_[e.node[i]];
+    Eigen::Matrix<T, 12, 1> pull;
+    pull.noalias() = e.curvature * moved;
+    for (int i = 0; i < 4; ++i) pulled_[e.node[i]] += pull.template segment<3>(3 * i);
+  }
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Node& node = nodes_[n];
+    const Vec3<T>& pull = pulled_[n];
+    if (node.single) {
+      for (int a = 0; a < 3; ++a) y[node.leaf - 2 + a] += pull[a];
+      continue;
+    }
+    int e = node.leaf < 0 ? 0 : node.first + pattern_->depth[node.leaf];
+    for (int k = node.leaf; k >= 0; k = pattern_->parent[k], --e)
+      y[k] += pull.x() * along_[0][e] + pull.y() * along_[1][e] + pull.z() * along_[2][e];
+  }
+}
+
+SINEW_COUPLING_ROWS_INSTANCES(template, float)
+SINEW_COUPLING_ROWS_INSTANCES(template, double)
+
+}  // namespace sinew
