@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(cmake g++ ninja-build pkg-config libeigen3-dev libflatbuffers-dev flatbuffers-compiler
   libassimp-dev liburdfdom-dev libosmesa6-dev libgl-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
-  libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
+  libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev ccache clang-format clang-tidy chromium valgrind)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)

@@ -1,9 +1,7 @@
-// A crowd that walks; every now and then one is hit, every third of these so hard that it goes limp. Grey:
-// played. Amber: some of its degrees of freedom are solved. Red: all of them. Usage: crowd ASSET.sinew
-// OUT.mp4|OUT_%03d.png [CHARACTERS] [SECONDS]
-#include <sinew/animation/crossfade.h>
-#include <sinew/animation/sampling_job.h>
-#include <sinew/character/world.h>
+// A crowd that walks; 5 % of it are hit every second, every third of these so hard that it goes limp and is
+// left lying. Grey: played and checked in batches. Amber: some of its degrees of freedom are solved. Red: all
+// of them. Usage: crowd ASSET.sinew OUT.mp4|OUT_%03d.png [CHARACTERS] [SECONDS] [THREADS]
+#include <sinew/crowd/population.h>
 #include <sinew/io/asset.h>
 
 #include <algorithm>
@@ -14,13 +12,14 @@
 #include <exception>
 #include <random>
 
+#include "job_system.h"
 #include "render/render.h"
 
 namespace {
 
-constexpr int kRate = 60;          // steps per second
-constexpr double kSpacing = 2.6;   // m; nearer ones would be solved together
-constexpr double kHitEvery = 0.1;  // s
+constexpr int kRate = 60;           // steps per second
+constexpr double kSpacing = 2.2;    // m
+constexpr double kHitShare = 0.05;  // of the crowd, per second
 
 /// Of a grid about as deep as wide.
 int columns_of(int count) {
@@ -48,20 +47,34 @@ std::vector<Walker> arranged(int count, float duration) {
   return walkers;
 }
 
-/// What the renderer shows of one character: its pose, and its state as the load that colours it.
-sinew::scene::CharacterFrame frame_of(const sinew::Character<float>& c) {
+/// What the renderer shows of one character: its pose, and its level as the load that colours it.
+sinew::scene::CharacterFrame frame_of(const sinew::Population& people, int n, int dofs) {
   sinew::scene::CharacterFrame frame;
-  frame.model.assign(c.model().begin(), c.model().end());
-  frame.unknown_dofs = c.report().unknown_dofs;
-  frame.total_dofs = c.report().dofs;
-  const bool all = 2 * frame.unknown_dofs > frame.total_dofs;
-  frame.load.assign(frame.model.size(), frame.unknown_dofs == 0 ? 0.f : all ? 1.f : 0.75f);
+  frame.model.assign(people.model(n).begin(), people.model(n).end());
+  const sinew::Level level = people.level(n);
+  frame.total_dofs = dofs;
+  frame.unknown_dofs = level >= sinew::Level::kFull ? dofs : level == sinew::Level::kPartial ? dofs / 2 : 0;
+  frame.load.assign(frame.model.size(), level >= sinew::Level::kFull      ? 1.f
+                                        : level == sinew::Level::kPartial ? 0.75f
+                                                                          : 0.f);
   frame.torque.assign(frame.model.size(), 0);
   frame.limit.assign(frame.model.size(), 0);
   return frame;
 }
 
-int run(const char* file, const char* output, int count, double seconds) {
+/// Pushes somebody at the chest, from any side; every third one as if it had been knocked out.
+void hit(sinew::Population& people, int count, int chest, int number, std::mt19937& random) {
+  const int n = static_cast<int>(random() % static_cast<unsigned>(count));
+  const float angle = static_cast<float>(random() % 628) / 100;
+  const bool knocked_out = number % 3 == 2;
+  const float impulse = knocked_out ? 150.f : 60.f;
+  if (!people.push(n, chest, {impulse * std::cos(angle), impulse * std::sin(angle), 0})) return;
+  if (!knocked_out) return;
+  people.solved(n).set_root_drive(sinew::RootDrive::kFree);
+  (void)people.solved(n).set_strength(0.02f);
+}
+
+int run(const char* file, const char* output, int count, double seconds, int threads) {
   auto asset = std::make_shared<sinew::Asset>();
   const sinew::Status loaded = sinew::load_asset(file, *asset);
   if (!loaded || asset->clips.empty()) {
@@ -71,13 +84,24 @@ int run(const char* file, const char* output, int count, double seconds) {
   const sinew::Clip& walk = asset->clips[static_cast<std::size_t>(std::max(0, asset->find_clip("walk")))];
   const int chest = std::max(0, asset->skeleton.find(sinew::Role::kChest));
   const std::vector<Walker> walkers = arranged(count, walk.duration);
+  sinew::PopulationSettings settings;
+  settings.crowd.capacity = count;
+  settings.crowd.chunks = 4 * threads;
+  settings.world.workers = threads;
+  settings.world.detail.sleep_after = 0.5;  // s; who lies still costs nothing
+  settings.places = std::min(count, 32 + count / 2);
   sinew::Status status;
-  sinew::World<float> world({});
-  for (int n = 0; n < count; ++n)
-    if (world.add_character(asset->skeleton, {}, status) < 0) {
-      std::fprintf(stderr, "crowd: %s\n", status.reason);
-      return 1;
-    }
+  const auto people = sinew::Population::create(asset->skeleton, settings, status);
+  for (int n = 0; people && n < count; ++n) {
+    const Walker& w = walkers[static_cast<std::size_t>(n)];
+    status = people->play(n, {&walk, w.phase, 1, w.place});
+    if (!status) break;
+  }
+  if (!status) {
+    std::fprintf(stderr, "crowd: %s\n", status.reason);
+    return 1;
+  }
+  JobSystem jobs(threads);
   sinew::scene::Recording recording;
   recording.title = "Crowd";
   recording.frame_rate = kRate;
@@ -88,39 +112,22 @@ int run(const char* file, const char* output, int count, double seconds) {
   recording.camera.target = {-2.f, middle, 0.4f};
   recording.camera.follow_character = columns_of(count) / 2;
   recording.camera.frame_automatically = false;
-  std::vector<sinew::JointJet<float>> jets(asset->skeleton.joints.size());
   std::vector<double> microseconds;
   std::mt19937 random(2);
   int hits = 0, most_solved = 0;
   const int steps = static_cast<int>(seconds * kRate);
   for (int step = 0; step <= steps; ++step) {
-    const double t = step / double(kRate);
+    for (const double due = (step / double(kRate) - 0.5) * kHitShare * count; hits < due; ++hits)
+      hit(*people, count, chest, hits, random);
     const auto begin = std::chrono::steady_clock::now();
-    for (int n = 0; n < count; ++n) {
-      const Walker& w = walkers[static_cast<std::size_t>(n)];
-      sinew::SamplingJob<float>{&walk, t + w.phase, 1, jets}.Run();
-      sinew::place_root<float>(w.place, jets[0]);
-      world.character(n).set_target(jets);
-      if (step == 0) world.character(n).reset();
-    }
-    if (t > 0.5 && t > (hits + 5) * kHitEvery) {
-      sinew::Character<float> c = world.character(static_cast<int>(random() % static_cast<unsigned>(count)));
-      const float angle = static_cast<float>(random() % 628) / 100, impulse = ++hits % 3 ? 60.f : 150.f;
-      c.apply_impulse(chest, c.model()[static_cast<std::size_t>(chest)].translation,
-                      {impulse * std::cos(angle), impulse * std::sin(angle), 0});
-      if (hits % 3 == 0) {
-        c.set_root_drive(sinew::RootDrive::kFree);
-        c.set_strength(0.02f);
-      }
-    }
-    if (step > 0 && !world.step(1.f / kRate)) return 1;
+    if (!people->step(1.f / kRate, jobs.parallel_for())) return 1;
     microseconds.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
     sinew::scene::Frame& frame = recording.frames.emplace_back();
-    frame.time = t;
+    frame.time = step / double(kRate);
     int solved = 0;
     for (int n = 0; n < count; ++n) {
-      frame.characters.push_back(frame_of(world.character(n)));
+      frame.characters.push_back(frame_of(*people, n, asset->skeleton.dof_total()));
       solved += frame.characters.back().unknown_dofs > 0;
     }
     most_solved = std::max(most_solved, solved);
@@ -144,16 +151,17 @@ int run(const char* file, const char* output, int count, double seconds) {
 
 int main(int argc, char** argv) try {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: crowd ASSET.sinew OUT [CHARACTERS] [SECONDS]\n");
+    std::fprintf(stderr, "usage: crowd ASSET.sinew OUT [CHARACTERS] [SECONDS] [THREADS]\n");
     return 2;
   }
   const int count = argc > 3 ? std::atoi(argv[3]) : 200;
   const double seconds = argc > 4 ? std::atof(argv[4]) : 8;
-  if (count < 1 || !(seconds >= 0)) {
-    std::fprintf(stderr, "crowd: at least one character and no negative time\n");
+  const int threads = argc > 5 ? std::atoi(argv[5]) : 4;
+  if (count < 1 || !(seconds >= 0) || threads < 1 || threads > 64) {
+    std::fprintf(stderr, "crowd: at least one character, no negative time, 1 to 64 threads\n");
     return 2;
   }
-  return run(argv[1], argv[2], count, seconds);
+  return run(argv[1], argv[2], count, seconds, threads);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "crowd: %s\n", error.what());
   return 1;

@@ -2,13 +2,18 @@
 // same.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
+#include <cmath>
 #include <numeric>
+#include <random>
 
+#include "crowd/job_system.h"
 #include "fixtures/clips.h"
 #include "fixtures/humanoid.h"
+#include "sinew/animation/crossfade.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
-#include "sinew/crowd/crowd.h"
+#include "sinew/crowd/population.h"
 
 namespace sinew {
 namespace {
@@ -86,6 +91,55 @@ void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool gr
   per_character(state, settings.capacity);
 }
 
+/// A population on a grid, of which 5 % are hit at the chest every second. The whole frame on so many
+/// threads: time of each frame as the host sees it, after a second to fill the world.
+void population_frame(benchmark::State& state, double hits_per_second, int threads) {
+  const int characters = int(state.range(0));
+  const Skeleton rig = fixtures::humanoid();
+  const Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
+  PopulationSettings settings;
+  settings.crowd.capacity = characters;
+  settings.crowd.chunks = 8 * threads;
+  settings.world.workers = threads;
+  settings.character.root = RootDrive::kAssisted;  // so that a hit at the chest is one
+  settings.places = std::clamp(characters / 10, std::min(characters, 16), characters);
+  Status status;
+  const auto people = Population::create(rig, settings, status);
+  if (!people) return state.SkipWithError(status.reason);
+  const int columns = std::max(1, int(std::sqrt(double(characters))));
+  for (int i = 0; i < characters; ++i) {
+    Transform<float> place;
+    place.translation = {2.5f * float(i / columns), 2.5f * float(i % columns), 0};
+    (void)people->play(i, {&clip, 0.013 * i, 1, place});
+  }
+  JobSystem jobs(threads);
+  std::mt19937 random(1);
+  double due = 0;
+  std::vector<double> milliseconds;
+  double solved = 0;
+  const auto frame = [&] {
+    for (due += hits_per_second * characters * kStep; due >= 1; --due) {
+      const float angle = float(random() % 628) / 100;
+      (void)people->push(int(random() % unsigned(characters)), 0,
+                         {60 * std::cos(angle), 60 * std::sin(angle), 0});
+    }
+    (void)people->step(float(kStep), jobs.parallel_for());
+  };
+  for (int n = 0; n < 60; ++n) frame();
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    frame();
+    milliseconds.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    solved += people->solved_count();
+  }
+  std::sort(milliseconds.begin(), milliseconds.end());
+  state.counters["median_ms"] = milliseconds[milliseconds.size() / 2];
+  state.counters["p99_ms"] = milliseconds[milliseconds.size() * 99 / 100];
+  state.counters["in_world"] = solved / double(milliseconds.size());
+  per_character(state, characters);
+}
+
 constexpr InstructionSet kBaseline = InstructionSet::kBaseline, kAvx2 = InstructionSet::kAvx2,
                          kAvx512 = InstructionSet::kAvx512;
 
@@ -101,6 +155,18 @@ BENCHMARK_CAPTURE(crowd_check, residual_support_pose_avx512_16, kAvx512, 16, tru
 BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx2_8, kAvx2, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(10000)->Arg(100000);
+
+BENCHMARK_CAPTURE(population_frame, hit_4_threads, 0.05, 4)->Arg(1000)->Iterations(600)->UseRealTime();
+BENCHMARK_CAPTURE(population_frame, hit_1_thread, 0.05, 1)
+    ->RangeMultiplier(10)
+    ->Range(10, 100000)
+    ->Iterations(30)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(population_frame, undisturbed_1_thread, 0, 1)
+    ->RangeMultiplier(10)
+    ->Range(10, 100000)
+    ->Iterations(60)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace sinew

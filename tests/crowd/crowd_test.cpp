@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <thread>
 
 #include "character/scenes.h"
 #include "fixtures/clips.h"
 #include "fixtures/counting_new.h"
+#include "fixtures/threads.h"
 #include "residual/random_tree.h"
 #include "sinew/effects/support.h"
 
@@ -25,25 +25,6 @@ std::unique_ptr<Crowd> crowd_of(const Skeleton& skeleton, const CrowdSettings& s
   auto crowd = Crowd::create(skeleton, settings, status);
   EXPECT_TRUE(crowd) << status.reason;
   return crowd;
-}
-
-/// Sways all joints of a rig within 0.3 rad of rest.
-Clip swaying_clip(const Skeleton& skeleton, unsigned seed) {
-  const int joints = int(skeleton.joints.size());
-  Clip clip = fixtures::random_clip(
-      {.joints = joints, .duration = 4, .knot_interval = 0.5f, .moving = 1, .seed = seed});
-  Clip::Group& turns = clip.groups[0];
-  for (std::size_t n = 0; n < turns.controls.size() / 4; ++n) {
-    Eigen::Map<Quat<float>> q(turns.controls.data() + 4 * n);
-    const Quat<double> sway = Quat<double>::Identity().slerp(0.2, q.cast<double>());
-    q = (skeleton.joints[n % joints].rest.rotation * sway).cast<float>();
-  }
-  for (std::size_t n = 0; n < clip.groups[1].controls.size() / 3; ++n) {
-    Eigen::Map<Vec3<float>> x(clip.groups[1].controls.data() + 3 * n);
-    x = 0.1f * x + skeleton.joints[0].rest.translation.cast<float>();
-  }
-  for (int j = 0; j < joints; ++j) clip.constants[j] = skeleton.joints[j].rest.cast<float>();
-  return clip;
 }
 
 /// The humanoid with fingers that ride along.
@@ -63,7 +44,8 @@ Skeleton rig_with_fingers() {
 /// A mixed crowd: clips, times, rates and places all differ.
 struct Scene {
   Skeleton rig = rig_with_fingers();
-  std::array<Clip, 3> clips = {swaying_clip(rig, 1), swaying_clip(rig, 2), swaying_clip(rig, 3)};
+  std::array<Clip, 3> clips = {fixtures::swaying_clip(rig, 1), fixtures::swaying_clip(rig, 2),
+                               fixtures::swaying_clip(rig, 3)};
 
   CrowdTrack track(int i) const {
     CrowdTrack track;
@@ -196,16 +178,6 @@ struct Result {
   }
 };
 
-/// A pool as simple as can be: threads take the next index.
-void run_on_threads(void* host, int count, void (*task)(void*, int), void* context) {
-  std::atomic<int> next{0};
-  std::vector<std::jthread> threads;
-  for (int n = 0; n < *static_cast<int*>(host); ++n)
-    threads.emplace_back([&] {
-      for (int i = next++; i < count; i = next++) task(context, i);
-    });
-}
-
 TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
   const Scene scene;
   CrowdSettings settings;
@@ -224,8 +196,10 @@ TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
         settings.chunks = threads == 0 ? 1 : 2 * threads + 1;
         const auto crowd = scene.crowd(settings);
         for (int n = 0; n < 3; ++n)
-          ASSERT_TRUE(
-              crowd->step(kStep, threads == 0 ? ParallelFor{} : ParallelFor{run_on_threads, &threads}).ok());
+          ASSERT_TRUE(crowd
+                          ->step(kStep, threads == 0 ? ParallelFor{}
+                                                     : ParallelFor{fixtures::run_on_threads, &threads})
+                          .ok());
         EXPECT_TRUE(Result(*crowd, settings.capacity).same_bits(wanted))
             << "set " << int(set) << ", " << lanes << " lanes, " << threads << " threads";
       }

@@ -36,9 +36,7 @@ struct FreeBody {
   FreeBody(const V& omega, const V& velocity, const V& gravity) {
     accuracy.tolerance = 1e-10;
     settings.gravity = gravity;
-    SolveSize most;
-    most.add(tree);
-    solver.reserve(most);
+    solver.reserve(problem.room);
     problem.free.assign(6, 1);
     Motion<double> motion(tree);
     JointJet<double> jet;

@@ -110,8 +110,9 @@ struct InfoCommand {
       std::snprintf(text, sizeof text, "%.1f kB", bytes[key].get<double>() / 1000);
       return std::string(text);
     };
-    return "memory: per rig " + kilobytes("skeleton") + " and clips of " + kilobytes("clips") +
-           "; per character " + kilobytes("character") + ", snapshot at most " + kilobytes("snapshot") + "\n";
+    return "memory: per rig " + kilobytes("rig") + " and clips of " + kilobytes("clips") +
+           "; per character " + kilobytes("character") + ", snapshot at most " + kilobytes("snapshot") +
+           "; per thread and character of an island that it solves " + kilobytes("solving") + "\n";
   }
 };
 

@@ -25,15 +25,15 @@ std::size_t heap_of(const Make& make) {
 nlohmann::json memory_of(const Asset& asset) {
   Status status;
   World<float> world({});
-  world.add_character(asset.skeleton, {}, status);  // the first one pays for what the world has only once
+  world.add_character(asset.skeleton, {}, status);
   if (!status) return nullptr;
   const std::size_t snapshot = world.snapshot_capacity();
-  const std::size_t before = heap_in_use();
-  world.add_character(asset.skeleton, {}, status);
-  const std::size_t character = heap_in_use() - before;
+  const WorldMemory memory = world.memory();
   return {{"skeleton", heap_of([&] { return asset.skeleton; })},
           {"clips", heap_of([&] { return asset.clips; })},
-          {"character", character},
+          {"rig", memory.rigs},
+          {"character", memory.characters},
+          {"solving", memory.solving},
           {"snapshot", snapshot}};
 }
 

@@ -29,19 +29,19 @@ void pretend_flight(History<T>& history, const Vec3<T>& gravity, T h) {
 }  // namespace
 
 template <class T>
-void Bounce<T>::reserve(const SolveSize& most) {
-  const int dofs = most.dofs;
+void Bounce<T>::reserve(const SolveRoom& room) {
+  const int dofs = room.dofs;
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs, most.entries);
-  mass_.reserve(dofs, most.entries);
-  first_.reserve(most.trees);
+  axes_.reserve(dofs, room.path_entries);
+  mass_.reserve(dofs, room.path_entries);
+  first_.reserve(room.trees);
   impacts_.reserve(kMost);
   rows_.reserve(std::size_t(kMost) * dofs);
   answers_.reserve(std::size_t(kMost) * dofs);
   delassus_.reserve(kMost * kMost);
   change_.reserve(dofs);
-  turn_.reserve(most.bodies);
-  slide_.reserve(most.bodies);
+  turn_.reserve(room.bodies);
+  slide_.reserve(room.bodies);
 }
 
 template <class T>

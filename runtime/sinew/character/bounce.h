@@ -18,7 +18,12 @@ namespace sinew {
 template <class T>
 class Bounce {
  public:
-  void reserve(const SolveSize& most);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.path_entries * 7 * sizeof(T) + room.dofs * ((2 * kMost + 2) * sizeof(T) + 8 * sizeof(int)) +
+           room.bodies * 2 * sizeof(Vec3<T>) + kMost * (sizeof(Impact) + kMost * sizeof(T));
+  }
 
   /// Whether any contact both bounces and closed in this step.
   static bool possible(std::span<const Contact<T>> contacts);

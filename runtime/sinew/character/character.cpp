@@ -23,6 +23,11 @@ Status check(const JointJet<T>& jet, int joint) {
   return {};
 }
 
+template <class T>
+bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
+  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
+}
+
 }  // namespace
 
 template <class T>
@@ -31,6 +36,10 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
     return Status::error(Code::kInvalidArgument, "target needs one jet per joint of the skeleton");
   for (std::size_t i = 0; i < jets.size(); ++i)
     if (Status status = check(jets[i], static_cast<int>(i)); !status) return status;
+  // What is limp has no use for a target, and sleeps on.
+  if (state_->levels.asleep && !state_->limp() &&
+      !std::equal(jets.begin(), jets.end(), state_->target.begin(), same_pose<T>))
+    state_->levels.wake = true;
   std::copy(jets.begin(), jets.end(), state_->target.begin());
   return {};
 }
@@ -41,11 +50,24 @@ void Character<T>::reset() {
 }
 
 template <class T>
+Status Character<T>::set_detail(const CharacterDetail& detail) {
+  if (Status status = validate(detail); !status) return status;
+  state_->detail = detail;
+  return {};
+}
+
+template <class T>
+const CharacterDetail& Character<T>::detail() const {
+  return state_->detail;
+}
+
+template <class T>
 Status Character<T>::set_strength(T strength) {
   if (std::isnan(strength) || strength < T(0))
     return Status::error(Code::kInvalidArgument, "strength must be ≥ 0");
   state_->settings.strength = double(strength);
   state_->refresh_limits();
+  state_->levels.wake = true;
   return {};
 }
 
@@ -61,6 +83,7 @@ Status Character<T>::set_strength(int joint, T strength) {
     if (ancestor == joint) state_->joint_strength[i] = strength;
   }
   state_->refresh_limits();
+  state_->levels.wake = true;
   return {};
 }
 
@@ -101,6 +124,7 @@ template <class T>
 void Character<T>::set_root_drive(RootDrive drive) {
   state_->settings.root = drive;
   state_->refresh_limits();
+  state_->levels.wake = true;
 }
 
 template <class T>

@@ -15,17 +15,18 @@ constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
-  return (std::uint64_t(tree_a + 1) << 48) ^ (std::uint64_t(point + 1) << 32) ^
-         (std::uint64_t(tree_b + 1) << 16) ^ std::uint64_t(shape + 1);
+  return first_contact_id(tree_a) ^ (std::uint64_t(point + 1) << 32) ^ (std::uint64_t(tree_b + 1) << 16) ^
+         std::uint64_t(shape + 1);
 }
 
 }  // namespace
 
 template <class T>
-void ContactFinder<T>::reserve(int contacts, int colliders) {
-  contacts_.reserve(contacts);
-  bounds_.reserve(colliders);
-  first_bound_.reserve(colliders + 1);
+void ContactFinder<T>::reserve(const SolveRoom& room) {
+  contacts_.reserve(room.contacts);
+  room_ = static_cast<std::size_t>(room.contacts);
+  bounds_.reserve(room.colliders);
+  first_bound_.reserve(room.trees);
 }
 
 template <class T>
@@ -61,7 +62,7 @@ template <class T>
 void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
-  if (c.gap > reach || contacts_.size() == contacts_.capacity()) return;
+  if (c.gap > reach || contacts_.size() >= most_) return;
   remember(c);
   if (c.fresh) {
     stiffen_for_impact(c);
@@ -238,7 +239,12 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   common_origin_ = common_origin;
   h_ = h;
   heaviest_ = T(0);
-  for (const CharacterState<T>* s : states) heaviest_ = std::max(heaviest_, T(s->total_mass));
+  most_ = 0;
+  for (const CharacterState<T>* s : states) {
+    heaviest_ = std::max(heaviest_, T(s->total_mass));
+    most_ += static_cast<std::size_t>(s->problem.room.contacts);
+  }
+  most_ = std::min(most_, room_);
   contacts_.clear();
   bounds_.clear();
   first_bound_.clear();

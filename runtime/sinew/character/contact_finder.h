@@ -18,6 +18,12 @@ struct LaggedForce {
   T offset = T(0);     ///< m, see Contact::offset
 };
 
+/// Identities of the contacts of a world's nth tree begin here and end where the next one's begin.
+constexpr std::uint64_t first_contact_id(int n) {
+  return std::uint64_t(n + 1) << 48;
+}
+constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
+
 /// A shape of the host's, and what it is made of.
 struct HostObstacle {
   const StaticShape* shape = nullptr;
@@ -40,12 +46,16 @@ struct Surroundings {
 template <class T>
 class ContactFinder {
  public:
-  void reserve(int contacts, int colliders);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.contacts * sizeof(Contact<T>) + room.colliders * sizeof(Bound);
+  }
 
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
-  /// feet would. Allocates nothing; contacts beyond what was reserved are dropped.
+  /// feet would. Allocates nothing; contacts beyond the room of the trees are dropped.
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
                              std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin, T h);
@@ -78,8 +88,9 @@ class ContactFinder {
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), heaviest_ = T(0);  ///< s; kg
   std::vector<Contact<T>> contacts_;
-  std::vector<Bound> bounds_;     ///< all colliders of all states
-  std::vector<int> first_bound_;  ///< [state]
+  std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
+  std::vector<Bound> bounds_;        ///< all colliders of all states
+  std::vector<int> first_bound_;     ///< [state]
 };
 
 extern template class ContactFinder<float>;

@@ -1,67 +1,67 @@
 #include "sinew/character/couplings.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sinew {
-namespace {
-
-/// The state of the first node that is on one, or −1.
-template <class T>
-int first_state(const Coupling<T>& c) {
-  const auto moving = std::find_if(c.nodes.begin(), c.nodes.end(),
-                                   [](const CouplingNode<T>& node) { return node.state >= 0; });
-  return moving == c.nodes.end() ? -1 : moving->state;
-}
-
-}  // namespace
 
 template <class T>
 int Couplings<T>::add(Coupling<T> coupling) {
   all_.push_back(std::make_unique<Coupling<T>>(std::move(coupling)));
-  chosen_.reserve(all_.size());
+  working_.reserve(all_.size());
   return static_cast<int>(all_.size()) - 1;
 }
 
 template <class T>
-void Couplings<T>::add_room(States states, SolveSize& size) const {
-  for (const auto& c : all_) {
-    size.nodes += static_cast<int>(c->nodes.size());
-    size.stencils += static_cast<int>(c->stencils.size());
-    size.tetrahedra += static_cast<int>(c->tetrahedra.size());
-    for (const CouplingNode<T>& node : c->nodes)
-      if (node.state >= 0) size.node_entries += path_entries(states[node.state]->tree, node.body);
-  }
+void Couplings<T>::drop_last() {
+  all_.pop_back();
 }
 
-/// Switched on, and all that it is fixed to is in the world.
+template <class T>
+void Couplings<T>::count_in(States states, SolveRooms& rooms) {
+  rooms_.clear();
+  // Trees that are tied together if all couplings are switched on, by their first.
+  std::vector<int> clump_of(states.size());
+  std::iota(clump_of.begin(), clump_of.end(), 0);
+  for (const auto& c : all_) {
+    SolveRoom& room = rooms_.emplace_back();
+    room.nodes = static_cast<int>(c->nodes.size());
+    room.stencils = static_cast<int>(c->stencils.size());
+    room.tetrahedra = static_cast<int>(c->tetrahedra.size());
+    for (const CouplingNode<T>& node : c->nodes)
+      if (node.state >= 0) room.node_entries += path_entries(states[node.state]->tree, node.body);
+    rooms.all += room;
+    const int first = first_tree(*c);
+    for_each_tree(*c, [&](int n) {
+      const auto [to, from] = std::minmax(clump_of[first], clump_of[n]);
+      if (to != from) std::replace(clump_of.begin(), clump_of.end(), int(from), int(to));
+    });
+  }
+  std::vector<SolveRoom> clump(states.size());
+  for (std::size_t n = 0; n < states.size(); ++n) clump[clump_of[n]] += states[n]->problem.room;
+  for (std::size_t c = 0; c < all_.size(); ++c)
+    if (const int first = first_tree(*all_[c]); first >= 0) clump[clump_of[first]] += rooms_[c];
+  for (const auto& c : all_)
+    if (const int first = first_tree(*c); first >= 0) rooms.include(clump[clump_of[first]]);
+}
+
 template <class T>
 bool Couplings<T>::works(const Coupling<T>& c, States states) const {
-  return c.active && std::none_of(c.nodes.begin(), c.nodes.end(), [&](const CouplingNode<T>& node) {
+  return c.active && first_tree(c) >= 0 &&
+         std::none_of(c.nodes.begin(), c.nodes.end(), [&](const CouplingNode<T>& node) {
            return node.state >= 0 && states[node.state]->parked;
          });
 }
 
 template <class T>
-void Couplings<T>::join(States states, std::span<int> group) const {
-  for (const auto& c : all_) {
-    const int first = first_state(*c);
-    if (first < 0 || !works(*c, states)) continue;
-    for (const CouplingNode<T>& node : c->nodes) {
-      if (node.state < 0 || group[node.state] == group[first]) continue;
-      const int from = std::max(group[node.state], group[first]);
-      const int to = std::min(group[node.state], group[first]);
-      std::replace(group.begin(), group.end(), from, to);
-    }
+void Couplings<T>::begin_step(States states) {
+  working_.clear();
+  for (const auto& s : states) s->tied = false;
+  for (std::size_t n = 0; n < all_.size(); ++n) {
+    if (!works(*all_[n], states)) continue;
+    working_.push_back(static_cast<int>(n));
+    for_each_tree(*all_[n], [&](int tree) { states[tree]->tied = true; });
   }
-}
-
-template <class T>
-std::span<Coupling<T>* const> Couplings<T>::of_island(States states, std::span<const int> group, int island) {
-  chosen_.clear();
-  for (const auto& c : all_)
-    if (const int first = first_state(*c); first >= 0 && group[first] == island && works(*c, states))
-      chosen_.push_back(c.get());
-  return chosen_;
 }
 
 template class Couplings<float>;

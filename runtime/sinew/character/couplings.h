@@ -8,6 +8,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/effects/coupling.h"
+#include "sinew/optimizer/solve_room.h"
 
 namespace sinew {
 
@@ -18,28 +19,47 @@ class Couplings {
 
   /// Set-up. Returns its index.
   int add(Coupling<T> coupling);
+  void drop_last();
   /// Set-up: two bodies never touch each other.
   void keep_apart(const BodyPair& pair) { apart_.push_back(pair); }
-  /// Adds the room that all of them need.
-  void add_room(States states, SolveSize& size) const;
+  /// Adds what all of them bring to solves, after all states; what they may tie together is solved as one.
+  void count_in(States states, SolveRooms& rooms);
+  /// What one of them brings to a solve, as counted.
+  const SolveRoom& room(int index) const { return rooms_[index]; }
 
   Coupling<T>& operator[](int index) { return *all_[index]; }
   const Coupling<T>& operator[](int index) const { return *all_[index]; }
   std::span<const std::unique_ptr<Coupling<T>>> all() const { return all_; }
   std::span<const BodyPair> apart() const { return apart_; }
 
-  /// Joins the islands that couplings tie together; `group` [state].
-  void join(States states, std::span<int> group) const;
-  /// The couplings of one island. Valid until the next call.
-  std::span<Coupling<T>* const> of_island(States states, std::span<const int> group, int island);
+  /// Finds those that are switched on and whose trees are all in the world, and marks these trees as tied.
+  void begin_step(States states);
+  /// Indices of these, ascending. Each has a node on a tree.
+  std::span<const int> working() const { return working_; }
 
  private:
   bool works(const Coupling<T>& coupling, States states) const;
 
   std::vector<std::unique_ptr<Coupling<T>>> all_;
-  std::vector<Coupling<T>*> chosen_;
+  std::vector<SolveRoom> rooms_;
+  std::vector<int> working_;
   std::vector<BodyPair> apart_;
 };
+
+/// Calls `what` with the number of each node's tree, where it is on one.
+template <class T, class Function>
+void for_each_tree(const Coupling<T>& coupling, Function what) {
+  for (const CouplingNode<T>& node : coupling.nodes)
+    if (node.state >= 0) what(node.state);
+}
+
+/// The first of these, or −1.
+template <class T>
+int first_tree(const Coupling<T>& coupling) {
+  for (const CouplingNode<T>& node : coupling.nodes)
+    if (node.state >= 0) return node.state;
+  return -1;
+}
 
 extern template class Couplings<float>;
 extern template class Couplings<double>;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sinew/character/cut.h"
+#include "sinew/character/levels.h"
 #include "sinew/character/way_back.h"
 #include "sinew/optimizer/error_estimate.h"
 
@@ -12,9 +13,6 @@ namespace sinew {
 namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kSnapAngle =
-    2e-3;  ///< rad (0.1°) and m: a returning joint this close is on the animation again
-constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
@@ -29,42 +27,66 @@ std::uint64_t mixed(std::uint64_t id) {
   return id ^ (id >> 29);
 }
 
+/// Whose step may be divided; else it is halved once where it must be.
+template <class T>
+bool gets_substeps(const CharacterState<T>* s) {
+  return s->levels.allowed == Level::kSubsteps;
+}
+
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(const SolveSize& most, int colliders) {
-  problems_.reserve(most.trees);
-  free_share_.reserve(most.trees);
-  is_held_.reserve(most.trees);
-  bounce_.reserve(most);
-  finder_.reserve(most.contacts, colliders);
-  lagged_.reserve(most.contacts);
-  solver_.reserve(most);
+void IslandStepper<T>::reserve(const SolveRoom& room) {
+  problems_.reserve(room.trees);
+  free_share_.reserve(room.trees);
+  is_held_.reserve(room.trees);
+  bounce_.reserve(room);
+  finder_.reserve(room);
+  lagged_.reserve(room.contacts);
+  room_ = room.contacts;
+  solver_.reserve(room);
+}
+
+/// Of all the world's forces, those of the island's own features: identities begin with the tree's number.
+template <class T>
+void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
+  lagged_.clear();
+  std::ptrdiff_t room = 0;
+  for (const CharacterState<T>* s : states_) room += s->problem.room.contacts;
+  room = std::min(room, room_);
+  const auto before = [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; };
+  for (const int index : indices_) {
+    const auto begin = std::lower_bound(lagged.begin(), lagged.end(), first_contact_id(index), before);
+    const auto end = std::lower_bound(begin, lagged.end(), first_contact_id(index + 1), before);
+    const auto count = std::min(end - begin, room - std::ptrdiff_t(lagged_.size()));
+    lagged_.insert(lagged_.end(), begin, begin + count);
+  }
 }
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
 /// drives it.
 template <class T>
 void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
+  const bool solves = s.levels.allowed >= Level::kPartial;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    bool driven = true;
-    for (int dof = first; dof < first + count; ++dof)
-      driven = driven && s.problem.law.torque_minus[dof] > T(0) && s.problem.law.torque_plus[dof] > T(0);
+    const bool driven = s.joint_is_driven(i);
     const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
     const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
                            : !driven || s.deviation[i].released;
-    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free;
+    const bool given = !solves || s.baked[i];
+    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free && !given;
   }
 }
 
 /// Hands joints whose needed torque exceeds their muscles' limit to the solve. True if there were any.
 template <class T>
 bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
+  if (s.levels.allowed < Level::kPartial) return false;
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    if (count == 0 || s.problem.free[first]) continue;
+    if (count == 0 || s.problem.free[first] || s.baked[i]) continue;
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
@@ -88,12 +110,8 @@ void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
     bool to_target = count == 0 || !p.free[first];
     if (!to_target) {
       T load = T(0);
-      bool driven = true;
-      for (int dof = first; dof < first + count; ++dof) {
-        driven = driven && p.law.torque_minus[dof] > T(0) && p.law.torque_plus[dof] > T(0);
-        load = std::max(load, s.load[dof]);
-      }
-      to_target = driven && load < T(0.99);
+      for (int dof = first; dof < first + count; ++dof) load = std::max(load, s.load[dof]);
+      to_target = s.joint_is_driven(i) && load < T(0.99);
     }
     if (to_target) {
       p.local[i] = p.target[i];
@@ -179,40 +197,23 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.unknown[dof] = p.free[dof];
     s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }
-  const T tau = T(world.accuracy.return_time), decay = std::exp(-h / tau);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
-    const Transform<T>& wanted = s.wanted[i];
-    const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, wanted, p.local[i]);
     const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
-    Deviation<T>& d = s.deviation[i];
-    T offset = T(0), rate = T(0), missed = T(0), load = T(0);
+    T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
       missed = std::max(missed, std::abs(from_target[k]));
       s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
-      // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
-      // would start the next part of the path too fast or too slow by an error of first order.
-      const T pull = d.rate[k] + d.offset[k] / tau;
-      const bool on_path =
-          !d.on_animation && s.load[first + k] < T(0.99) &&
-          std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < T(4) * settings_.kink_width;
-      d.rate[k] = on_path ? (d.rate[k] - pull * h / tau) * decay : (from_animation[k] - d.offset[k]) / h;
-      d.offset[k] = from_animation[k];
-      offset = std::max(offset, std::abs(d.offset[k]));
-      rate = std::max(rate, std::abs(d.rate[k]));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && p.free[first];
-    d.released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
-    d.on_animation = !d.released && offset < T(kSnapAngle) && rate < T(kSnapRate);
-    if (d.on_animation) {
-      d.offset = {};
-      d.rate = {};
-    }
+    if (!s.baked[i])
+      s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
+    s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
@@ -279,6 +280,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
       s->problem.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time), h);
+    choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
@@ -381,18 +383,13 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
 /// closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
-  const bool closing = std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) {
-    return std::any_of(c->stencils.begin(), c->stencils.end(),
-                       [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
-  });
+  const bool closing =
+      std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) { return c->closes(); });
   if (closing) return false;
-  return std::all_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    if (s->root_is_kinematic() || !s->impulses.empty()) return false;
-    for (const Effect<T>* effect : s->problem.effects)
-      if (!effect->passive()) return false;
-    const JointLaw<T>& law = s->problem.law;
-    return std::all_of(law.torque_plus.begin(), law.torque_plus.end(), [](T t) { return t <= T(0); }) &&
-           std::all_of(law.torque_minus.begin(), law.torque_minus.end(), [](T t) { return t <= T(0); });
+  const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
+  return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
+    const auto& effects = s->problem.effects;
+    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 
@@ -486,6 +483,7 @@ bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
 template <class T>
 int IslandStepper<T>::parts_of(T h) const {
   const Accuracy& accuracy = world_->accuracy;
+  if (std::none_of(states_.begin(), states_.end(), gets_substeps<T>)) return 1;
   int parts = std::max(accuracy.substeps, 1);
   if (accuracy.max_rotation > 0) {
     T fastest = T(0);
@@ -502,17 +500,17 @@ int IslandStepper<T>::parts_of(T h) const {
 }
 
 template <class T>
-void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
-                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-                            std::vector<LaggedForce<T>>& lagged_out) {
+int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
+                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                           std::span<LaggedForce<T>> lagged_out) {
   world_ = &world;
   surroundings_ = surroundings;
   states_ = states;
   indices_ = indices;
   couplings_ = couplings;
   frame_ = h;
-  lagged_.assign(lagged.begin(), lagged.end());
+  choose_lagged(lagged);
   free_share_.assign(states.size(), T(1));
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
@@ -523,8 +521,10 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
     if (!s->is_prop) meet_cuts(*s, h);
   begin_couplings(h);
   const int parts = parts_of(h);
+  const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
+  const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
   for (int n = 0; n < parts; ++n)
-    advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), world.accuracy.max_splits);
+    advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
     CharacterReport& r = s->report;
     r.outer_passes = total_.outer_passes;
@@ -538,7 +538,9 @@ void IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surr
     r.damped = damped_;
     r.held = held_;
   }
-  lagged_out.insert(lagged_out.end(), lagged_.begin(), lagged_.end());
+  const std::size_t count = std::min(lagged_.size(), lagged_out.size());
+  std::copy_n(lagged_.begin(), count, lagged_out.begin());
+  return static_cast<int>(count);
 }
 
 template class IslandStepper<float>;

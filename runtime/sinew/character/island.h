@@ -12,24 +12,31 @@
 
 namespace sinew {
 
-/// Working memory of island steps; one per world, sized when characters are added.
+/// Working memory of island steps; one per worker, sized when characters are added. Keeps nothing from one
+/// step to the next.
 template <class T>
 class IslandStepper {
  public:
-  void reserve(const SolveSize& most, int colliders);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return ContactFinder<T>::bytes(room) + Bounce<T>::bytes(room) + NewtonSolver<T>::bytes(room) +
+           room.contacts * sizeof(LaggedForce<T>);
+  }
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
-  /// sorted by id; new ones are appended to `lagged_out`.
-  void step(const WorldSettings& world, const Surroundings& surroundings, T h,
-            std::span<CharacterState<T>* const> states, std::span<const int> indices,
-            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-            std::vector<LaggedForce<T>>& lagged_out);
+  /// sorted by id; new ones are written to `lagged_out`, as many as it takes. Returns how many.
+  int step(const WorldSettings& world, const Surroundings& surroundings, T h,
+           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+           std::span<LaggedForce<T>> lagged_out);
 
  private:
   int parts_of(T h) const;
   void advance_part(T begin, T end, int splits_left);
   SolveReport attempt(T h, T fraction);
+  void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
   void begin_couplings(T h);
@@ -55,6 +62,7 @@ class IslandStepper {
   std::span<Coupling<T>* const> couplings_;
   T frame_ = T(0);                      ///< s, the whole step
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
+  std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
   SolveReport total_;
   bool all_converged_ = true;
   bool mispredicted_ = false;  ///< contacts or limits changed under bdf2

@@ -21,6 +21,59 @@ Mat3<T> rotation_of(const CharacterState<T>& s, int body, const Mat3<T>* parent)
   return product;
 }
 
+/// An enumeration as one byte, kept within what it knows.
+template <class E>
+void visit_enum(const char* name, E& e, E last, ByteStream& stream) {
+  auto byte = static_cast<std::uint8_t>(e);
+  stream.value(name, byte);
+  if (stream.reading()) e = static_cast<E>(std::min(byte, static_cast<std::uint8_t>(last)));
+}
+
+template <class T>
+void visit_levels(CharacterState<T>& s, ByteStream& stream) {
+  LevelState& l = s.levels;
+  visit_enum("level", l.level, Level::kSubsteps, stream);
+  visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
+  visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
+  std::uint8_t flags =
+      static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) + (l.wake ? 4 : 0));
+  stream.value("asleep, baked, to be woken", flags);
+  if (stream.reading()) {
+    l.asleep = (flags & 1) != 0;
+    s.detail.bake = (flags & 2) != 0;
+    l.wake = (flags & 4) != 0;
+    l.stale = false;
+  }
+  const CharacterDetail usual;
+  const bool detailed =
+      s.detail.significance != usual.significance || s.detail.check_every != usual.check_every;
+  if (stream.part("has a detail of its own", detailed)) {
+    stream.value("significance", s.detail.significance);
+    stream.value("steps between checks", s.detail.check_every);
+    if (stream.reading()) s.detail.check_every = std::max(s.detail.check_every, 1);
+  } else if (stream.reading()) {
+    s.detail.significance = usual.significance;
+    s.detail.check_every = usual.check_every;
+  }
+  stream.value("time above the level", l.unneeded);
+  stream.value("cost", l.cost);
+  stream.value("steps", l.steps);
+  if (stream.part("is capped", l.cap != Level::kSubsteps || l.cap_age < LevelState().cap_age)) {
+    stream.value("age of the cap", l.cap_age);
+    stream.value("cost spared", l.spared);
+  } else if (stream.reading()) {
+    l.cap_age = LevelState().cap_age;
+    l.spared = 0;
+  }
+  if (stream.part("rests", l.still > 0 || l.nap >= 0)) {
+    stream.value("time at rest", l.still);
+    stream.value("who sleeps with it", l.nap);
+  } else if (stream.reading()) {
+    l.still = 0;
+    l.nap = -1;
+  }
+}
+
 template <class T>
 void visit_pose(CharacterState<T>& s, ByteStream& stream) {
   for (Transform<T>& x : s.local) {
@@ -44,6 +97,9 @@ void visit_pose(CharacterState<T>& s, ByteStream& stream) {
 template <class T>
 void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   stream.value("span of the joint speeds", s.rate_step);
+  // The next step's guess looks further back only while nothing changes.
+  const bool guesses =
+      stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0);
   for (int i = 0; i < s.tree.bodies; ++i) {
     const std::size_t count = s.tree.dof_count(i);
     Deviation<T>& d = s.deviation[i];
@@ -55,7 +111,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
       d.released = (flags & 2) != 0;
     }
     stream.array("joint speed", s.rate[i].data(), count);
-    stream.array("joint speed before", s.rate_before[i].data(), count);
+    if (guesses) stream.array("joint speed before", s.rate_before[i].data(), count);
     constexpr std::array<T, 6> none{};
     if (stream.part("joint has a deviation", !same_bits(d.offset, none) || !same_bits(d.rate, none))) {
       stream.array("deviation", d.offset.data(), count);
@@ -105,18 +161,26 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t root = static_cast<std::uint8_t>(s.settings.root);
   stream.value("root drive", root);
   std::uint8_t parked = s.parked ? 1 : 0;
-  stream.value("prop is out of the world", parked);
-  if (stream.reading()) s.parked = s.is_prop && parked != 0;
+  stream.value("out of the world", parked);
+  if (stream.reading()) s.parked = parked != 0;
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kFree))
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
-  stream.array("strength of a joint", s.joint_strength.data(), s.joint_strength.size());
-  stream.array("strength of a muscle", s.muscle_strength.data(), s.muscle_strength.size());
+  const auto visit_strengths = [&](const char* name, std::vector<T>& strengths) {
+    const bool some = std::any_of(strengths.begin(), strengths.end(), [](T x) { return x != T(1); });
+    if (stream.part("has strengths of its own", some))
+      stream.array(name, strengths.data(), strengths.size());
+    else if (stream.reading())
+      std::fill(strengths.begin(), strengths.end(), T(1));
+  };
+  visit_strengths("strength of a joint", s.joint_strength);
+  visit_strengths("strength of a muscle", s.muscle_strength);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("energy ceiling", s.energy_ceiling);
   stream.value("stored energy", s.report.elastic_energy);
+  visit_levels(s, stream);
   visit_pose(s, stream);
   visit_joints(s, stream);
   visit_history(s, stream);
@@ -197,6 +261,13 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   }
 }
 
+void visit_budget(BudgetState& budget, ByteStream& stream) {
+  stream.value("forecast of the cost", budget.forecast);
+  stream.value("cost of a unit of work", budget.scale);
+  stream.value("steps above the budget", budget.over);
+  stream.value("steps below it", budget.under);
+}
+
 template <class T>
 void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
   std::uint8_t active = coupling.active ? 1 : 0;
@@ -206,14 +277,20 @@ void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
   for (Stencil<T>& e : coupling.stencils) stream.vector("what is left open of a loop", e.offset);
 }
 
+/// What belongs to nobody.
+template <class T>
+void visit_world(const MovingParts<T>& world, ByteStream& stream) {
+  visit_budget(world.budget, stream);
+  for (const auto& c : world.couplings) visit_coupling(*c, stream);
+  visit_lagged(world.lagged, stream);
+}
+
 /// The bytes behind the header.
 template <class T>
 void visit(const MovingParts<T>& world, Content content, ByteStream& stream) {
   for (const auto& s : world.states)
     content == Content::kState ? visit_state(*s, stream) : visit_inputs(*s, stream);
-  if (content != Content::kState) return;
-  for (const auto& c : world.couplings) visit_coupling(*c, stream);
-  visit_lagged(world.lagged, stream);
+  if (content == Content::kState) visit_world(world, stream);
 }
 
 }  // namespace
@@ -270,8 +347,7 @@ SnapshotField field_at(const MovingParts<T>& world, std::size_t byte) {
     visit_state(*world.states[n], stream);
     if (*stream.name()) return {static_cast<int>(n), stream.name()};
   }
-  for (const auto& c : world.couplings) visit_coupling(*c, stream);
-  if (!*stream.name()) visit_lagged(world.lagged, stream);
+  visit_world(world, stream);
   return {-1, stream.name()};
 }
 

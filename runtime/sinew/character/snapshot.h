@@ -12,6 +12,8 @@
 #include <type_traits>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/levels.h"
+#include "sinew/effects/coupling.h"
 
 namespace sinew {
 
@@ -105,6 +107,7 @@ template <class T>
 struct MovingParts {
   std::span<const std::unique_ptr<CharacterState<T>>> states;
   std::vector<LaggedForce<T>>& lagged;  ///< normal forces remembered for friction
+  BudgetState& budget;
   std::span<const std::unique_ptr<Coupling<T>>> couplings;
 };
 

@@ -4,39 +4,18 @@
 #include <cmath>
 
 namespace sinew {
+namespace {
+
+/// rad (0.1°) and m: a returning joint this close is on the animation again
+constexpr double kSnapAngle = 2e-3;
+constexpr double kSnapRate = 5e-2;  ///< 1/s
+constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
+constexpr double kLimbSpeed = 6;    ///< m/s against the root, where nobody has measured it
+
+}  // namespace
 
 template <class T>
-CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
-    : skeleton(s),
-      tree(skeleton),
-      settings(c),
-      target(s.joints.size()),
-      target_before(s.joints.size()),
-      local(s.joints.size()),
-      model(s.joints.size()),
-      rate(s.body_count),
-      rate_before(s.body_count),
-      deviation(s.body_count),
-      joint_strength(s.body_count, T(1)),
-      muscle_strength(s.muscles.size(), T(1)),
-      torque(tree.dofs, T(0)),
-      load(tree.dofs, T(0)),
-      limit(tree.dofs, T(0)),
-      unknown(tree.dofs, 0),
-      problem(tree, skeleton),
-      guessed(tree),
-      history(tree.bodies),
-      motion(tree),
-      wanted(tree.bodies) {
-  total_mass = skeleton.total_mass();
-  floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
-  impulses.reserve(64);
-  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
-    const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
-    target[i].rotation = rest.rotation;
-    target[i].translation = rest.translation;
-  }
-  target_before = target;
+Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
   for (std::size_t n = 0; n < skeleton.colliders.size(); ++n) {
     Collider on_body = skeleton.colliders[n];
     while (on_body.joint >= skeleton.body_count) {
@@ -52,18 +31,84 @@ CharacterState<T>::CharacterState(const Skeleton& s, const CharacterSettings& c)
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
+  std::vector<Transform<T>> local;
+  for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
+  Kinematics<T> rest(tree);
+  forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
+  choose_self_pairs(rest);
+  choose_baked();
+  for (const ContactPoint<T>& p : points) {
+    const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
+    radius = std::max(radius, (at - rest.origin[0]).norm() + p.radius);
+  }
+}
+
+/// Ends of limbs, by what they mean on a body; where nothing says so, the last joints.
+template <class T>
+void Rig<T>::choose_baked() {
+  bakes.assign(tree.bodies, 0);
+  std::vector<std::uint8_t> last(tree.bodies, 1);
+  bool any = false;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Role role = skeleton.joints[i].role;
+    bakes[i] = role == Role::kHandL || role == Role::kHandR || role == Role::kFootL || role == Role::kFootR ||
+               role == Role::kToesL || role == Role::kToesR;
+    any = any || bakes[i];
+    if (tree.parent[i] >= 0 && tree.dof_count(i) > 0) last[tree.parent[i]] = 0;
+  }
+  for (int i = 0; i < tree.bodies && !any; ++i)
+    bakes[i] = last[i] && tree.parent[i] > 0 && tree.dof_count(i) > 0;
+}
+
+template <class T>
+CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c)
+    : rig(std::move(of)),
+      skeleton(rig->skeleton),
+      tree(rig->tree),
+      total_mass(rig->total_mass),
+      colliders(rig->colliders),
+      bound_center(rig->bound_center),
+      bound_radius(rig->bound_radius),
+      points(rig->points),
+      first_point(rig->first_point),
+      may_touch(rig->may_touch),
+      radius(rig->radius),
+      settings(c),
+      detail(c.detail),
+      target(skeleton.joints.size()),
+      target_before(skeleton.joints.size()),
+      local(skeleton.joints.size()),
+      model(skeleton.joints.size()),
+      rate(tree.bodies),
+      rate_before(tree.bodies),
+      deviation(tree.bodies),
+      joint_strength(tree.bodies, T(1)),
+      muscle_strength(skeleton.muscles.size(), T(1)),
+      torque(tree.dofs, T(0)),
+      load(tree.dofs, T(0)),
+      limit(tree.dofs, T(0)),
+      unknown(tree.dofs, 0),
+      problem(tree, skeleton),
+      guessed(tree),
+      history(tree.bodies),
+      motion(tree),
+      baked(tree.bodies, 0),
+      wanted(tree.bodies) {
+  floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
+  impulses.reserve(64);
+  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
+    const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
+    target[i].rotation = rest.rotation;
+    target[i].translation = rest.translation;
+  }
   report.dofs = tree.dofs;
   refresh_limits();
   reset_to_target(Vec3<T>::Zero());
-  choose_self_pairs();
-  radius = T(0.1);
-  for (const ContactPoint<T>& p : points)
-    radius = std::max(radius, (model[p.body] * p.local - model[0].translation).norm() + p.radius);
 }
 
 /// Colliders of one body, of neighbours, and those that overlap at rest never touch: joints hold them.
 template <class T>
-void CharacterState<T>::choose_self_pairs() {
+void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
   const int count = static_cast<int>(colliders.size());
   may_touch.assign(std::size_t(count) * count, 0);
   const auto moving = [&](int body) {  // the body itself, or what it is fixed to
@@ -88,7 +133,7 @@ void CharacterState<T>::choose_self_pairs() {
         c.shape = colliders[b].shape;
         c.size = colliders[b].size.template cast<T>();
         c.shape_pose = colliders[b].local.template cast<T>();
-        measure<T>(problem.kinematics, &problem.kinematics, c);
+        measure<T>(rest, &rest, c);
         apart = c.gap > T(clearance);
       }
       may_touch[std::size_t(a) * count + b] = apart;
@@ -141,6 +186,10 @@ void CharacterState<T>::refresh_limits() {
     problem.law.torque_minus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_minus);
     problem.law.torque_plus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_plus);
   }
+  driven = !is_prop;
+  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
+  for (int dof = first; dof < tree.dofs; ++dof)
+    driven = driven && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
 }
 
 template <class T>
@@ -175,11 +224,8 @@ void CharacterState<T>::bound_particles() {
 }
 
 template <class T>
-T CharacterState<T>::fastest() const {
-  if (!is_particles) return history.velocity[0].norm();
-  T most = T(0);
-  for (const Vec3<T>& v : history.velocity) most = std::max(most, v.norm());
-  return most;
+T CharacterState<T>::pace() const {
+  return is_particles ? fastest() : history.velocity[0].norm();
 }
 
 template <class T>
@@ -214,11 +260,43 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
+  forget_contacts();
+  levels.wake = levels.wake || levels.asleep;  // for those who slept with it
+  levels.asleep = levels.stale = false;
+  levels.still = 0;
+  std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
+}
+
+template <class T>
+void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   energy_ceiling = std::numeric_limits<double>::infinity();
-  std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
+}
+
+template <class T>
+void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T return_time) {
+  const std::array<T, 6> from_animation = joint_offset_value<T>(tree, i, wanted[i], at);
+  Deviation<T>& d = deviation[i];
+  const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
+  T offset = T(0), speed = T(0);
+  for (int k = 0; k < tree.dof_count(i); ++k) {
+    // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
+    // would start the next part of the path too fast or too slow by an error of first order.
+    const T pull = d.rate[k] + d.offset[k] / return_time;
+    const bool on_path = !d.on_animation && load[tree.first_dof[i] + k] < T(0.99) &&
+                         std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
+    d.rate[k] =
+        on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
+    d.offset[k] = from_animation[k];
+    offset = std::max(offset, std::abs(d.offset[k]));
+    speed = std::max(speed, std::abs(d.rate[k]));
+  }
+  d.on_animation = !d.released && offset < T(kSnapAngle) && speed < T(kSnapRate);
+  if (!d.on_animation) return;
+  d.offset = {};
+  d.rate = {};
 }
 
 template <class T>
@@ -229,11 +307,27 @@ bool CharacterState<T>::undisturbed() const {
 }
 
 template <class T>
-bool CharacterState<T>::fully_driven() const {
-  const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.first_dof[1] : 0;
-  for (int dof = first; dof < tree.dofs; ++dof)
-    if (!(problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0))) return false;
-  return true;
+bool CharacterState<T>::joint_is_driven(int body) const {
+  bool all = true;
+  for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof)
+    all = all && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
+  return all;
+}
+
+template <class T>
+T CharacterState<T>::fastest() const {
+  if (levels.stale) return history.velocity[0].norm() + T(kLimbSpeed);
+  T square = T(0);
+  for (const Vec3<T>& v : history.velocity) square = std::max(square, v.squaredNorm());
+  return std::sqrt(square);
+}
+
+template <class T>
+bool CharacterState<T>::limp() const {
+  const auto none = [](T most) { return most <= T(0); };
+  const JointLaw<T>& law = problem.law;
+  return !root_is_kinematic() && std::all_of(law.torque_plus.begin(), law.torque_plus.end(), none) &&
+         std::all_of(law.torque_minus.begin(), law.torque_minus.end(), none);
 }
 
 template <class T>
@@ -242,6 +336,8 @@ int CharacterState<T>::body_of(int joint) const {
   return joint;
 }
 
+template struct Rig<float>;
+template struct Rig<double>;
 template struct CharacterState<float>;
 template struct CharacterState<double>;
 

@@ -22,17 +22,73 @@ struct Deviation {
   bool released = false;      ///< was an unknown in the last step
 };
 
+/// See level_of_detail.h.
+struct LevelState {
+  Level level = Level::kChecked;  ///< as reported
+  Level cap = Level::kSubsteps;   ///< of the budget
+  bool asleep = false;
+  float unneeded = 0;       ///< s since a level as high was needed
+  float cap_age = 1e6f;     ///< s since the cap changed
+  float still = 0;          ///< s at rest
+  float cost = 0;           ///< smoothed, as Budget::limit
+  float spared = 0;         ///< that the cap saves, as `cost`
+  std::int32_t nap = -1;    ///< who sleeps with it: all with the same number
+  std::uint32_t steps = 0;  ///< staggered from one character to the next
+  // Of the present step
+  Level allowed = Level::kSubsteps, did = Level::kChecked;
+  bool wake = false;           ///< the host changed something
+  bool stale = false;          ///< played without a check: the history is behind, see catch_up()
+  double spent = 0, work = 0;  ///< as Budget::limit; units of work
+};
+
+/// What all characters of one skeleton share.
 template <class T>
-struct CharacterState {
+struct Rig {
   Skeleton skeleton;
   Tree<T> tree;
+  double total_mass = 0;              ///< kg
+  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
+  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
+  std::vector<T> bound_radius;
+  std::vector<ContactPoint<T>> points;
+  std::vector<int> first_point;         ///< [collider + 1] into points
+  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
+  std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
+  T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
+
+  explicit Rig(const Skeleton& skeleton);
+
+ private:
+  void choose_self_pairs(const Kinematics<T>& rest);
+  void choose_baked();
+};
+
+template <class T>
+struct CharacterState {
+  std::shared_ptr<const Rig<T>> rig;
+  const Skeleton& skeleton;  ///< these are the rig's
+  const Tree<T>& tree;
+  const double total_mass;  ///< kg
+  const std::vector<Collider>& colliders;
+  const std::vector<Vec3<T>>& bound_center;
+  const std::vector<T>& bound_radius;
+  const std::vector<ContactPoint<T>>& points;
+  const std::vector<int>& first_point;
+  const std::vector<std::uint8_t>& may_touch;
+  T radius;  ///< m, from `middle` to the furthest collider; characters and props: the rig's
+  Vec3<T> particles_middle = Vec3<T>::Zero();
+
   CharacterSettings settings;
   bool is_prop = false;       ///< or a body of particles: nothing animates it
   bool is_particles = false;  ///< every body but the fixed root is a particle
-  bool parked = false;        ///< a prop out of the world
-  bool carried = false;       ///< in this step, see carry_over()
-  double total_mass = 0;      ///< kg
-  bool floats = false;        ///< hangs on one free root, whose translation is `history.place` rounded
+  CharacterDetail detail;
+  LevelState levels;
+  bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
+  bool tied = false;     ///< in this step, by a coupling: it has to be solved
+  bool parked = false;   ///< out of the world
+  bool crowded = false;  ///< near one whom it was not solved together with: the island was full
+  bool carried = false;  ///< in this step, see carry_over()
+  bool floats = false;   ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
@@ -52,14 +108,7 @@ struct CharacterState {
   Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;
-  std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
-  std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
-  std::vector<T> bound_radius;
-  std::vector<ContactPoint<T>> points;
-  std::vector<int> first_point;         ///< [collider + 1] into points
-  std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
-  T radius = T(1);  ///< m, from `middle` to the furthest collider; characters and props: at rest
-  Vec3<T> particles_middle = Vec3<T>::Zero();
+  std::vector<std::uint8_t> baked;      ///< [body] goes on by itself in this step
   std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
@@ -68,7 +117,7 @@ struct CharacterState {
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;
 
-  CharacterState(const Skeleton& s, const CharacterSettings& c);
+  CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c);
 
   /// N/m of one contact point: the weight of the heaviest that it may have to bear (kg, of those near, at
   /// most a hundred times its own) sinks it by the accuracy's depth.
@@ -97,20 +146,32 @@ struct CharacterState {
   }
   /// Puts everything on the present target, with its velocity.
   void reset_to_target(const Vec3<T>& gravity);
+  /// Nothing touches, and the speed before the last step's is not known.
+  void forget_contacts();
+  /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
+  /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
+  void update_deviation(int body, const Transform<T>& at, T h, T return_time);
   /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
-  Vec3<T> middle() const { return is_particles ? particles_middle : model[0].translation; }
+  Vec3<double> middle() const {
+    return is_particles ? Vec3<double>(particles_middle.template cast<double>()) : history.place;
+  }
   /// m/s: of the root, or of the fastest particle.
-  T fastest() const;
+  T pace() const;
   bool undisturbed() const;
-  /// Something holds every joint: without that there is nothing to play.
-  bool fully_driven() const;
+  /// Every degree of freedom of a joint has a muscle, in both directions.
+  bool joint_is_driven(int body) const;
+  /// Speed of the fastest body, m/s.
+  T fastest() const;
+  /// No joint has a muscle, nothing drives the root.
+  bool limp() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
-  void choose_self_pairs();
   void bound_particles();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 
+extern template struct Rig<float>;
+extern template struct Rig<double>;
 extern template struct CharacterState<float>;
 extern template struct CharacterState<double>;
 

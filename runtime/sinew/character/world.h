@@ -18,10 +18,12 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/character/level_of_detail.h"
 #include "sinew/effects/effect.h"
 #include "sinew/effects/loop.h"
 #include "sinew/effects/particles.h"
 #include "sinew/optimizer/accuracy.h"
+#include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -40,12 +42,14 @@ struct CharacterSettings {
   double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
+  CharacterDetail detail;
 };
 
 /// What the last step did with one character.
 struct CharacterReport {
-  int dofs = 0;          ///< degrees of freedom of the character
-  int unknown_dofs = 0;  ///< of these, handed to the optimizer; 0 = pure playback
+  Level level = Level::kChecked;  ///< see LevelOfDetail::dwell: what it needed lately, not only in this step
+  int dofs = 0;                   ///< degrees of freedom of the character
+  int unknown_dofs = 0;           ///< of these, handed to the optimizer; 0 = pure playback
   int outer_passes = 0;
   int factorisations = 0;
   int chords = 0;        ///< steps of simplified Newton, with the matrix of the pass before
@@ -56,6 +60,7 @@ struct CharacterReport {
   int splits = 0;        ///< of these, halvings because a solve did not converge
   int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
   int held = 0;          ///< trees that were stopped where they stood: no pose could be found
+  bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
   bool converged = true;
   bool used_bdf2 = false;
   bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
@@ -84,6 +89,7 @@ struct PropSettings {
 
 struct WorldSettings {
   Accuracy accuracy;
+  LevelOfDetail detail;
   Vec3<double> gravity{0, 0, -9.81};
   double ground_height = 0;
   bool ground = true;
@@ -91,6 +97,19 @@ struct WorldSettings {
   double ground_restitution = 0;  ///< see Collider::restitution
   bool body_contact = true;       ///< characters and props meet each other
   bool ground_support = true;     ///< the floor bears what a driven root would (see effects/support.h)
+  int workers = 1;  ///< threads that a step may use, through its ParallelFor; each has its own memory
+  std::size_t memory_cap = 0;  ///< bytes (see WorldMemory); who would exceed it is not added. 0: none
+  int island_dofs = 4096;  ///< degrees of freedom that are solved together at most; beyond, neighbours pass
+                           ///< through each other. Limits the memory
+};
+
+/// Bytes that a world has from the heap, without what the allocator adds.
+struct WorldMemory {
+  std::size_t rigs = 0;        ///< shared by all characters of a skeleton
+  std::size_t characters = 0;  ///< and props
+  std::size_t solving = 0;  ///< of the workers: the first can solve the largest island, the others small ones
+
+  std::size_t total() const { return rigs + characters + solving; }
 };
 
 /// Where a byte of a snapshot belongs.
@@ -125,6 +144,8 @@ class Character {
   /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle.
   T muscle_torque(int muscle) const;
   void set_root_drive(RootDrive drive);
+  Status set_detail(const CharacterDetail& detail);
+  const CharacterDetail& detail() const;
   /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
   const Skeleton& skeleton() const;
@@ -194,10 +215,20 @@ class World {
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   void park_prop(int index);
   const CharacterReport& prop_report(int index) const;
+  /// Takes a character out of the world, where it costs nothing and touches nobody, until it is brought back:
+  /// onto its target then, as by reset().
+  void park_character(int index);
+  void unpark_character(int index);
+  bool parked(int index) const;
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
-  /// Allocates nothing, throws nothing. On an error nothing has moved.
-  Status step(T h);
+  /// Allocates nothing, throws nothing, takes no lock. On an error nothing has moved. The result has the same
+  /// bits for any number of workers and threads.
+  Status step(T h, const ParallelFor& parallel_for = {});
+
+  /// Of the last step.
+  const WorldReport& report() const;
+  WorldMemory memory() const;
 
   // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
   // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.

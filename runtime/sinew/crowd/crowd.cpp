@@ -240,10 +240,7 @@ Status Crowd::step(double h, const ParallelFor& parallel_for) {
   if (!(h >= 0 && h <= 1)) return Status::error(Code::kOutOfRange, "step is not within 0 and 1 s");
   Impl& impl = *impl_;
   impl.step = h;
-  if (parallel_for.run)
-    parallel_for.run(parallel_for.host, impl.settings.chunks, Impl::run_chunk, &impl);
-  else
-    for (int chunk = 0; chunk < impl.settings.chunks; ++chunk) Impl::run_chunk(&impl, chunk);
+  parallel_for(impl.settings.chunks, Impl::run_chunk, &impl);
   impl.overloaded.clear();
   for (int b = 0; b < impl.batches; ++b)
     for (int lane = 0; lane < impl.lanes; ++lane) {

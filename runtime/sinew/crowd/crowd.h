@@ -18,17 +18,10 @@
 #include <span>
 
 #include "sinew/animation/clip.h"
+#include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
-
-/// The host's job system.
-struct ParallelFor {
-  /// Calls task(context, i) once for every i in [0, count), on any threads and in any order, and returns when
-  /// all have returned. Null: here, one after the other.
-  void (*run)(void* host, int count, void (*task)(void* context, int index), void* context) = nullptr;
-  void* host = nullptr;
-};
 
 enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512 };
 

@@ -12,6 +12,7 @@
 // Every element gives its exact energy and gradient and a positive semidefinite second derivative.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -86,6 +87,12 @@ struct Coupling {
   bool active = true;
   bool leads_out = false;  ///< stencils that begin open close at a walking pace (loops)
   double energy = 0;       ///< J, when last measured
+
+  /// Whether something that began open is still being led out: that does work.
+  bool closes() const {
+    return std::any_of(stencils.begin(), stencils.end(),
+                       [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
+  }
 };
 
 /// Rest shape of a tetrahedron from four corners (m). False where it has no volume or is inside out.

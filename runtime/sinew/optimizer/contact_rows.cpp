@@ -6,8 +6,6 @@
 namespace sinew {
 namespace {
 
-constexpr int kEntriesPerContact = 64;
-
 /// path += a·x + b·y + c·z over the blocks that hold entries 0 … last.
 template <class T>
 inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b, const T* __restrict y, T c,
@@ -19,11 +17,11 @@ inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b,
 }  // namespace
 
 template <class T>
-void ContactRows<T>::reserve(int contacts) {
+void ContactRows<T>::reserve(int contacts, int entries) {
   rows_.reserve(contacts);
-  unknown_.reserve(contacts * kEntriesPerContact);
-  for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]})
-    v->reserve(contacts * kEntriesPerContact);
+  unknown_.reserve(entries);
+  for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->reserve(entries);
+  most_entries_ = entries;
 }
 
 template <class T>
@@ -34,7 +32,8 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int 
   if (leaf < 0 || leaf == above) return side;
   const int whole = pattern.depth[leaf] + 1;
   const std::size_t begin = unknown_.size(), size = begin + TreePattern::padded(whole);
-  if (size > unknown_.capacity()) return side;  // full: this side stands still in the inner problem
+  if (size > static_cast<std::size_t>(most_entries_))
+    return side;  // full: this side stands still in the inner problem
   unknown_.resize(size);
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->resize(size);
   // What moves both sides alike, up to `above`, is left out.

@@ -16,8 +16,14 @@ namespace sinew {
 template <class T>
 class ContactRows {
  public:
-  /// Set-up for so many contacts; nothing allocates afterwards.
-  void reserve(int contacts);
+  /// Set-up for so many contacts and entries of their paths; nothing allocates afterwards.
+  void reserve(int contacts, int entries);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.contacts * sizeof(Row) + room.contact_entries * (sizeof(int) + 6 * sizeof(T));
+  }
+  /// Of the coming solve: as many entries as its trees have room for, whoever else the memory serves.
+  void limit(int entries) { most_entries_ = entries; }
 
   /// Linearises all contacts nearer than `near` (m) about the present kinematics of `trees`.
   void collect(std::span<TreeProblem<T>* const> trees, std::span<const Contact<T>> contacts,
@@ -80,6 +86,7 @@ class ContactRows {
   std::vector<int> unknown_;  ///< [entry]
   std::vector<T> gap_, slip_[2],
       move_[3];  ///< [entry] change per unknown; move_: of the contact point, world
+  int most_entries_ = 0;
   T stick_ = T(0);
   bool coupled_ = false;
 };

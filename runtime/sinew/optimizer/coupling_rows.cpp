@@ -27,13 +27,13 @@ void add_wrenches(const Coupling<T>& c, std::span<TreeProblem<T>* const> trees) 
 }
 
 template <class T>
-void CouplingRows<T>::reserve(const SolveSize& most) {
-  nodes_.reserve(most.nodes);
-  moved_.reserve(most.nodes);
-  pulled_.reserve(most.nodes);
-  stencils_.reserve(most.stencils);
-  tetrahedra_.reserve(most.tetrahedra);
-  for (std::vector<T>& v : along_) v.reserve(most.node_entries);
+void CouplingRows<T>::reserve(const SolveRoom& room) {
+  nodes_.reserve(room.nodes);
+  moved_.reserve(room.nodes);
+  pulled_.reserve(room.nodes);
+  stencils_.reserve(room.stencils);
+  tetrahedra_.reserve(room.tetrahedra);
+  for (std::vector<T>& v : along_) v.reserve(room.node_entries);
 }
 
 template <class T>

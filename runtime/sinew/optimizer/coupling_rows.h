@@ -27,7 +27,12 @@ template <class T>
 class CouplingRows {
  public:
   /// Set-up; nothing allocates afterwards.
-  void reserve(const SolveSize& most);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return room.nodes * (sizeof(Node) + 2 * sizeof(Vec3<T>)) + room.stencils * sizeof(Stencils) +
+           room.tetrahedra * sizeof(Tetrahedra) + room.node_entries * 3 * sizeof(T);
+  }
 
   /// Linearises all elements about the present kinematics of `trees`, where their nodes have been placed.
   void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,

@@ -12,6 +12,8 @@ template <class T>
 class EllipsoidRows {
  public:
   void reserve(int joints) { rows_.reserve(joints); }
+  /// That reserve() takes.
+  static std::size_t bytes(int joints) { return joints * sizeof(Row); }
 
   /// Takes the rows of the trees as they were measured. Unknowns are those of all trees together.
   void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns);

@@ -26,20 +26,22 @@ T dot(std::span<const T> a, std::span<const T> b) {
 }  // namespace
 
 template <class T>
-void InnerProblem<T>::reserve(const SolveSize& most) {
-  turn_.reserve(most.bodies);
-  slide_.reserve(most.bodies);
-  unknowns_.reserve(most.dofs);
-  axes_.reserve(most.dofs, most.entries);
-  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(most.dofs, most.entries);
-  contact_rows_.reserve(most.contacts);
-  coupling_rows_.reserve(most);
-  joint_rows_.reserve(most.dofs * 8 + most.effect_rows);
-  path_.resize(TreePattern::padded(most.dofs));
-  ellipsoid_rows_.reserve(most.dofs / 3);
+void InnerProblem<T>::reserve(const SolveRoom& room) {
+  const int dofs = room.dofs;
+  most_entries_ = room.contact_entries;
+  turn_.reserve(room.bodies);
+  slide_.reserve(room.bodies);
+  unknowns_.reserve(dofs);
+  axes_.reserve(dofs, room.path_entries);
+  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, room.path_entries);
+  contact_rows_.reserve(room.contacts, room.contact_entries);
+  coupling_rows_.reserve(room);
+  joint_rows_.reserve(dofs * 8 + room.effect_rows);
+  path_.resize(TreePattern::padded(dofs));
+  ellipsoid_rows_.reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
-    v->reserve(most.dofs);
+    v->reserve(dofs);
 }
 
 template <class T>
@@ -48,6 +50,9 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   trees_ = trees;
   factorisations = products = 0;
   unknowns_.clear();
+  int entries = 0;
+  for (const TreeProblem<T>* p : trees_) entries += p->room.contact_entries;
+  contact_rows_.limit(std::min(entries, most_entries_));
   for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
 }
 

@@ -27,7 +27,15 @@ struct InnerReport {
 template <class T>
 class InnerProblem {
  public:
-  void reserve(const SolveSize& most);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return ContactRows<T>::bytes(room) + CouplingRows<T>::bytes(room) +
+           EllipsoidRows<T>::bytes(room.dofs / 3) +
+           room.dofs * (8 * sizeof(JointRows) + 13 * sizeof(T) + 8 * sizeof(int)) +
+           room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
+           room.bodies * 2 * sizeof(Vec3<T>);
+  }
 
   /// Numbers the unknowns of all trees.
   void begin(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees);
@@ -94,6 +102,7 @@ class InnerProblem {
   TreeMatrix<T> local_{unknowns_.pattern};   ///< H₀ + what coupling elements do within a path
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
+  int most_entries_ = 0;  ///< of contact rows, that there is memory for
   ContactRows<T> contact_rows_;
   CouplingRows<T> coupling_rows_;
   std::vector<JointRows> joint_rows_;

@@ -15,10 +15,10 @@ constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evalua
 }  // namespace
 
 template <class T>
-void NewtonSolver<T>::reserve(const SolveSize& most) {
-  inner_.reserve(most);
-  plain_.reserve(most.dofs);
-  base_.reserve(most.bodies);
+void NewtonSolver<T>::reserve(const SolveRoom& room) {
+  inner_.reserve(room);
+  plain_.reserve(room.dofs);
+  base_.reserve(room.bodies);
 }
 
 template <class T>

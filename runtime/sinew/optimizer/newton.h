@@ -43,7 +43,11 @@ template <class T>
 class NewtonSolver {
  public:
   /// Set-up for solves of at most that size; solving allocates nothing.
-  void reserve(const SolveSize& most);
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room) {
+    return InnerProblem<T>::bytes(room) + room.dofs * sizeof(T) + room.bodies * sizeof(Transform<T>);
+  }
 
   /// Minimises over the free degrees of freedom of all trees together, starting at their `local`. On return
   /// every tree's kinematics, wrenches and gradient are those at the result; the energy never rose on the

@@ -57,6 +57,7 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
       composite(t.bodies),
       joint_curvature(t.bodies, Mat3<T>::Zero()) {
   pushes.reserve(64);
+  room = room_of(t, 0, 0, 0);
   rows.reserve(6 * t.dofs + 3 * t.bodies);
   ellipsoids.reserve(t.bodies);
 }

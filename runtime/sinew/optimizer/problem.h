@@ -12,6 +12,7 @@
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/muscle/joint_rows.h"
 #include "sinew/optimizer/scheme.h"
+#include "sinew/optimizer/solve_room.h"
 #include "sinew/residual/composite.h"
 
 namespace sinew {
@@ -73,29 +74,12 @@ struct TreeProblem {
   std::vector<JointRow<T>> effect_rows;        ///< all of the effects'; those of unknowns are in `rows` too
   std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
   bool stiff = false;                          ///< some of them is not zero
+  SolveRoom room;                              ///< what this tree brings to a solve
   int first_unknown_map = 0;                   ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
   /// Set-up: puts an effect, attached to this tree, into the plan if it has instances.
   void plan(Effect<T>& effect);
-};
-
-/// Room that solves need at most.
-struct SolveSize {
-  int trees = 0, bodies = 0, dofs = 0;
-  int entries = 0;  ///< of a tree matrix
-  int contacts = 0;
-  int effect_rows = 0;
-  int nodes = 0, stencils = 0, tetrahedra = 0;  ///< of couplings
-  int node_entries = 0;                         ///< of the paths of all nodes
-
-  template <class T>
-  void add(const Tree<T>& tree) {
-    ++trees;
-    bodies += tree.bodies;
-    dofs += tree.dofs;
-    entries += matrix_entries(tree);
-  }
 };
 
 /// Values that all trees of a solve share.

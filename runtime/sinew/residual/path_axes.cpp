@@ -8,7 +8,7 @@ namespace sinew {
 
 template <class T>
 void PathAxes<T>::reserve(int unknowns, int entries) {
-  values_.reserve(std::size_t(entries) * 6);
+  values_.reserve(std::size_t(6) * entries);
   first_.reserve(unknowns);
   stride_.reserve(unknowns);
 }

@@ -49,6 +49,8 @@ struct DofLimits {
   double torque_plus = 0;      ///< largest muscle torque in the positive direction, ≥ 0
   double damping = 0;          ///< N·m·s/rad
   double dry_friction = 0.02;  ///< N·m; 0.02 stopped a hand that rolled for ever (solver-prototype, claim b)
+
+  bool operator==(const DofLimits&) const = default;
 };
 
 enum class Shape : std::uint8_t { kSphere, kCapsule, kBox };
@@ -62,6 +64,8 @@ struct Collider {
                                                      ///< length of the segment; box: half extents
   double friction = 0.8;
   double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'
+
+  bool operator==(const Collider&) const = default;
 };
 
 /// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a
@@ -110,6 +114,8 @@ struct Joint {
       false;                 ///< ball: torques obey Σ (torque/limit)² ≤ 1 over the three axes, as strong
                              ///< in a slanting direction as along an axis; else each axis has its own
   std::string source_joint;  ///< URDF: name of the joint that moves this link
+
+  bool operator==(const Joint&) const = default;
 };
 
 /// A muscle that works on one degree of freedom besides the one that DofLimits describes. The rule: limits
@@ -121,6 +127,8 @@ struct Muscle {
   int joint = 0;                             ///< simulated, not free
   int dof = 0;                               ///< of the joint
   double torque_minus = 0, torque_plus = 0;  ///< as DofLimits
+
+  bool operator==(const Muscle&) const = default;
 };
 
 /// Editable description; `validate` says what is wrong with it. Everything else in the runtime takes it as
@@ -139,6 +147,7 @@ struct Skeleton {
   double total_mass() const;                       ///< kg
   /// Largest torques (minus, plus; N·m) of a degree of freedom with all its muscles at strength 1.
   std::array<double, 2> torque_limits(int joint, int dof) const;
+  bool operator==(const Skeleton&) const = default;
 };
 
 /// Checks order, indices, finiteness, unit axes, positive masses and positive-semidefinite second moments

@@ -31,6 +31,7 @@ struct Transform {
   Transform<U> cast() const {
     return {rotation.template cast<U>(), translation.template cast<U>()};
   }
+  bool operator==(const Transform&) const = default;
 };
 
 }  // namespace sinew

@@ -177,10 +177,9 @@ struct Pass : Solving {
   InnerProblem<float> inner;
 
   Pass(const std::string& name, int instances) : Solving(name, instances) {
-    SolveSize most;
-    most.add(tree);
-    most.effect_rows = effect ? effect->most_rows() : 0;
-    inner.reserve(most);
+    SolveRoom room = room_of(tree, 0, 0, 0);
+    room.effect_rows = effect ? effect->most_rows() : 0;
+    inner.reserve(room);
     inner.begin(settings, trees);
   }
   void step() override {
@@ -198,10 +197,8 @@ struct OnePass : Solving {
   std::vector<Contact<float>> contacts, fresh;
 
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
-    SolveSize most;
-    most.add(tree);
-    most.contacts = kRods;
-    solver.reserve(most);
+    problem.room = room_of(tree, kRods, kRods, 0);
+    solver.reserve(problem.room);
     once.max_iterations = 1;
     for (int i = 0; i < instances; ++i) {
       Contact<float> c;

@@ -1,0 +1,169 @@
+#include "sinew/character/islands.h"
+
+#include <algorithm>
+
+#include "sinew/character/sleep.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kTouching = 0.02;  ///< m between bounding spheres, at which a sleeper wakes
+constexpr double kMargin = 0.2;     ///< m beyond what the present speed covers, as in ContactFinder
+
+}  // namespace
+
+template <class T>
+void Islands<T>::reserve(int states, int couplings) {
+  grid_.reserve(states);
+  for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_}) v->reserve(states);
+  first_.reserve(states + 1);
+  first_tie_.reserve(states + 2);
+  ties_.reserve(couplings);
+}
+
+template <class T>
+int Islands<T>::root_of(int n) {
+  while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+  return n;
+}
+
+template <class T>
+void Islands<T>::join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states,
+                      int most_dofs) {
+  const int one = root_of(a), two = root_of(b);
+  if (one == two) return;
+  if (dofs_[one] + dofs_[two] > most_dofs)
+    states[a]->crowded = states[b]->crowded = true;
+  else
+    unite(one, two);
+}
+
+template <class T>
+void Islands<T>::unite(int one, int two) {
+  if (one == two) return;
+  const int to = std::min(one, two), from = std::max(one, two);
+  parent_[from] = to;
+  dofs_[to] += dofs_[from];
+}
+
+/// Everybody who sleeps with a woken one.
+template <class T>
+void Islands<T>::wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states) {
+  for (std::size_t n = 0; n < states.size(); ++n) {
+    LevelState& l = states[n]->levels;
+    if (l.nap != nap) continue;
+    l.nap = -1;
+    if (!l.asleep) continue;
+    l.asleep = false;
+    l.still = 0;
+    awake_.push_back(static_cast<int>(n));
+  }
+}
+
+/// Who is tied to somebody awake; along chains of couplings too.
+template <class T>
+void Islands<T>::wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> states,
+                           const Couplings<T>& couplings) {
+  for (bool again = true; again;) {
+    again = false;
+    for (const int c : couplings.working()) {
+      bool any_awake = false;
+      for_each_tree(couplings[c], [&](int n) { any_awake = any_awake || !states[n]->levels.asleep; });
+      if (!any_awake) continue;
+      for_each_tree(couplings[c], [&](int n) {
+        if (!states[n]->levels.asleep) return;
+        wake(states[n]->levels.nap, states);
+        again = true;
+      });
+    }
+  }
+}
+
+/// Which island each working coupling belongs to; none where it sleeps.
+template <class T>
+void Islands<T>::divide_ties(const Couplings<T>& couplings) {
+  first_tie_.assign(first_.size() + 1, 0);  // one more than there will be: each island's end moves down
+  const auto island = [&](int c) { return island_[first_tree(couplings[c])]; };
+  for (const int c : couplings.working())
+    if (const int i = island(c); i >= 0) ++first_tie_[i + 2];
+  for (std::size_t i = 1; i < first_tie_.size(); ++i) first_tie_[i] += first_tie_[i - 1];
+  ties_.resize(first_tie_.back());
+  for (const int c : couplings.working())
+    if (const int i = island(c); i >= 0) ties_[first_tie_[i + 1]++] = c;
+  first_tie_.pop_back();
+}
+
+/// Whether two that may meet are to be stepped together, by their colliders: nobody is woken, or solved for,
+/// because somebody walks by.
+template <class T>
+bool Islands<T>::meet(const CharacterState<T>& a, const CharacterState<T>& b, T h) {
+  return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kMargin));
+}
+
+template <class T>
+void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states,
+                      const Couplings<T>& couplings, T h, int most_dofs, bool body_contact) {
+  const int count = static_cast<int>(states.size());
+  grid_.clear();
+  parent_.resize(count);
+  dofs_.resize(count);
+  island_.assign(count, -1);
+  awake_.clear();
+  const auto center = [&](int n) { return states[n]->middle(); };
+  // Together they leave a decimetre, and twice what both may move by.
+  const auto reach = [&](int n) { return double(states[n]->radius + T(0.05) + 2 * h * states[n]->pace()); };
+  for (int n = 0; n < count; ++n) {
+    CharacterState<T>& s = *states[n];
+    parent_[n] = n;
+    dofs_[n] = s.tree.dofs;
+    s.crowded = false;
+    if (is_woken(s) && s.levels.nap >= 0) wake(s.levels.nap, states);
+    s.levels.wake = false;
+  }
+  wake_tied(states, couplings);
+  for (const int c : couplings.working()) {
+    const int first = first_tree(couplings[c]);
+    for_each_tree(couplings[c], [&](int n) { unite(root_of(first), root_of(n)); });
+  }
+  awake_.clear();
+  for (int n = 0; n < count; ++n) {
+    if (states[n]->parked) continue;
+    grid_.add(n, center(n), reach(n));
+    if (!states[n]->levels.asleep) awake_.push_back(n);
+  }
+  grid_.build();
+  for (std::size_t next = 0; body_contact && next < awake_.size();) {  // grows by those who are woken
+    const int n = awake_[next++];
+    grid_.overlapping(center(n), reach(n), [&](int other) {
+      CharacterState<T>& s = *states[other];
+      // From the side of the first, unless the other sleeps.
+      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(*states[n], s, h)) return;
+      if (s.levels.asleep) wake(s.levels.nap, states);
+      join(n, other, states, most_dofs);
+    });
+  }
+  // Islands in the order of their first members; members in theirs.
+  first_.assign(1, 0);
+  for (int n = 0; n < count; ++n) {
+    if (!takes_part(*states[n])) continue;
+    const int root = root_of(n);
+    if (root == n) {
+      island_[n] = static_cast<int>(first_.size()) - 1;
+      first_.push_back(0);
+    }
+    island_[n] = island_[root];
+    ++first_[island_[n] + 1];
+  }
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  members_.resize(first_.back());
+  for (int n = count - 1; n >= 0; --n)  // backwards: each island's end moves down to its beginning
+    if (takes_part(*states[n])) members_[--first_[island_[root_of(n)] + 1]] = n;
+  for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i] = first_[i + 1];
+  first_.back() = static_cast<int>(members_.size());
+  divide_ties(couplings);
+}
+
+template class Islands<float>;
+template class Islands<double>;
+
+}  // namespace sinew

@@ -1,0 +1,168 @@
+#include "sinew/character/playback.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/character/way_back.h"
+#include "sinew/effects/support.h"
+
+namespace sinew {
+
+namespace {
+
+/// What the effects ask of a character on its animation: wrenches of the bodies, and rows of the joints.
+template <class T>
+void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const Vec3<T>& origin, T h) {
+  TreeProblem<T>& p = s.problem;
+  StepSettings<T> step;
+  step.h = h;
+  step.gravity = world.gravity.template cast<T>();
+  step.common_origin = origin.template cast<double>();
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    p.start[i] = s.local[i];
+    p.local[i] = {s.target[i].rotation, s.target[i].translation};
+  }
+  for (const Effect<T>* effect : p.effects)
+    effect->add_load(effect_pose(step, p), s.motion, {p.force, p.moment});
+  measure_effect_rows(step, p);
+}
+
+}  // namespace
+
+template <class T>
+bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
+  TreeProblem<T>& p = s.problem;
+  const Vec3<T> origin = s.target[0].translation;
+  inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
+                       p.force, p.moment);
+  for (const ExternalForce<T>& j : s.impulses) {
+    const Vec3<T> x = p.kinematics.origin[j.body] + p.kinematics.rotation[j.body] * j.local;
+    p.force[j.body] -= j.force / h;
+    p.moment[j.body] -= x.cross(j.force / h);
+  }
+  if (world.ground && world.ground_support && s.settings.ground_contact)
+    share_support<T>(s.tree, p.kinematics, s.points, T(world.ground_height) - origin.z(), {}, p.force,
+                     p.moment);
+  if (!p.effects.empty()) add_effect_wrenches(s, world, origin, h);
+  project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
+  for (const JointRow<T>& row : p.effect_rows)
+    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
+  const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
+  for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
+      if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
+      s.torque[dof] = p.gradient[dof];
+      s.limit[dof] = p.law.limit(dof, p.gradient[dof]);
+      s.load[dof] = p.law.load(s.tree, i, dof, p.gradient);
+      s.unknown[dof] = 0;
+    }
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Transform<T> before = s.local[i];
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
+    for (T& r : s.rate[i]) r /= h;
+  }
+  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.update_model();
+  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin.template cast<double>(), s.history);
+  s.levels.stale = false;
+  s.forget_contacts();
+  s.report = {};
+  s.report.dofs = s.tree.dofs;
+  s.report_totals(world.gravity);
+  return true;
+}
+
+template <class T>
+void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
+  TreeProblem<T>& p = s.problem;
+  std::copy_n(s.local.begin(), s.tree.bodies, p.start.begin());
+  p.common_origin = s.local[0].translation;
+  for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+  if (s.undisturbed())
+    p.target = s.wanted;
+  else
+    choose_targets<T>(s, T(world.accuracy.return_time), h);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    s.local[i] = p.target[i];
+    s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], s.local[i]);
+    for (T& r : s.rate[i]) r /= h;
+    s.deviation[i].released = false;
+    if (s.deviation[i].on_animation) continue;
+    // Nobody measures what the way back takes: no muscle counts as saturated.
+    std::fill_n(s.load.begin() + s.tree.first_dof[i], s.tree.dof_count(i), T(0));
+    s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
+  }
+  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
+    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.update_model();
+  std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
+  s.history.velocity[0] = (s.local[0].translation - p.start[0].translation) / h;  // neighbours go by it
+  s.history.place = s.local[0].translation.template cast<double>();
+  s.levels.stale = true;
+  s.forget_contacts();
+  s.report = {};
+  s.report.dofs = s.tree.dofs;
+}
+
+template <class T>
+void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
+  if (!s.levels.stale) return;
+  s.levels.stale = false;
+  // Speeds of the animation, and on top of them those of what is off it.
+  jets.assign(s.target_before.begin(), s.target_before.begin() + s.tree.bodies);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    JointJet<T>& jet = jets[i];
+    const Deviation<T>& d = s.deviation[i];
+    const Quat<T> turned = s.local[i].rotation.conjugate() * jet.rotation;
+    jet.rotation = s.local[i].rotation;
+    jet.translation = s.local[i].translation;
+    if (d.on_animation) continue;
+    jet.omega = turned * jet.omega;
+    switch (s.tree.type[i]) {
+      case JointType::kRevolute:
+        jet.omega += s.tree.axis[i] * d.rate[0];
+        break;
+      case JointType::kBall:
+        jet.omega += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        break;
+      case JointType::kTranslation:
+        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        break;
+      case JointType::kFree:
+        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        jet.omega += Vec3<T>(d.rate[3], d.rate[4], d.rate[5]);
+        break;
+      default:
+        break;  // on the animation's speed
+    }
+  }
+  const Vec3<T>& origin = s.local[0].translation;
+  inertial_wrenches<T>(s.tree, jets, Vec3<T>::Zero(), origin, s.problem.kinematics, s.motion, s.problem.force,
+                       s.problem.moment);
+  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), origin.template cast<double>(), s.history);
+  s.history.step_before = T(0);
+}
+
+template <class T>
+bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
+  if (!s.settings.ground_contact) return false;
+  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
+  const Vec3<double> center = s.model[0].translation.template cast<double>();
+  const auto near = [&](double distance) { return distance < double(reach); };
+  return std::any_of(
+             around.obstacles.begin(), around.obstacles.end(),
+             [&](const Collider& o) {
+               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
+             }) ||
+         std::any_of(around.hosts.begin(), around.hosts.end(),
+                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
+}
+
+SINEW_PLAYBACK_INSTANCES(template, float)
+SINEW_PLAYBACK_INSTANCES(template, double)
+
+}  // namespace sinew

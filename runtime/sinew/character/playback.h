@@ -1,0 +1,34 @@
+// Characters that their muscles can carry along: the pose is the clip's. Internal to the character layer.
+#pragma once
+
+#include "sinew/character/contact_finder.h"
+
+namespace sinew {
+
+/// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
+/// they can't.
+template <class T>
+bool play(CharacterState<T>& state, const WorldSettings& world, T h);
+
+/// Whether an obstacle may be in the way of the animation.
+template <class T>
+bool near_obstacle(const CharacterState<T>& state, const Surroundings& around, T h);
+
+/// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
+template <class T>
+void follow(CharacterState<T>& state, const WorldSettings& world, T h);
+
+/// Makes the history of a character that was followed: poses and speeds that it has now. `jets` is room for
+/// its bodies.
+template <class T>
+void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
+
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                       \
+  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, T);               \
+  prefix bool near_obstacle<T>(const CharacterState<T>&, const Surroundings&, T); \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);             \
+  prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
+SINEW_PLAYBACK_INSTANCES(extern template, float)
+SINEW_PLAYBACK_INSTANCES(extern template, double)
+
+}  // namespace sinew

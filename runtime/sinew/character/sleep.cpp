@@ -1,0 +1,78 @@
+#include "sinew/character/sleep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sinew {
+namespace {
+
+/// A state whose target moves is not at rest, however slow it is, unless it has no use for a target.
+template <class T>
+bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
+  if (!s.impulses.empty() || s.crowded) return false;
+  for (const Effect<T>* effect : s.problem.effects)
+    if (!effect->passive()) return false;  // wind rises again
+  if (!s.limp()) {
+    const auto same = [](const JointJet<T>& a, const JointJet<T>& b) {
+      return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
+    };
+    if (!std::equal(s.target.begin(), s.target.end(), s.target_before.begin(), same)) return false;
+  }
+  for (int i = 0; i < s.tree.bodies; ++i)
+    if (s.history.velocity[i].squaredNorm() > T(detail.sleep_speed * detail.sleep_speed) ||
+        s.history.rotation_rate[i].squaredNorm() > T(2 * detail.sleep_spin * detail.sleep_spin))
+      return false;
+  return true;
+}
+
+}  // namespace
+
+template <class T>
+bool is_woken(const CharacterState<T>& s) {
+  return s.levels.wake || !s.impulses.empty();
+}
+
+template <class T>
+bool colliders_near(const CharacterState<T>& a, const CharacterState<T>& b, T h, T margin) {
+  const T speed = a.fastest() + b.fastest();
+  for (std::size_t c = 0; c < a.colliders.size(); ++c) {
+    const Vec3<T> one = a.model[a.colliders[c].joint] * a.bound_center[c];
+    for (std::size_t d = 0; d < b.colliders.size(); ++d) {
+      const Vec3<T> two = b.model[b.colliders[d].joint] * b.bound_center[d];
+      const T reach = a.bound_radius[c] + b.bound_radius[d] + margin + 2 * h * speed;
+      if ((one - two).squaredNorm() < reach * reach) return true;
+    }
+  }
+  return false;
+}
+
+template <class T>
+void put_to_sleep(std::span<CharacterState<T>* const> members, std::span<const int> indices,
+                  std::span<Coupling<T>* const> ties, const LevelOfDetail& detail, T h) {
+  if (detail.sleep_after <= 0) return;
+  bool all = std::none_of(ties.begin(), ties.end(), [](const Coupling<T>* c) { return c->closes(); });
+  const bool may = all;
+  for (const CharacterState<T>* s : members)  // who plays is no burden, and may leap at any time
+    if (s->driven && s->undisturbed()) return;
+  for (CharacterState<T>* s : members) {
+    s->levels.still = may && rests(*s, detail) ? s->levels.still + static_cast<float>(h) : 0;
+    all = all && double(s->levels.still) >= detail.sleep_after;
+  }
+  if (!all) return;
+  for (CharacterState<T>* s : members) {
+    s->levels.asleep = true;
+    s->levels.nap = indices[0];
+    s->levels.did = Level::kAsleep;
+    s->history.stop();
+    for (auto* rates : {&s->rate, &s->rate_before})
+      std::fill(rates->begin(), rates->end(), std::array<T, 6>{});
+    s->report_totals(Vec3<double>::Zero());
+    std::fill(s->unknown.begin(), s->unknown.end(), std::uint8_t{0});
+    s->report.unknown_dofs = s->report.outer_passes = s->report.factorisations = s->report.substeps = 0;
+  }
+}
+
+SINEW_SLEEP_INSTANCES(template, float)
+SINEW_SLEEP_INSTANCES(template, double)
+
+}  // namespace sinew

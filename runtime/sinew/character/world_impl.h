@@ -1,0 +1,90 @@
+// What a world is made of. Internal to the character layer.
+#pragma once
+
+#include <array>
+#include <atomic>
+
+#include "sinew/character/couplings.h"
+#include "sinew/character/island.h"
+#include "sinew/character/islands.h"
+#include "sinew/character/levels.h"
+#include "sinew/character/snapshot.h"
+#include "sinew/effects/particles.h"
+
+namespace sinew {
+
+/// A particle body: its tree, its elements, and where its frame is fixed.
+struct ParticleSet {
+  ParticleBody body;
+  std::vector<int> bodies;  ///< see bodies_of_nodes
+  int state = 0;
+  Place place;
+};
+
+template <class T>
+struct World<T>::Impl {
+  /// What one thread works in.
+  struct Worker {
+    IslandStepper<T> stepper;
+    std::vector<CharacterState<T>*> members;
+    std::vector<Coupling<T>*> ties;
+    std::vector<JointJet<T>> jets;
+  };
+
+  WorldSettings settings;
+  std::vector<std::shared_ptr<const Rig<T>>> rigs;
+  std::vector<std::unique_ptr<CharacterState<T>>>
+      states;                          ///< characters and props in the order they were added
+  std::vector<int> characters, props;  ///< into states
+  Couplings<T> couplings;
+  std::vector<int> loops;  ///< into couplings
+  std::vector<ParticleSet> particles;
+  std::vector<Collider> obstacles;
+  std::vector<HostObstacle> hosts;
+  std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
+  std::vector<std::unique_ptr<Worker>> workers;
+  SolveRooms rooms;
+  SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
+
+  // Of the present step
+  T h = T(0);
+  Islands<T> islands;
+  std::vector<int> large, heavy, light;  ///< islands: for the first worker alone, to be solved, to be played
+  std::vector<LaggedForce<T>> lagged_new;
+  std::vector<int> first_lagged, lagged_count;  ///< [island] of its part of lagged_new
+  BudgetController<T> controller;
+  WorldReport report;
+  std::atomic<int> next_heavy{0}, next_light{0};
+
+  Status add(const Skeleton& skeleton, const CharacterSettings& character);
+  SolveRoom room_of_rig(const Rig<T>& rig) const;
+  void count_in(CharacterState<T>& state);
+  void count_all();
+  bool over_cap() const;
+  void drop_last();
+  int tie(Coupling<T> coupling, Status& status);
+  std::array<SolveRoom, 2> rooms_of_workers() const;
+  WorldMemory memory() const;
+  void reserve();
+  void meet_surroundings();
+  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
+  void park(CharacterState<T>& state);
+  bool play_island(std::span<CharacterState<T>* const> members);
+  void step_island(int island, Worker& worker);
+  std::span<LaggedForce<T>> lagged_of(int island) {
+    return std::span(lagged_new)
+        .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
+  }
+  static void work(void* context, int index);
+  void keep_sleepers();
+  void step_all(T step, const ParallelFor& parallel_for);
+  MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all()}; }
+  Surroundings surroundings() const { return {obstacles, hosts, couplings.apart()}; }
+
+  // Of loops and particle bodies: world_ties.cpp
+  Status find(const Anchor& anchor, Place& out) const;
+  Transform<double> frame_of(const Place& place) const;
+  double weight_of(const Place& place) const;
+};
+
+}  // namespace sinew

@@ -1,0 +1,67 @@
+// A crowd of one rig of which a few are in a world at a time: those who were pushed, whose muscles are too
+// weak for their animation, or whom one of these may touch.
+//
+//     auto people = Population::create(asset.skeleton, settings, status);
+//     for (int i = 0; i < 1000; ++i) (void)people->play(i, {&clip, start[i], 1, place[i]});
+//     …each frame:
+//     (void)people->push(i, chest, {60, 0, 0});
+//     (void)people->step(1 / 60.f, jobs);
+//     draw(people->model(i));
+//
+// Everybody else is sampled and checked in the crowd's batches and costs about as much as playback. Who is
+// called for enters the world in the same step, with the pose and speed that the clip had at its beginning,
+// and leaves it when it has been on its animation for a while.
+#pragma once
+
+#include <memory>
+
+#include "sinew/character/world.h"
+#include "sinew/crowd/crowd.h"
+
+namespace sinew {
+
+struct PopulationSettings {
+  CrowdSettings crowd;          ///< capacity, lanes, chunks; gravity and ground are the world's
+  WorldSettings world;          ///< workers, level of detail, budget
+  CharacterSettings character;  ///< of those in the world
+  int places = 64;              ///< characters that may be in the world at once; each takes memory
+};
+
+class Population {
+ public:
+  /// Set-up: allocates everything. Null with `status` set if something cannot be meant.
+  static std::unique_ptr<Population> create(const Skeleton& skeleton, const PopulationSettings& settings,
+                                            Status& status);
+  ~Population();
+  Population(const Population&) = delete;
+  Population& operator=(const Population&) = delete;
+
+  /// From now on a character plays this clip, on its place. Leaves the world if it was in it.
+  Status play(int character, const CrowdTrack& track);
+  /// Impulse (N·s, world) on the body of a joint, at the joint, in the next step. Refused with kOutOfRange
+  /// where the world has no place left.
+  Status push(int character, int joint, const Vec3<float>& impulse);
+
+  /// One frame of h seconds. Allocates nothing. Same bits for any number of threads.
+  Status step(float h, const ParallelFor& parallel_for = {});
+
+  std::span<const Transform<float>> model(int character) const;  ///< [joint] joint → world
+  /// kChecked outside of the world.
+  Level level(int character) const;
+  bool in_world(int character) const;
+  /// Its handle while it is in the world.
+  Character<float> solved(int character);
+  int solved_count() const;
+  /// Characters that were called for in the last step and found no place: they stay on their clips.
+  int turned_away() const;
+  /// Props, obstacles, report. Its characters belong to the population.
+  World<float>& world();
+  Crowd& crowd();
+
+ private:
+  struct Impl;
+  explicit Population(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sinew
