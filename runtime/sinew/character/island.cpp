@@ -15,6 +15,15 @@ namespace {
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
+/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
+/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
+/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
+/// the scalar resolves.
+template <class T>
+T kink_width(T h) {
+  const T resolved = 8 * std::numeric_limits<T>::epsilon();
+  return T(1e-3) * h * std::min(T(1), std::max(60 * h, resolved / (T(1e-3) * h)));
+}
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kUnchangedSteps =
@@ -269,7 +278,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   settings_.h = h;
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
-  settings_.kink_width = T(1e-3) * h;
+  settings_.kink_width = kink_width<T>(h);
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
     s->problem.common_origin =
