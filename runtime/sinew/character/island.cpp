@@ -15,6 +15,11 @@ namespace {
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr int kReleaseRounds = 8;
+constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
+constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
+constexpr int kUnchangedSteps =
+    2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
+
 /// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
 /// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
 /// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
@@ -24,10 +29,6 @@ T kink_width(T h) {
   const T resolved = 8 * std::numeric_limits<T>::epsilon();
   return T(1e-3) * h * std::min(T(1), std::max(60 * h, resolved / (T(1e-3) * h)));
 }
-constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
-constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
-constexpr int kUnchangedSteps =
-    2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
 
 /// Order-independent digest of a set of contacts.
 std::uint64_t mixed(std::uint64_t id) {
