@@ -131,7 +131,7 @@ TEST(Peers, CollapseAsOursDoInFineSteps) {
 TEST(Peers, ServosWithTheSameLimitsGiveWayToAPushAsOurMusclesDo) {
   int compared = 0;
   for (const EngineOption& peer : peer_options()) {
-    if (peer.label() != "ODE Step" && peer.label() != "DART Euler, Dantzig") continue;
+    if (peer.label() != "ODE Step" && peer.label() != "DART Euler Dantzig") continue;
     EXPECT_LT(apart_from_ours("tracking", peer), 3e-2) << peer.label();  // 1.5 to 2 cm
     ++compared;
   }

@@ -213,7 +213,7 @@ std::unique_ptr<Engine> make(const EngineScene& scene, double h, const Accuracy&
 }  // namespace
 
 std::vector<EngineOption> dart_options() {
-  return {{"DART", "Euler, PGS", make<true>}, {"DART", "Euler, Dantzig", make<false>}};
+  return {{"DART", "Euler PGS", make<true>}, {"DART", "Euler Dantzig", make<false>}};
 }
 
 }  // namespace sinew::study
