@@ -71,9 +71,6 @@ std::vector<EngineOption> bullet_options();
 std::vector<EngineOption> dart_options();
 std::vector<EngineOption> ode_options();
 
-/// Why an engine that is compared only in free motion refuses a scene, or empty.
-std::string needs_contacts_or_muscles(const EngineScene& scene);
-
 /// The rest pose at rest, in double.
 Figure resting(const Skeleton& skeleton);
 
