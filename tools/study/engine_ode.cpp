@@ -124,8 +124,8 @@ class OdeEngine : public Engine {
     for (int i = 1; i < s.body_count; ++i) {
       const Joint& joint = s.joints[i];
       const Quat<double> now = model[joint.parent].rotation.conjugate() * model[i].rotation;
-      there.push_back(there[joint.parent] * now * rotation_exp<double>(h_ * servos_[f].rate(i, now, h_)));
-      turning.push_back(rotation_log<double>(there[i] * model[i].rotation.conjugate()) / h_);
+      there.emplace_back(there[joint.parent] * now * rotation_exp<double>(h_ * servos_[f].rate(i, now, h_)));
+      turning.emplace_back(rotation_log<double>(there[i] * model[i].rotation.conjugate()) / h_);
       const Vec3<double> rate = model[i].rotation.conjugate() * (turning[i] - turning[joint.parent]);
       const Motor muscle = motor_of(joint);
       const dJointID motor = motors_[f][i];
