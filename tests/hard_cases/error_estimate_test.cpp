@@ -14,6 +14,8 @@ constexpr double kFrame = 1.0 / 60;
 AccuracyScene scene_named(const std::string& name) {
   for (const AccuracyScene& s : accuracy_scenes())
     if (s.name == name) return s;
+  for (const AccuracyScene& s : unseen_scenes())
+    if (s.name == name) return s;
   return {};
 }
 
@@ -51,6 +53,23 @@ TEST(ErrorEstimate, OfARigidBodyInFlightIsAsSmallAsItsError) {
   const Sums sums = sums_of("tumbling", "bdf2 double", kFrame);
   EXPECT_LT(sums.truth, 1e-4) << "but for two first steps of bdf1 it moves exactly";
   EXPECT_LT(sums.estimated, 1e-4);
+}
+
+// Pushed muscles: 1.04, 0.59 and 1.06 times the truth. Frames that are played know of no error and are left
+// out: their truth begins with the mean velocities of a long step, which throws joints off that no step left.
+TEST(ErrorEstimate, IsWithinAFactorOfThreeOfTheTruthWhileMusclesGiveWay) {
+  for (const char* scene : {"tracking", "running", "jostled"}) {
+    Sums sums;
+    for (const EstimatedFrame& frame :
+         estimated_frames(scene_named(scene), option_named("bdf2 double"), kFrame)) {
+      if (frame.estimated <= 0) continue;
+      sums.estimated += frame.estimated;
+      sums.truth += frame.truth;
+    }
+    ASSERT_GT(sums.truth, 0) << scene;
+    EXPECT_GT(sums.estimated / sums.truth, 1.0 / 3) << scene;
+    EXPECT_LT(sums.estimated / sums.truth, 3) << scene;
+  }
 }
 
 TEST(ErrorEstimate, OfFirstOrderIsWithinAFactorOfThreeInContactAndNeverTooSmallInASpin) {

@@ -20,6 +20,16 @@ constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
 
+/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
+/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
+/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
+/// the scalar and the solver's tolerance (m, at a metre) resolve; a correction's square is what it leaves.
+template <class T>
+T kink_width(T h, T tolerance) {
+  const T resolved = std::max(8 * std::numeric_limits<T>::epsilon(), tolerance / 16);
+  return std::min(T(1e-3) * h, std::max(T(0.06) * h * h, resolved));
+}
+
 /// Order-independent digest of a set of contacts.
 std::uint64_t mixed(std::uint64_t id) {
   id ^= id >> 31;
@@ -273,7 +283,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   settings_.h = h;
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
-  settings_.kink_width = T(1e-3) * h;
+  settings_.kink_width = kink_width<T>(h, T(world.accuracy.tolerance));
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
     s->problem.common_origin =

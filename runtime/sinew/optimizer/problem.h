@@ -90,7 +90,7 @@ struct StepSettings {
   Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed
   T limit_stiffness = T(2000);                        ///< N·m/rad
   T stick = T(0.01) / 60;                             ///< m per step
-  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
+  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
 };
 
 /// What the problem's effects see of it.
