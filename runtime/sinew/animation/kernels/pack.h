@@ -4,10 +4,29 @@
 // a wider instruction set can never be picked by the linker for a machine that lacks it.
 #pragma once
 
+#include <cstdint>
+#include <type_traits>
 #include <utility>
+
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 namespace {
+
+/// What a comparison of packs says of each lane: all bits set, or none.
+template <class T, int N>
+struct Mask {
+  using Lane = std::conditional_t<sizeof(T) == sizeof(std::int32_t), std::int32_t, std::int64_t>;
+  using Bits [[gnu::vector_size(N * sizeof(T))]] = Lane;
+  Bits v;
+
+  friend Mask both(const Mask& a, const Mask& b) { return {a.v & b.v}; }
+  friend bool any(const Mask& a) {
+    Lane set = 0;
+    for (int i = 0; i < N; ++i) set |= a.v[i];
+    return set != 0;
+  }
+};
 
 /// N scalars in GCC's and Clang's portable vector type. Every operation is the exact IEEE operation on each
 /// lane, in the order written (kernels are compiled without contraction): results depend neither on N nor on
@@ -21,6 +40,8 @@ struct Pack {
 
   Pack() = default;
   Pack(Vector x) : v(x) {}
+  template <class Number>
+  requires std::is_arithmetic_v<Number> Pack(Number x) : Pack(all(T(x))) {}
   static Pack all(T x) {
     return [&]<int... I>(std::integer_sequence<int, I...>) {
       return Pack(Vector{(static_cast<void>(I), x)...});
@@ -40,18 +61,23 @@ struct Pack {
   friend Pack operator/(const Pack& a, const Pack& b) { return a.v / b.v; }
   friend Pack operator-(const Pack& a) { return -a.v; }
   friend Pack operator*(T s, const Pack& a) { return s * a.v; }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  Pack& operator/=(const Pack& b) { return *this = *this / b; }
+  friend Mask<T, N> operator<(const Pack& a, const Pack& b) { return {a.v < b.v}; }
+  friend Mask<T, N> operator>(const Pack& a, const Pack& b) { return {a.v > b.v}; }
+  friend Mask<T, N> operator<=(const Pack& a, const Pack& b) { return {a.v <= b.v}; }
+  friend Mask<T, N> operator>=(const Pack& a, const Pack& b) { return {a.v >= b.v}; }
+  friend Mask<T, N> operator==(const Pack& a, const Pack& b) { return {a.v == b.v}; }
+  friend Pack select(const Mask<T, N>& mask, const Pack& yes, const Pack& no) {
+    return Pack(mask.v ? yes.v : no.v);
+  }
   friend Pack where_equal(const Pack& a, T b, const Pack& yes, const Pack& no) {
     return Pack(a.v == b ? yes.v : no.v);
   }
   friend Pack where_negative(const Pack& a, const Pack& yes, const Pack& no) {
     return Pack(a.v < T(0) ? yes.v : no.v);
-  }
-  /// Whether any lane is below zero.
-  friend bool any_negative(const Pack& a) {
-    const auto below = a.v < T(0);
-    bool any = false;
-    for (int i = 0; i < N; ++i) any |= below[i] != 0;
-    return any;
   }
   friend Pack sqrt(const Pack& a) {
     Pack x;
@@ -64,6 +90,15 @@ struct Pack {
     return x;
   }
 };
+
+}  // namespace
+
+template <class T, int N>
+struct NumberOf<Pack<T, N>> {
+  using Type = T;
+};
+
+namespace {
 
 /// Four numbers from each of the addresses `at(group)`. Registers are joined, never assembled in memory: a
 /// wide load that follows narrow stores stalls.
