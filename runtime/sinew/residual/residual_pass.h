@@ -11,35 +11,56 @@
 
 namespace sinew {
 
-/// Motion of one body from its parent's, and the wrench that it takes. `parent` is null at a root.
-/// `gravity`: m/s², world.
+/// Its turning from its parent's, null at a root. `body.turn` must be set.
 template <class T>
-[[gnu::always_inline]] inline void move_body(const Tree<Number<T>>& tree, int i, const JointJet<T>& jet,
-                                             const Vec3<T>& gravity, const BodyMotion<T>* parent,
+[[gnu::always_inline]] inline void turn_body(const JointJet<T>& jet, const BodyMotion<T>* parent,
                                              BodyMotion<T>& body) {
-  body.turn = jet.rotation.toRotationMatrix();
-  body.arm = jet.translation;
-  const auto into = body.turn.transpose();
   if (!parent) {
     body.omega = jet.omega;
     body.alpha = jet.alpha;
-    body.acceleration = into * (jet.acceleration - gravity);
   } else {
-    const Vec3<T> carried = into * parent->omega;
+    const Vec3<T> carried = body.turn.transpose() * parent->omega;
     body.omega = carried + jet.omega;
-    body.alpha = into * parent->alpha + (jet.alpha + carried.cross(jet.omega));
-    const Vec3<T> swept = parent->omega.cross(body.arm) + (jet.velocity + jet.velocity);
-    const Vec3<T> acceleration =
-        parent->acceleration +
-        (jet.acceleration + (parent->alpha.cross(body.arm) + parent->omega.cross(swept)));
-    body.acceleration = into * acceleration;
+    body.alpha = body.turn.transpose() * parent->alpha + (jet.alpha + carried.cross(jet.omega));
   }
+}
+
+/// The acceleration of its origin. `gravity`: m/s², world.
+template <class T>
+[[gnu::always_inline]] inline void shift_body(const JointJet<T>& jet, const Vec3<T>& gravity,
+                                              const BodyMotion<T>* parent, BodyMotion<T>& body) {
+  body.arm = jet.translation;
+  Vec3<T> acceleration = jet.acceleration;  // parent axes
+  if (!parent) {
+    acceleration -= gravity;
+  } else {
+    const Vec3<T> swept = parent->omega.cross(jet.translation) + (jet.velocity + jet.velocity);
+    acceleration +=
+        parent->acceleration + (parent->alpha.cross(jet.translation) + parent->omega.cross(swept));
+  }
+  body.acceleration = body.turn.transpose() * acceleration;
+}
+
+/// The wrench that its motion asks for.
+template <class T>
+[[gnu::always_inline]] inline void load_body(const Tree<Number<T>>& tree, int i, BodyMotion<T>& body) {
   const Vec3<T> first = tree.first_moment[i].template cast<T>();
   const Mat3<T> inertia = tree.inertia_at_joint[i].template cast<T>();
   const Vec3<T> spun = body.alpha.cross(first) + body.omega.cross(body.omega.cross(first));
   body.force = T(tree.mass[i]) * body.acceleration + spun;
   const Vec3<T> momentum = inertia * body.omega;
   body.moment = inertia * body.alpha + (body.omega.cross(momentum) + first.cross(body.acceleration));
+}
+
+/// Motion of one body from its parent's, null at a root, and the wrench that it takes: all of the above.
+template <class T>
+[[gnu::always_inline]] inline void move_body(const Tree<Number<T>>& tree, int i, const JointJet<T>& jet,
+                                             const Vec3<T>& gravity, const BodyMotion<T>* parent,
+                                             BodyMotion<T>& body) {
+  body.turn = jet.rotation.toRotationMatrix();
+  turn_body(jet, parent, body);
+  shift_body(jet, gravity, parent, body);
+  load_body<T>(tree, i, body);
 }
 
 /// Adds a body's wrench to its parent's.

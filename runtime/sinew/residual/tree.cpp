@@ -1,6 +1,8 @@
 #include "sinew/residual/tree.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
 
 #include "sinew/residual/residual_pass.h"
 
@@ -70,6 +72,12 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     }
   }
   first_dof.push_back(dofs);
+  std::vector<int> depth(bodies, 0);
+  for (int i = 0; i < bodies; ++i)
+    if (parent[i] >= 0) depth[i] = depth[parent[i]] + 1;
+  by_depth.resize(bodies);
+  std::iota(by_depth.begin(), by_depth.end(), 0);
+  std::stable_sort(by_depth.begin(), by_depth.end(), [&](int a, int b) { return depth[a] < depth[b]; });
 }
 
 namespace {

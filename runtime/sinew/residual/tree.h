@@ -21,11 +21,12 @@ template <class T>
 struct Tree {
   int bodies = 0;
   int dofs = 0;
-  std::vector<int> parent;                ///< [body]
-  std::vector<JointType> type;            ///< [body]
-  std::vector<int> first_dof;             ///< [body + 1]
-  std::vector<int> dof_body;              ///< [dof]
-  std::vector<int> dof_parent;            ///< [dof] next degree of freedom towards the root, or -1
+  std::vector<int> parent;      ///< [body]
+  std::vector<JointType> type;  ///< [body]
+  std::vector<int> by_depth;    ///< bodies, those near the root first: neighbours do not wait for each other
+  std::vector<int> first_dof;   ///< [body + 1]
+  std::vector<int> dof_body;    ///< [dof]
+  std::vector<int> dof_parent;  ///< [dof] next degree of freedom towards the root, or -1
   std::vector<Transform<T>> rest;         ///< [body]
   std::vector<Vec3<T>> axis, axis2;       ///< [body] child axes
   std::vector<T> mass;                    ///< [body] kg

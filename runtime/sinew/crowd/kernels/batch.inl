@@ -44,37 +44,63 @@ struct Lanes {
   int stride = 0;  ///< lanes of the batch
 };
 
-/// One body's jets over the lanes.
+/// Jets of one body over the lanes, four numbers at a time in the order of JetLayout: all at once would not
+/// leave registers to compute in.
 template <class P>
-[[gnu::always_inline]] inline JointJet<P> jet_of(const Batch& batch, int first_lane, int i) {
-  constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
-  const std::ptrdiff_t stride = std::ptrdiff_t(batch.joints) * kNumbers;
-  const float* from = batch.jets->rotation + first_lane * stride + i * kNumbers;
-  P n[kNumbers];
-#pragma GCC unroll 5
-  for (int c = 0; c < kNumbers; c += 4) {
-    P m[4];
+class Jets {
+ public:
+  Jets(const Batch& batch, int first_lane, int i)
+      : stride_(std::ptrdiff_t(batch.joints) * kNumbers),
+        from_(batch.jets->rotation + first_lane * stride_ + i * kNumbers) {}
+  void load(int group, P (&out)[4]) const {
     for (int r = 0; r < 4; ++r)
-      m[r] = load_fours<P>([&](int group) { return from + (4 * group + r) * stride + c; });
-    transpose(m);
-    for (int r = 0; r < 4; ++r) n[c + r] = m[r];
+      out[r] = load_fours<P>([&](int four) { return from_ + (4 * four + r) * stride_ + 4 * group; });
+    transpose(out);
   }
-  return {Quat<P>(n[3], n[0], n[1], n[2]), Vec3<P>(n[4], n[5], n[6]),    Vec3<P>(n[7], n[8], n[9]),
-          Vec3<P>(n[10], n[11], n[12]),    Vec3<P>(n[13], n[14], n[15]), Vec3<P>(n[16], n[17], n[18])};
+
+ private:
+  static constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
+  std::ptrdiff_t stride_;
+  const float* from_;
+};
+
+/// move_body, reading the jet as it goes.
+template <class P>
+[[gnu::always_inline]] inline void move(const Rig& rig, const Batch& batch, int first_lane, int i,
+                                        const Vec3<P>& gravity, const BodyMotion<P>* parent,
+                                        BodyMotion<P>& body, Quat<P>* rotation) {
+  const Jets<P> jets(batch, first_lane, i);
+  P a[4], b[4];
+  JointJet<P> jet;
+  jets.load(0, a);
+  jet.rotation = Quat<P>(a[3], a[0], a[1], a[2]);
+  if (rotation) *rotation = jet.rotation;
+  body.turn = jet.rotation.toRotationMatrix();
+  jets.load(1, a);
+  jets.load(2, b);
+  jet.omega = Vec3<P>(a[0], a[1], a[2]);
+  jet.alpha = Vec3<P>(a[3], b[0], b[1]);
+  turn_body(jet, parent, body);
+  jets.load(3, a);
+  jet.translation = Vec3<P>(b[2], b[3], a[0]);
+  jet.velocity = Vec3<P>(a[1], a[2], a[3]);
+  jets.load(4, b);
+  jet.acceleration = Vec3<P>(b[0], b[1], b[2]);
+  shift_body(jet, gravity, parent, body);
+  load_body<P>(*rig.tree, i, body);
 }
 
-/// Orientation and origin in the world.
+/// Orientation, still from the parent, and origin become those in the world.
 template <class P>
-void place(const Tree<float>& tree, int i, const JointJet<P>& jet, const Scratch<P>& s) {
+void place(const Tree<float>& tree, int i, const Scratch<P>& s) {
   const int p = tree.parent[i];
   if (p < 0) {
-    s.orientation[i] = jet.rotation;
     s.rotation[i] = s.body[i].turn;
     s.origin[i] = Vec3<P>::Zero();
   } else {
-    s.orientation[i] = s.orientation[p] * jet.rotation;
+    s.orientation[i] = s.orientation[p] * s.orientation[i];
     s.rotation[i] = s.orientation[i].toRotationMatrix();
-    s.origin[i] = s.origin[p] + s.rotation[p] * jet.translation;
+    s.origin[i] = s.origin[p] + s.rotation[p] * s.body[i].arm;
   }
 }
 
@@ -134,15 +160,16 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Scratch<P> scratch(batch.scratch, tree.bodies, rig.support ? int(rig.support->points.size()) : 0);
   const bool placed = rig.support || batch.model[0];
   const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));
-  for (int i = 0; i < tree.bodies; ++i) {
+  for (const int i : tree.by_depth) {
     const int p = tree.parent[i];
-    const JointJet<P> jet = jet_of<P>(batch, lanes.first, i);
-    move_body<P>(tree, i, jet, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i]);
-    if (placed) place(tree, i, jet, scratch);
+    move<P>(rig, batch, lanes.first, i, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i],
+            placed ? &scratch.orientation[i] : nullptr);
+    if (placed) place(tree, i, scratch);
   }
   const Vec3<P> root = scratch.body[0].arm;
   if (rig.support) stand<P>(rig, P(rig.ground_height) - root.z(), scratch);
-  for (int i = tree.bodies - 1; i >= 0; --i) {
+  for (int n = tree.bodies - 1; n >= 0; --n) {
+    const int i = tree.by_depth[n];
     float* rows = batch.torque + tree.first_dof[i] * lanes.stride + lanes.first;
     project_wrench<P>(tree, i, scratch.body[i],
                       [&](int k, const P& torque) { store<0, P::kLanes>(torque, rows + k * lanes.stride); });
