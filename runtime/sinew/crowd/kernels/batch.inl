@@ -44,7 +44,7 @@ struct Lanes {
   int stride = 0;  ///< lanes of the batch
 };
 
-/// Jets of one body over the lanes, four numbers at a time in the order of JetLayout: all at once would not
+/// Jets of one body over the lanes, a few numbers at a time in the order of JetLayout: all at once would not
 /// leave registers to compute in.
 template <class P>
 class Jets {
@@ -52,10 +52,15 @@ class Jets {
   Jets(const Batch& batch, int first_lane, int i)
       : stride_(std::ptrdiff_t(batch.joints) * kNumbers),
         from_(batch.jets->rotation + first_lane * stride_ + i * kNumbers) {}
-  void load(int group, P (&out)[4]) const {
+  /// Four numbers from number `first` on.
+  void load(int first, P (&out)[4]) const {
     for (int r = 0; r < 4; ++r)
-      out[r] = load_fours<P>([&](int four) { return from_ + (4 * four + r) * stride_ + 4 * group; });
+      out[r] = load_fours<P>([&](int four) { return from_ + (4 * four + r) * stride_ + first; });
     transpose(out);
+  }
+  /// Eight.
+  void load(int first, P (&low)[4], P (&high)[4]) const {
+    load_eights([&](int lane) { return from_ + lane * stride_ + first; }, low, high);
   }
 
  private:
@@ -70,21 +75,19 @@ template <class P>
                                         const Vec3<P>& gravity, const BodyMotion<P>* parent,
                                         BodyMotion<P>& body, Quat<P>* rotation) {
   const Jets<P> jets(batch, first_lane, i);
-  P a[4], b[4];
+  P a[4], b[4], c[4];
   JointJet<P> jet;
-  jets.load(0, a);
+  jets.load(0, a, b);
   jet.rotation = Quat<P>(a[3], a[0], a[1], a[2]);
   if (rotation) *rotation = jet.rotation;
   body.turn = jet.rotation.toRotationMatrix();
-  jets.load(1, a);
-  jets.load(2, b);
-  jet.omega = Vec3<P>(a[0], a[1], a[2]);
-  jet.alpha = Vec3<P>(a[3], b[0], b[1]);
+  jets.load(8, a, c);
+  jet.omega = Vec3<P>(b[0], b[1], b[2]);
+  jet.alpha = Vec3<P>(b[3], a[0], a[1]);
   turn_body(jet, parent, body);
-  jets.load(3, a);
-  jet.translation = Vec3<P>(b[2], b[3], a[0]);
-  jet.velocity = Vec3<P>(a[1], a[2], a[3]);
-  jets.load(4, b);
+  jet.translation = Vec3<P>(a[2], a[3], c[0]);
+  jet.velocity = Vec3<P>(c[1], c[2], c[3]);
+  jets.load(16, b);
   jet.acceleration = Vec3<P>(b[0], b[1], b[2]);
   shift_body(jet, gravity, parent, body);
   load_body<P>(*rig.tree, i, body);
