@@ -26,9 +26,17 @@ struct Mask {
 
   friend Mask both(const Mask& a, const Mask& b) { return {a.v & b.v}; }
   friend bool any(const Mask& a) {
-    Lane set = 0;
-    for (int i = 0; i < N; ++i) set |= a.v[i];
-    return set != 0;
+    if constexpr (sizeof(Bits) > 2 * sizeof(std::int64_t)) {
+      return [&]<int... I>(std::integer_sequence<int, I...>) {
+        return any(Mask<T, N / 2>{__builtin_shufflevector(a.v, a.v, I...) |
+                                  __builtin_shufflevector(a.v, a.v, (N / 2 + I)...)});
+      }
+      (std::make_integer_sequence<int, N / 2>());
+    } else {
+      std::int64_t halves[2] = {};
+      __builtin_memcpy(halves, &a.v, sizeof(Bits));
+      return (halves[0] | halves[1]) != 0;
+    }
   }
 };
 
@@ -106,8 +114,7 @@ namespace {
 
 /// Four numbers from each of the addresses `at(group)`. Registers are joined, never assembled in memory: a
 /// wide load that follows narrow stores stalls. Where the instruction set loads into a part of a register
-/// that is said outright: GCC 12 makes a load and a shuffle across lanes of a portable join (a third of the
-/// crowd's check).
+/// that is said outright: GCC 12 makes a load and a shuffle across lanes of a portable join.
 template <class P, class At>
 [[gnu::always_inline]] inline P load_fours(At at, int group = 0) {
   using T = typename P::Scalar;
