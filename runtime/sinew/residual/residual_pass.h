@@ -1,7 +1,7 @@
 // The recursive residual pass, one body at a time: what a motion asks of the joints (recursive Newton–Euler).
 //
-// Every vector is in the axes of its own body, where inertias are constant: of the arithmetic of a pass in
-// world axes more than half is left. T is float, double or a pack of characters of one rig (pack.h);
+// Every vector is in the axes of its own body, where inertias are constant: a pass in world axes takes twice
+// the arithmetic. T is float, double or a pack of characters of one rig (pack.h);
 // constants are the tree's, of T's Number. Source: Featherstone, "Rigid Body Dynamics Algorithms", 2008,
 // section 5.3.
 #pragma once

@@ -10,6 +10,9 @@
 namespace sinew::crowd_kernels {
 namespace {
 
+static_assert(sizeof(Transform<float>) == sizeof(kernels::PoseLayout<float>),
+              "structs of floats lie in memory as in files for other instruction sets");
+
 /// What a check works in, for every body of every lane.
 template <class P>
 struct Scratch {
