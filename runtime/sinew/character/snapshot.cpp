@@ -42,7 +42,6 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
-    l.stale = false;
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -185,6 +184,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_joints(s, stream);
   visit_history(s, stream);
   if (!stream.reading()) return;
+  s.owed = {};
   s.impulses.clear();
   s.refresh_limits();
   s.update_model();
