@@ -24,7 +24,8 @@ struct Kind {
   const char* not_linear = nullptr;  ///< why, where a straight line does not fit
 };
 
-constexpr const char* kProducts = "products of conjugate gradients grow with what hangs together";
+constexpr const char* kProducts =
+    "the number of products of conjugate gradients depends on what hangs together";
 
 constexpr Kind kKinds[] = {
     {"wind", "checked", "collider"},

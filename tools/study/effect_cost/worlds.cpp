@@ -78,6 +78,7 @@ struct Solved : Work {
       for (int i = 0; i < instances; ++i) add_props(i);
     } else if (effect == "restitution") {
       for (int i = 0; i < kRods; ++i) add_ball(i, i < instances ? 0.5 : 0);
+      without = world.memory().characters;
     } else if (effect != "none") {
       check(add_ties(effect, instances, world));
     }
