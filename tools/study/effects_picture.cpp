@@ -9,8 +9,8 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kWidth = 1560, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
-                 kGap = 130;
+constexpr double kWidth = 1640, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
+                 kGap = 165;
 constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {0.00, 0.62, 0.45}, {0.80, 0.40, 0.00},
                                {0.35, 0.70, 0.90}, {0.80, 0.47, 0.65}, {0.30, 0.30, 0.30}};  // Okabe and Ito
 
