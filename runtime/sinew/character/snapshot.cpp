@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/character/residual_coder.h"
+
 namespace sinew {
 namespace {
 
@@ -9,16 +11,6 @@ namespace {
 template <class Values>
 bool same_bits(const Values& a, const Values& b) {
   return std::memcmp(a.data(), b.data(), sizeof(*a.data()) * a.size()) == 0;
-}
-
-/// body → world as the step computes it from the local pose.
-template <class T>
-Mat3<T> rotation_of(const CharacterState<T>& s, int body, const Mat3<T>* parent) {
-  Mat3<T> relative = s.local[body].rotation.toRotationMatrix();
-  if (!parent) return relative;
-  Mat3<T> product;
-  product.noalias() = *parent * relative;
-  return product;
 }
 
 /// An enumeration as one byte, kept within what it knows.
@@ -75,17 +67,24 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
 
 template <class T>
 void visit_pose(CharacterState<T>& s, ByteStream& stream) {
-  for (Transform<T>& x : s.local) {
-    stream.rotation("pose rotation", x.rotation);
-    stream.vector("pose translation", x.translation);
+  const auto rest = [&](std::size_t i) { return s.skeleton.joints[i].rest.template cast<T>(); };
+  {
+    ResidualCoder<T> coder("pose rotation", stream);
+    for (std::size_t i = 0; i < s.local.size(); ++i) coder.rotation(s.local[i].rotation, rest(i).rotation);
+  }
+  {
+    ResidualCoder<T> coder("pose translation", stream);
+    for (std::size_t i = 0; i < s.local.size(); ++i)
+      coder.values(s.local[i].translation, rest(i).translation);
   }
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& last = s.target_before[i];
     const bool elsewhere =
         last.rotation.coeffs() != s.local[i].rotation.coeffs() || last.translation != s.local[i].translation;
     if (stream.part("joint is off its last target", elsewhere)) {
-      stream.rotation("last target's rotation", last.rotation);
-      stream.vector("last target's translation", last.translation);
+      ResidualCoder<T> coder("last target", stream);
+      coder.rotation(last.rotation, s.local[i].rotation);
+      coder.values(last.translation, s.local[i].translation);
     } else if (stream.reading()) {
       last.rotation = s.local[i].rotation;
       last.translation = s.local[i].translation;
@@ -93,33 +92,115 @@ void visit_pose(CharacterState<T>& s, ByteStream& stream) {
   }
 }
 
+/// The first so many members of one joint's six.
+template <class T, class Predicted>
+void visit_dofs(ResidualCoder<T>& coder, std::array<T, 6>& values, int count, Predicted predicted) {
+  for (int k = 0; k < count; ++k) coder.value(values[k], predicted(k));
+}
+
 template <class T>
 void visit_joints(CharacterState<T>& s, ByteStream& stream) {
+  const auto zero = [](int) { return T(0); };
   stream.value("span of the joint speeds", s.rate_step);
+  {
+    ResidualCoder<T> coder("joint speed", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) visit_dofs(coder, s.rate[i], s.tree.dof_count(i), zero);
+  }
   // The next step's guess looks further back only while nothing changes.
-  const bool guesses =
-      stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0);
+  if (stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0)) {
+    ResidualCoder<T> coder("joint speed before", stream);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      visit_dofs(coder, s.rate_before[i], s.tree.dof_count(i), [&](int k) { return s.rate[i][k]; });
+  }
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const std::size_t count = s.tree.dof_count(i);
     Deviation<T>& d = s.deviation[i];
-    auto flags = static_cast<std::uint8_t>((d.on_animation ? 1 : 0) + (d.released ? 2 : 0));
-    stream.value("joint on the animation or released", flags);
+    constexpr std::array<T, 6> none{};
+    const bool deviates = !same_bits(d.offset, none) || !same_bits(d.rate, none);
+    auto flags =
+        static_cast<std::uint8_t>((d.on_animation ? 1 : 0) + (d.released ? 2 : 0) + (deviates ? 4 : 0));
+    stream.value("joint on the animation, released, off it", flags);
     if (stream.reading()) {
       d = {};
       d.on_animation = (flags & 1) != 0;
       d.released = (flags & 2) != 0;
     }
-    stream.array("joint speed", s.rate[i].data(), count);
-    if (guesses) stream.array("joint speed before", s.rate_before[i].data(), count);
-    constexpr std::array<T, 6> none{};
-    if (stream.part("joint has a deviation", !same_bits(d.offset, none) || !same_bits(d.rate, none))) {
-      stream.array("deviation", d.offset.data(), count);
-      stream.array("deviation's rate", d.rate.data(), count);
-    }
+    if ((flags & 4) == 0 && !stream.bounding()) continue;
+    ResidualCoder<T> coder("deviation", stream);
+    const JointJet<T>& last = s.target_before[i];
+    const std::array<T, 6> offset =
+        joint_offset_value<T>(s.tree, i, {last.rotation, last.translation}, s.local[i]);
+    visit_dofs(coder, d.offset, s.tree.dof_count(i), [&](int k) { return offset[k]; });
+    visit_dofs(coder, d.rate, s.tree.dof_count(i), [&](int k) { return s.rate[i][k]; });
   }
-  stream.array("load", s.load.data(), s.load.size());
+  ResidualCoder<T> coder("load", stream);
+  for (T& load : s.load) coder.value(load, T(0));
 }
 
+/// Poses a step earlier than `pose` [body], going by the speeds of the joints; bodies relative to the root's
+/// place now. `pose` is moved there.
+template <class T>
+void step_back(const CharacterState<T>& s, const std::vector<std::array<T, 6>>& rate, T h,
+               std::vector<Transform<T>>& pose, Kinematics<T>& out) {
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    std::array<T, 6> back = rate[i];
+    for (T& r : back) r *= -h;
+    pose[i] = at_offset<T>(s.tree, i, pose[i], back);
+  }
+  forward_kinematics<T>(s.tree, pose, s.local[0].translation, out);
+}
+
+/// Where bodies are at the pose, in order and as far as they are known to the bit.
+template <class T>
+void visit_places(CharacterState<T>& s, ByteStream& stream) {
+  History<T>& h = s.history;
+  {
+    ResidualCoder<T> coder("rotation", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const Mat3<T> relative = s.local[i].rotation.toRotationMatrix();
+      Mat3<T> rotation = relative;  // as the step computes it
+      if (s.tree.parent[i] >= 0) rotation.noalias() = h.rotation[s.tree.parent[i]] * relative;
+      coder.values(h.rotation[i], rotation);
+    }
+  }
+  ResidualCoder<T> coder("centre of mass", stream);
+  std::copy_n(s.local.begin(), s.tree.bodies, s.wanted.begin());
+  forward_kinematics<T>(s.tree, s.wanted, s.local[0].translation, s.guessed);
+  for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.center[i], s.guessed.center[i]);
+}
+
+/// Velocities, going by places now, before (`h.…_before`, or as the joints' speeds have it) and before that.
+template <class T>
+void visit_velocities(CharacterState<T>& s, bool second, ByteStream& stream) {
+  History<T>& h = s.history;
+  const T step = s.rate_step > T(0) ? s.rate_step : T(1);
+  const T k1 = second ? T(1.5) : T(1), k2 = second ? T(0.5) : T(0);
+  {
+    ResidualCoder<T> coder("velocity", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const Vec3<T> before = second ? h.center_before[i] : s.guessed.center[i];
+      coder.values(h.velocity[i],
+                   Vec3<T>((k1 * (h.center[i] - before) - k2 * (before - s.guessed.center[i])) / step));
+    }
+  }
+  {
+    ResidualCoder<T> coder("rotation rate", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const Mat3<T> before = second ? h.rotation_before[i] : s.guessed.rotation[i];
+      coder.values(h.rotation_rate[i],
+                   Mat3<T>((k1 * (h.rotation[i] - before) - k2 * (before - s.guessed.rotation[i])) / step));
+    }
+  }
+  ResidualCoder<T> coder("angular momentum", stream);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = h.rotation[i];
+    const Mat3<T> spin = h.rotation_rate[i] * r.transpose();
+    const Vec3<T> omega =
+        T(0.5) * Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1));
+    coder.values(h.momentum[i], Vec3<T>(r * (s.tree.inertia[i] * (r.transpose() * omega))));
+  }
+}
+
+/// Uses `wanted` and `guessed`, which every step makes anew.
 template <class T>
 void visit_history(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
@@ -132,25 +213,28 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
   stream.value("scheme", scheme);
   if (stream.reading()) h.scheme = static_cast<Scheme>(std::min(scheme, std::uint8_t{2}));
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    stream.vector("centre of mass", h.center[i]);
-    stream.vector("velocity", h.velocity[i]);
-    stream.vector("angular momentum", h.momentum[i]);
-    stream.matrix("rotation rate", h.rotation_rate[i]);
-    const int parent = s.tree.parent[i];
-    const Mat3<T> rotation = rotation_of(s, i, parent < 0 ? nullptr : &h.rotation[parent]);
-    if (stream.part("rotation differs from the pose's", !same_bits(h.rotation[i], rotation)))
-      stream.matrix("rotation", h.rotation[i]);
-    else if (stream.reading())
-      h.rotation[i] = rotation;
+  visit_places(s, stream);
+  step_back<T>(s, s.rate, s.rate_step, s.wanted, s.guessed);
+  const bool second = stream.part("contacts have been the same", s.steps_unchanged > 0);
+  if (second) {
+    {
+      ResidualCoder<T> coder("centre of mass before", stream);
+      for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.center_before[i], s.guessed.center[i]);
+    }
+    {
+      ResidualCoder<T> coder("rotation before", stream);
+      for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.rotation_before[i], s.guessed.rotation[i]);
+    }
+    step_back<T>(s, s.rate_before, s.rate_step, s.wanted, s.guessed);
   }
-  if (!stream.part("contacts have been the same", s.steps_unchanged > 0)) return;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    stream.vector("centre of mass before", h.center_before[i]);
-    stream.vector("velocity before", h.velocity_before[i]);
-    stream.vector("angular momentum before", h.momentum_before[i]);
-    stream.matrix("rotation before", h.rotation_before[i]);
+  visit_velocities(s, second, stream);
+  if (!second) return;
+  {
+    ResidualCoder<T> coder("velocity before", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.velocity_before[i], h.velocity[i]);
   }
+  ResidualCoder<T> coder("angular momentum before", stream);
+  for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.momentum_before[i], h.momentum[i]);
 }
 
 }  // namespace
@@ -252,12 +336,22 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
+  {
+    ResidualCoder<std::uint64_t> coder("contact", stream);
+    std::uint64_t before = 0;
+    for (LaggedForce<T>& contact : lagged) {
+      coder.value(contact.id, before);
+      before = contact.id;
+    }
+  }
+  ResidualCoder<T> coder("contact force", stream);
+  T stiff = T(0);
   for (LaggedForce<T>& contact : lagged) {
     auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here
-    stream.value("contact", id);
-    stream.value("contact force", force);
-    stream.value("contact stiffness", stiffness);
-    stream.value("contact offset", offset);
+    coder.value(force, T(0));
+    coder.value(stiffness, stiff);
+    coder.value(offset, T(0));
+    stiff = stiffness;
   }
 }
 
@@ -301,7 +395,7 @@ std::size_t bytes_at_most(const MovingParts<T>& world, Content content) {
   visit(world, content, stream);
   std::size_t room = kHeaderBytes + stream.position();
   if (content == Content::kState)
-    room += (world.lagged.capacity() - world.lagged.size()) * (sizeof(std::uint64_t) + 3 * sizeof(T));
+    room += (world.lagged.capacity() - world.lagged.size()) * (sizeof(std::uint64_t) + 3 * sizeof(T) + 4);
   else
     for (const auto& s : world.states)
       room += (s->impulses.capacity() - s->impulses.size()) * (sizeof(int) + 6 * sizeof(T));
