@@ -20,7 +20,9 @@ namespace sinew {
 template <class V>
 class ResidualCoder {
  public:
-  ResidualCoder(const char* name, ByteStream& stream) : name_(name), stream_(stream) {}
+  /// `marks`: numbers may be random or exactly as predicted, so that each has a bit that says so.
+  ResidualCoder(const char* name, ByteStream& stream, bool marks = false)
+      : name_(name), stream_(stream), marks_(marks) {}
   ResidualCoder(const ResidualCoder&) = delete;
   ResidualCoder& operator=(const ResidualCoder&) = delete;
   ~ResidualCoder() {
@@ -40,13 +42,6 @@ class ResidualCoder {
   template <class Vector>
   void values(Vector& v, const Vector& predicted) {
     for (Eigen::Index n = 0; n < v.size(); ++n) value(v.data()[n], predicted.data()[n]);
-  }
-  /// A unit quaternion; nobody need know that it is one.
-  template <class T>
-  void rotation(Quat<T>& q, const Quat<T>& predicted) {
-    for (int n = 0; n < 3; ++n) value(q.coeffs()[n], predicted.coeffs()[n]);
-    const T rest = T(1) - q.vec().squaredNorm();
-    value(q.w(), std::copysign(std::sqrt(std::max(rest, T(0))), predicted.w()));
   }
 
  private:
@@ -68,10 +63,15 @@ class ResidualCoder {
   }
 
   /// Bits of the binary part: the mean length of what came so far.
-  int parameter() const { return std::min(mean_ / 16, kWidth - 1); }
-  void learn(Bits z) { mean_ += (16 * static_cast<int>(std::bit_width(z)) - mean_) / 4; }
+  int parameter() const { return mean_ < 0 ? kWidth / 2 : std::min(mean_ / 16, kWidth - 1); }
+  void learn(Bits z) {
+    const int length = 16 * static_cast<int>(std::bit_width(z));
+    mean_ = mean_ < 0 ? length : mean_ + (length - mean_) / 4;
+  }
 
   void put(Bits z) {
+    if (marks_) put_bits(z == 0 ? 1 : 0, 1);
+    if (marks_ && z == 0 && !stream_.bounding()) return;
     const int k = parameter();
     const Bits q = z >> k;
     if (q < Bits(kLongest) && !stream_.bounding()) {
@@ -84,6 +84,7 @@ class ResidualCoder {
     learn(z);
   }
   Bits get() {
+    if (marks_ && get_bits(1) != 0) return 0;
     const int k = parameter();
     int q = 0;
     while (q < kLongest && get_bits(1) != 0) ++q;
@@ -127,7 +128,8 @@ class ResidualCoder {
 
   const char* name_;
   ByteStream& stream_;
-  int mean_ = 0;    ///< sixteenths of a bit
+  bool marks_;
+  int mean_ = -1;   ///< sixteenths of a bit; below 0: of none yet
   int filled_ = 0;  ///< bits of `byte_` that are written, or still to be read
   std::uint8_t byte_ = 0;
 };

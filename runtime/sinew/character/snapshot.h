@@ -4,7 +4,7 @@
 // the field that a byte belongs to. What follows from the rest is left out: deviations of joints on the
 // animation, the earlier state where bdf2 cannot ask for it. What nearly follows is written as its distance
 // from what it would be (residual_coder.h): masses' places from the pose, the last pose from the joints'
-// speeds, velocities from the places.
+// speeds, velocities from the places. Whoever reads must compute these alike, as whoever replays must.
 #pragma once
 
 #include <cstddef>
@@ -77,6 +77,8 @@ class ByteStream {
   void rotation(const char* name, Quat<T>& q) {
     array(name, q.coeffs().data(), 4);
   }
+  /// kBound: that so many bytes may follow.
+  void leave_room(std::size_t bytes) { position_ += bytes; }
   /// Whether a part follows; `there` is what the state says. A bound counts every part.
   bool part(const char* name, bool there) {
     std::uint8_t flag = there ? 1 : 0;
