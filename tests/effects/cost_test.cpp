@@ -31,8 +31,9 @@ std::string symbols(const std::string& program) {
 TEST(EffectCost, SymbolsOfAnUndeclaredEffectAreAbsent) {
   const std::string full = symbols(kFull.program), bare = symbols(kBare.program);
   ASSERT_NE(bare.find("sinew::World<float>::step"), std::string::npos) << "nm listed nothing";
-  for (const char* effect :
-       {"sinew::Wind<", "sinew::Buoyancy<", "sinew::JointSpring<", "sinew::ForceField<"}) {
+  for (const char* effect : {"sinew::Wind<", "sinew::Buoyancy<", "sinew::JointSpring<", "sinew::ForceField<",
+                             "sinew::make_strand", "sinew::make_cloth", "sinew::make_soft_tissue",
+                             "sinew::make_loop", "::add_loop", "::add_particles"}) {
     EXPECT_NE(full.find(effect), std::string::npos) << effect;
     EXPECT_EQ(bare.find(effect), std::string::npos) << effect;
   }
@@ -58,20 +59,34 @@ TEST(EffectCost, DeclaredButEmptyCostsAtMostFiftyInstructions) {
   }
 }
 
-TEST(EffectCost, IsAStraightLineFromOneInstanceTo64) {
+TEST(EffectCost, IsAStraightLineFromOneInstanceTo64OrSaysWhyNot) {
   if (const std::string why = why_not(); !why.empty()) GTEST_SKIP() << why;
   EffectOptions quick = kFull;
   quick.quick = true;
   EffectStudy found;
   const convert::Error error = run_effects(quick, {}, found);
   ASSERT_FALSE(error) << error.message;
-  ASSERT_GE(found.costs.size(), 13u);
+  ASSERT_GE(found.costs.size(), 27u);
   for (const EffectCost& cost : found.costs) {
     const std::string what = cost.effect + " " + cost.mode;
-    ASSERT_GT(cost.instructions[0], 1000) << what;
+    ASSERT_GT(cost.instructions[0], 500) << what;
+    if (cost.instance.empty()) {
+      EXPECT_EQ(cost.instructions[1], cost.instructions[3]) << what;
+      continue;
+    }
     EXPECT_GT(cost.each, 50) << what;  // it acts
-    EXPECT_LT(cost.misfit, 0.02) << what;
+    if (cost.not_linear.empty())
+      EXPECT_LT(cost.misfit, 0.02) << what;
+    else
+      EXPECT_GT(cost.misfit, 0.02) << what << " is linear after all";
   }
+}
+
+TEST(EffectCost, PlayedStepKeepsNoRecordThatNobodyAsksFor) {
+  if (const std::string why = why_not(); !why.empty()) GTEST_SKIP() << why;
+  // Kinematics and residual, and on top of them the comparison and the pose in both frames: a quarter to a
+  // third. Joint speeds, history and totals would be as much again.
+  EXPECT_LT(count_instructions(kFull, "checked none 0"), 1.4 * count_instructions(kFull, "bare none 0"));
 }
 
 TEST(EffectCost, FitFindsTheLine) {

@@ -8,4 +8,8 @@ std::unique_ptr<Effect<float>> make_module(const std::string& /*name*/,
   return nullptr;
 }
 
+Status add_ties(const std::string& /*name*/, int /*count*/, World<float>& /*world*/) {
+  return Status::error(Code::kInvalidArgument, "no effects");
+}
+
 }  // namespace sinew::study

@@ -16,19 +16,46 @@
 namespace sinew::study {
 namespace {
 
-constexpr int kCountedSteps = 50;
+constexpr int kCountedSteps = 10;  ///< all alike: the mean tells no more
 
 struct Kind {
   const char *effect, *mode;
+  const char* instance;              ///< what one is; null: it is on or off
+  const char* not_linear = nullptr;  ///< why, where a straight line does not fit
 };
 
-constexpr Kind kKinds[] = {{"wind", "checked"},         {"wind", "pass"},
-                           {"buoyancy", "checked"},     {"buoyancy", "pass"},
-                           {"joint_spring", "checked"}, {"joint_spring", "pass"},
-                           {"force_field", "checked"},  {"force_field", "pass"},
-                           {"muscles", "pass"},         {"joint_limits", "pass"},
-                           {"joint_damping", "pass"},   {"dry_friction", "pass"},
-                           {"contact", "solve"}};
+constexpr const char* kProducts =
+    "the number of products of conjugate gradients depends on what hangs together";
+
+constexpr Kind kKinds[] = {
+    {"wind", "checked", "collider"},
+    {"wind", "pass", "collider"},
+    {"buoyancy", "checked", "collider"},
+    {"buoyancy", "pass", "collider"},
+    {"joint_spring", "checked", "joint"},
+    {"joint_spring", "pass", "joint"},
+    {"force_field", "checked", "body"},
+    {"force_field", "pass", "body"},
+    {"gravity", "checked", nullptr},
+    {"support", "checked", "capsule on the floor", "points that would have to pull are left out"},
+    {"impulses", "checked", "push"},
+    {"muscles", "pass", "degree of freedom"},
+    {"joint_limits", "pass", "limit that bears"},
+    {"joint_damping", "pass", "degree of freedom"},
+    {"dry_friction", "pass", "degree of freedom"},
+    {"ground", "solve", "point, with friction"},
+    {"obstacle", "solve", "point, with friction"},
+    {"self_collision", "solve", "point, with friction", kProducts},
+    {"character_contact", "solve", "point, with friction"},
+    {"loops", "step", "point of a limp wheel"},
+    {"restitution", "step", "ball that bounces"},
+    {"prop", "step", "box in flight"},
+    {"resting_prop", "step", "box on the floor: 4 points"},
+    {"prop_contact", "step", "box on a box on the floor"},
+    {"strand", "step", "particle", kProducts},
+    {"cloth", "step", "row: 2 particles", kProducts},
+    {"soft_tissue", "step", "cell: 4 particles", kProducts},
+};
 
 /// What a command prints, its errors thrown away; empty when it failed.
 std::string answer(const std::string& command) {
@@ -50,7 +77,9 @@ std::string quoted(const std::string& path) {
 
 /// Nothing is declared where there are no instances: what an empty declaration costs is a test's business.
 std::string arguments(const Kind& kind, int instances) {
-  return fmt::format(" {} {} {}", kind.mode, instances == 0 ? "none" : kind.effect, instances);
+  const std::string_view effect = kind.effect, mode = kind.mode;
+  const bool own_scene = mode == "step" || effect == "support" || effect == "character_contact";
+  return fmt::format(" {} {} {}", mode, instances == 0 && !own_scene ? "none" : effect, instances);
 }
 
 /// `counted`: answers so far; the step without effects is the same for many.
@@ -58,7 +87,10 @@ convert::Error measure(const EffectOptions& options, bool counts, const Kind& ki
                        std::map<std::string, double>& counted, EffectCost& cost) {
   cost.effect = kind.effect;
   cost.mode = kind.mode;
-  const int runs = options.quick ? 2 : 5, steps = options.quick ? 200 : 2000;
+  if (kind.instance) cost.instance = kind.instance;
+  if (kind.not_linear) cost.not_linear = kind.not_linear;
+  const int runs = options.quick ? 1 : 5;
+  const int steps = (options.quick ? 50 : 2000) / (cost.mode == "step" ? 10 : 1);
   for (std::size_t i = 0; i < kInstances.size(); ++i) {
     const std::string what = arguments(kind, kInstances[i]);
     if (counts && !counted.contains(what)) counted[what] = count_instructions(options, what);
@@ -157,20 +189,27 @@ std::string effects_table(const EffectStudy& study) {
         fmt::format("Step without effects {:.0f} instructions, of these kinematics and residual {:.0f}.\n\n",
                     study.step, study.bare);
   text +=
-      "| effect | mode | instructions: fixed | per instance | misfit | at 1 / 8 / 64 | ns per instance | "
-      "bytes at "
-      "1 / 64 |\n|---|---|---|---|---|---|---|---|\n";
+      "| effect | mode | an instance is a | instructions: fixed | per instance | misfit | at 1 / 8 / 64 | "
+      "ns per instance | bytes at 1 / 64 |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const EffectCost& c : study.costs) {
     const auto more = [&](std::size_t i) { return c.instructions[i] - c.instructions[0]; };
-    text += fmt::format("| {} | {} | ", c.effect, c.mode);
-    text += c.instructions[0] < 0 ? "– | – | – | – | "
-                                  : fmt::format("{:.0f} | {:.0f} | {:.2f} % | {:.0f} / {:.0f} / {:.0f} | ",
-                                                c.fixed, c.each, 100 * c.misfit, more(1), more(2), more(3));
+    text +=
+        fmt::format("| {} | {} | {} | ", c.effect, c.mode, c.instance.empty() ? "– (on or off)" : c.instance);
+    if (c.instructions[0] < 0)
+      text += "– | – | – | – | ";
+    else if (c.instance.empty())
+      text += fmt::format("{:.0f} | – | – | – | ", more(1));
+    else
+      text +=
+          fmt::format("{:.0f} | {:.0f} | {:.2f} %{} | {:.0f} / {:.0f} / {:.0f} | ", c.fixed, c.each,
+                      100 * c.misfit, c.not_linear.empty() ? "" : ": not linear", more(1), more(2), more(3));
     text += fmt::format("{:.0f} | {:.0f} / {:.0f} |\n",
                         1000 * (c.microseconds[3] - c.microseconds[1]) / (kInstances[3] - kInstances[1]),
                         c.bytes[1], c.bytes[3]);
   }
-  return text;
+  for (const EffectCost& c : study.costs)
+    if (!c.not_linear.empty()) text += fmt::format("\n{} is not linear: {}.", c.effect, c.not_linear);
+  return text + "\n";
 }
 
 std::string effects_csv(const EffectStudy& study) {
@@ -188,11 +227,13 @@ nlohmann::json effects_json(const EffectStudy& study) {
   for (const EffectCost& c : study.costs) {
     nlohmann::json one{{"effect", c.effect},
                        {"mode", c.mode},
+                       {"instance", c.instance},
                        {"instances", kInstances},
                        {"microseconds", c.microseconds},
                        {"bytes", c.bytes}};
     if (c.instructions[0] >= 0) {
       one["instructions"] = c.instructions;
+      if (!c.not_linear.empty()) one["not_linear"] = c.not_linear;
       one["fixed"] = c.fixed;
       one["each"] = c.each;
       one["misfit"] = c.misfit;

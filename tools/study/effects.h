@@ -16,6 +16,8 @@ constexpr std::array<int, 4> kInstances{0, 1, 8, 64};
 /// One effect in one mode of the counting program (tools/study/effect_cost/main.cpp says which there are).
 struct EffectCost {
   std::string effect, mode;
+  std::string instance;    ///< what one is; empty: it is on or off, and costs the same at 1, 8 and 64
+  std::string not_linear;  ///< why, where a straight line does not fit
   std::array<double, 4> instructions{};  ///< per step; negative: not counted
   std::array<double, 4> microseconds{};  ///< per step, the least of some runs
   std::array<double, 4> bytes{};

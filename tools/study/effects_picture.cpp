@@ -1,5 +1,6 @@
 // Added cost against instances, by cairo.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "study/canvas.h"
@@ -8,8 +9,8 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kWidth = 1060, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
-                 kGap = 130;
+constexpr double kWidth = 1640, kHeight = 560, kLeft = 80, kTop = 70, kPlotWide = 360, kPlotHigh = 420,
+                 kGap = 165;
 constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {0.00, 0.62, 0.45}, {0.80, 0.40, 0.00},
                                {0.35, 0.70, 0.90}, {0.80, 0.47, 0.65}, {0.30, 0.30, 0.30}};  // Okabe and Ito
 
@@ -60,15 +61,18 @@ convert::Error draw_effects(const EffectStudy& study, const std::string& file) {
       counted ? "Instructions that an effect adds to a step" : "Microseconds that an effect adds to a step",
       kLeft, 28, 18, 0, true);
   double left = kLeft;
-  for (const bool checked : {true, false}) {
-    const Plot plot = counted ? Plot{left, 2, 6} : Plot{left, -3, 2};
-    draw_frame(canvas, plot, checked ? "character on its animation" : "one Newton pass");
+  constexpr std::array<const char*, 3> titles{"character on its animation",
+                                              "one Newton pass, or a solve of one",
+                                              "whole steps of what is solved for"};
+  for (std::size_t group = 0; group < titles.size(); ++group) {
+    const Plot plot = counted ? Plot{left, 1, 8} : Plot{left, -3, 3};
+    draw_frame(canvas, plot, titles[group]);
     std::vector<std::pair<double, const EffectCost*>> ends;  // from the top
-    for (const EffectCost& c : study.costs)
-      if ((c.mode == "checked") == checked) {
-        const auto& values = counted ? c.instructions : c.microseconds;
-        ends.emplace_back(plot.y(values[3] - values[0]), &c);
-      }
+    for (const EffectCost& c : study.costs) {
+      if ((c.mode == "checked" ? 0u : c.mode == "step" ? 2u : 1u) != group || c.instance.empty()) continue;
+      const auto& values = counted ? c.instructions : c.microseconds;
+      ends.emplace_back(plot.y(values[3] - values[0]), &c);
+    }
     std::sort(ends.begin(), ends.end());
     double label = 0;
     for (std::size_t n = 0; n < ends.size(); ++n) {

@@ -168,11 +168,13 @@ std::span<const T> Character<T>::torque() const {
 
 template <class T>
 std::span<const T> Character<T>::load() const {
+  state_->keep_loads();
   return state_->load;
 }
 
 template <class T>
 std::span<const T> Character<T>::limit() const {
+  state_->keep_loads();
   return state_->limit;
 }
 
@@ -193,6 +195,7 @@ bool Character<T>::on_animation() const {
 
 template <class T>
 const CharacterReport& Character<T>::report() const {
+  state_->settle_totals();
   return state_->report;
 }
 

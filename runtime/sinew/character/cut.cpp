@@ -47,6 +47,7 @@ bool carry_over(CharacterState<T>& s, T h) {
   const Transform<T> before = a_step_ago(s.target[0], h);
   JointJet<T>& last = s.target_before[0];
   if (!leaps(before, last)) return false;
+  s.keep_record();
   turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
   s.local[0] = before;

@@ -8,7 +8,7 @@ namespace sinew {
 namespace {
 
 constexpr double kTouching = 0.02;  ///< m between bounding spheres, at which a sleeper wakes
-constexpr double kMargin = 0.2;     ///< m beyond what the present speed covers, as in ContactFinder
+constexpr double kReach = 0.2;     ///< m beyond what the present speed covers, as in ContactFinder
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void Islands<T>::divide_ties(const Couplings<T>& couplings) {
 /// because somebody walks by.
 template <class T>
 bool Islands<T>::meet(const CharacterState<T>& a, const CharacterState<T>& b, T h) {
-  return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kMargin));
+  return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kReach));
 }
 
 template <class T>

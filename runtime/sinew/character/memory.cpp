@@ -34,7 +34,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
   const History<T>& h = s.history;
   const Motion<T>& m = s.motion;
   return sizeof s +
-         held(s.target, s.target_before, s.local, s.model, s.rate, s.rate_before, s.deviation,
+         held(s.target, s.target_before, s.local, s.model, s.played_from, s.rate, s.rate_before, s.deviation,
               s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.unknown, s.impulses, s.baked,
               s.wanted, s.standing) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,

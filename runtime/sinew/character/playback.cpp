@@ -51,34 +51,28 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
-  for (int i = 0; i < s.tree.bodies; ++i)
-    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
-      s.torque[dof] = p.gradient[dof];
-      s.limit[dof] = p.law.limit(dof, p.gradient[dof]);
-      s.load[dof] = p.law.load(s.tree, i, dof, p.gradient);
-      s.unknown[dof] = 0;
-    }
+  std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
+  std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const Transform<T> before = s.local[i];
+    s.played_from[i] = s.local[i];
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
-    s.rate[i] = joint_offset_value<T>(s.tree, i, before, s.local[i]);
-    for (T& r : s.rate[i]) r /= h;
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.update_model();
-  advance_exactly<T>(s.tree, p.kinematics, s.motion, h, origin.template cast<double>(), s.history);
-  s.levels.stale = false;
+  s.history.place = origin.template cast<double>();  // neighbours go by these two
+  s.history.velocity[0] = s.motion.velocity[0];
+  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
-  s.report_totals(world.gravity);
   return true;
 }
 
 template <class T>
 void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
+  s.keep_loads();
   std::copy_n(s.local.begin(), s.tree.bodies, p.start.begin());
   p.common_origin = s.local[0].translation;
   for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
@@ -87,9 +81,8 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   else
     choose_targets<T>(s, T(world.accuracy.return_time), h);
   for (int i = 0; i < s.tree.bodies; ++i) {
+    s.played_from[i] = p.start[i];
     s.local[i] = p.target[i];
-    s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], s.local[i]);
-    for (T& r : s.rate[i]) r /= h;
     s.deviation[i].released = false;
     if (s.deviation[i].on_animation) continue;
     // Nobody measures what the way back takes: no muscle counts as saturated.
@@ -102,7 +95,7 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.history.velocity[0] = (s.local[0].translation - p.start[0].translation) / h;  // neighbours go by it
   s.history.place = s.local[0].translation.template cast<double>();
-  s.levels.stale = true;
+  s.owed = {.rates = true, .history = true, .motion = true, .h = h};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
@@ -110,8 +103,9 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
 
 template <class T>
 void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
-  if (!s.levels.stale) return;
-  s.levels.stale = false;
+  s.keep_record();
+  if (!s.owed.motion) return;
+  s.owed.history = s.owed.motion = false;
   // Speeds of the animation, and on top of them those of what is off it.
   jets.assign(s.target_before.begin(), s.target_before.begin() + s.tree.bodies);
   for (int i = 0; i < s.tree.bodies; ++i) {

@@ -6,7 +6,7 @@
 namespace sinew {
 
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
-/// they can't.
+/// they can't. Leaves the history behind, and the report's totals to whoever asks for them.
 template <class T>
 bool play(CharacterState<T>& state, const WorldSettings& world, T h);
 
@@ -18,8 +18,8 @@ bool near_obstacle(const CharacterState<T>& state, const Surroundings& around, T
 template <class T>
 void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 
-/// Makes the history of a character that was followed: poses and speeds that it has now. `jets` is room for
-/// its bodies.
+/// Makes the joint speeds and the history of a character that was played: poses and speeds that it has now.
+/// `jets` is room for its bodies.
 template <class T>
 void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/character/residual_coder.h"
+
 namespace sinew {
 namespace {
 
@@ -9,16 +11,6 @@ namespace {
 template <class Values>
 bool same_bits(const Values& a, const Values& b) {
   return std::memcmp(a.data(), b.data(), sizeof(*a.data()) * a.size()) == 0;
-}
-
-/// body → world as the step computes it from the local pose.
-template <class T>
-Mat3<T> rotation_of(const CharacterState<T>& s, int body, const Mat3<T>* parent) {
-  Mat3<T> relative = s.local[body].rotation.toRotationMatrix();
-  if (!parent) return relative;
-  Mat3<T> product;
-  product.noalias() = *parent * relative;
-  return product;
 }
 
 /// An enumeration as one byte, kept within what it knows.
@@ -42,7 +34,6 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
-    l.stale = false;
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -74,84 +65,240 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   }
 }
 
+/// What the last member of a unit quaternion is, going by the others, on the side of `like`.
+template <class T>
+T last_of(const Quat<T>& q, const Quat<T>& like) {
+  return std::copysign(std::sqrt(std::max(T(1) - q.vec().squaredNorm(), T(0))), like.w());
+}
+
 template <class T>
 void visit_pose(CharacterState<T>& s, ByteStream& stream) {
-  for (Transform<T>& x : s.local) {
-    stream.rotation("pose rotation", x.rotation);
-    stream.vector("pose translation", x.translation);
-  }
+  const auto rest = [&](std::size_t i) { return s.skeleton.joints[i].rest.template cast<T>(); };
+  const auto visit = [&](const char* name, auto visit_joint) {
+    ResidualCoder<T> coder(name, stream, true);
+    for (std::size_t i = 0; i < s.local.size(); ++i) visit_joint(coder, i, s.local[i]);
+  };
+  visit("pose rotation", [&](auto& coder, std::size_t i, Transform<T>& x) {
+    for (int n = 0; n < 3; ++n) coder.value(x.rotation.coeffs()[n], rest(i).rotation.coeffs()[n]);
+  });
+  visit("pose rotation's last member", [&](auto& coder, std::size_t i, Transform<T>& x) {
+    coder.value(x.rotation.w(), last_of(x.rotation, rest(i).rotation));
+  });
+  visit("pose translation", [&](auto& coder, std::size_t i, Transform<T>& x) {
+    coder.values(x.translation, rest(i).translation);
+  });
+}
+
+constexpr std::uint8_t kOnAnimation = 1, kReleased = 2, kElsewhere = 4, kDeviates = 8;
+
+/// What there is of each joint, kept in `baked`.
+template <class T>
+void visit_flags(CharacterState<T>& s, ByteStream& stream) {
+  constexpr std::array<T, 6> none{};
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& last = s.target_before[i];
+    Deviation<T>& d = s.deviation[i];
     const bool elsewhere =
         last.rotation.coeffs() != s.local[i].rotation.coeffs() || last.translation != s.local[i].translation;
-    if (stream.part("joint is off its last target", elsewhere)) {
-      stream.rotation("last target's rotation", last.rotation);
-      stream.vector("last target's translation", last.translation);
-    } else if (stream.reading()) {
-      last.rotation = s.local[i].rotation;
-      last.translation = s.local[i].translation;
-    }
+    const bool deviates = !same_bits(d.offset, none) || !same_bits(d.rate, none);
+    s.baked[i] =
+        static_cast<std::uint8_t>((d.on_animation ? kOnAnimation : 0) + (d.released ? kReleased : 0) +
+                                  (elsewhere ? kElsewhere : 0) + (deviates ? kDeviates : 0));
+    stream.value("joint on the animation, released, off its last target, deviating", s.baked[i]);
+    if (!stream.reading()) continue;
+    d = {};
+    d.on_animation = (s.baked[i] & kOnAnimation) != 0;
+    d.released = (s.baked[i] & kReleased) != 0;
+    last.rotation = s.local[i].rotation;
+    last.translation = s.local[i].translation;
   }
 }
 
 template <class T>
 void visit_joints(CharacterState<T>& s, ByteStream& stream) {
+  const auto visit = [&](const char* name, std::uint8_t flag, auto visit_joint) {
+    ResidualCoder<T> coder(name, stream, flag == kElsewhere);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      if (stream.bounding() || flag == 0 || (s.baked[i] & flag) != 0) visit_joint(coder, i);
+  };
+  const auto dofs = [&](ResidualCoder<T>& coder, int i, std::array<T, 6>& values,
+                        const std::array<T, 6>& predicted) {
+    for (int k = 0; k < s.tree.dof_count(i); ++k) coder.value(values[k], predicted[k]);
+  };
+  visit_flags(s, stream);
+  visit("last target's rotation", kElsewhere, [&](auto& coder, int i) {
+    for (int n = 0; n < 3; ++n)
+      coder.value(s.target_before[i].rotation.coeffs()[n], s.local[i].rotation.coeffs()[n]);
+  });
+  visit("last target's rotation's last member", kElsewhere, [&](auto& coder, int i) {
+    Quat<T>& last = s.target_before[i].rotation;
+    coder.value(last.w(), last_of(last, s.local[i].rotation));
+  });
+  visit("last target's translation", kElsewhere,
+        [&](auto& coder, int i) { coder.values(s.target_before[i].translation, s.local[i].translation); });
   stream.value("span of the joint speeds", s.rate_step);
+  visit("joint speed", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate[i], {}); });
   // The next step's guess looks further back only while nothing changes.
-  const bool guesses =
-      stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const std::size_t count = s.tree.dof_count(i);
-    Deviation<T>& d = s.deviation[i];
-    auto flags = static_cast<std::uint8_t>((d.on_animation ? 1 : 0) + (d.released ? 2 : 0));
-    stream.value("joint on the animation or released", flags);
-    if (stream.reading()) {
-      d = {};
-      d.on_animation = (flags & 1) != 0;
-      d.released = (flags & 2) != 0;
-    }
-    stream.array("joint speed", s.rate[i].data(), count);
-    if (guesses) stream.array("joint speed before", s.rate_before[i].data(), count);
-    constexpr std::array<T, 6> none{};
-    if (stream.part("joint has a deviation", !same_bits(d.offset, none) || !same_bits(d.rate, none))) {
-      stream.array("deviation", d.offset.data(), count);
-      stream.array("deviation's rate", d.rate.data(), count);
-    }
+  if (stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0))
+    visit("joint speed before", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate_before[i], s.rate[i]); });
+  visit("deviation", kDeviates, [&](auto& coder, int i) {
+    const JointJet<T>& last = s.target_before[i];
+    dofs(coder, i, s.deviation[i].offset,
+         joint_offset_value<T>(s.tree, i, {last.rotation, last.translation}, s.local[i]));
+  });
+  visit("deviation's rate", kDeviates, [&](auto& coder, int i) {
+    // As if the target had stood still.
+    std::array<T, 6> back = s.rate[i];
+    for (T& r : back) r *= -s.rate_step;
+    const JointJet<T>& last = s.target_before[i];
+    std::array<T, 6> rate = joint_offset_value<T>(s.tree, i, {last.rotation, last.translation},
+                                                  at_offset<T>(s.tree, i, s.local[i], back));
+    for (int k = 0; k < 6; ++k)
+      rate[k] = s.rate_step > T(0) ? (s.deviation[i].offset[k] - rate[k]) / s.rate_step : T(0);
+    dofs(coder, i, s.deviation[i].rate, rate);
+  });
+  ResidualCoder<T> coder("load", stream, true);
+  T before = T(0);  // none, or saturated like the one before
+  for (T& load : s.load) {
+    coder.value(load, before);
+    before = load;
   }
-  stream.array("load", s.load.data(), s.load.size());
 }
 
+/// Poses a step earlier than `pose` [body], going by the speeds of the joints; bodies relative to the root's
+/// place now. `pose` is moved there.
+template <class T>
+void step_back(const CharacterState<T>& s, const std::vector<std::array<T, 6>>& rate, T h,
+               std::vector<Transform<T>>& pose, Kinematics<T>& out) {
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    std::array<T, 6> back = rate[i];
+    for (T& r : back) r *= -h;
+    pose[i] = at_offset<T>(s.tree, i, pose[i], back);
+  }
+  forward_kinematics<T>(s.tree, pose, s.local[0].translation, out);
+}
+
+/// body → world as the step computes it from a local pose and the parent's.
+template <class T>
+Mat3<T> rotation_of(const std::vector<Transform<T>>& local, const Tree<T>& tree, int body,
+                    const std::vector<Mat3<T>>& rotation) {
+  const Mat3<T> relative = local[body].rotation.toRotationMatrix();
+  if (tree.parent[body] < 0) return relative;
+  Mat3<T> product;
+  product.noalias() = rotation[tree.parent[body]] * relative;
+  return product;
+}
+
+/// Where the last step began. Its rotations are kept in the problem, for they give those of the bodies to the
+/// bit.
+template <class T>
+void visit_pose_before(CharacterState<T>& s, ByteStream& stream) {
+  History<T>& h = s.history;
+  const auto visit = [&](const char* name, auto visit_body) {
+    ResidualCoder<T> coder(name, stream);
+    for (int i = 0; i < s.tree.bodies; ++i) visit_body(coder, i);
+  };
+  visit("pose rotation before", [&](auto& coder, int i) {
+    for (int n = 0; n < 3; ++n)
+      coder.value(s.problem.start[i].rotation.coeffs()[n], s.wanted[i].rotation.coeffs()[n]);
+  });
+  visit("pose rotation before, last member", [&](auto& coder, int i) {
+    Quat<T>& rotation = s.problem.start[i].rotation;
+    coder.value(rotation.w(), last_of(rotation, s.wanted[i].rotation));
+    s.wanted[i].rotation = rotation;
+  });
+  visit("rotation before", [&](auto& coder, int i) {
+    coder.values(h.rotation_before[i], rotation_of(s.wanted, s.tree, i, h.rotation_before));
+  });
+  forward_kinematics<T>(s.tree, s.wanted, s.local[0].translation, s.guessed);
+  visit("centre of mass before",
+        [&](auto& coder, int i) { coder.values(h.center_before[i], s.guessed.center[i]); });
+}
+
+/// Angular momentum of a body that turns at `rate`.
+template <class T>
+Vec3<T> momentum_of(const Mat3<T>& inertia, const Mat3<T>& rotation, const Mat3<T>& rate) {
+  const Mat3<T> spin = rate * rotation.transpose();
+  const Vec3<T> omega(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1));
+  return rotation * (inertia * (rotation.transpose() * omega)) / 2;
+}
+
+/// Where bodies are at the pose, in order and as far as they are known to the bit.
+template <class T>
+void visit_places(CharacterState<T>& s, ByteStream& stream) {
+  History<T>& h = s.history;
+  {
+    ResidualCoder<T> coder("rotation", stream);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      coder.values(h.rotation[i], rotation_of(s.local, s.tree, i, h.rotation));
+  }
+  ResidualCoder<T> coder("centre of mass", stream);
+  std::copy_n(s.local.begin(), s.tree.bodies, s.wanted.begin());
+  forward_kinematics<T>(s.tree, s.wanted, s.local[0].translation, s.guessed);
+  for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.center[i], s.guessed.center[i]);
+}
+
+/// Velocities as the scheme has them of places now, before (`known`: the history's, else as the joints'
+/// speeds have it) and, kept in `guessed`, a step before that.
+template <class T>
+void visit_velocities(CharacterState<T>& s, bool known, ByteStream& stream) {
+  History<T>& h = s.history;
+  const T step = s.rate_step > T(0) ? s.rate_step : T(1);
+  const bool second = known && h.scheme == Scheme::kBdf2;
+  const T k1 = second ? T(1.5) : T(1), k2 = second ? T(0.5) : T(0);
+  {
+    ResidualCoder<T> coder("velocity", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const Vec3<T>& guess = s.guessed.center[i];
+      const Vec3<T>& before = known ? h.center_before[i] : guess;
+      const Vec3<T> velocity = (k1 * (h.center[i] - before) - k2 * (before - guess)) / step;
+      coder.values(h.velocity[i], velocity);
+    }
+  }
+  {
+    ResidualCoder<T> coder("rotation rate", stream);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const Mat3<T>& guess = s.guessed.rotation[i];
+      const Mat3<T>& before = known ? h.rotation_before[i] : guess;
+      const Mat3<T> rate = (k1 * (h.rotation[i] - before) - k2 * (before - guess)) / step;
+      coder.values(h.rotation_rate[i], rate);
+    }
+  }
+  ResidualCoder<T> coder("angular momentum", stream);
+  for (int i = 0; i < s.tree.bodies; ++i)
+    coder.values(h.momentum[i], momentum_of(s.tree.inertia[i], h.rotation[i], h.rotation_rate[i]));
+}
+
+/// Uses `wanted`, `guessed` and the problem's `start`, which every step makes anew.
 template <class T>
 void visit_history(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
   const Vec3<double> rounded = s.local[0].translation.template cast<double>();
-  if (stream.part("place is finer than the pose's", h.place != rounded))
-    stream.array("place", h.place.data(), 3);
-  else if (stream.reading())
-    h.place = rounded;
+  {
+    ResidualCoder<double> coder("place", stream);
+    coder.values(h.place, rounded);
+  }
   stream.value("span of the history", h.step_before);
   std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
   stream.value("scheme", scheme);
   if (stream.reading()) h.scheme = static_cast<Scheme>(std::min(scheme, std::uint8_t{2}));
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    stream.vector("centre of mass", h.center[i]);
-    stream.vector("velocity", h.velocity[i]);
-    stream.vector("angular momentum", h.momentum[i]);
-    stream.matrix("rotation rate", h.rotation_rate[i]);
-    const int parent = s.tree.parent[i];
-    const Mat3<T> rotation = rotation_of(s, i, parent < 0 ? nullptr : &h.rotation[parent]);
-    if (stream.part("rotation differs from the pose's", !same_bits(h.rotation[i], rotation)))
-      stream.matrix("rotation", h.rotation[i]);
-    else if (stream.reading())
-      h.rotation[i] = rotation;
+  visit_places(s, stream);
+  step_back<T>(s, s.rate, s.rate_step, s.wanted, s.guessed);
+  const bool known = stream.part("contacts have been the same", s.steps_unchanged > 0);
+  if (known) {
+    visit_pose_before(s, stream);
+    step_back<T>(s, s.rate_before, s.rate_step, s.wanted, s.guessed);
   }
-  if (!stream.part("contacts have been the same", s.steps_unchanged > 0)) return;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    stream.vector("centre of mass before", h.center_before[i]);
-    stream.vector("velocity before", h.velocity_before[i]);
-    stream.vector("angular momentum before", h.momentum_before[i]);
-    stream.matrix("rotation before", h.rotation_before[i]);
+  visit_velocities(s, known, stream);
+  if (!known) return;
+  {
+    ResidualCoder<T> coder("velocity before", stream);
+    const T step = s.rate_step > T(0) ? s.rate_step : T(1);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      coder.values(h.velocity_before[i], Vec3<T>((h.center_before[i] - s.guessed.center[i]) / step));
   }
+  ResidualCoder<T> coder("angular momentum before", stream);
+  for (int i = 0; i < s.tree.bodies; ++i) coder.values(h.momentum_before[i], h.momentum[i]);
 }
 
 }  // namespace
@@ -185,6 +332,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_joints(s, stream);
   visit_history(s, stream);
   if (!stream.reading()) return;
+  s.owed = {};
   s.impulses.clear();
   s.refresh_limits();
   s.update_model();
@@ -252,13 +400,35 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
-  for (LaggedForce<T>& contact : lagged) {
-    auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here
-    stream.value("contact", id);
-    stream.value("contact force", force);
-    stream.value("contact stiffness", stiffness);
-    stream.value("contact offset", offset);
+  // Two halves of 41 bits, three numbers and a byte more each.
+  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 3 * (sizeof(T) + 1)));
+  {
+    ResidualCoder<std::uint32_t> coder("contact", stream, true);
+    std::uint32_t high = 0, low = 0;
+    for (LaggedForce<T>& contact : lagged) {
+      auto upper = static_cast<std::uint32_t>(contact.id >> 32),
+           lower = static_cast<std::uint32_t>(contact.id);
+      coder.value(upper, high);
+      coder.value(lower, low);
+      if (stream.reading()) contact.id = std::uint64_t(upper) << 32 | lower;
+      high = upper;
+      low = lower;
+    }
   }
+  const auto visit = [&](const char* name, auto visit_contact) {
+    ResidualCoder<T> coder(name, stream);
+    T before = T(0);
+    for (LaggedForce<T>& contact : lagged) {
+      auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here
+      visit_contact(coder, force, stiffness, offset, before);
+    }
+  };
+  visit("contact force", [](auto& coder, T& force, T&, T&, T&) { coder.value(force, T(0)); });
+  visit("contact stiffness", [](auto& coder, T&, T& stiffness, T&, T& before) {
+    coder.value(stiffness, before);
+    before = stiffness;
+  });
+  visit("contact offset", [](auto& coder, T&, T&, T& offset, T&) { coder.value(offset, T(0)); });
 }
 
 void visit_budget(BudgetState& budget, ByteStream& stream) {
@@ -300,9 +470,7 @@ std::size_t bytes_at_most(const MovingParts<T>& world, Content content) {
   ByteStream stream = ByteStream::bound();
   visit(world, content, stream);
   std::size_t room = kHeaderBytes + stream.position();
-  if (content == Content::kState)
-    room += (world.lagged.capacity() - world.lagged.size()) * (sizeof(std::uint64_t) + 3 * sizeof(T));
-  else
+  if (content == Content::kInputs)
     for (const auto& s : world.states)
       room += (s->impulses.capacity() - s->impulses.size()) * (sizeof(int) + 6 * sizeof(T));
   return room;

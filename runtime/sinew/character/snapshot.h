@@ -1,8 +1,10 @@
 // What a step reads of the one before, as flat bytes. Internal to the character layer: see World::save().
 //
 // One list of fields (visit_state) serves all that is done with them: bounding, writing, reading, and naming
-// the field that a byte belongs to. What follows from the rest is left out: rotations that the local pose
-// gives to the bit, deviations of joints on the animation, the earlier state where bdf2 cannot ask for it.
+// the field that a byte belongs to. What follows from the rest is left out: deviations of joints on the
+// animation, the earlier state where bdf2 cannot ask for it. What nearly follows is written as its distance
+// from what it would be (residual_coder.h): masses' places from the pose, the last pose from the joints'
+// speeds, velocities from the places. Whoever reads must compute these alike, as whoever replays must.
 #pragma once
 
 #include <cstddef>
@@ -38,6 +40,7 @@ class ByteStream {
   static ByteStream namer(std::size_t byte) { return {Mode::kName, nullptr, nullptr, byte}; }
 
   bool reading() const { return mode_ == Mode::kRead; }
+  bool bounding() const { return mode_ == Mode::kBound; }
   bool ok() const { return ok_; }
   std::size_t position() const { return position_; }
   const char* name() const { return name_; }  ///< kName: of the field found, or ""
@@ -74,6 +77,8 @@ class ByteStream {
   void rotation(const char* name, Quat<T>& q) {
     array(name, q.coeffs().data(), 4);
   }
+  /// kBound: that so many bytes may follow.
+  void leave_room(std::size_t bytes) { position_ += bytes; }
   /// Whether a part follows; `there` is what the state says. A bound counts every part.
   bool part(const char* name, bool there) {
     std::uint8_t flag = there ? 1 : 0;

@@ -80,6 +80,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       target_before(skeleton.joints.size()),
       local(skeleton.joints.size()),
       model(skeleton.joints.size()),
+      played_from(tree.bodies),
       rate(tree.bodies),
       rate_before(tree.bodies),
       deviation(tree.bodies),
@@ -166,6 +167,7 @@ T CharacterState<T>::muscle_limit(int muscle, double limit_at_rest) const {
 
 template <class T>
 void CharacterState<T>::refresh_limits() {
+  keep_loads();
   for (int i = 0; i < tree.bodies; ++i) {
     const Joint& joint = skeleton.joints[i];
     const bool root = joint.type == JointType::kFree;
@@ -195,7 +197,41 @@ void CharacterState<T>::refresh_limits() {
 }
 
 template <class T>
+void CharacterState<T>::keep_loads() {
+  for (int dof = 0; owed.loads && dof < tree.dofs; ++dof) {
+    limit[dof] = problem.law.limit(dof, torque[dof]);
+    load[dof] = problem.law.load(tree, tree.dof_body[dof], dof, torque);
+  }
+  owed.loads = false;
+}
+
+template <class T>
+void CharacterState<T>::keep_record() {
+  keep_loads();
+  for (int i = 0; owed.rates && i < tree.bodies; ++i) {
+    rate[i] = joint_offset_value<T>(tree, i, played_from[i], local[i]);
+    for (T& r : rate[i]) r /= owed.h;
+  }
+  owed.rates = false;
+  if (!owed.history || owed.motion) return;
+  owed.history = false;
+  // Once more: a check that failed since has left the motion of another target.
+  const Vec3<T>& origin = target_before[0].translation;
+  inertial_wrenches<T>(tree, target_before, Vec3<T>::Zero(), origin, problem.kinematics, motion,
+                       problem.force, problem.moment);
+  advance_exactly<T>(tree, problem.kinematics, motion, owed.h, origin.template cast<double>(), history);
+}
+
+template <class T>
+void CharacterState<T>::settle_totals() {
+  if (!owed.totals) return;
+  keep_record();
+  report_totals(owed.gravity);
+}
+
+template <class T>
 void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
+  owed.totals = false;
   const Totals sum = totals<T>(tree, history, gravity);
   report.kinetic_energy = sum.kinetic_energy;
   report.potential_energy = sum.potential_energy;
@@ -232,6 +268,7 @@ T CharacterState<T>::pace() const {
 
 template <class T>
 void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
+  settle_totals();
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = {target[i].rotation, target[i].translation};
   target_before = target;
   update_model();
@@ -264,7 +301,8 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   }
   forget_contacts();
   levels.wake = levels.wake || levels.asleep;  // for those who slept with it
-  levels.asleep = levels.stale = false;
+  levels.asleep = false;
+  owed = {};
   levels.still = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
 }
@@ -318,9 +356,10 @@ bool CharacterState<T>::joint_is_driven(int body) const {
 
 template <class T>
 T CharacterState<T>::fastest() const {
-  if (levels.stale) return history.velocity[0].norm() + T(kLimbSpeed);
+  if (owed.motion) return history.velocity[0].norm() + T(kLimbSpeed);
   T square = T(0);
-  for (const Vec3<T>& v : history.velocity) square = std::max(square, v.squaredNorm());
+  for (const Vec3<T>& v : owed.history ? motion.velocity : history.velocity)
+    square = std::max(square, v.squaredNorm());
   return std::sqrt(square);
 }
 

@@ -23,6 +23,18 @@ struct Deviation {
   bool released = false;      ///< was an unknown in the last step
 };
 
+/// What a played step leaves undone until somebody asks: mostly nobody does. See keep_record(), catch_up().
+template <class T>
+struct Owed {
+  bool loads = false;    ///< `load` and `limit`, of `torque` and the muscles' present strength
+  bool rates = false;    ///< `rate`
+  bool history = false;  ///< all of it but `place` and velocity[0]
+  bool motion = false;   ///< nor has anybody measured how the bodies move: played without a check
+  bool totals = false;   ///< the report's energies and momenta
+  T h = T(0);            ///< s, of the step
+  Vec3<double> gravity = Vec3<double>::Zero();
+};
+
 /// See level_of_detail.h.
 struct LevelState {
   Level level = Level::kChecked;  ///< as reported
@@ -38,7 +50,6 @@ struct LevelState {
   // Of the present step
   Level allowed = Level::kSubsteps, did = Level::kChecked;
   bool wake = false;           ///< the host changed something
-  bool stale = false;          ///< played without a check: the history is behind, see catch_up()
   double spent = 0, work = 0;  ///< as Budget::limit; units of work
 };
 
@@ -95,6 +106,8 @@ struct CharacterState {
   std::vector<JointJet<T>> target,
       target_before;                          ///< [joint] what the animation wants now, and wanted last step
   std::vector<Transform<T>> local, model;     ///< [joint]
+  std::vector<Transform<T>> played_from;      ///< [body] `local` before the last played step
+  Owed<T> owed;                               ///< by that step
   std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
   std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
   T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
@@ -139,6 +152,13 @@ struct CharacterState {
   }
   /// Energies and momenta of the history into the report.
   void report_totals(const Vec3<double>& gravity);
+  /// The same where the last step owes them.
+  void settle_totals();
+  /// What is owed of the muscles; before their strength changes.
+  void keep_loads();
+  /// The same and of the joint speeds, and the history where the step was checked: to the bit what keeping
+  /// them in every step would have left.
+  void keep_record();
   /// Model transforms of all joints from the local ones.
   void update_model();
   /// Joint `i` at `pose` (world where parentless) as the solve has it: a floating root's place is relative to

@@ -156,6 +156,8 @@ class Character {
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;
+  // Of a character that was only played, load(), limit() and the report's totals are worked out when they are
+  // first asked for after the step: not by two threads at once.
   std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
                                      ///< three of an ellipsoidal limit
   std::span<const T> limit() const;  ///< of the direction in which it pulls now
@@ -230,10 +232,11 @@ class World {
   const WorldReport& report() const;
   WorldMemory memory() const;
 
-  // Snapshots: everything that the next step depends on, as flat bytes; saving and restoring are copies and
-  // allocate nothing. A world set up the same way, restored and given the same inputs, goes on to the bit.
-  // Targets and impulses are inputs and not part of it: set them after restoring. torque(), limit(),
-  // unknown() and report() follow with the next step. recording.h writes whole runs and replays them.
+  // Snapshots: everything that the next step depends on, as flat bytes (0.7 kB of a humanoid of 37 DOF that
+  // plays, below 2 kB of any other); saving and restoring take 10 to 25 µs of one and allocate nothing. A
+  // world set up the same way, restored and given the same inputs, goes on to the bit. Targets and impulses
+  // are inputs and not part of it: set them after restoring. torque(), limit(), unknown() and report() follow
+  // with the next step. recording.h writes whole runs and replays them.
 
   /// Bytes that a snapshot takes at most.
   std::size_t snapshot_capacity() const;

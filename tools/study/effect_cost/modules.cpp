@@ -1,8 +1,11 @@
 #include "study/effect_cost/modules.h"
 
 #include "sinew/effects/buoyancy.h"
+#include "sinew/effects/cloth.h"
 #include "sinew/effects/force_field.h"
 #include "sinew/effects/joint_spring.h"
+#include "sinew/effects/soft_tissue.h"
+#include "sinew/effects/strand.h"
 #include "sinew/effects/wind.h"
 
 namespace sinew::study {
@@ -35,6 +38,60 @@ std::unique_ptr<Effect<float>> make_module(const std::string& name, const std::v
     return std::make_unique<ForceField<float>>(pull);
   }
   return nullptr;
+}
+
+namespace {
+
+Status add_loops(int count, World<float>& world) {
+  Status status;
+  for (int i = 0; i < count && status; ++i) {
+    LoopSettings pin;
+    pin.a.kind = AnchorKind::kCharacter;
+    pin.a.joint = i + 1;
+    pin.a.frame.translation = {1, 0, 0};
+    const Vec3<float> tip = world.character(0).model()[i + 1] * Vec3<float>(1, 0, 0);
+    pin.b.frame.translation = tip.cast<double>();
+    (void)world.add_loop(pin, status);
+  }
+  return status;
+}
+
+ParticleBody block(int cells) {
+  SoftTissueSettings tissue;
+  make_block({0.1, 0.1, 0.1 * cells}, {1, 1, cells}, tissue);
+  tissue.fixed = {0, 1, 2, 3};
+  return make_soft_tissue(tissue);
+}
+
+ParticleBody strand(int particles) {
+  StrandSettings hair;
+  hair.particles = particles;
+  hair.length = 0.05 * particles;
+  return make_strand(hair);
+}
+
+ParticleBody strip(int rows) {
+  ClothSettings cloth;
+  make_grid(0.1, 0.1 * rows, 1, rows, cloth);
+  cloth.fixed = {0, 1};
+  return make_cloth(cloth);
+}
+
+}  // namespace
+
+Status add_ties(const std::string& name, int count, World<float>& world) {
+  Status status;
+  if (name == "loops") return add_loops(count, world);
+  if (count == 0) return status;
+  if (name == "strand")
+    (void)world.add_particles(strand(count), status);
+  else if (name == "cloth")
+    (void)world.add_particles(strip(count), status);
+  else if (name == "soft_tissue")
+    (void)world.add_particles(block(count), status);
+  else
+    return Status::error(Code::kInvalidArgument, "no such effect");
+  return status;
 }
 
 }  // namespace sinew::study

@@ -1,0 +1,83 @@
+// Whatever the numbers and the predictions, every bit comes back; good predictions take few.
+#include "sinew/character/residual_coder.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace sinew {
+namespace {
+
+template <class V>
+using BitsOf = std::conditional_t<sizeof(V) == 4, std::uint32_t, std::uint64_t>;
+
+/// Bytes written, after checking that reading them gives the same bits.
+template <class V>
+std::size_t there_and_back(const std::vector<V>& values, const std::vector<V>& predicted, bool marks) {
+  std::vector<std::byte> room(16 * values.size() + 16);
+  ByteStream out = ByteStream::writer(room), bound = ByteStream::bound();
+  for (ByteStream* stream : {&out, &bound}) {
+    ResidualCoder<V> coder("values", *stream, marks);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      V v = values[n];
+      coder.value(v, predicted[n]);
+    }
+  }
+  EXPECT_TRUE(out.ok());
+  EXPECT_LE(out.position(), bound.position());
+  ByteStream in = ByteStream::reader(std::span(room).first(out.position()));
+  {
+    ResidualCoder<V> coder("values", in, marks);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      V v{};
+      coder.value(v, predicted[n]);
+      EXPECT_EQ(std::bit_cast<BitsOf<V>>(v), std::bit_cast<BitsOf<V>>(values[n])) << n;
+    }
+  }
+  EXPECT_TRUE(in.ok());
+  EXPECT_EQ(in.position(), out.position());
+  return out.position();
+}
+
+template <class V>
+class Coder : public testing::Test {};
+using Numbers = testing::Types<float, double, std::uint32_t, std::uint64_t>;
+TYPED_TEST_SUITE(Coder, Numbers);
+
+TYPED_TEST(Coder, GivesBackAnyBitsWhateverThePrediction) {
+  std::mt19937_64 random(7);
+  std::vector<TypeParam> values, predicted;
+  for (int n = 0; n < 2000; ++n) {
+    // Random bits, a few of them, or none: NaN with a payload, infinities and both zeros are among them.
+    const auto any = [&] {
+      const std::uint64_t bits = random() >> (random() % 65 % 64);
+      return std::bit_cast<TypeParam>(static_cast<BitsOf<TypeParam>>(bits));
+    };
+    values.push_back(any());
+    predicted.push_back(n % 3 == 0 ? values.back() : any());
+  }
+  for (const TypeParam special :
+       {std::numeric_limits<TypeParam>::max(), std::numeric_limits<TypeParam>::lowest(),
+        std::numeric_limits<TypeParam>::infinity(), TypeParam(-TypeParam(0))}) {
+    values.push_back(special);
+    predicted.push_back(TypeParam(0));
+  }
+  there_and_back(values, predicted, false);
+  there_and_back(values, predicted, true);
+}
+
+TEST(Coder, ExactPredictionsTakeABitEachAndRandomNumbersLittleMoreThanTheirOwn) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> values(800), zeros(800, 0.f), near;
+  for (float& v : values) v = uniform(random);
+  for (const float v : values) near.push_back(v * (1 + 4e-7f));
+  EXPECT_LE(there_and_back(values, values, false), 800u / 8 + 8);  // 8: until it has learnt
+  EXPECT_LE(there_and_back(values, values, true), 800u / 8);
+  EXPECT_LE(there_and_back(values, zeros, false), 800u * 34 / 8);
+  EXPECT_LE(there_and_back(values, near, false), 800u);  // 3 to 7 units in the last place: below 8 bits
+}
+
+}  // namespace
+}  // namespace sinew
