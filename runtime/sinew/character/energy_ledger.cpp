@@ -68,7 +68,9 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
       now += total(s->report);
     }
   }
-  const double slack = std::min(ceiling - now, kSlack * kinetic);
+  const bool rigid = std::all_of(states.begin(), states.end(),
+                                 [](const CharacterState<T>* s) { return s->tree.dofs <= 6; });
+  const double slack = rigid ? ceiling - now : std::min(ceiling - now, kSlack * kinetic);
   const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
   for (CharacterState<T>* s : states) s->energy_ceiling = total(s->report) + spare;
   return above;

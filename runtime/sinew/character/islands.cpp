@@ -8,7 +8,7 @@ namespace sinew {
 namespace {
 
 constexpr double kTouching = 0.02;  ///< m between bounding spheres, at which a sleeper wakes
-constexpr double kReach = 0.2;     ///< m beyond what the present speed covers, as in ContactFinder
+constexpr double kReach = 0.2;      ///< m beyond what the present speed covers, as in ContactFinder
 
 }  // namespace
 
