@@ -77,7 +77,8 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     if (parent[i] >= 0) depth[i] = depth[parent[i]] + 1;
   by_depth.resize(bodies);
   std::iota(by_depth.begin(), by_depth.end(), 0);
-  std::stable_sort(by_depth.begin(), by_depth.end(), [&](int a, int b) { return depth[a] < depth[b]; });
+  std::sort(by_depth.begin(), by_depth.end(),
+            [&](int a, int b) { return depth[a] != depth[b] ? depth[a] < depth[b] : a < b; });
 }
 
 namespace {
