@@ -6,10 +6,13 @@
 namespace sinew {
 namespace {
 
-/// How much of its share a point may bear: 1 on the floor, smoothly 0 at `reach` above it.
+/// How much of its share a point may bear: 1 on the floor, smoothly 0 at `reach` above it. `where` it is, if
+/// it bears anything: of most points the height alone tells that they do not.
 template <class T>
 T bearing(const Kinematics<T>& k, const ContactPoint<T>& p, T ground, T reach, Vec3<T>& where) {
   if (!p.meets_plane()) return T(0);
+  const T height = k.origin[p.body].z() + k.rotation[p.body].row(2).dot(p.local) - p.radius - ground;
+  if (height > T(1.01) * reach) return T(0);
   where = k.origin[p.body] + k.rotation[p.body] * p.local - Vec3<T>(0, 0, p.radius);
   const T up = std::clamp((where.z() - ground) / reach, T(0), T(1));
   return (1 - up) * (1 - up);
@@ -33,19 +36,25 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   Mat3<T> gram = Mat3<T>::Zero();
   T sum = T(0);
   Vec3<T> x;
-  for (const ContactPoint<T>& p : points) {
-    const T w = bearing(k, p, ground, reach, x);
+  std::size_t first = points.size(), last = 0;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const T w = bearing(k, points[n], ground, reach, x);
+    if (w <= T(0)) continue;
+    first = std::min(first, n);
+    last = n;
     const Vec3<T> arm(T(1), x.y(), -x.x());
     gram += w * arm * arm.transpose();
     sum += w;
   }
   if (sum <= T(1e-3)) return;
+  points = points.subspan(first, last - first + 1);
   gram += T(1e-6) * (T(1) + gram.trace()) * Mat3<T>::Identity();  // one point alone can't hold a tilt
   // A point can't pull: dropping negative forces and scaling the rest keeps the total.
   const Vec3<T> multiplier = gram.inverse() * Vec3<T>(total.z(), tilt.x(), tilt.y());
   T carried = T(0);
   for (const ContactPoint<T>& p : points) {
     const T w = bearing(k, p, ground, reach, x);
+    if (w <= T(0)) continue;
     carried += std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
   }
   if (carried <= T(0)) return;
@@ -64,6 +73,7 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   T steepest = T(0);
   for (const ContactPoint<T>& p : points) {
     const T w = bearing(k, p, ground, reach, x);
+    if (w <= T(0)) continue;
     const T up = std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
     if (up <= T(0)) continue;
     mean += up / carried * lean(p.body, x);
@@ -74,6 +84,7 @@ void share_support(const Tree<T>& tree, const Kinematics<T>& k, std::span<const 
   const Vec2 level = total.template head<2>() / std::max(total.z(), total.template head<2>().norm());
   for (const ContactPoint<T>& p : points) {
     const T w = bearing(k, p, ground, reach, x);
+    if (w <= T(0)) continue;
     const T up = scale * std::max(T(0), w * multiplier.dot(Vec3<T>(T(1), x.y(), -x.x())));
     if (up <= T(0)) continue;
     Vec3<T> f(T(0), T(0), up);
