@@ -149,7 +149,7 @@ BENCHMARK_CAPTURE(crowd_check, residual_baseline_16, kBaseline, 16, false, false
 BENCHMARK_CAPTURE(crowd_check, residual_avx2_8, kAvx2, 8, false, false)->Arg(64);
 BENCHMARK_CAPTURE(crowd_check, residual_avx2_16, kAvx2, 16, false, false)->Arg(64);
 BENCHMARK_CAPTURE(crowd_check, residual_avx512_8, kAvx512, 8, false, false)->Arg(64);
-BENCHMARK_CAPTURE(crowd_check, residual_avx512_16, kAvx512, 16, false, false)->Arg(64);
+BENCHMARK_CAPTURE(crowd_check, residual_avx512_16, kAvx512, 16, false, false)->Arg(16)->Arg(64)->Arg(1024);
 BENCHMARK_CAPTURE(crowd_check, residual_support_avx512_16, kAvx512, 16, true, false)->Arg(64);
 BENCHMARK_CAPTURE(crowd_check, residual_support_pose_avx512_16, kAvx512, 16, true, true)->Arg(64);
 BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);

@@ -11,6 +11,7 @@
 
 #include "bench/wu37.h"
 #include "sinew/character/world.h"
+#include "sinew/residual/residual_pass.h"
 #include "sinew/residual/tree.h"
 
 namespace sinew::bench {
@@ -190,6 +191,22 @@ void mujoco_step(benchmark::State& state, Situation what, int integrator) {
       d.warning[mjWARN_BADQPOS].number + d.warning[mjWARN_BADQVEL].number + d.warning[mjWARN_BADQACC].number;
 }
 
+/// Torques alone, in body axes.
+template <class T>
+void residual_torques(benchmark::State& state) {
+  const Skeleton skeleton = skeleton_of(*load_wu37(), kTorque);
+  const Tree<T> tree(skeleton);
+  const std::vector<JointJet<T>> jets = jets_of<T>(skeleton, Situation::kFlight, 0);
+  std::vector<BodyMotion<T>> bodies(tree.bodies);
+  std::vector<T> residual(tree.dofs);
+  for (auto _ : state) {
+    sinew::residual_pass<T>(tree, jets, Vec3<T>(0, 0, T(-9.81)), bodies, residual);
+    benchmark::DoNotOptimize(residual.data());
+    benchmark::ClobberMemory();
+  }
+}
+
+/// The same, and where every body is and how it moves in the world.
 template <class T>
 void residual_pass(benchmark::State& state) {
   const Skeleton skeleton = skeleton_of(*load_wu37(), kTorque);
@@ -232,6 +249,8 @@ SINEW_SITUATION(muscles_on_floor, Situation::kMuscles);
 SINEW_SITUATION(limp_on_floor, Situation::kOnFloor);
 BENCHMARK(residual_pass<float>)->Unit(benchmark::kNanosecond);
 BENCHMARK(residual_pass<double>)->Unit(benchmark::kNanosecond);
+BENCHMARK(residual_torques<float>)->Unit(benchmark::kNanosecond);
+BENCHMARK(residual_torques<double>)->Unit(benchmark::kNanosecond);
 
 }  // namespace
 }  // namespace sinew::bench

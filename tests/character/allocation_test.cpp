@@ -46,7 +46,7 @@ TEST(Allocation, LimpFallOnPropsAndObstaclesAllocatesNothing) {
   ASSERT_TRUE(fall.world.add_obstacle(step).ok());
   const long before = allocations;
   int contacts = 0;
-  for (int n = 0; n < 120; ++n) {
+  for (int n = 0; n < 180; ++n) {
     (void)fall.world.step(1 / 60.f);
     contacts = std::max(contacts, fall.world.character(0).report().contacts);
   }

@@ -79,8 +79,11 @@ std::vector<double> slow_torques(const Skeleton& skeleton, std::span<const Joint
   inertial_wrenches<double>(tree, exact, settings.gravity, origin, kinematics, motion, force, moment);
   std::vector<ContactPoint<double>> points;
   for (const Collider& collider : skeleton.colliders) append_contact_points<double>(collider, points);
+  const SupportPoints<double> support(tree, points);
+  std::vector<StandingPoint<double>> room(support.points.size());
   if (settings.ground)
-    share_support<double>(tree, kinematics, points, settings.ground_height - origin.z(), {}, force, moment);
+    share_support<double>(support, kinematics.rotation, kinematics.origin,
+                          settings.ground_height - origin.z(), {}, room, force, moment);
   project_wrenches<double>(tree, kinematics, force, moment, torque);
   return torque;
 }

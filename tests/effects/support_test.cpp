@@ -28,7 +28,11 @@ struct Standing {
     for (const Collider& collider : skeleton.colliders) append_contact_points<double>(collider, points);
     inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, V::Zero(), kinematics, motion, force, moment);
   }
-  void share() { share_support<double>(tree, kinematics, points, 0.0, {}, force, moment); }
+  void share() {
+    const SupportPoints<double> support(tree, points);
+    std::vector<StandingPoint<double>> room(support.points.size());
+    share_support<double>(support, kinematics.rotation, kinematics.origin, 0.0, {}, room, force, moment);
+  }
   V total(const std::vector<V>& of) const {
     V sum = V::Zero();
     for (const V& x : of) sum += x;

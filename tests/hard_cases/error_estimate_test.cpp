@@ -14,6 +14,8 @@ constexpr double kFrame = 1.0 / 60;
 AccuracyScene scene_named(const std::string& name) {
   for (const AccuracyScene& s : accuracy_scenes())
     if (s.name == name) return s;
+  for (const AccuracyScene& s : unseen_scenes())
+    if (s.name == name) return s;
   return {};
 }
 
@@ -38,9 +40,32 @@ Sums sums_of(const std::string& scene, const std::string& option, double h) {
 
 // The leading error term is a good part of the whole at 1/60 s already; contacts that open and close within a
 // step leave a factor of two between them (measured 0.45 to 1.15).
-TEST(ErrorEstimate, IsWithinAFactorOfThreeOfTheTruthWhereBodiesMoveFreelyOrTouch) {
-  for (const char* scene : {"tumbling", "collapse", "drop", "stack"}) {
+TEST(ErrorEstimate, IsWithinAFactorOfThreeOfTheTruthWhereBodiesTouch) {
+  for (const char* scene : {"collapse", "drop", "stack"}) {
     const Sums sums = sums_of(scene, "bdf2 double", kFrame);
+    ASSERT_GT(sums.truth, 0) << scene;
+    EXPECT_GT(sums.estimated / sums.truth, 1.0 / 3) << scene;
+    EXPECT_LT(sums.estimated / sums.truth, 3) << scene;
+  }
+}
+
+TEST(ErrorEstimate, OfARigidBodyInFlightIsAsSmallAsItsError) {
+  const Sums sums = sums_of("tumbling", "bdf2 double", kFrame);
+  EXPECT_LT(sums.truth, 1e-4) << "but for two first steps of bdf1 it moves exactly";
+  EXPECT_LT(sums.estimated, 1e-4);
+}
+
+// Pushed muscles: 1.04, 0.59 and 1.06 times the truth. Frames that are played know of no error and are left
+// out: their truth begins with the mean velocities of a long step, which throws joints off that no step left.
+TEST(ErrorEstimate, IsWithinAFactorOfThreeOfTheTruthWhileMusclesGiveWay) {
+  for (const char* scene : {"tracking", "running", "jostled"}) {
+    Sums sums;
+    for (const EstimatedFrame& frame :
+         estimated_frames(scene_named(scene), option_named("bdf2 double"), kFrame)) {
+      if (frame.estimated <= 0) continue;
+      sums.estimated += frame.estimated;
+      sums.truth += frame.truth;
+    }
     ASSERT_GT(sums.truth, 0) << scene;
     EXPECT_GT(sums.estimated / sums.truth, 1.0 / 3) << scene;
     EXPECT_LT(sums.estimated / sums.truth, 3) << scene;
@@ -62,7 +87,7 @@ TEST(ErrorEstimate, OfOneStepFallsWithThePowerOfTheScheme) {
   Accuracy tight;
   tight.tolerance = 1e-9;  // m: third differences show what the solver leaves
   const auto last = [&](const char* option, double h) {
-    return estimated_frames(scene_named("tumbling"), option_named(option), h, tight).back().estimated;
+    return estimated_frames(scene_named("pendulum"), option_named(option), h, tight).back().estimated;
   };
   for (const auto& [option, order] : {std::pair("bdf1 double", 2.0), std::pair("bdf2 double", 3.0)}) {
     EXPECT_NEAR(std::log2(last(option, 1.0 / 240) / last(option, 1.0 / 480)), order, 0.2) << option;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "study/accuracy_trip.h"
 #include "study/bodies.h"
 
 namespace sinew::study {
@@ -105,6 +106,36 @@ TEST(Peers, FlyAsOursDoInFineSteps) {
           << peer.label() << ", joint " << i;
     }
   }
+}
+
+/// Largest rms displacement of a peer's fine run of an accuracy scene from ours, m.
+double apart_from_ours(const std::string& scene, const EngineOption& peer) {
+  for (const AccuracyScene& s : accuracy_scenes()) {
+    if (s.name != scene) continue;
+    const double h = 1.0 / 960;
+    const Trip theirs = travel(s, peer, h, Accuracy{}, true);
+    EXPECT_EQ(theirs.refusal, "") << peer.label();
+    return theirs.survived ? apart(s, travel(s, sinew_options()[3], h, Accuracy{}, true).track, theirs.track)
+                           : INFINITY;
+  }
+  return INFINITY;
+}
+
+TEST(Peers, CollapseAsOursDoInFineSteps) {
+  const std::vector<EngineOption> peers = peer_options();
+  if (peers.empty()) GTEST_SKIP() << "built without SINEW_PEERS: no other engine was compared";
+  for (const EngineOption& peer : peers)  // laws of contact differ by 3 to 5 mm, other floors by decimetres
+    EXPECT_LT(apart_from_ours("collapse", peer), 1e-2) << peer.label();
+}
+
+TEST(Peers, ServosWithTheSameLimitsGiveWayToAPushAsOurMusclesDo) {
+  int compared = 0;
+  for (const EngineOption& peer : peer_options()) {
+    if (peer.label() != "ODE Step" && peer.label() != "DART Euler Dantzig") continue;
+    EXPECT_LT(apart_from_ours("tracking", peer), 3e-2) << peer.label();  // 1.5 to 2 cm
+    ++compared;
+  }
+  if (compared == 0) GTEST_SKIP() << "built without SINEW_PEERS: no other engine was compared";
 }
 
 TEST(Maps, AreDrawnAndWrittenCompletely) {

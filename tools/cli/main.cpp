@@ -344,7 +344,8 @@ int main(int argc, char** argv) try {
   auto* cost = study->add_subcommand(
       "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
   cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
-  cost->add_option("--scene", accuracy.only, "tumbling, pendulum, collapse, drop, stack or tracking");
+  cost->add_option("--scene", accuracy.only,
+                   "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
   cli::EffectsCommand effects;

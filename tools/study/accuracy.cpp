@@ -202,6 +202,21 @@ class Sweep {
   std::map<std::string, Track> references_;
 };
 
+/// The stiff driver has no figures to step through: its points come from the reference family.
+AccuracyResult driver_result(bool quick, ResultStore& store) {
+  AccuracyResult result{stiff_driver(), {}, {}, -1, -1, {}};
+  const int runs = quick ? 3 : 21;
+  const std::string name = "driver|" + std::to_string(runs);
+  if (!store.find(name)) {
+    nlohmann::json points = nlohmann::json::array();
+    for (const AccuracyPoint& p : driver_points(runs)) points.push_back(point_json(p));
+    store.keep(name, points);
+  }
+  for (const nlohmann::json& p : *store.find(name)) result.points.push_back(point_from(p));
+  mark_pareto(result.points);
+  return result;
+}
+
 }  // namespace
 
 double order_of(const std::vector<AccuracyPoint>& points) {
@@ -238,12 +253,19 @@ std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
   std::erase_if(scenes, [](const AccuracyScene& s) { return s.scene.figures.empty(); });
   int total = 0, done = 0;
   for (const AccuracyScene& scene : scenes) total += Sweep::parts(scene);
+  const bool driver = options.only.empty() || options.only == stiff_driver().name;
+  total += driver;
   ResultStore store(options.store, running_build());
   std::vector<AccuracyResult> results;
   for (const AccuracyScene& scene : scenes)
     results.push_back(Sweep(scene, options.quick, store, [&] {
                         if (progress) progress(++done, total);
                       }).run());
+  if (driver) {
+    results.push_back(driver_result(options.quick, store));
+    if (progress) progress(++done, total);
+    if (results.back().points.empty()) results.pop_back();
+  }
   return results;
 }
 

@@ -27,6 +27,8 @@ struct AccuracyScene {
 /// Tumbling body, pendulum, limp figure's collapse and drop, 50 : 1 stack, walk and run with pushes, levels
 /// of detail.
 std::vector<AccuracyScene> accuracy_scenes();
+/// The stiff driver of the reference family: in joint coordinates, without figures of its own.
+AccuracyScene stiff_driver();
 /// Scenes of the same kinds by which nothing was chosen: presets must keep their word here.
 std::vector<AccuracyScene> unseen_scenes();
 
@@ -48,6 +50,9 @@ struct AccuracyPoint {
   bool pareto = false;             ///< no point is both faster and more accurate
   std::string label() const { return engine + " " + option; }
 };
+
+/// Integrators over tolerances (AccuracyPoint::h is 0: they choose their steps); none without the mechanism.
+std::vector<AccuracyPoint> driver_points(int runs);
 
 struct Slope {
   std::string engine, option;

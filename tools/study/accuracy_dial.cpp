@@ -20,7 +20,7 @@ struct Rule {
 constexpr Rule kRules[] = {{"crowd", 0.2, "many characters, seen from afar"},
                            {"game", 0.1, "players and those near them"},
                            {"cinematic", 0.01, "close-ups, recorded takes"},
-                           {"reference", 0.001, "comparing others with"}};
+                           {"reference", 0.0005, "comparing others with"}};
 
 EngineOption option_named(const std::string& name) {
   const std::vector<EngineOption> all = sinew_options();
@@ -33,7 +33,7 @@ std::vector<DialPoint> candidates(bool quick) {
       quick ? std::vector{1, 4} : std::vector{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48};
   for (const char* option : {"bdf1 float", "bdf2 float", "bdf2 double"})
     for (const int parts : substeps)
-      for (const double tolerance : {3e-4, 3e-5, 1e-6}) {
+      for (const double tolerance : {3e-4, 3e-5, 1e-6, 1e-7}) {
         if (quick && tolerance != 3e-5) continue;
         if (tolerance < 1e-5 && std::string(option).find("float") != std::string::npos) continue;
         DialPoint& p = out.emplace_back();

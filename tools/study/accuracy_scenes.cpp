@@ -143,7 +143,9 @@ AccuracyScene levels_of_detail() {
   s.reading =
       "What is saved where nobody looks closely. Solved every second or fourth frame, the pose glides in "
       "between; "
-      "residual only still tells the loads, playback only nothing: both miss what the push does.";
+      "residual only still tells the loads (of 8 or 16 characters at once for far less: same bits at any "
+      "width), "
+      "playback only nothing: all of these miss what the push does.";
   s.options = policy_options();
   return s;
 }

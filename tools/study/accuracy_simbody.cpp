@@ -23,10 +23,12 @@ Simulate simbody() {
 }
 
 std::string refusal_of(const AccuracyScene& s) {
-  if (const std::string why = needs_contacts_or_muscles(s.scene); !why.empty()) return why;
-  for (const Figure& f : s.scene.figures)
+  for (const Figure& f : s.scene.figures) {
+    if (f.driven || (s.scene.ground && !f.skeleton.colliders.empty()))
+      return "its contacts and muscles are not written here";
     for (const Joint& joint : f.skeleton.joints)
       if (joint.type != JointType::kRevolute) return "hinges alone are written for it";
+  }
   return simbody() ? "" : "it cannot be loaded";
 }
 

@@ -85,6 +85,7 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
     trip.track.push_back(std::move(poses));
   }
   trip.energy = (engine->energy() - start) / std::max(kinetic, fall);
+  trip.seconds /= engine->copies();
   trip.passes = engine->passes();
   trip.survived = true;
   return trip;

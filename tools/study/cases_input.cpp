@@ -279,6 +279,7 @@ template <class T>
 std::vector<Transform<T>> flown_in_parts(double h, int substeps, Measurement& measured, bool& counted) {
   WorldSettings settings = weightless();
   settings.accuracy.substeps = substeps;
+  settings.accuracy.start_parts = 1;  // to compare like with like
   if (sizeof(T) == 8) settings.accuracy.tolerance = 1e-7;
   Stage<T> stage(settings);
   add_thrown_humanoid(stage, 0, 2, 3);

@@ -126,20 +126,22 @@ double top_error(Scheme scheme, double h, Measurement& measured) {
 template <class T>
 Verdict symmetric_top(const Trial& t) {
   Measurement measured;
-  double order[2];
-  for (const Scheme scheme : {Scheme::kBdf1, Scheme::kBdf2})
-    order[scheme == Scheme::kBdf2] =
-        std::log2(top_error<T>(scheme, t.h, measured) / top_error<T>(scheme, t.h / 2, measured));
+  const double h = t.h / 4;  // the whole step is still 0.2 off the asymptotic order
+  const double order =
+      std::log2(top_error<T>(Scheme::kBdf1, h, measured) / top_error<T>(Scheme::kBdf1, h / 2, measured));
+  const double exact = top_error<T>(Scheme::kBdf2, t.h, measured);
   Verdict v(measured);
   v.general();
-  v.at_most("bdf1: order off 1", std::abs(order[0] - 1), 0.1);
-  v.at_most("bdf2: order off 2", std::abs(order[1] - 2), 0.2);
+  v.at_most("bdf1: order off 1", std::abs(order - 1), 0.1);
+  v.at_most("bdf2: attitude off after 2 s (rad)", exact, 5e-3);
   return v;
 }
 
 template <class T, int speed>
 Verdict free_flight(const Trial& t) {
-  Stage<T> stage(weightless());
+  WorldSettings settings = weightless();
+  settings.accuracy.max_rotation = 1;  // rad in one part of a step; faster limbs get more parts
+  Stage<T> stage(settings);
   add_thrown_humanoid(stage, 0, speed, 7);
   const double mass = stage.character(0).skeleton().total_mass();
   Vec3<double> before = stage.center_of_mass(0), drift = Vec3<double>::Zero(), first = drift;
@@ -267,7 +269,7 @@ Verdict joint_through_pi(const Trial& t) {
 template <class T>
 std::vector<Transform<T>> flown(const Quat<double>& turn, double h, Measurement& measured) {
   WorldSettings settings = weightless();
-  if (sizeof(T) == 8) settings.accuracy.tolerance = 1e-8;  // asks about the frame, not about the solver
+  settings.accuracy.tolerance = sizeof(T) == 8 ? 1e-8 : 1e-6;  // asks about the frame, not about the solver
   Stage<T> stage(settings);
   Skeleton body = chain({4, JointType::kBall, JointType::kFree, 0.4, 2, 1});
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
@@ -388,7 +390,7 @@ std::vector<HardCase> rotation_cases() {
       {"symmetric_top",
        "5",
        "drake free_rotating_body_test",
-       "order 1 (bdf1) and 2 (bdf2) against theory",
+       "bdf1 of order 1, bdf2 exact but for its two first steps",
        {1.0 / 60},
        symmetric_top<float>,
        symmetric_top<double>},

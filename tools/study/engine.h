@@ -40,6 +40,8 @@ class Engine {
   virtual std::vector<Transform<double>> pose(int figure) const = 0;
   /// Of the first figure, about its centre of mass (kg·m²/s); false where the engine does not tell it.
   virtual bool angular_momentum(Vec3<double>&) const { return false; }
+  /// Copies that a step advances together, as batches do; its time is shared among them.
+  virtual int copies() const { return 1; }
   virtual double passes() const { return 0; }  ///< mean solver passes per step so far
   /// Mean rms over figures of what the last step itself reckons it went astray (m); negative: it does not
   /// say.
@@ -59,7 +61,8 @@ struct EngineOption {
 
 /// Sinew's schemes in float and double; `accuracy.scheme` is overridden by the option.
 std::vector<EngineOption> sinew_options();
-/// Ours at rising distance: every frame, every second and fourth, residual only, playback only.
+/// Ours at rising distance: every frame, every second and fourth, residual only (alone and in batches of 8
+/// and 16), playback only.
 std::vector<EngineOption> policy_options();
 /// Peers that this build was linked with.
 std::vector<EngineOption> peer_options();
@@ -67,9 +70,6 @@ std::vector<EngineOption> mujoco_options();
 std::vector<EngineOption> bullet_options();
 std::vector<EngineOption> dart_options();
 std::vector<EngineOption> ode_options();
-
-/// Why an engine that is compared only in free motion refuses a scene, or empty.
-std::string needs_contacts_or_muscles(const EngineScene& scene);
 
 /// The rest pose at rest, in double.
 Figure resting(const Skeleton& skeleton);

@@ -129,8 +129,7 @@ class MujocoEngine : public Engine {
       return;
     }
     data_.reset(mj_makeData(model_.get()));
-    for (std::size_t f = 0; f < scene.figures.size(); ++f)
-      place(static_cast<int>(f), scene.figures[f].jets, true);
+    for (std::size_t f = 0; f < scene.figures.size(); ++f) place(static_cast<int>(f), scene.figures[f].jets);
     mj_forward(model_.get(), data_.get());
     tune_servos();
   }
@@ -150,7 +149,7 @@ class MujocoEngine : public Engine {
   }
 
   void aim(int figure, const std::vector<JointJet<double>>& jets) override {
-    place(figure, jets, false);
+    lead_root(figure, jets[0]);
     for (int k = 0; k < 3; ++k)  // what holds the root up
       data_->xfrc_applied[6 * body(figure, 0) + k] = -model_->body_mass[body(figure, 0)] * scene_.gravity[k];
     const Skeleton& s = scene_.figures[figure].skeleton;
@@ -204,10 +203,21 @@ class MujocoEngine : public Engine {
     return first;
   }
 
-  /// Writes the whole state, or only a driven root's.
-  void place(int figure, const std::vector<JointJet<double>>& jets, bool all) {
+  /// Velocities with which a driven root is at its target after the step.
+  void lead_root(int figure, const JointJet<double>& target) {
+    const int joint = model_->body_jntadr[body(figure, 0)];
+    const mjtNum* q = data_->qpos + model_->jnt_qposadr[joint];
+    mjtNum* v = data_->qvel + model_->jnt_dofadr[joint];
+    const Quat<double> now(q[3], q[4], q[5], q[6]);
+    const Vec3<double> turn = rotation_vector(now.conjugate() * target.rotation);
+    for (int k = 0; k < 3; ++k) v[k] = (target.translation[k] - q[k]) / h_, v[k + 3] = turn[k] / h_;
+    fresh_ = false;
+  }
+
+  /// Writes the whole state.
+  void place(int figure, const std::vector<JointJet<double>>& jets) {
     const Skeleton& s = scene_.figures[figure].skeleton;
-    for (int i = 0; i < (all ? s.body_count : 1); ++i) {
+    for (int i = 0; i < s.body_count; ++i) {
       const int joint = model_->body_jntadr[body(figure, i)];
       if (joint < 0) continue;
       mjtNum *q = data_->qpos + model_->jnt_qposadr[joint], *v = data_->qvel + model_->jnt_dofadr[joint];

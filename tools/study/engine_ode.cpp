@@ -1,10 +1,15 @@
-// ODE (Debian's libode-dev) on the study's scenes without contact: every body with six coordinates, joints as
-// constraints; its exact solver and its iterative one (50 iterations), gyroscopic term on, no softness added.
+// ODE (Debian's libode-dev) on the study's scenes: every body with six coordinates, joints as constraints;
+// its exact solver and its iterative one (50 iterations), gyroscopic term on. No softness is added but ODE's
+// own default of 1e-10 where contacts make constraints redundant. Muscles are its hinge and angular motors,
+// which its manual recommends over torques; a driven root is a kinematic body.
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/rotation.h"
 #include "study/engine.h"
+#include "study/engine_servo.h"
 
 namespace sinew::study {
 namespace {
@@ -16,19 +21,34 @@ class OdeEngine : public Engine {
     (void)initialised;
     world_ = dWorldCreate();
     dWorldSetGravity(world_, dReal(scene.gravity.x()), dReal(scene.gravity.y()), dReal(scene.gravity.z()));
-    dWorldSetCFM(world_, 0);
+    dWorldSetCFM(world_, scene.ground ? dReal(1e-10) : 0);
     dWorldSetQuickStepNumIterations(world_, 50);
-    refusal_ = needs_contacts_or_muscles(scene);
-    for (std::size_t f = 0; refusal_.empty() && f < scene.figures.size(); ++f) add(scene.figures[f]);
+    space_ = dSimpleSpaceCreate(nullptr);
+    touching_ = dJointGroupCreate(0);
+    if (scene.ground) dCreatePlane(space_, 0, 0, 1, 0);
+    for (std::size_t f = 0; f < scene.figures.size(); ++f) {
+      add(scene.figures[f], static_cast<int>(f));
+      if (quick_ && scene.figures[f].driven)
+        refusal_ = "QuickStep's iterations do not hold a figure by motors about a constant torque";
+    }
   }
-  ~OdeEngine() override { dWorldDestroy(world_); }
+  ~OdeEngine() override {
+    dJointGroupDestroy(touching_);
+    dSpaceDestroy(space_);
+    dWorldDestroy(world_);
+  }
 
   const std::string& refusal() const override { return refusal_; }
   bool step() override {
+    for (std::size_t f = 0; f < servos_.size(); ++f)
+      if (scene_.figures[f].driven) drive(static_cast<int>(f));
+    dSpaceCollide(space_, this,
+                  [](void* self, dGeomID a, dGeomID b) { static_cast<OdeEngine*>(self)->touch(a, b); });
     const bool stepped = quick_ ? dWorldQuickStep(world_, dReal(h_)) : dWorldStep(world_, dReal(h_));
+    dJointGroupEmpty(touching_);
     return stepped && std::isfinite(energy());
   }
-  void aim(int, const std::vector<JointJet<double>>&) override {}
+  void aim(int figure, const std::vector<JointJet<double>>& jets) override { servos_[figure].aim(jets); }
   void push(int figure, int joint, const Vec3<double>& impulse) override {
     const Vec3<double> f = impulse / h_;
     dBodyAddForce(bodies_[figure][joint], dReal(f.x()), dReal(f.y()), dReal(f.z()));
@@ -68,8 +88,86 @@ class OdeEngine : public Engine {
     return out;
   }
 
-  void add(const Figure& figure) {
+  /// What a geometry belongs to and how rough it is.
+  struct Surface {
+    int figure;
+    double friction;
+  };
+
+  void touch(dGeomID a, dGeomID b) {
+    const auto *on_a = static_cast<const Surface*>(dGeomGetData(a)),
+               *on_b = static_cast<const Surface*>(dGeomGetData(b));
+    if (on_a && on_b && on_a->figure == on_b->figure) return;  // a figure touches the floor and others
+    constexpr int kMost = 8;                                   // points of a pair
+    dContact contacts[kMost] = {};
+    const int count = dCollide(a, b, kMost, &contacts[0].geom, sizeof(dContact));
+    for (int n = 0; n < count; ++n) {
+      contacts[n].surface.mode = dContactApprox1;
+      contacts[n].surface.mu = dReal(std::max(on_a ? on_a->friction : 0, on_b ? on_b->friction : 0));
+      dJointAttach(dJointCreateContact(world_, touching_, &contacts[n]), dGeomGetBody(a), dGeomGetBody(b));
+    }
+  }
+
+  /// Motors and the root's velocity for the next step.
+  void drive(int f) {
+    const Skeleton& s = scene_.figures[f].skeleton;
+    const std::vector<dBodyID>& bodies = bodies_[f];
+    const std::vector<Transform<double>> model = pose(f);
+    const Servo::Travel root = servos_[f].travel(model[0], h_);
+    const Vec3<double> center = model[0].rotation * s.joints[0].center_of_mass,
+                       arm = servos_[f].target(0).rotation * s.joints[0].center_of_mass,
+                       spin = model[0].rotation * root.rate, velocity = root.velocity + (arm - center) / h_;
+    // ODE turns each body by its own velocity: relative ones lead where they should if each body goes where
+    // the joints above it take it.
+    std::vector<Quat<double>> there{servos_[f].target(0).rotation};
+    std::vector<Vec3<double>> turning{spin};
+    for (int i = 1; i < s.body_count; ++i) {
+      const Joint& joint = s.joints[i];
+      const Quat<double> now = model[joint.parent].rotation.conjugate() * model[i].rotation;
+      there.emplace_back(there[joint.parent] * now * rotation_exp<double>(h_ * servos_[f].rate(i, now, h_)));
+      turning.emplace_back(rotation_log<double>(there[i] * model[i].rotation.conjugate()) / h_);
+      const Vec3<double> rate = model[i].rotation.conjugate() * (turning[i] - turning[joint.parent]);
+      const Motor muscle = motor_of(joint);
+      const dJointID motor = motors_[f][i];
+      if (joint.type == JointType::kRevolute) {
+        dJointSetHingeParam(motor, dParamVel, dReal(rate.dot(joint.axis)));
+        dJointSetHingeParam(motor, dParamFMax, dReal(muscle.most[0]));
+        dJointAddHingeTorque(motor, dReal(muscle.bias[0]));
+        continue;
+      }
+      constexpr int kRates[] = {dParamVel1, dParamVel2, dParamVel3},
+                    kLimits[] = {dParamFMax1, dParamFMax2, dParamFMax3};
+      for (int k = 0; k < 3; ++k) {
+        const Vec3<double> axis = model[i].rotation * Vec3<double>::Unit(k);
+        dJointSetAMotorAxis(motor, k, 1, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+        dJointSetAMotorParam(motor, kRates[k], dReal(rate[k]));
+        dJointSetAMotorParam(motor, kLimits[k], dReal(muscle.most[k]));
+      }
+      dJointAddAMotorTorques(motor, dReal(muscle.bias[0]), dReal(muscle.bias[1]), dReal(muscle.bias[2]));
+    }
+    dBodySetAngularVel(bodies[0], dReal(spin.x()), dReal(spin.y()), dReal(spin.z()));
+    dBodySetLinearVel(bodies[0], dReal(velocity.x()), dReal(velocity.y()), dReal(velocity.z()));
+    servos_[f].advance();
+  }
+
+  void add_collider(const Collider& c, const Joint& joint, dBodyID body, int figure) {
+    const dReal x = dReal(c.size.x()), z = dReal(c.size.z());
+    const dGeomID geom = c.shape == Shape::kBox ? dCreateBox(space_, 2 * x, dReal(2 * c.size.y()), 2 * z)
+                         : c.shape == Shape::kCapsule && z > 0 ? dCreateCapsule(space_, x, 2 * z)
+                                                               : dCreateSphere(space_, x);
+    const Vec3<double> at = c.local.translation - joint.center_of_mass;
+    const Quat<double>& q = c.local.rotation;
+    const dQuaternion turn = {dReal(q.w()), dReal(q.x()), dReal(q.y()), dReal(q.z())};
+    dGeomSetBody(geom, body);
+    dGeomSetOffsetPosition(geom, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+    dGeomSetOffsetQuaternion(geom, turn);
+    surfaces_.push_back(std::make_unique<Surface>(Surface{figure, c.friction}));
+    dGeomSetData(geom, surfaces_.back().get());
+  }
+
+  void add(const Figure& figure, int index) {
     const Skeleton& s = figure.skeleton;
+    std::vector<dJointID> motors(s.body_count);
     std::vector<Transform<double>> model(s.body_count);
     std::vector<Vec3<double>> omega(s.body_count), velocity(s.body_count);  // of joint frames, world
     std::vector<dBodyID> bodies(s.body_count);
@@ -88,9 +186,17 @@ class OdeEngine : public Engine {
       }
       bodies[i] = add_body(joint, model[i], omega[i], velocity[i]);
       if (joint.type != JointType::kFree)
-        add_joint(joint, model[i], bodies[i], root ? nullptr : bodies[joint.parent]);
+        motors[i] =
+            add_joint(joint, model[i], bodies[i], root ? nullptr : bodies[joint.parent], figure.driven);
     }
+    for (const Collider& c : s.colliders)
+      if (scene_.ground && c.joint < s.body_count) add_collider(c, s.joints[c.joint], bodies[c.joint], index);
+    if (figure.driven) dBodySetKinematic(bodies[0]);
+    for (const dBodyID body : bodies)
+      if (figure.driven) dBodySetFiniteRotationMode(body, 1);  // turns as far as its velocity says
     bodies_.push_back(bodies);
+    motors_.push_back(motors);
+    servos_.emplace_back(figure);
   }
 
   dBodyID add_body(const Joint& joint, const Transform<double>& model, const Vec3<double>& omega,
@@ -114,19 +220,27 @@ class OdeEngine : public Engine {
     return body;
   }
 
-  void add_joint(const Joint& joint, const Transform<double>& model, dBodyID body, dBodyID parent) {
+  /// Returns what drives it, where it is driven.
+  dJointID add_joint(const Joint& joint, const Transform<double>& model, dBodyID body, dBodyID parent,
+                     bool driven) {
     const Vec3<double>& at = model.translation;
     if (joint.type == JointType::kBall) {
       const dJointID ball = dJointCreateBall(world_, nullptr);
       dJointAttach(ball, body, parent);
       dJointSetBallAnchor(ball, dReal(at.x()), dReal(at.y()), dReal(at.z()));
-      return;
+      if (!driven) return nullptr;
+      const dJointID motor = dJointCreateAMotor(world_, nullptr);
+      dJointAttach(motor, body, parent);
+      dJointSetAMotorMode(motor, dAMotorUser);
+      dJointSetAMotorNumAxes(motor, 3);
+      return motor;
     }
     const Vec3<double> axis = model.rotation * joint.axis;
     const dJointID hinge = dJointCreateHinge(world_, nullptr);
     dJointAttach(hinge, body, parent);
     dJointSetHingeAnchor(hinge, dReal(at.x()), dReal(at.y()), dReal(at.z()));
     dJointSetHingeAxis(hinge, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+    return hinge;
   }
 
   EngineScene scene_;
@@ -134,7 +248,12 @@ class OdeEngine : public Engine {
   bool quick_;
   std::string refusal_;
   dWorldID world_;
+  dSpaceID space_;
+  dJointGroupID touching_;
   std::vector<std::vector<dBodyID>> bodies_;
+  std::vector<std::vector<dJointID>> motors_;  ///< [figure][joint]
+  std::vector<Servo> servos_;
+  std::vector<std::unique_ptr<Surface>> surfaces_;  ///< geometries point at them
 };
 
 template <bool quick>
@@ -145,7 +264,7 @@ std::unique_ptr<Engine> make(const EngineScene& scene, double h, const Accuracy&
 }  // namespace
 
 std::vector<EngineOption> ode_options() {
-  return {{"ODE", "Step", make<false>}, {"ODE", "QuickStep 50", make<true>}};
+  return {{"ODE", "QuickStep 50", make<true>}, {"ODE", "Step", make<false>}};
 }
 
 }  // namespace sinew::study

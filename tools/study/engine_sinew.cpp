@@ -122,13 +122,6 @@ Figure resting(const Skeleton& skeleton) {
   return {skeleton, rest_jets<double>(skeleton), false};
 }
 
-std::string needs_contacts_or_muscles(const EngineScene& scene) {
-  for (const Figure& figure : scene.figures)
-    if (figure.driven || (scene.ground && !figure.skeleton.colliders.empty()))
-      return "contacts and muscles are compared with MuJoCo only";
-  return {};
-}
-
 std::vector<EngineOption> sinew_options() {
   return {{"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
           {"Sinew", "bdf1 float", make<float, Scheme::kBdf1>},

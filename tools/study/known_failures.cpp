@@ -13,25 +13,15 @@ struct KnownFailure {
   const char* why;
 };
 
-constexpr const char* kWobble = "bdf2's kinetic energy swings about the true one";
-constexpr const char* kStart =
-    "the two steps of bdf1 after a reset cost 1.2 mm; bdf2 sooner harms stiff damping";
 constexpr const char* kMissing = "not supported";
 
 constexpr KnownFailure kKnownFailures[] = {
-    {"symmetric_top", kWobble},
-    {"free_flight_1_rad_s", kWobble},
-    {"free_flight_3_rad_s", kWobble},
-    {"free_flight_10_rad_s", kWobble},
-    {"free_flight_30_rad_s", kWobble},
-    {"orthogonal_hinges", kStart},
+    {"free_flight_1_rad_s", "float loses 0.3 % of its momentum in 480 steps of 1/240 s"},
+    {"root_turned_by_pi", "float: 6 mrad; the limbs of a figure that turns as if rigid bear its swing"},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
-    {"sliding_cube", "first order in the step where it stops"},
     {"limp_fall_counts", "more factorisations than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
-    {"colliding_figures", "energy gained between figures"},
-    {"tumbling_box", "energy rises on edges"},
-    {"figure_on_stairs", "energy rises on edges"},
+    {"tumbling_box", "1.2 mJ where it comes to rest: the surface that it sank through comes back"},
     {"baked_limbs", kMissing},
     {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };

@@ -21,10 +21,11 @@ void Measurement::count(const CharacterReport& r) {
   passes += r.outer_passes;
   chords += r.chords;
   factorisations += r.factorisations;
-  most_passes = std::max(most_passes, r.outer_passes);
-  most_factorisations = std::max(most_factorisations, r.factorisations);
-  ++pass_histogram[std::min<std::size_t>(static_cast<std::size_t>(r.outer_passes),
-                                         pass_histogram.size() - 1)];
+  const int planned = std::max(r.substeps - r.splits, 1);
+  const int passes_each = (r.outer_passes + planned - 1) / planned;
+  most_passes = std::max(most_passes, passes_each);
+  most_factorisations = std::max(most_factorisations, (r.factorisations + planned - 1) / planned);
+  ++pass_histogram[std::min<std::size_t>(static_cast<std::size_t>(passes_each), pass_histogram.size() - 1)];
 }
 
 void Measurement::merge(const Measurement& o) {

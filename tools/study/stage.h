@@ -25,8 +25,8 @@ struct Measurement {
   int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
   long passes = 0, chords = 0, factorisations = 0;
-  int most_passes = 0, most_factorisations = 0;
-  std::array<int, 256> pass_histogram{};  ///< solved steps by their number of passes (the last: or more)
+  int most_passes = 0, most_factorisations = 0;  ///< of one solve: a step in parts on purpose is so many
+  std::array<int, 256> pass_histogram{};         ///< solved steps by passes of a solve (the last: or more)
   double microseconds = 0;                ///< of all steps together
   std::string refused;                    ///< reason of the step that the world refused, or empty
 

@@ -3,30 +3,109 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace sinew {
 namespace {
 
 constexpr double kSlack = 0.02;  ///< of the kinetic energy: bdf2's value at an instant oscillates by less
 
-/// Scales a tree's motion: all of it, or that relative to its centre of mass.
+/// Of the energy of limbs moving against each other: the most that one step may give and take.
+constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
+/// Where that energy is below the first share of all about the centre of mass, it bears no change, from the
+/// second on all of it: in a figure that turns as if rigid, what swings is the turning.
+constexpr double kTooRigid = 1e-3, kLooseEnough = 1e-2;
+
+constexpr double kRounding = 1 - 1e-4;  ///< of speeds, and more
+
+double total(const CharacterReport& r) {
+  return r.kinetic_energy + r.potential_energy + r.elastic_energy;
+}
+
+/// Of positions and momenta: no gain.
+template <class T>
+double rounding(double energy, double kinetic) {
+  return 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(energy) + kinetic);
+}
+
+/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, what is more than a
+/// rounding ends the history that bdf2 builds on.
 template <class T>
 void slow(CharacterState<T>& s, double factor, bool about_center) {
-  const Vec3<T> shared = about_center ? Vec3<T>((s.report.momentum / s.total_mass).template cast<T>())
-                                      : Vec3<T>(Vec3<T>::Zero());
-  s.history.slow(T(factor), shared);
+  RigidMotion kept;
+  if (about_center) kept.velocity = s.report.momentum / s.total_mass;
+  scale_relative<T>(s.tree, kept, T(factor), s.history);
   for (std::array<T, 6>& rate : s.rate)
     for (T& r : rate) r *= T(factor);
+  if (factor > kRounding || s.report.contacts == 0) return;
+  s.history.step_before = T(0);
   s.steps_unchanged = 0;
 }
 
-/// A free body that touches nothing: its momenta are kept exactly, and the energy that they give swings by
-/// h²|ω|² about the true one for ever.
+/// Takes out what the trees have above their ceiling. True if there was something.
 template <class T>
-bool flies_alone(std::span<CharacterState<T>* const> states) {
-  const CharacterState<T>& s = *states[0];
-  return states.size() == 1 && s.tree.dofs == 6 && s.tree.type[0] == JointType::kFree &&
-         s.report.contacts == 0;
+bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
+           bool strict, bool never_rises) {
+  double now = 0, kinetic = 0, internal = 0, ceiling = 0;
+  for (const CharacterState<T>* s : states) {
+    const CharacterReport& r = s->report;
+    now += total(r);
+    kinetic += r.kinetic_energy;
+    internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
+    ceiling += s->energy_ceiling;
+  }
+  if (strict || !std::isfinite(ceiling)) ceiling = before;
+  if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
+  const double gained = now - ceiling;
+  const bool above = gained > rounding<T>(now, kinetic) && kinetic > 0;
+  if (above) {
+    const bool about_center = gained < 0.9 * internal;
+    const double factor = std::sqrt(std::max(0.0, 1 - gained / (about_center ? internal : kinetic)));
+    now = 0;
+    for (CharacterState<T>* s : states) {
+      slow(*s, factor, about_center);
+      s->report_totals(gravity);
+      now += total(s->report);
+    }
+  }
+  const double slack = std::min(ceiling - now, kSlack * kinetic);
+  const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
+  for (CharacterState<T>* s : states) s->energy_ceiling = total(s->report) + spare;
+  return above;
+}
+
+/// Nothing rubs, no limit bears or bore, and the scheme is one that nearly conserves.
+template <class T>
+bool lossless(const CharacterState<T>& s) {
+  const std::vector<JointRow<T>>& rows = s.problem.rows;
+  return s.report.used_bdf2 && s.steps_unchanged > 0 && s.report.elastic_energy == 0 &&
+         s.problem.effects.empty() && std::all_of(rows.begin(), rows.end(), [](const JointRow<T>& row) {
+           return row.kind == RowKind::kOneSided;
+         });
+}
+
+/// Gives a lossless tree in flight the energy that it had before, and takes from any other what it gained, as
+/// far as the motion of its limbs against each other can bear the change.
+template <class T>
+void keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity, double before) {
+  if (s.tree.dofs <= 6 || s.tree.type[0] != JointType::kFree) return;
+  const CharacterReport& r = s.report;
+  const double now = total(r);
+  const double missing =
+      before - rounding<T>(now, r.kinetic_energy) - now;  // which must not add up to a gain
+  if (missing > 0 && !lossless(s)) return;
+  Totals sums;
+  sums.kinetic_energy = r.kinetic_energy;
+  sums.momentum = r.momentum;
+  sums.angular_momentum = r.angular_momentum;
+  const RigidMotion rigid = rigid_motion<T>(s.tree, s.history, sums);
+  const double about_center = r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s.total_mass;
+  const double loose = (rigid.relative_energy / about_center - kTooRigid) / (kLooseEnough - kTooRigid);
+  if (!(loose > 0)) return;
+  const double wanted = std::min(loose, 1.0) * missing / rigid.relative_energy;
+  const double share = std::clamp(wanted, -kMostTaken, kMostGiven);
+  scale_relative<T>(s.tree, rigid, T(std::sqrt(1 + share)), s.history);
+  s.report_totals(gravity);
 }
 
 }  // namespace
@@ -42,40 +121,27 @@ double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gr
 }
 
 template <class T>
+double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
+  before_.clear();
+  double sum = 0;
+  for (CharacterState<T>* s : states) sum += before_.emplace_back(energy<T>({&s, 1}, gravity));
+  return sum;
+}
+
+template <class T>
 bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity,
-                             double before, bool strict) const {
-  double now = 0, kinetic = 0, internal = 0, ceiling = 0;
-  for (const CharacterState<T>* s : states) {
-    const CharacterReport& r = s->report;
-    now += r.kinetic_energy + r.potential_energy + r.elastic_energy;
-    kinetic += r.kinetic_energy;
-    internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
-    ceiling += s->energy_ceiling;
-  }
+                             bool strict, bool tied) const {
   const bool touching = std::any_of(states.begin(), states.end(),
                                     [](const CharacterState<T>* s) { return s->report.contacts > 0; });
-  if (strict || !std::isfinite(ceiling)) ceiling = before;
-  if (touching) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
-  // Rounding of positions and momenta is no gain.
-  const double noise = 64 * double(std::numeric_limits<T>::epsilon()) * (std::abs(now) + kinetic);
-  const double gained = now - ceiling;
-  const bool above = gained > noise && kinetic > 0;
-  if (above) {
-    const bool about_center = gained < 0.9 * internal;
-    const double factor = std::sqrt(std::max(0.0, 1 - gained / (about_center ? internal : kinetic)));
-    now = 0;
-    for (CharacterState<T>* s : states) {
-      slow(*s, factor, about_center);
-      s->report_totals(gravity);
-      now += s->report.kinetic_energy + s->report.potential_energy + s->report.elastic_energy;
-    }
+  if (touching || tied || strict)
+    return limit<T>(states, gravity, std::accumulate(before_.begin(), before_.end(), 0.0), strict, touching);
+  bool damped = false;
+  for (std::size_t n = 0; n < states.size(); ++n) {
+    keep_in_flight(*states[n], gravity, before_[n]);
+    const bool rigid = states[n]->tree.dofs <= 6;  // its flight is exact
+    damped = limit<T>(states.subspan(n, 1), gravity, before_[n], false, rigid) || damped;
   }
-  const double slack = flies_alone(states) ? ceiling - now : std::min(ceiling - now, kSlack * kinetic);
-  const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
-  for (CharacterState<T>* s : states)
-    s->energy_ceiling =
-        s->report.kinetic_energy + s->report.potential_energy + s->report.elastic_energy + spare;
-  return above;
+  return damped;
 }
 
 template class EnergyLedger<float>;

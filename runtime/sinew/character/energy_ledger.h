@@ -4,6 +4,8 @@
 // is stepped by, of the order of h²g/length and h²|ω|², so an inverted pendulum or a light link that whirls
 // about a heavy one can gain. Where nothing does work, each island has a ceiling that never rises: what a
 // step leaves above it is taken out of the motion, first of that relative to each tree's centre of mass.
+// A tree in flight whose joints neither rub nor reach their limits loses nothing either: what the step took
+// or gave goes into the motion of its limbs against each other, and both momenta stay.
 // Source of the idea: Dinev, Liu & Kavan, "Stabilizing integrators for real-time physics", 2018.
 #pragma once
 
@@ -20,11 +22,17 @@ double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gr
 template <class T>
 class EnergyLedger {
  public:
-  /// Holds the trees of a passive island, stepped together, under their ceiling. `before` is their energy
-  /// before the step; `strict` takes that for the ceiling (a solve that did not converge). True if motion was
-  /// taken out.
-  bool settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
-              bool strict) const;
+  void reserve(int trees) { before_.reserve(trees); }
+  /// Notes the energy of the trees before a step, J. Returns their sum.
+  double open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
+  /// Holds the trees of a passive island, stepped together since open(), under their ceiling. `strict` takes
+  /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together. True
+  /// if motion was taken out.
+  bool settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, bool strict,
+              bool tied) const;
+
+ private:
+  std::vector<double> before_;  ///< [tree]
 };
 
 extern template class EnergyLedger<float>;

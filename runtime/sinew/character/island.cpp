@@ -20,6 +20,16 @@ constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
 
+/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
+/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
+/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
+/// the scalar and the solver's tolerance (m, at a metre) resolve; a correction's square is what it leaves.
+template <class T>
+T kink_width(T h, T tolerance) {
+  const T resolved = std::max(8 * std::numeric_limits<T>::epsilon(), tolerance / 16);
+  return std::min(T(1e-3) * h, std::max(T(0.06) * h * h, resolved));
+}
+
 /// Order-independent digest of a set of contacts.
 std::uint64_t mixed(std::uint64_t id) {
   id ^= id >> 31;
@@ -40,6 +50,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   problems_.reserve(room.trees);
   free_share_.reserve(room.trees);
   is_held_.reserve(room.trees);
+  ledger_.reserve(room.trees);
   bounce_.reserve(room);
   finder_.reserve(room);
   lagged_.reserve(room.contacts);
@@ -174,8 +185,11 @@ std::uint64_t IslandStepper<T>::bearing(int tree) const {
 
 template <class T>
 void IslandStepper<T>::predict_all(Scheme scheme, T h) {
-  for (CharacterState<T>* s : states_)
+  for (CharacterState<T>* s : states_) {
     predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
+    if (couplings_.empty() && s->contact_signature == 0)
+      predict_free_flight<T>(s->tree, s->history, h, s->problem.prediction);
+  }
 }
 
 template <class T>
@@ -220,7 +234,8 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step = h;
   const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
-  const double error = world.accuracy.estimate_error
+  const std::uint64_t signature = touching(tree), limits = bearing(tree);
+  const double error = world.accuracy.estimate_error && !(p.prediction.exact && signature == 0)
                            ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
                            : 0;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
@@ -233,7 +248,6 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
   r.estimated_error = error_before + error;
   r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
-  const std::uint64_t signature = touching(tree), limits = bearing(tree);
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
@@ -269,7 +283,7 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   settings_.h = h;
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
-  settings_.kink_width = T(1e-3) * h;
+  settings_.kink_width = kink_width<T>(h, T(world.accuracy.tolerance));
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
     s->problem.common_origin =
@@ -343,7 +357,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool may_bounce = Bounce<T>::possible(contacts_);
   const bool closed = passive();
   const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
-  const double budget = booked ? energy<T>(states_, world_->gravity) : 0;
+  const double budget = booked ? ledger_.open(states_, world_->gravity) : 0;
   const bool no_pose = !solved.converged && closed && pose_energy() > budget + 1e-3 * std::abs(budget);
   const int held_before = held_;
   is_held_.assign(states_.size(), 0);
@@ -365,7 +379,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
   if (!solved.converged || closed) {
-    if (ledger_.settle(states_, world_->gravity, budget, !solved.converged)) ++damped_;
+    if (ledger_.settle(states_, world_->gravity, !solved.converged, !couplings_.empty())) ++damped_;
   } else {
     for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
   }
@@ -499,6 +513,29 @@ int IslandStepper<T>::parts_of(T h) const {
   return parts;
 }
 
+/// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
+template <class T>
+bool IslandStepper<T>::starts() const {
+  return world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive() &&
+         std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
+           return s->history.step_before == T(0) && s->contact_signature == 0;
+         });
+}
+
+/// The first part of a step from a reset, up to the fraction `end`: in parts that double, because two of them
+/// are bdf1's (which in whole steps of 1/60 s take 2 % of a thrown humanoid's energy, and cost more accuracy
+/// than the half second after them), and bdf2 bears no sudden growth of the step.
+template <class T>
+void IslandStepper<T>::start(T end, int splits) {
+  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostParts);
+  T begin = T(0);
+  for (int n = parts - 1; n >= 0; --n) {
+    const T next = end / T(1 << n);
+    advance_part(begin, next, splits);
+    begin = next;
+  }
+}
+
 template <class T>
 int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
@@ -523,7 +560,9 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const int parts = parts_of(h);
   const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
-  for (int n = 0; n < parts; ++n)
+  int first = 0;
+  if (fine && starts()) start(T(1) / T(parts), splits), first = 1;
+  for (int n = first; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
     CharacterReport& r = s->report;

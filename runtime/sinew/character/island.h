@@ -34,6 +34,8 @@ class IslandStepper {
 
  private:
   int parts_of(T h) const;
+  bool starts() const;
+  void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
   SolveReport attempt(T h, T fraction);
   void choose_lagged(std::span<const LaggedForce<T>> lagged);

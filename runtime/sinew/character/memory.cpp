@@ -20,9 +20,11 @@ std::size_t bytes_of(const Rig<T>& rig) {
   const Tree<T>& t = rig.tree;
   return sizeof rig + held(rig.skeleton.joints, rig.skeleton.colliders, rig.skeleton.muscles) +
          held(t.parent, t.type, t.first_dof, t.dof_body, t.dof_parent, t.rest, t.axis, t.axis2, t.mass,
-              t.center_of_mass, t.inertia, t.second_moment, t.inverse_inertia) +
+              t.center_of_mass, t.inertia, t.first_moment, t.inertia_at_joint, t.held_axes, t.by_depth,
+              t.second_moment, t.inverse_inertia) +
          held(rig.colliders, rig.bound_center, rig.bound_radius, rig.points, rig.first_point, rig.may_touch,
-              rig.bakes);
+              rig.bakes) +
+         held(rig.support.points, rig.support.first, rig.support.limb, rig.support.bound);
 }
 
 template <class T>
@@ -34,7 +36,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
   return sizeof s +
          held(s.target, s.target_before, s.local, s.model, s.played_from, s.rate, s.rate_before, s.deviation,
               s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.unknown, s.impulses, s.baked,
-              s.wanted) +
+              s.wanted, s.standing) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
               law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal) +
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum, p.prediction.start) +
@@ -43,7 +45,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
          held_by(p.kinematics) + held_by(s.guessed) +
          held(h.center, h.center_before, h.velocity, h.velocity_before, h.rotation, h.rotation_before,
               h.rotation_rate, h.momentum, h.momentum_before) +
-         held(m.omega, m.alpha, m.velocity, m.acceleration, m.origin_velocity, m.origin_acceleration);
+         held(m.body, m.omega, m.velocity, m.origin_velocity);
 }
 
 template <class T>

@@ -41,8 +41,8 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
     p.moment[j.body] -= x.cross(j.force / h);
   }
   if (world.ground && world.ground_support && s.settings.ground_contact)
-    share_support<T>(s.tree, p.kinematics, s.points, T(world.ground_height) - origin.z(), {}, p.force,
-                     p.moment);
+    share_support<T>(s.rig->support, p.kinematics.rotation, p.kinematics.origin,
+                     T(world.ground_height) - origin.z(), {}, s.standing, p.force, p.moment);
   if (!p.effects.empty()) add_effect_wrenches(s, world, origin, h);
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
   for (const JointRow<T>& row : p.effect_rows)

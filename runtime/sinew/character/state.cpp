@@ -31,6 +31,7 @@ Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleto
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
+  support = SupportPoints<T>(tree, points);
   std::vector<Transform<T>> local;
   for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
   Kinematics<T> rest(tree);
@@ -93,6 +94,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       guessed(tree),
       history(tree.bodies),
       motion(tree),
+      standing(rig->support.points.size()),
       baked(tree.bodies, 0),
       wanted(tree.bodies) {
   floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;

@@ -9,6 +9,7 @@
 
 #include "sinew/character/world.h"
 #include "sinew/effects/contact.h"
+#include "sinew/effects/support.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
@@ -63,6 +64,7 @@ struct Rig {
   std::vector<T> bound_radius;
   std::vector<ContactPoint<T>> points;
   std::vector<int> first_point;         ///< [collider + 1] into points
+  SupportPoints<T> support;             ///< those that may stand on the ground
   std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
   std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
   T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
@@ -121,10 +123,11 @@ struct CharacterState {
   Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
   History<T> history;
   Motion<T> motion;
-  std::vector<std::uint8_t> baked;      ///< [body] goes on by itself in this step
-  std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
-  std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
-  std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
+  std::vector<StandingPoint<T>> standing;  ///< room for share_support
+  std::vector<std::uint8_t> baked;         ///< [body] goes on by itself in this step
+  std::vector<Transform<T>> wanted;        ///< [body] what the animation wants at the end of the present part
+  std::uint64_t contact_signature = 0;     ///< of the contacts that touched after the last step
+  std::uint64_t limit_signature = 0;       ///< of the joint limits that bore
   int steps_unchanged = 0;
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown

@@ -82,7 +82,7 @@ struct Crowd::Impl {
     lanes = c.lanes != 0 ? c.lanes : (c.instruction_set == InstructionSet::kAvx512 ? 16 : 8);
     check = kernel(c.instruction_set, lanes);
     batches = (c.capacity + lanes - 1) / lanes;
-    lines = (rig.view.dof_count * lanes + 15) / 16;
+    lines = (rig.tree.dofs * lanes + 15) / 16;
     const std::size_t padded = std::size_t(batches) * lanes;
     tracks.resize(padded);
     active.resize(padded);
@@ -100,7 +100,7 @@ struct Crowd::Impl {
   }
 
   std::size_t scratch_lines() const {
-    return crowd_kernels::scratch_bytes(rig.view.body_count, int(rig.points.size())) / sizeof(Line);
+    return crowd_kernels::scratch_bytes(rig.tree.bodies, int(rig.support.points.size())) / sizeof(Line);
   }
   JointJet<float>* jets_of(int character) { return jets.data() + std::size_t(character) * joints; }
   Transform<float>* model_of(int character) { return models.data() + std::size_t(character) * joints; }
@@ -123,7 +123,7 @@ struct Crowd::Impl {
     }
   }
   void set_strength(int character, float strength) {
-    for (int dof = 0; dof < rig.view.dof_count; ++dof) {
+    for (int dof = 0; dof < rig.tree.dofs; ++dof) {
       number(inverse_plus, dof_place(character, dof)) = inverse(rig.torque_plus[dof] * strength);
       number(inverse_minus, dof_place(character, dof)) = inverse(rig.torque_minus[dof] * strength);
     }
@@ -260,7 +260,7 @@ float Crowd::torque(int character, int dof) const {
   return Impl::number(impl_->torque, impl_->dof_place(character, dof));
 }
 int Crowd::dof_count() const {
-  return impl_->rig.view.dof_count;
+  return impl_->rig.tree.dofs;
 }
 std::span<JointJet<float>> Crowd::jets(int character) {
   return {impl_->jets_of(character), std::size_t(impl_->joints)};

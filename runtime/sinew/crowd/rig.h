@@ -9,8 +9,8 @@
 namespace sinew {
 
 struct CrowdRig {
-  std::vector<crowd_kernels::RigBody> bodies;
-  std::vector<crowd_kernels::RigPoint> points;   ///< by body
+  Tree<float> tree;
+  SupportPoints<float> support;
   std::vector<float> torque_plus, torque_minus;  ///< [dof] muscle limits at strength 1, N·m
   crowd_kernels::Rig view;                       ///< of the above
 

@@ -7,9 +7,12 @@
 // Gross, Rummel & Seyfarth 2010, Nature Communications 1:70: they meet in a point above the centre of mass).
 #pragma once
 
+#include <cmath>
 #include <span>
+#include <vector>
 
 #include "sinew/effects/contact.h"
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 
@@ -18,20 +21,137 @@ struct SupportSettings {
   double lean = 0.4;     ///< most that a force leans towards the hip, horizontal by vertical
 };
 
-/// Subtracts the support forces from the body wrenches (before project_wrenches). `force` and `moment` [body]
-/// hold the wrenches that the motion asks for, about the common origin; `ground` is the floor's height from
-/// it. Does nothing in flight. O(points).
+/// The points of a tree that may stand on the ground, by body.
 template <class T>
-void share_support(const Tree<T>& tree, const Kinematics<T>& kinematics,
-                   std::span<const ContactPoint<T>> points, T ground, const SupportSettings& settings,
-                   std::span<Vec3<T>> force, std::span<Vec3<T>> moment);
+struct SupportPoints {
+  struct Point {
+    Vec3<T> local;  ///< m, body axes
+    T radius;       ///< m
+  };
+  std::vector<Point> points;
+  std::vector<int> first;  ///< [body + 1]
+  std::vector<int> limb;   ///< [body] where its limb leaves the root
+  std::vector<T> bound;    ///< [body] m, from the joint's origin to the furthest of its points
 
-extern template void share_support<float>(const Tree<float>&, const Kinematics<float>&,
-                                          std::span<const ContactPoint<float>>, float, const SupportSettings&,
-                                          std::span<Vec3<float>>, std::span<Vec3<float>>);
-extern template void share_support<double>(const Tree<double>&, const Kinematics<double>&,
-                                           std::span<const ContactPoint<double>>, double,
-                                           const SupportSettings&, std::span<Vec3<double>>,
-                                           std::span<Vec3<double>>);
+  SupportPoints() = default;
+  SupportPoints(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
+};
+
+/// A point near enough to the ground to bear weight.
+template <class T>
+struct StandingPoint {
+  Vec3<T> place;  ///< from the common origin, its lowest
+  T share;        ///< of what it may bear: 1 on the floor, smoothly 0 at the reach
+};
+
+/// Whether any lane's body may have a point within the reach of the ground.
+template <class T>
+[[gnu::always_inline]] inline bool may_stand(const SupportPoints<Number<T>>& points, int body,
+                                             const Vec3<T>& origin, const T& ground, Number<T> reach) {
+  return points.first[body] < points.first[body + 1] &&
+         any(origin.z() - ground < T(points.bound[body] + reach));
+}
+
+/// Subtracts the support forces from the body wrenches (before project_wrenches). `rotation`, `origin`
+/// [body]: see Kinematics. `force` and `moment` [body] hold the wrenches that the motion asks for, about the
+/// common origin; `ground` is the floor's height from it. Does nothing in flight. `room` [point]. T may be a
+/// pack of characters (pack.h). O(points).
+template <class T>
+void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation,
+                   std::span<const Vec3<T>> origin, const T& ground, const SupportSettings& settings,
+                   std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
+  using std::sqrt;
+  const int bodies = int(rotation.size());
+  const Number<T> reach = Number<T>(settings.reach);
+  const T zero = T(0), one = T(1);
+  Vec3<T> total = Vec3<T>::Zero(), tilt = Vec3<T>::Zero();
+  for (int i = 0; i < bodies; ++i) {
+    total += force[i];
+    tilt += moment[i];
+  }
+  // Vertical forces f_p = w_p·(1, y, −x)·λ balance (F_z, M_x, M_y): weighted least squares with three
+  // multipliers.
+  T sum = zero, y_sum = zero, x_sum = zero, yy = zero, xy = zero, xx = zero;
+  for (int i = 0; i < bodies; ++i) {
+    if (!may_stand<T>(points, i, origin[i], ground, reach)) continue;
+    for (int k = points.first[i]; k < points.first[i + 1]; ++k) {
+      const auto& point = points.points[k];
+      Vec3<T> at = origin[i] + rotation[i] * point.local.template cast<T>();
+      at.z() -= T(point.radius);
+      const T down = one - largest<T>(zero, smallest<T>(one, (at.z() - ground) * T(1 / reach)));
+      const T w = down * down;
+      room[k] = {at, w};
+      sum += w;
+      y_sum += w * at.y();
+      x_sum += w * at.x();
+      yy += w * at.y() * at.y();
+      xy += w * at.x() * at.y();
+      xx += w * at.x() * at.x();
+    }
+  }
+  const auto standing = both(total.z() > zero, sum > T(Number<T>(1e-3)));
+  if (!any(standing)) return;
+  // One point alone can't hold a tilt. The symmetric matrix's inverse by cofactors.
+  const T slack = T(Number<T>(1e-6)) * (one + (sum + yy + xx));
+  const T a = sum + slack, b = y_sum, c = -x_sum, d = yy + slack, e = -xy, f = xx + slack;
+  const T c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d, c11 = a * f - c * c,
+          c12 = b * c - a * e, c22 = a * d - b * b;
+  const T inverse = one / (a * c00 + b * c01 + c * c02);
+  const T l0 = inverse * (c00 * total.z() + c01 * tilt.x() + c02 * tilt.y()),
+          l1 = inverse * (c01 * total.z() + c11 * tilt.x() + c12 * tilt.y()),
+          l2 = inverse * (c02 * total.z() + c12 * tilt.x() + c22 * tilt.y());
+  // A point can't pull: dropping negative forces and scaling the rest keeps the total.
+  const auto lift = [&](const StandingPoint<T>& s) {
+    return largest<T>(zero, s.share * (l0 + (l1 * s.place.y() - l2 * s.place.x())));
+  };
+  // Forces lean towards where their limb leaves the root by as much as all points can follow, so that a
+  // stride's feet brake and push against each other and the hips carry little.
+  struct Lean {
+    T x, y;
+  };
+  const auto lean = [&](int body, const Vec3<T>& at) {
+    const Vec3<T>& hip = origin[points.limb[body]];
+    const T height = hip.z() - ground;
+    const T slope = select(height > T(reach), T(one / height), zero);
+    return Lean{slope * (hip.x() - at.x()), slope * (hip.y() - at.y())};
+  };
+  const auto for_each_standing = [&](auto visit) {
+    for (int i = 0; i < bodies; ++i)
+      if (may_stand<T>(points, i, origin[i], ground, reach))
+        for (int k = points.first[i]; k < points.first[i + 1]; ++k) visit(i, room[k]);
+  };
+  T carried = zero, x_mean = zero, y_mean = zero, steepest = zero;
+  for_each_standing([&](int body, const StandingPoint<T>& s) {
+    const T up = lift(s);
+    const Lean away = lean(body, s.place);
+    carried += up;
+    x_mean += up * away.x;
+    y_mean += up * away.y;
+    const T steep = select(up > zero, T(away.x * away.x + away.y * away.y), zero);
+    steepest = largest<T>(steepest, steep);
+  });
+  // Hardly standing (about to land, or just off): hardly borne, so that forces fade in.
+  const T scale = total.z() / carried * smallest<T>(one, sum * T(5));
+  // Level forces: no more friction than the floor could give, and the lean about its mean, which the motion
+  // does not ask for.
+  const T level = one / largest<T>(total.z(), sqrt(total.x() * total.x() + total.y() * total.y()));
+  const T follow =
+      smallest<T>(one, T(Number<T>(settings.lean)) / largest<T>(sqrt(steepest), T(Number<T>(1e-6))));
+  const T x_push = level * total.x() - follow * (x_mean / carried),
+          y_push = level * total.y() - follow * (y_mean / carried);
+  for_each_standing([&](int body, const StandingPoint<T>& s) {
+    const T raw = lift(s);
+    const auto bears = both(standing, raw > zero);
+    const T up = scale * raw;
+    const Lean away = lean(body, s.place);
+    const Vec3<T> push(select(bears, T(up * (x_push + follow * away.x)), zero),
+                       select(bears, T(up * (y_push + follow * away.y)), zero), select(bears, up, zero));
+    force[body] -= push;
+    moment[body] -= s.place.cross(push);
+  });
+}
+
+extern template struct SupportPoints<float>;
+extern template struct SupportPoints<double>;
 
 }  // namespace sinew

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sinew/skeleton/skeleton.h"
+#include "sinew/skeleton/joint_type.h"
+#include "sinew/skeleton/vector.h"
 
 namespace sinew::multibody {
 

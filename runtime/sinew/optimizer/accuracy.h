@@ -16,9 +16,10 @@ enum class Scheme : std::uint8_t {
 /// Lengths in metres, angles in radians, speeds in m/s.
 struct Accuracy {
   Scheme scheme = Scheme::kBdf2;
-  double tolerance = 3e-5;        ///< stop when the last correction moves no body by more (m)
-  int max_iterations = 60;        ///< outer passes; the mean is 1.7, hard impacts at 1/30 s need the tail
-  int substeps = 1;               ///< every step in so many equal parts
+  double tolerance = 3e-5;  ///< stop when the last correction moves no body by more (m)
+  int max_iterations = 60;  ///< outer passes; the mean is 1.7, hard impacts at 1/30 s need the tail
+  int substeps = 1;         ///< every step in so many equal parts
+  int start_parts = 4;  ///< a step from a reset, which bdf2 has no history for, is cut into parts that double
   double max_rotation = 0;        ///< rad; more substeps where a body would turn further in one. 0: never
   int max_splits = 3;             ///< an unconverged step is halved, and its halves, so often
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)

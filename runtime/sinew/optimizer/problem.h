@@ -11,6 +11,7 @@
 #include "sinew/muscle/ellipsoid_row.h"
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/muscle/joint_rows.h"
+#include "sinew/muscle/muscle_side.h"
 #include "sinew/optimizer/scheme.h"
 #include "sinew/optimizer/solve_room.h"
 #include "sinew/residual/composite.h"
@@ -30,7 +31,7 @@ struct JointLaw {
 
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
   /// Muscle limit of a degree of freedom on the side of `torque`.
-  T limit(int dof, T torque) const { return torque >= T(0) ? torque_plus[dof] : torque_minus[dof]; }
+  T limit(int dof, T torque) const { return on_side(torque, torque_minus[dof], torque_plus[dof]); }
   /// Whether `torque` [dof] is more than the muscle of a degree of freedom can give. Cheaper than load().
   bool overloaded(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
     return ellipsoidal[body] ? load(tree, body, dof, torque) > T(1)
@@ -90,7 +91,7 @@ struct StepSettings {
   Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed
   T limit_stiffness = T(2000);                        ///< N·m/rad
   T stick = T(0.01) / 60;                             ///< m per step
-  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over 1e-3 rad/s
+  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
 };
 
 /// What the problem's effects see of it.

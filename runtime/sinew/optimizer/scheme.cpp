@@ -1,5 +1,6 @@
 #include "sinew/optimizer/scheme.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
@@ -28,17 +29,11 @@ void History<T>::stop() {
 }
 
 template <class T>
-void History<T>::slow(T factor, const Vec3<T>& shared) {
-  for (Vec3<T>& v : velocity) v = shared + factor * (v - shared);
-  for (Vec3<T>& l : momentum) l *= factor;
-  for (Mat3<T>& r : rotation_rate) r *= factor;
-  step_before = T(0);
-}
-
-template <class T>
 Prediction<T>::Prediction(int bodies) : center(bodies), rotation(bodies), momentum(bodies), start(bodies) {}
 
 namespace {
+
+constexpr int kMostRotationParts = 64;  ///< of a free body's turn in one step
 
 /// Rotation vector x over one step of a free body whose backward-difference momentum equation is
 /// I (k₁x − k₂x₋)/h = exp(−x)·l, in body axes. False where Newton does not converge or the turn is too large
@@ -70,6 +65,30 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
   return false;
 }
 
+/// Where a free body that is at `start` with the angular momentum L (world) is after h seconds, which may be
+/// negative: q̇ = ½ωq, ω = R I⁻¹ Rᵀ L, by Runge and Kutta's fourth order in parts of a tenth of a radian.
+template <class T>
+Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, const Vec3<T>& momentum, T h) {
+  using Vec4 = Eigen::Matrix<T, 4, 1>;
+  const auto spin = [&](const Quat<T>& q) {
+    return Vec3<T>(q * (inverse_inertia * (q.conjugate() * momentum)));
+  };
+  const auto rate = [&](const Vec4& coefficients) {
+    const Quat<T> q(Vec4(coefficients.normalized()));
+    const Vec3<T> w = spin(q) / 2;
+    return Vec4((Quat<T>(T(0), w.x(), w.y(), w.z()) * q).coeffs());
+  };
+  const T angle = std::abs(h) * spin(start).norm();
+  const int parts = std::clamp(static_cast<int>(angle / T(0.1)), 0, kMostRotationParts - 1) + 1;
+  const T part = h / T(parts);
+  Vec4 q = start.coeffs();
+  for (int n = 0; n < parts; ++n) {
+    const Vec4 a = rate(q), b = rate(q + part / 2 * a), c = rate(q + part / 2 * b), d = rate(q + part * c);
+    q = (q + part / 6 * (a + 2 * b + 2 * c + d)).normalized();
+  }
+  return Quat<T>(q);
+}
+
 }  // namespace
 
 template <class T>
@@ -77,6 +96,7 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
              const Vec3<double>& common_origin, Prediction<T>& out) {
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const bool second = scheme == Scheme::kBdf2 && history.step_before > T(0);
+  out.exact = false;
   out.scheme = scheme == Scheme::kMomentum ? scheme : second ? Scheme::kBdf2 : Scheme::kBdf1;
   if (!second) {
     out.weight = T(1) / (h * h);
@@ -93,6 +113,7 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
   const T a0 = (1 + w) * (1 + w) / (1 + 2 * w);
   const T a1 = -w * w / (1 + 2 * w);
   const T beta = (1 + w) / (1 + 2 * w);
+  const T k1 = (1 + 2 * w) / (1 + w), k2 = w * w / (1 + w);
   out.weight = T(1) / (beta * h * beta * h);
   out.momentum_step = beta * h;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -104,12 +125,63 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
     const Mat3<T>& r0 = history.rotation[i];
     const Vec3<T> turned = rotation_log<T>(Quat<T>(Mat3<T>(history.rotation_before[i].transpose() * r0)));
     Vec3<T> x = turned * w;
-    if (torque_free_rotation<T>(tree.inertia[i], r0.transpose() * out.momentum[i], turned,
-                                (1 + 2 * w) / (1 + w), w * w / (1 + w), h, x)) {
+    if (torque_free_rotation<T>(tree.inertia[i], r0.transpose() * out.momentum[i], turned, k1, k2, h, x)) {
       out.rotation[i] = r0 * rotation_exp<T>(x).toRotationMatrix();
     } else {
       out.rotation[i] = r0 + (beta * h) * history.rotation_rate[i] + (a1 * (history.rotation_before[i] - r0));
     }
+  }
+}
+
+template <class T>
+void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Prediction<T>& out) {
+  if (out.scheme != Scheme::kBdf2 || tree.type[0] != JointType::kFree || tree.dofs != 6) return;
+  out.exact = true;
+  const T w = h / history.step_before, k1 = (1 + 2 * w) / (1 + w), k2 = w * w / (1 + w);
+  T mass = T(0);
+  Vec3<T> center = Vec3<T>::Zero(), velocity = center, predicted = center;
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += tree.mass[i];
+    center += tree.mass[i] * history.center[i];
+    velocity += tree.mass[i] * history.velocity[i];
+    predicted += tree.mass[i] * out.center[i];
+  }
+  center /= mass, velocity /= mass, predicted /= mass;
+  const Mat3<T>& r0 = history.rotation[0];
+  Mat3<T> inertia = Mat3<T>::Zero();  // world axes
+  Vec3<T> momentum = Vec3<T>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> arm = history.center[i] - center;
+    const Mat3<T>& r = history.rotation[i];
+    inertia += r * tree.inertia[i] * r.transpose() +
+               tree.mass[i] * (arm.squaredNorm() * Mat3<T>::Identity() - arm * arm.transpose());
+    momentum += history.momentum[i] + tree.mass[i] * arm.cross(history.velocity[i] - velocity);
+  }
+  inertia = r0.transpose() * inertia * r0;
+  // A rod has no inertia about itself, and nothing to keep there.
+  const T thin = 100 * std::numeric_limits<T>::epsilon() * inertia.trace();
+  const Mat3<T> inverse = (inertia + thin * Mat3<T>::Identity()).inverse();
+  const Quat<T> now(r0);
+  const auto turn = [&](T seconds) {
+    return Vec3<T>(rotation_log<T>(now.conjugate() * free_rotation<T>(inverse, now, momentum, seconds)));
+  };
+  const Vec3<T> exact = turn(h), before = -turn(-history.step_before);
+  const auto turned_by = [&](const Quat<T>& q) {
+    return Mat3<T>((now * q * now.conjugate()).toRotationMatrix());
+  };
+  Vec3<T> x = exact;
+  if (torque_free_rotation<T>(inertia, r0.transpose() * momentum, before, k1, k2, h, x)) {
+    const Mat3<T> missed = turned_by(rotation_exp<T>(exact) * rotation_exp<T>(-x));
+    for (int i = 0; i < tree.bodies; ++i) {
+      out.rotation[i] = missed * out.rotation[i];
+      out.center[i] = predicted + missed * (out.center[i] - predicted);
+    }
+    return;
+  }
+  const Mat3<T> turned = turned_by(rotation_exp<T>(exact));
+  for (int i = 0; i < tree.bodies; ++i) {
+    out.rotation[i] = turned * history.rotation[i];
+    out.center[i] = predicted + turned * (history.center[i] - center);
   }
 }
 
@@ -199,6 +271,56 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   }
   if (mass > 0) sum.angular_momentum = about_origin - first.cross(sum.momentum) / mass;
   return sum;
+}
+
+namespace {
+
+template <class T>
+Mat3<double> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
+  const Mat3<double> r = history.rotation[i].template cast<double>();
+  return r * tree.inertia[i].template cast<double>() * r.transpose();
+}
+
+}  // namespace
+
+template <class T>
+RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const Totals& totals) {
+  RigidMotion rigid;
+  double mass = 0;
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += double(tree.mass[i]);
+    rigid.center += double(tree.mass[i]) * history.center[i].template cast<double>();
+  }
+  rigid.center /= mass;
+  rigid.velocity = totals.momentum / mass;
+  Mat3<double> locked = Mat3<double>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<double> arm = history.center[i].template cast<double>() - rigid.center;
+    locked += world_inertia(tree, history, i) -
+              double(tree.mass[i]) * (arm * arm.transpose() - arm.squaredNorm() * Mat3<double>::Identity());
+  }
+  rigid.spin = locked.ldlt().solve(totals.angular_momentum);
+  rigid.relative_energy = totals.kinetic_energy - 0.5 * totals.momentum.squaredNorm() / mass -
+                          0.5 * totals.angular_momentum.dot(rigid.spin);
+  return rigid;
+}
+
+template <class T>
+void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, History<T>& history) {
+  const Vec3<T> center = rigid.center.template cast<T>(), velocity = rigid.velocity.template cast<T>(),
+                spin = rigid.spin.template cast<T>();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> shared = velocity + spin.cross(history.center[i] - center);
+    const Vec3<T> faster = (factor - 1) * (history.velocity[i] - shared);
+    const Vec3<T> carried = world_inertia(tree, history, i).template cast<T>() * spin;
+    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - carried);
+    history.velocity[i] += faster;
+    history.velocity_before[i] += faster;
+    history.momentum[i] += stronger;
+    history.momentum_before[i] += stronger;
+    Mat3<T>& rate = history.rotation_rate[i];
+    rate += (factor - 1) * (rate - skew<T>(spin) * history.rotation[i]);
+  }
 }
 
 SINEW_SCHEME_INSTANCES(template, float)

@@ -36,10 +36,31 @@ struct History {
   explicit History(int bodies);
   /// Takes all motion out.
   void stop();
-  /// Velocities relative to a shared one (m/s), and angular momenta, times a factor; what was before is
-  /// forgotten.
-  void slow(T factor, const Vec3<T>& shared);
 };
+
+/// Sums over a tree, of the momenta that the schemes carry.
+struct Totals {
+  double kinetic_energy = 0, potential_energy = 0;       ///< J; gravity, from the world's origin
+  Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
+  Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the tree's centre of mass
+};
+
+/// Motion that a tree would have if its joints locked now: momenta as they are, nothing relative.
+struct RigidMotion {
+  Vec3<double> center = Vec3<double>::Zero();    ///< m, from the history's place
+  Vec3<double> velocity = Vec3<double>::Zero();  ///< of the centre of mass, m/s
+  Vec3<double> spin = Vec3<double>::Zero();      ///< rad/s
+  double relative_energy = 0;                    ///< kinetic energy of the motion relative to it, J
+};
+
+/// Of a history that bdf2 led to.
+template <class T>
+RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const Totals& totals);
+
+/// Scales the motion relative to the rigid one; momenta stay. What was before changes with it, so that the
+/// backward differences of the next steps see a change of speed and no jolt.
+template <class T>
+void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, History<T>& history);
 
 /// Targets of inertia for one step, relative to the common origin.
 template <class T>
@@ -51,6 +72,7 @@ struct Prediction {
   T weight = T(0);                ///< α, 1/s²
   T momentum_step = T(0);         ///< βh, s
   Scheme scheme = Scheme::kBdf1;
+  bool exact = false;  ///< where nothing touches the tree: see predict_free_flight
 
   explicit Prediction(int bodies);
 };
@@ -59,6 +81,12 @@ struct Prediction {
 template <class T>
 void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
              const Vec3<double>& common_origin, Prediction<T>& out);
+
+/// Turns bdf2's prediction of a rigid tree with a free root about its centre of mass by what the backward
+/// difference misses of a free body's rotation: where nothing touches it, it moves exactly, whatever the
+/// turn.
+template <class T>
+void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Prediction<T>& out);
 
 /// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
 /// gradient there (about each centre of mass).
@@ -71,13 +99,6 @@ template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
                      const Vec3<double>& common_origin, History<T>& history);
 
-/// Sums over a tree, of the momenta that the schemes carry.
-struct Totals {
-  double kinetic_energy = 0, potential_energy = 0;       ///< J; gravity, from the world's origin
-  Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
-  Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the tree's centre of mass
-};
-
 /// The kinetic energy is the one that the scheme dissipates. bdf2: ½m|ċ|² + ½L·I⁻¹L of the carried momentum,
 /// which torque-free flight keeps; a difference of rotations would wobble by h²|ω|² around it. bdf1: ½ṘP:Ṙ
 /// of the difference of rotations.
@@ -88,9 +109,12 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   prefix struct History<T>;                                                                                  \
   prefix struct Prediction<T>;                                                                               \
   prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<double>&, Prediction<T>&); \
+  prefix void predict_free_flight<T>(const Tree<T>&, const History<T>&, T, Prediction<T>&);                  \
   prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                         \
                          std::span<const Vec3<T>>, T, const Vec3<double>&, History<T>&);                     \
   prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
+  prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
+  prefix void scale_relative<T>(const Tree<T>&, const RigidMotion&, T, History<T>&);                         \
   prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T,                  \
                                  const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)

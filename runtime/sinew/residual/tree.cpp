@@ -1,6 +1,10 @@
 #include "sinew/residual/tree.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
+
+#include "sinew/residual/residual_pass.h"
 
 namespace sinew {
 
@@ -12,6 +16,25 @@ Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
   for (int a = 0; a < 3; ++a)
     if (axes.eigenvalues()[a] > 1e-9 * axes.eigenvalues()[2]) inverse[a] = 1 / axes.eigenvalues()[a];
   return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+}
+
+/// The two directions that a planar joint slides along.
+template <class T>
+void planar_axes(const Vec3<T>& normal, Vec3<T>& a, Vec3<T>& b) {
+  a = normal.unitOrthogonal();
+  b = normal.cross(a);
+}
+
+/// Columns: axes of a joint that do not move with its child, rest axes.
+Mat3<double> held_by_parent(const Joint& joint) {
+  Mat3<double> axes = Mat3<double>::Zero();
+  if (joint.type == JointType::kUniversal) axes.col(0) = joint.axis;
+  if (joint.type == JointType::kPlanar) {
+    Vec3<double> a, b;
+    planar_axes(joint.axis, a, b);
+    axes << a, b, joint.axis;
+  }
+  return axes;
 }
 
 }  // namespace
@@ -29,6 +52,12 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     mass.push_back(T(joint.mass));
     center_of_mass.push_back(joint.center_of_mass.cast<T>());
     inertia.push_back(joint.inertia.cast<T>());
+    const Vec3<double>& c = joint.center_of_mass;
+    first_moment.push_back((joint.mass * c).cast<T>());
+    inertia_at_joint.push_back(
+        (joint.inertia + joint.mass * (c.squaredNorm() * Mat3<double>::Identity() - c * c.transpose()))
+            .cast<T>());
+    held_axes.push_back((joint.rest.rotation * held_by_parent(joint)).cast<T>());
     second_moment.push_back(
         (0.5 * joint.inertia.trace() * Mat3<double>::Identity() - joint.inertia).cast<T>());
     inverse_inertia.push_back(pseudo_inverse(joint.inertia).cast<T>());
@@ -43,16 +72,15 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     }
   }
   first_dof.push_back(dofs);
+  std::vector<int> depth(bodies, 0);
+  for (int i = 0; i < bodies; ++i)
+    if (parent[i] >= 0) depth[i] = depth[parent[i]] + 1;
+  by_depth.resize(bodies);
+  std::iota(by_depth.begin(), by_depth.end(), 0);
+  std::stable_sort(by_depth.begin(), by_depth.end(), [&](int a, int b) { return depth[a] < depth[b]; });
 }
 
 namespace {
-
-/// The two directions that a planar joint slides along.
-template <class T>
-void planar_axes(const Vec3<T>& normal, Vec3<T>& a, Vec3<T>& b) {
-  a = normal.unitOrthogonal();
-  b = normal.cross(a);
-}
 
 /// Motion axes of one joint at its present local transform.
 template <class T>
@@ -195,38 +223,27 @@ void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, c
   for (int i = 0; i < tree.bodies; ++i) {
     const int p = tree.parent[i];
     const JointJet<T>& jet = jets[i];
-    const Mat3<T> relative = jet.rotation.toRotationMatrix();
+    BodyMotion<T>& body = m.body[i];
+    move_body<T>(tree, i, jet, gravity, p < 0 ? nullptr : &m.body[p], body);
     if (p < 0) {
-      k.rotation[i] = relative;
+      k.rotation[i] = body.turn;
       k.origin[i] = jet.translation - common_origin;
-      m.omega[i] = relative * jet.omega;
-      m.alpha[i] = relative * jet.alpha;
       m.origin_velocity[i] = jet.velocity;
-      m.origin_acceleration[i] = jet.acceleration;
     } else {
       const Mat3<T>& rp = k.rotation[p];
-      const Vec3<T>& wp = m.omega[p];
-      k.rotation[i].noalias() = rp * relative;
+      k.rotation[i].noalias() = rp * body.turn;
       const Vec3<T> arm = rp * jet.translation;
-      const Vec3<T> slide = rp * jet.velocity;
-      const Vec3<T> spin = k.rotation[i] * jet.omega;
       k.origin[i] = k.origin[p] + arm;
-      m.omega[i] = wp + spin;
-      m.alpha[i] = m.alpha[p] + k.rotation[i] * jet.alpha + wp.cross(spin);
-      m.origin_velocity[i] = m.origin_velocity[p] + wp.cross(arm) + slide;
-      m.origin_acceleration[i] = m.origin_acceleration[p] + m.alpha[p].cross(arm) + wp.cross(wp.cross(arm)) +
-                                 T(2) * wp.cross(slide) + rp * jet.acceleration;
+      m.origin_velocity[i] = m.origin_velocity[p] + m.omega[p].cross(arm) + rp * jet.velocity;
     }
-    const Vec3<T> arm = k.rotation[i] * tree.center_of_mass[i];
+    const Mat3<T>& r = k.rotation[i];
+    const Vec3<T> arm = r * tree.center_of_mass[i];
     k.center[i] = k.origin[i] + arm;
+    m.omega[i] = r * body.omega;
     m.velocity[i] = m.origin_velocity[i] + m.omega[i].cross(arm);
-    m.acceleration[i] =
-        m.origin_acceleration[i] + m.alpha[i].cross(arm) + m.omega[i].cross(m.omega[i].cross(arm));
     motion_axes(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
-
-    const Mat3<T> inertia = k.rotation[i] * tree.inertia[i] * k.rotation[i].transpose();
-    force[i] = tree.mass[i] * (m.acceleration[i] - gravity);
-    moment[i] = k.center[i].cross(force[i]) + inertia * m.alpha[i] + m.omega[i].cross(inertia * m.omega[i]);
+    force[i] = r * body.force;
+    moment[i] = r * body.moment + k.origin[i].cross(force[i]);
   }
 }
 

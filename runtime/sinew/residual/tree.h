@@ -21,17 +21,22 @@ template <class T>
 struct Tree {
   int bodies = 0;
   int dofs = 0;
-  std::vector<int> parent;              ///< [body]
-  std::vector<JointType> type;          ///< [body]
-  std::vector<int> first_dof;           ///< [body + 1]
-  std::vector<int> dof_body;            ///< [dof]
-  std::vector<int> dof_parent;          ///< [dof] next degree of freedom towards the root, or -1
-  std::vector<Transform<T>> rest;       ///< [body]
-  std::vector<Vec3<T>> axis, axis2;     ///< [body] child axes
-  std::vector<T> mass;                  ///< [body] kg
-  std::vector<Vec3<T>> center_of_mass;  ///< [body] joint axes
-  std::vector<Mat3<T>> inertia;         ///< [body] about the centre of mass, joint axes
-  std::vector<Mat3<T>> second_moment;   ///< [body] P = ½ tr(I)·1 − I
+  std::vector<int> parent;      ///< [body]
+  std::vector<JointType> type;  ///< [body]
+  std::vector<int> by_depth;    ///< bodies, those near the root first: neighbours do not wait for each other
+  std::vector<int> first_dof;   ///< [body + 1]
+  std::vector<int> dof_body;    ///< [dof]
+  std::vector<int> dof_parent;  ///< [dof] next degree of freedom towards the root, or -1
+  std::vector<Transform<T>> rest;         ///< [body]
+  std::vector<Vec3<T>> axis, axis2;       ///< [body] child axes
+  std::vector<T> mass;                    ///< [body] kg
+  std::vector<Vec3<T>> center_of_mass;    ///< [body] joint axes
+  std::vector<Mat3<T>> inertia;           ///< [body] about the centre of mass, joint axes
+  std::vector<Vec3<T>> first_moment;      ///< [body] mass · centre of mass, joint axes, kg·m
+  std::vector<Mat3<T>> inertia_at_joint;  ///< [body] about the joint's origin, joint axes
+  std::vector<Mat3<T>> held_axes;  ///< [body] columns: axes that stay with the parent, in its axes: the first
+                                   ///< of a universal joint, all of a planar one
+  std::vector<Mat3<T>> second_moment;  ///< [body] P = ½ tr(I)·1 − I
 
   std::vector<Mat3<T>> inverse_inertia;  ///< [body] pseudo-inverse: a thin rod's is zero along its axis
 
@@ -69,27 +74,33 @@ template <class T>
 void project_wrenches(const Tree<T>& tree, const Kinematics<T>& kinematics, std::span<Vec3<T>> force,
                       std::span<Vec3<T>> moment, std::span<T> projection);
 
-/// Velocities and accelerations of the bodies under joint jets, and what they need.
+/// One body on the way through the residual pass (residual_pass.h). Vectors in its own axes unless said.
 template <class T>
-struct Motion {
-  std::vector<Vec3<T>> omega, alpha;                          ///< [body] rad/s, rad/s², world axes
-  std::vector<Vec3<T>> velocity, acceleration;                ///< [body] of the centre of mass, world axes
-  std::vector<Vec3<T>> origin_velocity, origin_acceleration;  ///< [body] of the joint origin
-
-  explicit Motion(const Tree<T>& tree)
-      : omega(tree.bodies),
-        alpha(tree.bodies),
-        velocity(tree.bodies),
-        acceleration(tree.bodies),
-        origin_velocity(tree.bodies),
-        origin_acceleration(tree.bodies) {}
+struct BodyMotion {
+  Mat3<T> turn;          ///< body → parent
+  Vec3<T> arm;           ///< joint origin, parent axes
+  Vec3<T> omega, alpha;  ///< rad/s, rad/s²
+  Vec3<T> acceleration;  ///< of the joint origin, less gravity
+  Vec3<T> force;         ///< that the motion asks for
+  Vec3<T> moment;        ///< about the joint origin
 };
 
-/// Recursive residual pass of the seed talk, in its continuous form (recursive Newton–Euler): what every
-/// joint's motion
-/// (`jets` [body], any motion, also across the joint's own axes) asks of its muscles.
-/// Writes kinematics, motion, and the wrench per body that the inertia and gravity call for (minus nothing
-/// else: subtract external wrenches before project_wrenches). O(bodies).
+/// How the bodies move under joint jets.
+template <class T>
+struct Motion {
+  std::vector<BodyMotion<T>> body;       ///< [body]
+  std::vector<Vec3<T>> omega;            ///< [body] rad/s, world axes
+  std::vector<Vec3<T>> velocity;         ///< [body] of the centre of mass, world axes
+  std::vector<Vec3<T>> origin_velocity;  ///< [body] of the joint origin
+
+  explicit Motion(const Tree<T>& tree)
+      : body(tree.bodies), omega(tree.bodies), velocity(tree.bodies), origin_velocity(tree.bodies) {}
+};
+
+/// Recursive residual pass of the seed talk, in its continuous form (residual_pass.h), for those who also
+/// want to know where everything is: what every joint's motion (`jets` [body], any motion, also across the
+/// joint's own axes) asks of its muscles. Writes kinematics, motion, and the wrench per body that the inertia
+/// and gravity call for (minus nothing else: subtract external wrenches before project_wrenches). O(bodies).
 template <class T>
 void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
                        const Vec3<T>& common_origin, Kinematics<T>& kinematics, Motion<T>& motion,

@@ -1,17 +1,9 @@
-// Rotations and rigid transforms, templated on the scalar.
+// Rigid transforms, templated on the scalar.
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+#include "sinew/skeleton/vector.h"
 
 namespace sinew {
-
-template <class T>
-using Vec3 = Eigen::Matrix<T, 3, 1>;
-template <class T>
-using Mat3 = Eigen::Matrix<T, 3, 3>;
-template <class T>
-using Quat = Eigen::Quaternion<T>;
 
 /// Rigid transform child → parent: x_parent = rotation · x_child + translation (metres).
 template <class T>

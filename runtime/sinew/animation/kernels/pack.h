@@ -4,10 +4,41 @@
 // a wider instruction set can never be picked by the linker for a machine that lacks it.
 #pragma once
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+#include <cstdint>
+#include <type_traits>
 #include <utility>
+
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 namespace {
+
+/// What a comparison of packs says of each lane: all bits set, or none.
+template <class T, int N>
+struct Mask {
+  using Lane = std::conditional_t<sizeof(T) == sizeof(std::int32_t), std::int32_t, std::int64_t>;
+  using Bits [[gnu::vector_size(N * sizeof(T))]] = Lane;
+  Bits v;
+
+  friend Mask both(const Mask& a, const Mask& b) { return {a.v & b.v}; }
+  friend bool any(const Mask& a) {
+    if constexpr (sizeof(Bits) > 2 * sizeof(std::int64_t)) {
+      return [&]<int... I>(std::integer_sequence<int, I...>) {
+        return any(Mask<T, N / 2>{__builtin_shufflevector(a.v, a.v, I...) |
+                                  __builtin_shufflevector(a.v, a.v, (N / 2 + I)...)});
+      }
+      (std::make_integer_sequence<int, N / 2>());
+    } else {
+      std::int64_t halves[2] = {};
+      __builtin_memcpy(halves, &a.v, sizeof(Bits));
+      return (halves[0] | halves[1]) != 0;
+    }
+  }
+};
 
 /// N scalars in GCC's and Clang's portable vector type. Every operation is the exact IEEE operation on each
 /// lane, in the order written (kernels are compiled without contraction): results depend neither on N nor on
@@ -21,6 +52,8 @@ struct Pack {
 
   Pack() = default;
   Pack(Vector x) : v(x) {}
+  template <class Number>
+  requires std::is_arithmetic_v<Number> Pack(Number x) : Pack(all(T(x))) {}
   static Pack all(T x) {
     return [&]<int... I>(std::integer_sequence<int, I...>) {
       return Pack(Vector{(static_cast<void>(I), x)...});
@@ -40,18 +73,23 @@ struct Pack {
   friend Pack operator/(const Pack& a, const Pack& b) { return a.v / b.v; }
   friend Pack operator-(const Pack& a) { return -a.v; }
   friend Pack operator*(T s, const Pack& a) { return s * a.v; }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  Pack& operator/=(const Pack& b) { return *this = *this / b; }
+  friend Mask<T, N> operator<(const Pack& a, const Pack& b) { return {a.v < b.v}; }
+  friend Mask<T, N> operator>(const Pack& a, const Pack& b) { return {a.v > b.v}; }
+  friend Mask<T, N> operator<=(const Pack& a, const Pack& b) { return {a.v <= b.v}; }
+  friend Mask<T, N> operator>=(const Pack& a, const Pack& b) { return {a.v >= b.v}; }
+  friend Mask<T, N> operator==(const Pack& a, const Pack& b) { return {a.v == b.v}; }
+  friend Pack select(const Mask<T, N>& mask, const Pack& yes, const Pack& no) {
+    return Pack(mask.v ? yes.v : no.v);
+  }
   friend Pack where_equal(const Pack& a, T b, const Pack& yes, const Pack& no) {
     return Pack(a.v == b ? yes.v : no.v);
   }
   friend Pack where_negative(const Pack& a, const Pack& yes, const Pack& no) {
     return Pack(a.v < T(0) ? yes.v : no.v);
-  }
-  /// Whether any lane is below zero.
-  friend bool any_negative(const Pack& a) {
-    const auto below = a.v < T(0);
-    bool any = false;
-    for (int i = 0; i < N; ++i) any |= below[i] != 0;
-    return any;
   }
   friend Pack sqrt(const Pack& a) {
     Pack x;
@@ -65,15 +103,39 @@ struct Pack {
   }
 };
 
+}  // namespace
+
+template <class T, int N>
+struct NumberOf<Pack<T, N>> {
+  using Type = T;
+};
+
+namespace {
+
 /// Four numbers from each of the addresses `at(group)`. Registers are joined, never assembled in memory: a
-/// wide load that follows narrow stores stalls.
+/// wide load that follows narrow stores stalls. Where the instruction set loads into a part of a register
+/// that is said outright: GCC 12 makes a load and a shuffle across lanes of a portable join.
 template <class P, class At>
-P load_fours(At at, int group = 0) {
+[[gnu::always_inline]] inline P load_fours(At at, int group = 0) {
+  using T = typename P::Scalar;
   if constexpr (P::kLanes == 4) {
     return P::load(at(group));
+#ifdef __AVX512F__
+  } else if constexpr (P::kLanes == 16 && sizeof(T) == 4) {
+    const auto four = [&](int g) { return _mm_loadu_ps(at(group + g)); };
+    __m512 all = _mm512_castps128_ps512(four(0));
+    all = _mm512_mask_broadcast_f32x4(all, 0x00f0, four(1));
+    all = _mm512_mask_broadcast_f32x4(all, 0x0f00, four(2));
+    return P(_mm512_mask_broadcast_f32x4(all, 0xf000, four(3)));
+#endif
+#ifdef __AVX__
+  } else if constexpr (P::kLanes == 8 && sizeof(T) == 4) {
+    return P(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at(group))),
+                                  _mm_loadu_ps(at(group + 1)), 1));
+#endif
   } else {
     constexpr int kHalf = P::kLanes / 2;
-    using Half = Pack<typename P::Scalar, kHalf>;
+    using Half = Pack<T, kHalf>;
     const Half low = load_fours<Half>(at, group), high = load_fours<Half>(at, group + kHalf / 4);
     return [&]<int... I>(std::integer_sequence<int, I...>) {
       return P(__builtin_shufflevector(low.v, high.v, I...));
@@ -140,6 +202,50 @@ void transpose(P (&m)[4]) {
   m[1] = shuffle(low01, low23, Joined<2>());
   m[2] = shuffle(high01, high23, Joined<0>());
   m[3] = shuffle(high01, high23, Joined<2>());
+}
+
+/// Every four lanes from number 4·Odd on of every eight of two packs.
+template <int Odd, class P>
+P fours_of_eights(const P& a, const P& b) {
+  return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return P(__builtin_shufflevector(a.v, b.v, (8 * (I / 4) + 4 * Odd + I % 4)...));
+  }
+  (std::make_integer_sequence<int, P::kLanes>());
+}
+
+/// Eight numbers from each lane's address `at(lane)`: low[c], high[c] are the numbers c and 4 + c of all
+/// lanes. Half the loads that fours take.
+template <class P, class At>
+[[gnu::always_inline]] inline void load_eights(At at, P (&low)[4], P (&high)[4]) {
+  constexpr int kHalf = P::kLanes / 2;
+  if constexpr (P::kLanes == 4) {
+    for (int lane = 0; lane < 4; ++lane) {
+      low[lane] = P::load(at(lane));
+      high[lane] = P::load(at(lane) + 4);
+    }
+    transpose(low);
+    transpose(high);
+  } else {
+    const auto rows = [&](int lane) {
+#ifdef __AVX512F__
+      if constexpr (P::kLanes == 16)
+        return P(_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(at(lane))),
+                                    _mm256_loadu_ps(at(lane + 4)), 1));
+#endif
+      if constexpr (P::kLanes == 8) return P::load(at(lane));
+    };
+    P a[4], b[4];
+    for (int r = 0; r < 4; ++r) {
+      a[r] = rows(r);
+      b[r] = rows(kHalf + r);
+    }
+    transpose(a);
+    transpose(b);
+    for (int c = 0; c < 4; ++c) {
+      low[c] = fours_of_eights<0>(a[c], b[c]);
+      high[c] = fours_of_eights<1>(a[c], b[c]);
+    }
+  }
 }
 
 }  // namespace

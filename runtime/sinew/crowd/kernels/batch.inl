@@ -1,52 +1,44 @@
-// Recursive Newton–Euler in the axes of each body, a pack of characters at a time. Included once per
-// instruction set with SINEW_KERNELS naming it and SINEW_FLOAT_LANES its registers.
-//
-// residual/tree.h does the same recursion in world axes, because the optimizer wants its matrices there. Body
-// axes need no rotated inertias, which is most of the arithmetic of a check that asks for torques alone.
-#include "sinew/animation/kernels/jet_algebra.h"
+// The check of a pack of characters: the residual pass, the ground's support and the muscles' limits that a
+// single character goes through (residual/residual_pass.h, effects/support.h, muscle/muscle_side.h), with
+// packs as their scalar. Included once per instruction set with SINEW_KERNELS naming it and SINEW_FLOAT_LANES
+// its registers.
+#include "sinew/animation/kernels/pack_eigen.h"
 #include "sinew/crowd/kernels/batch.h"
-#include "sinew/crowd/kernels/spatial.h"
+#include "sinew/muscle/muscle_side.h"
+#include "sinew/residual/residual_pass.h"
 
 namespace sinew::crowd_kernels {
 namespace {
 
-/// One body of every character of the batch. Vectors in body axes unless said.
-template <class P>
-struct Body {
-  Turn<P> turn;          ///< body → parent
-  Vec<P> arm;            ///< origin, parent axes
-  Vec<P> omega, alpha;   ///< of the body
-  Vec<P> acceleration;   ///< of its origin, less gravity
-  Vec<P> force, moment;  ///< that its motion asks for, about its origin
-};
+static_assert(sizeof(Transform<float>) == sizeof(kernels::PoseLayout<float>),
+              "structs of floats lie in memory as in files for other instruction sets");
 
-/// Where it is, for those who need to know.
-template <class P>
-struct Placed {
-  P rotation[4];  ///< body → world
-  Turn<P> world;
-  Vec<P> origin;  ///< from the root's, world axes
-};
-
-/// A point near enough to the ground to bear weight.
-template <class P>
-struct Standing {
-  Vec<P> place;  ///< from the root's origin, world axes
-  P share;       ///< 1 on the floor … 0 at the reach
-};
-
+/// What a check works in, for every body of every lane.
 template <class P>
 struct Scratch {
-  Body<P>* body;
-  Placed<P>* placed;
-  Standing<P>* standing;  ///< [point] filled for bodies that are near the ground
+  std::span<BodyMotion<P>> body;
+  std::span<Quat<P>> orientation;        ///< body → world
+  std::span<Mat3<P>> rotation;           ///< the same
+  std::span<Vec3<P>> origin;             ///< from the root's, world axes
+  std::span<Vec3<P>> force, moment;      ///< about the root's origin, world axes
+  std::span<StandingPoint<P>> standing;  ///< [point]
 
-  Scratch(void* memory, int bodies)
-      : body(static_cast<Body<P>*>(memory)),
-        placed(reinterpret_cast<Placed<P>*>(body + bodies)),
-        standing(reinterpret_cast<Standing<P>*>(placed + bodies)) {}
-  static_assert(sizeof(Body<P>) + sizeof(Placed<P>) == kBodyPacks * sizeof(P) &&
-                sizeof(Standing<P>) == kPointPacks * sizeof(P));
+  Scratch(void* memory, int bodies, int points) {
+    const auto take = [&]<class U>(std::span<U>& out, int count) {
+      out = {static_cast<U*>(memory), std::size_t(count)};
+      memory = out.data() + count;
+    };
+    take(body, bodies);
+    take(orientation, bodies);
+    take(rotation, bodies);
+    take(origin, bodies);
+    take(force, bodies);
+    take(moment, bodies);
+    take(standing, points);
+  }
+  static_assert(sizeof(BodyMotion<P>) + sizeof(Quat<P>) + sizeof(Mat3<P>) + 3 * sizeof(Vec3<P>) ==
+                    kBodyPacks * sizeof(P) &&
+                sizeof(StandingPoint<P>) == kPointPacks * sizeof(P));
 };
 
 /// The lanes of a batch that one pass takes: as many as a register of the instruction set holds.
@@ -55,239 +47,108 @@ struct Lanes {
   int stride = 0;  ///< lanes of the batch
 };
 
-/// Numbers of one body's jet over the lanes, in the order of JetLayout.
+/// Jets of one body over the lanes, a few numbers at a time in the order of JetLayout: all at once would not
+/// leave registers to compute in.
 template <class P>
-struct Jet {
-  P rotation[4];
-  Vec<P> omega, alpha, translation, velocity, acceleration;
-
-  Jet(const Batch& batch, int first_lane, int i) {
-    constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
-    const std::ptrdiff_t stride = std::ptrdiff_t(batch.joints) * kNumbers;
-    const float* from = batch.jets->rotation + first_lane * stride + i * kNumbers;
-    P n[kNumbers];
-#pragma GCC unroll 5
-    for (int c = 0; c < kNumbers; c += 4) {
-      P m[4];
-      for (int r = 0; r < 4; ++r)
-        m[r] = load_fours<P>([&](int group) { return from + (4 * group + r) * stride + c; });
-      transpose(m);
-      for (int r = 0; r < 4; ++r) n[c + r] = m[r];
-    }
-    for (int c = 0; c < 4; ++c) rotation[c] = n[c];
-    omega = {n[4], n[5], n[6]};
-    alpha = {n[7], n[8], n[9]};
-    translation = {n[10], n[11], n[12]};
-    velocity = {n[13], n[14], n[15]};
-    acceleration = {n[16], n[17], n[18]};
+class Jets {
+ public:
+  Jets(const Batch& batch, int first_lane, int i)
+      : stride_(std::ptrdiff_t(batch.joints) * kNumbers),
+        from_(batch.jets->rotation + first_lane * stride_ + i * kNumbers) {}
+  /// Four numbers from number `first` on.
+  void load(int first, P (&out)[4]) const {
+    for (int r = 0; r < 4; ++r)
+      out[r] = load_fours<P>([&](int four) { return from_ + (4 * four + r) * stride_ + first; });
+    transpose(out);
   }
+  /// Eight.
+  void load(int first, P (&low)[4], P (&high)[4]) const {
+    load_eights([&](int lane) { return from_ + lane * stride_ + first; }, low, high);
+  }
+
+ private:
+  static constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
+  std::ptrdiff_t stride_;
+  const float* from_;
 };
 
-/// Motion of a body from its parent's, and the wrench that it takes.
+/// move_body, reading the jet as it goes.
 template <class P>
-void move(const Rig& rig, const RigBody& constants, const Jet<P>& jet, const Body<P>* parent, Body<P>& body) {
-  body.turn = turn_of(jet.rotation);
-  body.arm = jet.translation;
-  if (!parent) {
-    body.omega = jet.omega;
-    body.alpha = jet.alpha;
-    body.acceleration = body.turn.back(jet.acceleration - same<P>(rig.gravity));
+[[gnu::always_inline]] inline void move(const Rig& rig, const Batch& batch, int first_lane, int i,
+                                        const Vec3<P>& gravity, const BodyMotion<P>* parent,
+                                        BodyMotion<P>& body, Quat<P>* rotation) {
+  const Jets<P> jets(batch, first_lane, i);
+  P a[4], b[4], c[4];
+  JointJet<P> jet;
+  jets.load(0, a, b);
+  jet.rotation = Quat<P>(a[3], a[0], a[1], a[2]);
+  if (rotation) *rotation = jet.rotation;
+  body.turn = jet.rotation.toRotationMatrix();
+  jets.load(8, a, c);
+  jet.omega = Vec3<P>(b[0], b[1], b[2]);
+  jet.alpha = Vec3<P>(b[3], a[0], a[1]);
+  turn_body(jet, parent, body);
+  jet.translation = Vec3<P>(a[2], a[3], c[0]);
+  jet.velocity = Vec3<P>(c[1], c[2], c[3]);
+  jets.load(16, b);
+  jet.acceleration = Vec3<P>(b[0], b[1], b[2]);
+  shift_body(jet, gravity, parent, body);
+  load_body<P>(*rig.tree, i, body);
+}
+
+/// Orientation, still from the parent, and origin become those in the world.
+template <class P>
+void place(const Tree<float>& tree, int i, const Scratch<P>& s) {
+  const int p = tree.parent[i];
+  if (p < 0) {
+    s.rotation[i] = s.body[i].turn;
+    s.origin[i] = Vec3<P>::Zero();
   } else {
-    const Vec<P> carried = body.turn.back(parent->omega);
-    body.omega = carried + jet.omega;
-    body.alpha = body.turn.back(parent->alpha) + (jet.alpha + cross(carried, jet.omega));
-    body.acceleration = body.turn.back(
-        parent->acceleration +
-        (jet.acceleration + (cross(parent->alpha, body.arm) +
-                             cross(parent->omega, cross(parent->omega, body.arm) + 2 * jet.velocity))));
-  }
-  const Vec<P> first = same<P>(constants.first);
-  body.force = constants.mass * body.acceleration +
-               (cross(body.alpha, first) + cross(body.omega, cross(body.omega, first)));
-  body.moment =
-      symmetric_times(constants.inertia, body.alpha) +
-      (cross(body.omega, symmetric_times(constants.inertia, body.omega)) + cross(first, body.acceleration));
-}
-
-/// Orientation and origin in the world.
-template <class P>
-void place(const Jet<P>& jet, const Turn<P>& turn, const Placed<P>* parent, Placed<P>& body) {
-  if (!parent) {
-    for (int c = 0; c < 4; ++c) body.rotation[c] = jet.rotation[c];
-    body.world = turn;
-    body.origin = {P::all(0), P::all(0), P::all(0)};
-    return;
-  }
-  multiply(parent->rotation, jet.rotation, body.rotation);
-  body.world = turn_of(body.rotation);
-  body.origin = parent->origin + parent->world * jet.translation;
-}
-
-/// Torques about the joint's degrees of freedom, as JointType orders them.
-template <class P>
-void project(const RigBody& constants, const Body<P>& body, const Lanes& lanes, float* torque) {
-  float* rows = torque + constants.first_dof * lanes.stride + lanes.first;
-  const auto put = [&](int k, const P& t) { store<0, P::kLanes>(t, rows + k * lanes.stride); };
-  const auto axis = [&](int k) { return same<P>(constants.axis[k]); };
-  switch (constants.freedom) {
-    case Freedom::kFixed:
-      break;
-    case Freedom::kRevolute:
-      put(0, dot(axis(0), body.moment));
-      break;
-    case Freedom::kPrismatic:
-      put(0, dot(axis(0), body.force));
-      break;
-    case Freedom::kUniversal:  // the first axis stays with the parent
-      put(0, dot(axis(0), body.turn * body.moment));
-      put(1, dot(axis(1), body.moment));
-      break;
-    case Freedom::kBall:
-      put(0, body.moment.x);
-      put(1, body.moment.y);
-      put(2, body.moment.z);
-      break;
-    case Freedom::kPlanar: {  // all axes stay with the parent
-      const Vec<P> force = body.turn * body.force;
-      put(0, dot(axis(0), force));
-      put(1, dot(axis(1), force));
-      put(2, dot(axis(2), body.turn * body.moment));
-      break;
-    }
-    case Freedom::kFree: {
-      const Vec<P> force = body.turn * body.force, moment = body.turn * body.moment;
-      put(0, force.x);
-      put(1, force.y);
-      put(2, force.z);
-      put(3, moment.x);
-      put(4, moment.y);
-      put(5, moment.z);
-      break;
-    }
+    s.orientation[i] = s.orientation[p] * s.orientation[i];
+    s.rotation[i] = s.orientation[i].toRotationMatrix();
+    s.origin[i] = s.origin[p] + s.rotation[p] * s.body[i].arm;
   }
 }
 
-/// share_support (effects/support.h) per lane: what the ground bears is taken from the bodies' wrenches.
+/// The ground's share goes from the wrenches of the bodies that may stand on it.
 template <class P>
-void share_support(const Rig& rig, const P& root_height, const Scratch<P>& scratch) {
-  const P zero = P::all(0), one = P::all(1), ground = P::all(rig.ground_height) - root_height;
-  Vec<P> total{zero, zero, zero}, tilt = total;
-  for (int i = 0; i < rig.body_count; ++i) {
-    const Body<P>& body = scratch.body[i];
-    const Placed<P>& placed = scratch.placed[i];
-    const Vec<P> force = placed.world * body.force;
-    total = total + force;
-    tilt = tilt + (placed.world * body.moment + cross(placed.origin, force));
+void stand(const Rig& rig, const P& ground, const Scratch<P>& s) {
+  const SupportSettings settings;
+  for (std::size_t i = 0; i < s.body.size(); ++i) {
+    s.force[i] = s.rotation[i] * s.body[i].force;
+    s.moment[i] = s.rotation[i] * s.body[i].moment + s.origin[i].cross(s.force[i]);
   }
-  const auto near = [&](const RigBody& constants, const Placed<P>& body) {
-    return constants.point_count > 0 &&
-           any_negative(body.origin.z - ground - P::all(constants.bound + rig.support_reach));
-  };
-  P sum = zero, y_sum = zero, x_sum = zero, yy = zero, xy = zero, xx = zero;
-  for (int i = 0; i < rig.body_count; ++i) {
-    const RigBody& constants = rig.bodies[i];
-    const Placed<P>& body = scratch.placed[i];
-    if (!near(constants, body)) continue;
-    for (int k = constants.first_point; k < constants.first_point + constants.point_count; ++k) {
-      Vec<P> at = body.origin + body.world * same<P>(rig.points[k].local);
-      at.z = at.z - P::all(rig.points[k].radius);
-      const P up = largest(zero, smallest(one, (1 / rig.support_reach) * (at.z - ground)));
-      const P w = (one - up) * (one - up);
-      scratch.standing[k] = {at, w};
-      sum = sum + w;
-      y_sum = y_sum + w * at.y;
-      x_sum = x_sum + w * at.x;
-      yy = yy + w * at.y * at.y;
-      xy = xy + w * at.x * at.y;
-      xx = xx + w * at.x * at.x;
-    }
-  }
-  if (!any_negative(P::all(1e-3f) - sum)) return;
-  // Weighted least squares of vertical forces w·(1, y, −x)·λ; one point alone can't hold a tilt.
-  const P slack = 1e-6f * (one + (sum + yy + xx));
-  const P a = sum + slack, b = y_sum, c = -x_sum, d = yy + slack, e = -xy, f = xx + slack;
-  const P c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d, c11 = a * f - c * c,
-          c12 = b * c - a * e, c22 = a * d - b * b;
-  const P inverse = one / (a * c00 + b * c01 + c * c02);
-  const P l0 = inverse * (c00 * total.z + c01 * tilt.x + c02 * tilt.y),
-          l1 = inverse * (c01 * total.z + c11 * tilt.x + c12 * tilt.y),
-          l2 = inverse * (c02 * total.z + c12 * tilt.x + c22 * tilt.y);
-  const auto lift = [&](const Standing<P>& s) {
-    return largest(zero, s.share * (l0 + (l1 * s.place.y - l2 * s.place.x)));
-  };
-  // Where a limb leaves the root, seen from a point that it stands on, per metre of height.
-  const auto lean = [&](int body, const Vec<P>& at) {
-    while (body > 0 && rig.bodies[body].parent > 0) body = rig.bodies[body].parent;
-    const Vec<P>& hip = scratch.placed[body].origin;
-    const P height = hip.z - ground, low = height - P::all(rig.support_reach);
-    const P slope = where_negative(-low, one / height, zero);
-    return Vec<P>{slope * (hip.x - at.x), slope * (hip.y - at.y), zero};
-  };
-  P carried = zero, x_mean = zero, y_mean = zero, steepest = zero;
-  for (int i = 0; i < rig.body_count; ++i) {
-    if (!near(rig.bodies[i], scratch.placed[i])) continue;
-    for (int k = 0; k < rig.bodies[i].point_count; ++k) {
-      const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
-      const P up = lift(s);
-      const Vec<P> away = lean(i, s.place);
-      carried = carried + up;
-      x_mean = x_mean + up * away.x;
-      y_mean = y_mean + up * away.y;
-      steepest = where_negative(-up, largest(steepest, away.x * away.x + away.y * away.y), steepest);
-    }
-  }
-  // Lanes that fall, fly or stand on nothing keep their wrenches.
-  P scale = total.z / carried * smallest(one, 5 * sum);
-  for (const P& needed : {total.z, sum - P::all(1e-3f), carried})
-    scale = where_negative(-needed, scale, zero);
-  // Level forces: friction's share, and the lean towards the hips about its mean.
-  const P level = one / largest(total.z, sqrt(total.x * total.x + total.y * total.y));
-  const P follow = smallest(one, P::all(rig.support_lean) / largest(sqrt(steepest), P::all(1e-6f)));
-  const P x_push = level * total.x - follow * (x_mean / carried),
-          y_push = level * total.y - follow * (y_mean / carried);
-  for (int i = 0; i < rig.body_count; ++i) {
-    const Placed<P>& placed = scratch.placed[i];
-    if (!near(rig.bodies[i], placed)) continue;
-    Vec<P> force{zero, zero, zero}, moment = force;
-    for (int k = 0; k < rig.bodies[i].point_count; ++k) {
-      const Standing<P>& s = scratch.standing[rig.bodies[i].first_point + k];
-      const P up = where_equal(scale, 0, zero, scale * lift(s));
-      const Vec<P> away = lean(i, s.place);
-      const Vec<P> push{where_equal(up, 0, zero, up * (x_push + follow * away.x)),
-                        where_equal(up, 0, zero, up * (y_push + follow * away.y)), up};
-      force = force + push;
-      moment = moment + cross(s.place - placed.origin, push);
-    }
-    Body<P>& body = scratch.body[i];
-    body.force = body.force - placed.world.back(force);
-    body.moment = body.moment - placed.world.back(moment);
+  share_support<P>(*rig.support, s.rotation, s.origin, ground, settings, s.standing, s.force, s.moment);
+  for (std::size_t i = 0; i < s.body.size(); ++i) {
+    if (!may_stand<P>(*rig.support, int(i), s.origin[i], ground, float(settings.reach))) continue;
+    s.body[i].force = s.rotation[i].transpose() * s.force[i];
+    s.body[i].moment = s.rotation[i].transpose() * (s.moment[i] - s.origin[i].cross(s.force[i]));
   }
 }
 
 /// Largest load of every lane. A NaN anywhere stays.
 template <class P>
 void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
-  P peak = P::all(0), sum = peak;
-  for (int dof = rig.first_checked_dof; dof < rig.dof_count; ++dof) {
+  const P zero = P(0);
+  P peak = zero, sum = zero;
+  for (int dof = rig.first_checked_dof; dof < rig.tree->dofs; ++dof) {
     const int at = dof * lanes.stride + lanes.first;
     const P torque = P::load(batch.torque + at);
-    const P plus = torque * P::load(batch.inverse_plus + at);
-    const P minus = -torque * P::load(batch.inverse_minus + at);
-    const P load = where_negative(torque, minus, plus);
+    const P load = largest(torque, -torque) *
+                   on_side(torque, P::load(batch.inverse_minus + at), P::load(batch.inverse_plus + at));
     peak = largest(peak, load);
-    sum = sum + load;
+    sum += load;
   }
-  store<0, P::kLanes>(where_equal(sum - sum, 0, peak, sum), batch.peak + lanes.first);
+  store<0, P::kLanes>(select(sum - sum == zero, peak, sum), batch.peak + lanes.first);
 }
 
 template <class P>
-void write_model(const Rig& rig, const Batch& batch, int first_lane, const Vec<P>& root,
-                 const Placed<P>* bodies) {
-  for (int i = 0; i < rig.body_count; ++i) {
-    const Placed<P>& body = bodies[i];
-    const Vec<P> at = root + body.origin;
-    P q[4] = {body.rotation[0], body.rotation[1], body.rotation[2], body.rotation[3]};
-    P x[4] = {at.x, at.y, at.z, P::all(0)};
+void write_model(const Batch& batch, int first_lane, const Vec3<P>& root, const Scratch<P>& s) {
+  for (std::size_t i = 0; i < s.body.size(); ++i) {
+    const Vec3<P> at = root + s.origin[i];
+    const auto& turn = s.orientation[i];
+    P q[4] = {turn.x(), turn.y(), turn.z(), turn.w()};
+    P x[4] = {at.x(), at.y(), at.z(), P(0)};
     transpose(q);
     transpose(x);
     for_each_index<P::kLanes / 4>([&](auto group) {
@@ -301,28 +162,27 @@ void write_model(const Rig& rig, const Batch& batch, int first_lane, const Vec<P
 
 template <class P>
 void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
-  const Scratch<P> scratch(batch.scratch, rig.body_count);
-  const bool placed = rig.ground || batch.model[0];
-  for (int i = 0; i < rig.body_count; ++i) {
-    const int p = rig.bodies[i].parent;
-    const Body<P>* parent = p < 0 ? nullptr : scratch.body + p;
-    const Jet<P> jet(batch, lanes.first, i);
-    move(rig, rig.bodies[i], jet, parent, scratch.body[i]);
-    if (placed) place(jet, scratch.body[i].turn, p < 0 ? nullptr : scratch.placed + p, scratch.placed[i]);
+  const Tree<float>& tree = *rig.tree;
+  const Scratch<P> scratch(batch.scratch, tree.bodies, rig.support ? int(rig.support->points.size()) : 0);
+  const bool placed = rig.support || batch.model[0];
+  const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));
+  for (const int i : tree.by_depth) {
+    const int p = tree.parent[i];
+    move<P>(rig, batch, lanes.first, i, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i],
+            placed ? &scratch.orientation[i] : nullptr);
+    if (placed) place(tree, i, scratch);
   }
-  const Vec<P> root = scratch.body[0].arm;
-  if (rig.ground) share_support(rig, root.z, scratch);
-  for (int i = rig.body_count - 1; i >= 0; --i) {
-    const Body<P>& body = scratch.body[i];
-    project(rig.bodies[i], body, lanes, batch.torque);
-    if (rig.bodies[i].parent < 0) continue;
-    Body<P>& parent = scratch.body[rig.bodies[i].parent];
-    const Vec<P> force = body.turn * body.force;
-    parent.force = parent.force + force;
-    parent.moment = parent.moment + (body.turn * body.moment + cross(body.arm, force));
+  const Vec3<P> root = scratch.body[0].arm;
+  if (rig.support) stand<P>(rig, P(rig.ground_height) - root.z(), scratch);
+  for (int n = tree.bodies - 1; n >= 0; --n) {
+    const int i = tree.by_depth[n];
+    float* rows = batch.torque + tree.first_dof[i] * lanes.stride + lanes.first;
+    project_wrench<P>(tree, i, scratch.body[i],
+                      [&](int k, const P& torque) { store<0, P::kLanes>(torque, rows + k * lanes.stride); });
+    if (const int p = tree.parent[i]; p >= 0) pass_wrench(scratch.body[i], scratch.body[p]);
   }
   compare<P>(rig, batch, lanes);
-  if (batch.model[0]) write_model(rig, batch, lanes.first, root, scratch.placed);
+  if (batch.model[0]) write_model(batch, lanes.first, root, scratch);
 }
 
 /// A batch in as many passes as registers of `kRegister` lanes need.
