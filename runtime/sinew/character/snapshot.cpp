@@ -134,8 +134,10 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   stream.value("span of the joint speeds", s.rate_step);
   visit("joint speed", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate[i], {}); });
   // The next step's guess looks further back only while nothing changes.
-  if (stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0))
+  if (stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0)) {
+    stream.value("span of the joint speeds before", s.rate_step_before);
     visit("joint speed before", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate_before[i], s.rate[i]); });
+  }
   visit("deviation", kDeviates, [&](auto& coder, int i) {
     const JointJet<T>& last = s.target_before[i];
     dofs(coder, i, s.deviation[i].offset,

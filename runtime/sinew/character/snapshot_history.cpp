@@ -87,7 +87,8 @@ void visit_velocities(CharacterState<T>& s, bool known, ByteStream& stream) {
   History<T>& h = s.history;
   const T step = s.rate_step > T(0) ? s.rate_step : T(1);
   const bool second = known && h.scheme == Scheme::kBdf2;
-  const T k1 = second ? T(1.5) : T(1), k2 = second ? T(0.5) : T(0);
+  const T w = second && s.rate_step_before > T(0) ? step / s.rate_step_before : T(1);
+  const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
   {
     ResidualCoder<T> coder("velocity", stream);
     for (int i = 0; i < s.tree.bodies; ++i) {
@@ -130,13 +131,13 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
   const bool known = stream.part("contacts have been the same", s.steps_unchanged > 0);
   if (known) {
     visit_pose_before(s, stream);
-    step_back<T>(s, s.rate_before, s.rate_step, s.wanted, s.guessed);
+    step_back<T>(s, s.rate_before, s.rate_step_before, s.wanted, s.guessed);
   }
   visit_velocities(s, known, stream);
   if (!known) return;
   {
     ResidualCoder<T> coder("velocity before", stream);
-    const T step = s.rate_step > T(0) ? s.rate_step : T(1);
+    const T step = s.rate_step_before > T(0) ? s.rate_step_before : T(1);
     for (int i = 0; i < s.tree.bodies; ++i)
       coder.values(h.velocity_before[i], Vec3<T>((h.center_before[i] - s.guessed.center[i]) / step));
   }
