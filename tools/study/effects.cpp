@@ -37,7 +37,7 @@ constexpr Kind kKinds[] = {
     {"force_field", "checked", "body"},
     {"force_field", "pass", "body"},
     {"gravity", "checked", nullptr},
-    {"support", "checked", "capsule on the floor", "points that would have to pull are left out"},
+    {"support", "checked", "capsule on the floor"},
     {"impulses", "checked", "push"},
     {"muscles", "pass", "degree of freedom"},
     {"joint_limits", "pass", "limit that bears"},
