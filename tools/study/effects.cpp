@@ -37,7 +37,7 @@ constexpr Kind kKinds[] = {
     {"force_field", "checked", "body"},
     {"force_field", "pass", "body"},
     {"gravity", "checked", nullptr},
-    {"support", "checked", "capsule on the floor", "points that would have to pull are left out"},
+    {"support", "checked", "capsule on the floor"},
     {"impulses", "checked", "push"},
     {"muscles", "pass", "degree of freedom"},
     {"joint_limits", "pass", "limit that bears"},
@@ -173,6 +173,7 @@ convert::Error run_effects(const EffectOptions& options, const std::function<voi
   const int total = static_cast<int>(std::size(kKinds));
   for (int n = 0; n < total; ++n) {
     if (progress) progress(n, total);
+    if (!options.mode.empty() && options.mode != kKinds[n].mode) continue;
     if (convert::Error error = measure(options, out.step > 0, kKinds[n], counted, out.costs.emplace_back()))
       return error;
   }

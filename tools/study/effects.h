@@ -37,6 +37,7 @@ struct EffectOptions {
   std::string program;    ///< the counting program
   std::string directory;  ///< for its temporary files
   bool quick = false;     ///< fewer timed steps
+  std::string mode{};     ///< only what is counted in this mode; empty: everything
 };
 
 /// Fits the straight line, relative misfits weighing alike.

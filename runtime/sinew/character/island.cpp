@@ -232,6 +232,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  s.rate_step_before = s.rate_step;
   s.rate_step = h;
   const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
   const std::uint64_t signature = touching(tree), limits = bearing(tree);

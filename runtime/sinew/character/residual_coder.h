@@ -134,4 +134,10 @@ class ResidualCoder {
   std::uint8_t byte_ = 0;
 };
 
+/// What the last member of a unit quaternion is, going by the others, on the side of `like`.
+template <class T>
+T last_of(const Quat<T>& q, const Quat<T>& like) {
+  return std::copysign(std::sqrt(std::max(T(1) - q.vec().squaredNorm(), T(0))), like.w());
+}
+
 }  // namespace sinew

@@ -111,6 +111,7 @@ struct CharacterState {
   std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
   std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
   T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
+  T rate_step_before = T(0);                  ///< s, the same of `rate_before`
   std::vector<Deviation<T>> deviation;        ///< [body]
   std::vector<T> joint_strength;              ///< [body]
   std::vector<T> muscle_strength;             ///< [muscle of the skeleton]

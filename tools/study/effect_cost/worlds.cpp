@@ -94,7 +94,8 @@ struct Solved : Work {
   /// Far enough from each other.
   static Transform<double> place(int i, double height) {
     Transform<double> at;
-    at.translation = {3.0 * (i % 8), 3.0 * (i / 8), height};
+    const int row = i / 8;
+    at.translation = {3.0 * (i % 8), 3.0 * row, height};
     return at;
   }
   void add_limp_wheel() {
