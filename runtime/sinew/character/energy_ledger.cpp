@@ -42,6 +42,11 @@ void slow(CharacterState<T>& s, double factor, bool about_center) {
   s.steps_unchanged = 0;
 }
 
+template <class T>
+bool is_rigid(const CharacterState<T>& s) {
+  return s.tree.dofs == 6 && s.tree.type[0] == JointType::kFree;
+}
+
 /// Takes out what the trees have above their ceiling. True if there was something.
 template <class T>
 bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
@@ -68,8 +73,8 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
       now += total(s->report);
     }
   }
-  const bool rigid = std::all_of(states.begin(), states.end(),
-                                 [](const CharacterState<T>* s) { return s->tree.dofs <= 6; });
+  const bool rigid =
+      std::all_of(states.begin(), states.end(), [](const CharacterState<T>* s) { return is_rigid(*s); });
   const double slack = rigid ? ceiling - now : std::min(ceiling - now, kSlack * kinetic);
   const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
   for (CharacterState<T>* s : states) s->energy_ceiling = total(s->report) + spare;
@@ -90,7 +95,7 @@ bool lossless(const CharacterState<T>& s) {
 /// far as the motion of its limbs against each other can bear the change.
 template <class T>
 void keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity, double before) {
-  if (s.tree.dofs <= 6 || s.tree.type[0] != JointType::kFree) return;
+  if (is_rigid(s) || s.tree.type[0] != JointType::kFree) return;
   const CharacterReport& r = s.report;
   const double now = total(r);
   const double missing =
@@ -140,8 +145,8 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const V
   bool damped = false;
   for (std::size_t n = 0; n < states.size(); ++n) {
     keep_in_flight(*states[n], gravity, before_[n]);
-    const bool rigid = states[n]->tree.dofs <= 6;  // its flight is exact
-    damped = limit<T>(states.subspan(n, 1), gravity, before_[n], false, rigid) || damped;
+    // The flight of what is rigid is exact: it never rises.
+    damped = limit<T>(states.subspan(n, 1), gravity, before_[n], false, is_rigid(*states[n])) || damped;
   }
   return damped;
 }
