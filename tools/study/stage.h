@@ -27,8 +27,8 @@ struct Measurement {
   long passes = 0, chords = 0, factorisations = 0;
   int most_passes = 0, most_factorisations = 0;  ///< of one solve: a step in parts on purpose is so many
   std::array<int, 256> pass_histogram{};         ///< solved steps by passes of a solve (the last: or more)
-  double microseconds = 0;                ///< of all steps together
-  std::string refused;                    ///< reason of the step that the world refused, or empty
+  double microseconds = 0;                       ///< of all steps together
+  std::string refused;                           ///< reason of the step that the world refused, or empty
 
   double mean_passes() const { return solved ? double(passes) / solved : 0; }
   double mean_iterations() const { return solved ? double(passes + chords) / solved : 0; }
