@@ -46,7 +46,9 @@ struct Mask {
 template <class T, int N>
 struct Pack {
   using Scalar = T;
-  using Vector [[gnu::vector_size(N * sizeof(T))]] = T;
+  // Aligned like the narrowest register: Eigen, which lays out floats alike for all instruction sets, asks no
+  // more of memory.
+  using Vector [[gnu::vector_size(N * sizeof(T)), gnu::aligned(16)]] = T;
   static constexpr int kLanes = N;
   Vector v;
 
