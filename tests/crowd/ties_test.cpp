@@ -61,7 +61,7 @@ struct Scene {
   explicit Scene(const WorldSettings& settings) : world(settings) {
     Status status;
     for (int n = 0; n < kFrames * kCharacters; ++n) {
-      targets.push_back(idle<float>(skeleton, n / kCharacters / 60.0 + n % kCharacters));
+      targets.push_back(idle<float>(skeleton, double(n / kCharacters) / 60 + n % kCharacters));
       targets.back()[0].translation.y() += 2.f * float(n % kCharacters);
     }
     for (int n = 0; n < kCharacters; ++n) {

@@ -503,8 +503,6 @@ SnapshotField World<T>::snapshot_field(std::size_t byte) const {
   return field_at(impl_->moving(), byte);
 }
 
-template struct World<float>::Impl;
-template struct World<double>::Impl;
 template class World<float>;
 template class World<double>;
 
