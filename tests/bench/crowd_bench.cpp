@@ -108,8 +108,9 @@ void population_frame(benchmark::State& state, double hits_per_second, int threa
   if (!people) return state.SkipWithError(status.reason);
   const int columns = std::max(1, int(std::sqrt(double(characters))));
   for (int i = 0; i < characters; ++i) {
+    const int row = i / columns, column = i % columns;
     Transform<float> place;
-    place.translation = {2.5f * float(i / columns), 2.5f * float(i % columns), 0};
+    place.translation = {2.5f * float(row), 2.5f * float(column), 0};
     (void)people->play(i, {&clip, 0.013 * i, 1, place});
   }
   JobSystem jobs(threads);

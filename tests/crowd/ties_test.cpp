@@ -61,8 +61,9 @@ struct Scene {
   explicit Scene(const WorldSettings& settings) : world(settings) {
     Status status;
     for (int n = 0; n < kFrames * kCharacters; ++n) {
-      targets.push_back(idle<float>(skeleton, double(n / kCharacters) / 60 + n % kCharacters));
-      targets.back()[0].translation.y() += 2.f * float(n % kCharacters);
+      const int frame = n / kCharacters, character = n % kCharacters;
+      targets.push_back(idle<float>(skeleton, frame / 60.0 + character));
+      targets.back()[0].translation.y() += 2.f * float(character);
     }
     for (int n = 0; n < kCharacters; ++n) {
       EXPECT_EQ(world.add_character(skeleton, {}, status), n) << status.reason;
