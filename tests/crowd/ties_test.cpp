@@ -61,8 +61,8 @@ struct Scene {
   explicit Scene(const WorldSettings& settings) : world(settings) {
     Status status;
     for (int n = 0; n < kFrames * kCharacters; ++n) {
-      const int frame = n / kCharacters, character = n % kCharacters;
-      targets.push_back(idle<float>(skeleton, frame / 60.0 + character));
+      const int time = n / kCharacters, character = n % kCharacters;
+      targets.push_back(idle<float>(skeleton, time / 60.0 + character));
       targets.back()[0].translation.y() += 2.f * float(character);
     }
     for (int n = 0; n < kCharacters; ++n) {
