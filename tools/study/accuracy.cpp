@@ -11,6 +11,7 @@ namespace sinew::study {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;  // s
+constexpr double kLost = 10;         // m off: what flies so far did not survive
 
 /// What is swept beside the step, on our default scheme at 1/60 s.
 std::vector<std::pair<std::string, Accuracy>> settings() {
@@ -104,7 +105,7 @@ class Sweep {
     p.refusal = trip.refusal;
     if (!p.survived) return;
     p.error = apart(scene_, trip.track, reference(option.engine));
-    p.survived = std::isfinite(p.error);
+    p.survived = p.error < kLost;  // false for what is no number, too
     if (!p.survived) return;
     p.degrees = degrees_apart(scene_, trip.track, reference(option.engine));
     p.energy = trip.energy;
