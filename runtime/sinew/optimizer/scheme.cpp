@@ -79,7 +79,9 @@ Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, cons
     return Vec4((Quat<T>(T(0), w.x(), w.y(), w.z()) * q).coeffs());
   };
   const T angle = std::abs(h) * spin(start).norm();
-  const int parts = std::clamp(static_cast<int>(angle / T(0.1)), 0, kMostRotationParts - 1) + 1;
+  constexpr T kPart = T(0.1);
+  const bool countable = angle < kPart * (kMostRotationParts - 1);  // not so where it is no number
+  const int parts = countable ? static_cast<int>(angle / kPart) + 1 : kMostRotationParts;
   const T part = h / T(parts);
   Vec4 q = start.coeffs();
   for (int n = 0; n < parts; ++n) {
