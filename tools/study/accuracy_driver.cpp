@@ -50,8 +50,8 @@ AccuracyScene stiff_driver() {
   s.title = "A driver on stiff springs in a frontal crash";
   s.reading =
       "41 degrees of freedom in joint coordinates, springs up to 120 kN·m/rad, no contact that opens: the "
-      "stiff "
-      "driver of the reference family. Integrators choose their steps; points are tolerances. Error is the "
+      "stiff driver of the reference family. Integrators choose their steps; points are tolerances. Error is "
+      "the "
       "largest of all coordinates and instants, in rad or m over one plus the value, from a run at 1e-12 and "
       "beyond. Ours integrates residuals; SUNDIALS and Odeint integrate our accelerations, Simbody its own. "
       "Explicit ones are held back by stability, not by accuracy: that is what stiff means.";

@@ -19,8 +19,9 @@ AccuracyScene tumbling_body() {
   s.title = "A tumbling box in the air";
   s.reading =
       "No contact, no joint: only the rotation is integrated. Lines fall with their order: twice the time "
-      "buys half "
-      "the error of a first-order scheme and a quarter of a second-order one.";
+      "buys half the error of a first-order scheme and a quarter of a second-order one. Our bdf2 moves a "
+      "rigid "
+      "body exactly; its line is what its start leaves.";
   s.scene.ground = false;
   s.scene.gravity.setZero();
   Figure body = resting(free_body(1, box_inertia(1, {0.1, 0.2, 0.3})));

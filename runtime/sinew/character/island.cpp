@@ -517,10 +517,10 @@ int IslandStepper<T>::parts_of(T h) const {
 /// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
 template <class T>
 bool IslandStepper<T>::starts() const {
-  return world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive() &&
-         std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-           return s->history.step_before == T(0) && s->contact_signature == 0;
-         });
+  const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
+    return s->history.step_before == T(0) && s->contact_signature == 0;
+  });
+  return fresh && world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive();
 }
 
 /// The first part of a step from a reset, up to the fraction `end`: in parts that double, because two of them
@@ -561,9 +561,9 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const int parts = parts_of(h);
   const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
-  int first = 0;
-  if (fine && starts()) start(T(1) / T(parts), splits), first = 1;
-  for (int n = first; n < parts; ++n)
+  const bool begins = fine && starts();
+  if (begins) start(T(1) / T(parts), splits);
+  for (int n = begins ? 1 : 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
     CharacterReport& r = s->report;

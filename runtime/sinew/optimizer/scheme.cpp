@@ -65,6 +65,25 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
   return false;
 }
 
+template <class T>
+Mat3<T> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
+  const Mat3<T>& r = history.rotation[i];
+  return r * tree.inertia[i] * r.transpose();
+}
+
+/// Of the whole tree, were its joints locked, about its centre of mass (m, from the history's place); world
+/// axes.
+template <class T>
+Mat3<T> locked_inertia(const Tree<T>& tree, const History<T>& history, const Vec3<T>& center) {
+  Mat3<T> sum = Mat3<T>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> arm = history.center[i] - center;
+    sum += world_inertia(tree, history, i) +
+           tree.mass[i] * (arm.squaredNorm() * Mat3<T>::Identity() - arm * arm.transpose());
+  }
+  return sum;
+}
+
 /// Where a free body that is at `start` with the angular momentum L (world) is after h seconds, which may be
 /// negative: q̇ = ½ωq, ω = R I⁻¹ Rᵀ L, by Runge and Kutta's fourth order in parts of a tenth of a radian.
 template <class T>
@@ -150,16 +169,11 @@ void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Pr
   }
   center /= mass, velocity /= mass, predicted /= mass;
   const Mat3<T>& r0 = history.rotation[0];
-  Mat3<T> inertia = Mat3<T>::Zero();  // world axes
   Vec3<T> momentum = Vec3<T>::Zero();
-  for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> arm = history.center[i] - center;
-    const Mat3<T>& r = history.rotation[i];
-    inertia += r * tree.inertia[i] * r.transpose() +
-               tree.mass[i] * (arm.squaredNorm() * Mat3<T>::Identity() - arm * arm.transpose());
-    momentum += history.momentum[i] + tree.mass[i] * arm.cross(history.velocity[i] - velocity);
-  }
-  inertia = r0.transpose() * inertia * r0;
+  for (int i = 0; i < tree.bodies; ++i)
+    momentum += history.momentum[i] +
+                tree.mass[i] * (history.center[i] - center).cross(history.velocity[i] - velocity);
+  const Mat3<T> inertia = r0.transpose() * locked_inertia(tree, history, center) * r0;
   // A rod has no inertia about itself, and nothing to keep there.
   const T thin = 100 * std::numeric_limits<T>::epsilon() * inertia.trace();
   const Mat3<T> inverse = (inertia + thin * Mat3<T>::Identity()).inverse();
@@ -275,16 +289,6 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   return sum;
 }
 
-namespace {
-
-template <class T>
-Mat3<double> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
-  const Mat3<double> r = history.rotation[i].template cast<double>();
-  return r * tree.inertia[i].template cast<double>() * r.transpose();
-}
-
-}  // namespace
-
 template <class T>
 RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const Totals& totals) {
   RigidMotion rigid;
@@ -295,12 +299,8 @@ RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const T
   }
   rigid.center /= mass;
   rigid.velocity = totals.momentum / mass;
-  Mat3<double> locked = Mat3<double>::Zero();
-  for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<double> arm = history.center[i].template cast<double>() - rigid.center;
-    locked += world_inertia(tree, history, i) -
-              double(tree.mass[i]) * (arm * arm.transpose() - arm.squaredNorm() * Mat3<double>::Identity());
-  }
+  const Mat3<double> locked =
+      locked_inertia<T>(tree, history, rigid.center.template cast<T>()).template cast<double>();
   rigid.spin = locked.ldlt().solve(totals.angular_momentum);
   rigid.relative_energy = totals.kinetic_energy - 0.5 * totals.momentum.squaredNorm() / mass -
                           0.5 * totals.angular_momentum.dot(rigid.spin);
@@ -314,7 +314,7 @@ void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, His
   for (int i = 0; i < tree.bodies; ++i) {
     const Vec3<T> shared = velocity + spin.cross(history.center[i] - center);
     const Vec3<T> faster = (factor - 1) * (history.velocity[i] - shared);
-    const Vec3<T> carried = world_inertia(tree, history, i).template cast<T>() * spin;
+    const Vec3<T> carried = world_inertia(tree, history, i) * spin;
     const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - carried);
     history.velocity[i] += faster;
     history.velocity_before[i] += faster;
