@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sinew/skeleton/transform.h"
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 
@@ -31,8 +31,8 @@ template <class T>
 struct JointRow {
   RowKind kind = RowKind::kKink;
   RowScalar scalar = RowScalar::kFromTarget;
-  int component = 0;  ///< of the offset: which of a ball's or free joint's three rotations, if any
-  T sign = T(1);      ///< −1: the row's scalar is a lower bound minus the joint's
+  int component = 0;   ///< of the offset: which of a ball's or free joint's three rotations, if any
+  Number<T> sign = 1;  ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
   int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
   int count = 1;                ///< how many
@@ -42,43 +42,50 @@ struct JointRow {
   T width = T(1e-5);            ///< kink: rounding
   T stiffness = T(0);           ///< spring and one-sided
 
-  T energy(T s) const {
+  T energy(const T& s) const {
+    using std::abs;
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return T(0.5) * stiffness * s * s;
       case RowKind::kOneSided:
-        return s > T(0) ? T(0.5) * stiffness * s * s : T(0);
+        return select(s > zero, T(T(0.5) * stiffness * s * s), zero);
       case RowKind::kKink:
         break;
     }
-    const T slope = s > T(0) ? minus : plus;
-    const T a = std::abs(s);
-    return a < width ? slope * a * a / (2 * width) : slope * (a - width / 2);
+    const T limit = select(s > zero, minus, plus);
+    const T a = abs(s);
+    return choose(
+        a < width, [&] { return T(limit * a * a / (2 * width)); },
+        [&] { return T(limit * (a - width / 2)); });
   }
-  T slope(T s) const {
+  T slope(const T& s) const {
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return stiffness * s;
       case RowKind::kOneSided:
-        return s > T(0) ? stiffness * s : T(0);
+        return select(s > zero, T(stiffness * s), zero);
       case RowKind::kKink:
         break;
     }
-    const T limit = s > T(0) ? minus : plus;
-    if (s >= width) return limit;
-    if (s <= -width) return -limit;
-    return limit * s / width;
+    const T limit = select(s > zero, minus, plus);
+    const auto beyond = [&] { return select(s >= width, limit, T(-limit)); };
+    return choose(either(s >= width, s <= -width), beyond, [&] { return T(limit * s / width); });
   }
-  T curvature(T s) const {
+  T curvature(const T& s) const {
+    using std::abs;
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return stiffness;
       case RowKind::kOneSided:
-        return s > T(0) ? stiffness : T(0);
+        return select(s > zero, stiffness, zero);
       case RowKind::kKink:
         break;
     }
-    return std::abs(s) < width ? (s > T(0) ? minus : plus) / width : T(0);
+    return choose(
+        abs(s) < width, [&] { return T(select(s > zero, minus, plus) / width); }, [&] { return zero; });
   }
 };
 
