@@ -49,7 +49,7 @@ struct Scene {
   void step(const ParallelFor& parallel_for) {
     ++frame;
     for (int n = 0; n < 12; ++n) aim(n);
-    if (frame % 10 == 3) {
+    if (frame % 5 == 3) {
       Character<float> c = world.character(frame % 12);
       EXPECT_TRUE(c.apply_impulse(4, c.model()[4].translation, {20, 5, 0}).ok());
     }

@@ -152,10 +152,10 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
 void read_accuracy(const json& value, Scene& s) {
   MeasuredAccuracy preset;
   const json named = value.is_string() ? json{{"preset", value}} : value;
-  const Reader a(
-      named, "accuracy",
-      {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
-       "sink_depth", "stick_speed", "limit_stiffness", "return_time", "precision", "estimate_error"});
+  const Reader a(named, "accuracy",
+                 {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
+                  "sink_depth", "contact_damping", "stick_speed", "limit_stiffness", "return_time",
+                  "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
     set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);
@@ -174,6 +174,7 @@ void read_accuracy(const json& value, Scene& s) {
   s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
   s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1, 1000);
   s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
+  s.world.accuracy.contact_damping = a.time("contact_damping", s.world.accuracy.contact_damping);
   s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
   s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
   s.world.accuracy.estimate_error = a.flag("estimate_error", false);

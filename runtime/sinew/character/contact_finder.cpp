@@ -69,6 +69,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
     lead_out(c);
   }
   c.start_gap = c.gap;
+  if (c.offset <= T(kLeftInside)) c.damp(damping_time_, h_);
   contacts_.push_back(c);
 }
 
@@ -93,11 +94,13 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.lagged_normal_force = found->force;
   c.offset = found->offset;
   if (c.offset > T(kLeftInside)) c.offset = std::max(c.offset - T(kExitSpeed) * h_, T(kLeftInside));
-  if (found->stiffness < c.stiffness)
-    c.offset += ContactLaw<T>::depth(found->stiffness, found->force) -
-                ContactLaw<T>::depth(c.stiffness, found->force);
-  c.stiffness = std::max(c.stiffness, found->stiffness);
   c.gap += c.offset;
+  if (found->stiffness < c.stiffness && c.gap < T(0)) {
+    const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
+    c.offset += gap - c.gap;
+    c.gap = gap;
+  }
+  c.stiffness = std::max(c.stiffness, found->stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
@@ -238,6 +241,9 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   apart_ = surroundings.apart;
   common_origin_ = common_origin;
   h_ = h;
+  // Of an oscillator that sinks as deep under its weight, whatever the weight.
+  damping_time_ = T(2 * world.accuracy.contact_damping *
+                    std::sqrt(world.accuracy.sink_depth / std::max(1.0, world.gravity.norm())));
   heaviest_ = T(0);
   most_ = 0;
   for (const CharacterState<T>* s : states) {

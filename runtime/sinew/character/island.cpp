@@ -252,7 +252,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
-    if (c.tree_a == tree) r.elastic_energy += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+    if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
   }
   for (const JointRow<T>& row : p.rows)
@@ -386,9 +386,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
-    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
-    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
-    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+    const bool inside = c.gap < T(0) || (c.gap == T(0) && c.offset > T(0));  // 0: unloaded by a bounce
+    if (inside) lagged_.push_back({c.id, normal_force(c), c.stiffness, c.offset});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
@@ -422,7 +421,7 @@ double IslandStepper<T>::pose_energy() const {
     for (const JointRow<T>& row : s->problem.rows)
       if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
   }
-  for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
   for (const Coupling<T>* c : couplings_) sum += c->energy;
   return sum;
 }
