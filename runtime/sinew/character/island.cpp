@@ -256,7 +256,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     r.penetration = std::max(r.penetration, double(-c.gap));
   }
   for (const JointRow<T>& row : p.rows)
-    if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+    if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
@@ -419,7 +419,7 @@ double IslandStepper<T>::pose_energy() const {
       sum -= double(s->tree.mass[i]) * gravity.dot(center);
     }
     for (const JointRow<T>& row : s->problem.rows)
-      if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
+      if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
   }
   for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
   for (const Coupling<T>* c : couplings_) sum += c->energy;
@@ -551,6 +551,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   free_share_.assign(states.size(), T(1));
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  settings_.limit_damping = T(world.accuracy.limit_damping);
   total_ = {};
   all_converged_ = true;
   splits_ = parts_ = damped_ = held_ = 0;

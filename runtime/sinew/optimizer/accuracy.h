@@ -23,9 +23,10 @@ struct Accuracy {
   double max_rotation = 0;        ///< rad; more substeps where a body would turn further in one. 0: never
   int max_splits = 3;             ///< an unconverged step is halved, and its halves, so often
   double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)
-  double contact_damping = 1;     ///< of surfaces; 1 is critical for the character's weight on one point
+  double contact_damping = 0.5;   ///< of surfaces; 1 is critical for the character's weight on one point
   double stick_speed = 0.005;     ///< slip speed below which friction sticks (m/s)
   double limit_stiffness = 2000;  ///< joint limits, N·m/rad
+  double limit_damping = 0.02;    ///< joint limits: s; their torque is that of the angle so much later
   double return_time = 0.1;       ///< time constant of the way back to the animation (s)
   bool estimate_error =
       false;  ///< fill CharacterReport::estimated_error (error_estimate.h says what it costs)
