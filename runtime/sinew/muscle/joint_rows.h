@@ -4,6 +4,7 @@
 // step's start, or beyond a limit). Within the inner convex problem s is linear in the joint's unknowns.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace sinew {
 enum class RowKind : std::uint8_t {
   kKink,  ///< |s| times the limit of its side, rounded over `width`: a muscle at its target, or dry friction
   kSpring,    ///< ½ k s²: damping over the step
-  kOneSided,  ///< ½ k max(s, 0)²: joint limit
+  kOneSided,  ///< ½ k max(s, 0)²: joint limit, damped as a contact is (see JointRow::damp)
 };
 
 /// Which scalar of its joint a row is a function of.
@@ -34,13 +35,23 @@ struct JointRow {
   int component = 0;   ///< of the offset: which of a ball's or free joint's three rotations, if any
   Number<T> sign = 1;  ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
-  int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
-  int count = 1;                ///< how many
-  std::array<T, 3> gradient{};  ///< ds/dd
-  T value = T(0);               ///< s at the chart centre
-  T minus = T(0), plus = T(0);  ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
-  T width = T(1e-5);            ///< kink: rounding
-  T stiffness = T(0);           ///< spring and one-sided
+  int dof = 0;                   ///< first degree of freedom that `gradient` refers to, within its tree
+  int count = 1;                 ///< how many
+  std::array<T, 3> gradient{};   ///< ds/dd
+  T value = T(0);                ///< s at the chart centre
+  T minus = T(0), plus = T(0);   ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
+  T width = T(1e-5);             ///< kink: rounding
+  T stiffness = T(0);            ///< spring and one-sided
+  T stretch = T(1), lag = T(0);  ///< one-sided: what bears is stretch·s − lag
+
+  /// One-sided: the force is that of where s will be a damping time (s) later, and never a pull. `start` is s
+  /// when the step of h seconds began.
+  void damp(T damping_time, T h, T start) {
+    stretch = T(1) + damping_time / h;
+    lag = damping_time / h * largest(start, T(0));
+  }
+  /// What a one-sided row stores at s; its energy(s) is the potential of the step, damping included.
+  T stored_energy(T s) const { return s > T(0) ? T(0.5) * stiffness * s * s : T(0); }
 
   T energy(const T& s) const {
     using std::abs;
@@ -49,7 +60,7 @@ struct JointRow {
       case RowKind::kSpring:
         return T(0.5) * stiffness * s * s;
       case RowKind::kOneSided:
-        return select(s > zero, T(T(0.5) * stiffness * s * s), zero);
+        return select(beyond(s) > zero, T(T(0.5) * stiffness * beyond(s) * beyond(s) / stretch), zero);
       case RowKind::kKink:
         break;
     }
@@ -65,13 +76,13 @@ struct JointRow {
       case RowKind::kSpring:
         return stiffness * s;
       case RowKind::kOneSided:
-        return select(s > zero, T(stiffness * s), zero);
+        return select(beyond(s) > zero, T(stiffness * beyond(s)), zero);
       case RowKind::kKink:
         break;
     }
     const T limit = select(s > zero, minus, plus);
-    const auto beyond = [&] { return select(s >= width, limit, T(-limit)); };
-    return choose(either(s >= width, s <= -width), beyond, [&] { return T(limit * s / width); });
+    const auto saturated = [&] { return select(s >= width, limit, T(-limit)); };
+    return choose(either(s >= width, s <= -width), saturated, [&] { return T(limit * s / width); });
   }
   T curvature(const T& s) const {
     using std::abs;
@@ -80,13 +91,16 @@ struct JointRow {
       case RowKind::kSpring:
         return stiffness;
       case RowKind::kOneSided:
-        return select(s > zero, stiffness, zero);
+        return select(beyond(s) > zero, T(stiffness * stretch), zero);
       case RowKind::kKink:
         break;
     }
     return choose(
         abs(s) < width, [&] { return T(select(s > zero, minus, plus) / width); }, [&] { return zero; });
   }
+
+ private:
+  T beyond(T s) const { return stretch * s - lag; }
 };
 
 }  // namespace sinew

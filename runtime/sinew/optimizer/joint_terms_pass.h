@@ -30,18 +30,27 @@ void set_gradient(const JointOffset<T>& offset, int rotational_first, int k, int
   }
 }
 
-/// One row per side that is there. `above`, `below`: how far the scalar is beyond each.
-template <class T, class Problem, class Present>
-void add_limits(const StepSettings<Number<T>>& settings, const T& above, const Present& has_upper,
-                const T& below, const Present& has_lower, JointRow<T> row, Problem& p) {
+/// Rows of a scalar between two bounds, of which each may be there or not. `at_start` tells the scalar when the
+/// step began, and is asked only where the bound is near.
+template <class T, class Problem, class Present, class AtStart>
+void add_limits(const StepSettings<Number<T>>& settings, const T& scalar, Number<T> lower,
+                const Present& has_lower, Number<T> upper, const Present& has_upper, const AtStart& at_start,
+                JointRow<T> row, Problem& p) {
+  constexpr auto near = Number<T>(0.05);  // rad or m
   row.kind = RowKind::kOneSided;
   row.stiffness = settings.limit_stiffness;
-  row.value = above;
-  p.add_row(row, has_upper);
-  row.value = below;
+  const auto add = [&](Number<T> sign, Number<T> bound, const Present& present) {
+    if (!any(present)) return;
+    row.value = T(sign) * (scalar - T(bound));
+    const auto begun = [&] { return T(T(sign) * (at_start() - T(bound))); };
+    const T start = choose(row.value > T(-near), begun, [] { return T(0); });
+    row.damp(T(settings.limit_damping), T(settings.h), start);
+    p.add_row(row, present);
+  };
+  add(1, upper, has_upper);
   row.sign = -row.sign;
   for (T& g : row.gradient) g = -g;
-  p.add_row(row, has_lower);
+  add(-1, lower, has_lower);
 }
 
 template <class T, class Problem>
@@ -68,6 +77,9 @@ void add_cone(const StepSettings<Number<T>>& settings, int i, Problem& p) {
   const Vec3<T> b = relative * a;
   const Vec3<T> across = a.cross(b);
   const T sine = across.norm(), cosine = a.dot(b);
+  const auto start = [&] {
+    return Quat<T>(tree.rest[i].rotation.conjugate().template cast<T>() * p.start[i].rotation);
+  };
   JointRow<T> row;
   row.dof = tree.first_dof[i];
   row.count = 3;
@@ -82,10 +94,13 @@ void add_cone(const StepSettings<Number<T>>& settings, int i, Problem& p) {
   if (limit - near < Number<T>(3.14159265)) {
     const auto bent = both(sine > T(1e-6), cosine < T(std::cos(std::max(limit - near, Number<T>(0)))));
     if (any(bent)) {
-      const T swing = atan2(sine, cosine);
       row.scalar = RowScalar::kSwing;
       set(across / sine);
-      add_limits<T>(settings, swing - limit, bent, T(0), none, row, p);
+      const auto swing_at_start = [&] {
+        const Vec3<T> bone = start() * a;
+        return T(atan2(T(a.cross(bone).norm()), T(a.dot(bone))));
+      };
+      add_limits<T>(settings, T(atan2(sine, cosine)), 0, none, limit, bent, swing_at_start, row, p);
     }
   }
   const T toward = T(1) + a.dot(b);
@@ -93,8 +108,11 @@ void add_cone(const StepSettings<Number<T>>& settings, int i, Problem& p) {
     const T twist = twist_angle<T>(relative, a);
     row.scalar = RowScalar::kTwist;
     set((a + b) / toward);
-    const T above = twist - p.law.twist_upper[i], below = p.law.twist_lower[i] - twist;
-    add_limits<T>(settings, above, both(open, above > T(-near)), below, both(open, below > T(-near)), row, p);
+    const Number<T> lower = p.law.twist_lower[i], upper = p.law.twist_upper[i];
+    const auto low = lower > -kUnlimited ? both(open, twist < T(lower + near)) : none;
+    const auto high = upper < kUnlimited ? both(open, twist > T(upper - near)) : none;
+    const auto twist_at_start = [&] { return twist_angle<T>(start(), a); };
+    add_limits<T>(settings, twist, lower, low, upper, high, twist_at_start, row, p);
   }
 }
 
@@ -183,9 +201,11 @@ void measure_rows(const StepSettings<Number<T>>& settings, Problem& p) {
       if (boxed && (has_lower || has_upper)) {
         row.scalar = RowScalar::kFromRest;
         set_gradient(from_rest, rotational, k, first, row);
-        const T q = from_rest.value[k];
-        add_limits<T>(settings, q - p.law.upper[dof], has_upper ? always : !always, p.law.lower[dof] - q,
-                      has_lower ? always : !always, row, p);
+        const auto at_start = [&] {
+          return offset_value_of<T>(tree, i, tree.rest[i].template cast<T>(), p.start[i])[k];
+        };
+        add_limits<T>(settings, from_rest.value[k], p.law.lower[dof], has_lower ? always : !always,
+                      p.law.upper[dof], has_upper ? always : !always, at_start, row, p);
       }
     }
     if (coned) add_cone<T>(settings, i, p);
