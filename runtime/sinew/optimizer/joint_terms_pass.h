@@ -30,8 +30,8 @@ void set_gradient(const JointOffset<T>& offset, int rotational_first, int k, int
   }
 }
 
-/// Rows of a scalar between two bounds, of which each may be there or not. `at_start` tells the scalar when the
-/// step began, and is asked only where the bound is near.
+/// Rows of a scalar between two bounds, of which each may be there or not. `at_start` tells the scalar when
+/// the step began, and is asked only where the bound is near.
 template <class T, class Problem, class Present, class AtStart>
 void add_limits(const StepSettings<Number<T>>& settings, const T& scalar, Number<T> lower,
                 const Present& has_lower, Number<T> upper, const Present& has_upper, const AtStart& at_start,
