@@ -86,6 +86,7 @@ void BatchNewton::solve(const StepSettings<float>& settings, const Accuracy& acc
   void* memory = memory_.data();
   std::size_t space = memory_.size();
   batch.scratch = std::align(kAlignment, 1, memory, space);
+  batch.add_row = [](TreeProblem<float>& to, const JointRow<float>& row) { to.add_row(row, true); };
   batch.reports = lane_reports.data();
   kernel(set_).solve(batch);
   std::copy_n(lane_reports.begin(), problems.size(), reports.begin());

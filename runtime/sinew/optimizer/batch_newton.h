@@ -32,8 +32,8 @@ class BatchNewton {
   static bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy);
 
   /// Solves up to lanes() problems of one tree, each with at least one unknown, from their `local`. Where a
-  /// report says converged, `local` is the solution, and everything else of the problem as it was: evaluate
-  /// it there. The others are as before: they need a solve of their own.
+  /// report says converged, the problem holds the solution and its kinematics, gradient, couples and rows;
+  /// the others are as before: they need a solve of their own.
   void solve(const StepSettings<float>& settings, const Accuracy& accuracy,
              std::span<TreeProblem<float>* const> problems, std::span<SolveReport> reports);
 

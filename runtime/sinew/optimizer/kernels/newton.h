@@ -28,7 +28,9 @@ struct Batch {
   TreeProblem<float>* problems[kMaxLanes] = {};  ///< [lane] null: none
   const Unknowns* unknowns = nullptr;  ///< of the tree, all that are free in some lane; rows not padded
   Shape shape;
-  void* scratch = nullptr;         ///< scratch_bytes(), aligned to 64
+  void* scratch = nullptr;  ///< scratch_bytes(), aligned to 64
+  /// Appends to a problem's rows; code that others share, not a kernel's.
+  void (*add_row)(TreeProblem<float>& to, const JointRow<float>& row) = nullptr;
   SolveReport* reports = nullptr;  ///< [lane]; `converged` only where the lane's `local` is the solution
 };
 

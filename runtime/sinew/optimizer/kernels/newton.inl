@@ -47,7 +47,7 @@ class PackNewton {
       if (!batch.problems[lane]) continue;
       reports_[lane].converged = converged.lane(lane);
       reports_[lane].energy = energy_.v[lane];
-      if (converged.lane(lane)) write_back(lane, *batch.problems[lane]);
+      if (converged.lane(lane)) write_back(batch, lane);
     }
   }
 
@@ -139,13 +139,25 @@ class PackNewton {
     return converged;
   }
 
-  void write_back(int lane, TreeProblem<float>& to) {
-    for (int i = 0; i < problem_.tree->bodies; ++i) {
-      for (int c = 0; c < 4; ++c)
-        to.local[i].rotation.coeffs()[c] = lane_of(problem_.local[i].rotation.coeffs()[c], lane);
-      for (int c = 0; c < 3; ++c)
-        to.local[i].translation[c] = lane_of(problem_.local[i].translation[c], lane);
+  /// The solution, and what an evaluation there leaves that is asked for after a solve.
+  void write_back(const Batch& batch, int lane) {
+    TreeProblem<float>& to = *batch.problems[lane];
+    PackProblem<P>& p = problem_;
+    for (int i = 0; i < p.tree->bodies; ++i) {
+      get(p.local[i], lane, to.local[i]);
+      get(p.kinematics.rotation[i], lane, to.kinematics.rotation[i]);
+      get(p.kinematics.origin[i], lane, to.kinematics.origin[i]);
+      get(p.kinematics.center[i], lane, to.kinematics.center[i]);
+      get(p.couple[i], lane, to.couple[i]);
     }
+    for (int dof = 0; dof < p.tree->dofs; ++dof) {
+      get(p.kinematics.w[dof], lane, to.kinematics.w[dof]);
+      get(p.kinematics.v[dof], lane, to.kinematics.v[dof]);
+      to.gradient[dof] = lane_of(p.gradient[dof], lane);
+    }
+    to.clear_rows();
+    for (PackRow<P>& row : p.rows)
+      if (row.present.lane(lane)) batch.add_row(to, row_of(row, lane));
   }
 
   const StepSettings<float>* settings_ = nullptr;

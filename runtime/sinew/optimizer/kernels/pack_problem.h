@@ -43,6 +43,36 @@ void put(const Transform<float>& from, int lane, Transform<P>& to) {
   put(from.translation, lane, to.translation);
 }
 
+template <class P, int R, int C>
+void get(Eigen::Matrix<P, R, C>& from, int lane, Eigen::Matrix<float, R, C>& to) {
+  for (int i = 0; i < R * C; ++i) to(i) = lane_of(from(i), lane);
+}
+template <class P>
+void get(Transform<P>& from, int lane, Transform<float>& to) {
+  for (int i = 0; i < 4; ++i) to.rotation.coeffs()[i] = lane_of(from.rotation.coeffs()[i], lane);
+  get(from.translation, lane, to.translation);
+}
+template <class P>
+JointRow<float> row_of(JointRow<P>& row, int lane) {
+  JointRow<float> one;
+  one.kind = row.kind;
+  one.scalar = row.scalar;
+  one.component = row.component;
+  one.sign = row.sign;
+  one.muscle = row.muscle;
+  one.dof = row.dof;
+  one.count = row.count;
+  for (int a = 0; a < row.count; ++a) one.gradient[a] = lane_of(row.gradient[a], lane);
+  one.value = lane_of(row.value, lane);
+  one.minus = lane_of(row.minus, lane);
+  one.plus = lane_of(row.plus, lane);
+  one.width = lane_of(row.width, lane);
+  one.stiffness = lane_of(row.stiffness, lane);
+  one.stretch = lane_of(row.stretch, lane);
+  one.lag = lane_of(row.lag, lane);
+  return one;
+}
+
 template <class P>
 using MaskOf = decltype(P() < P());
 
