@@ -1,30 +1,28 @@
 #include "sinew/effects/joint_limit.h"
 
 #include <cmath>
-#include <limits>
 
 namespace sinew {
 namespace {
 
-/// Of a limit that isn't there, or too far away to bear within a step.
-template <class T>
-constexpr T kFar = -std::numeric_limits<T>::infinity();
-
-/// A row for each side that is less than infinitely far from being passed; `row` is of the upper one.
-template <class T>
-void append_sides(T stiffness, T above, T below, JointRow<T> row, std::vector<JointRow<T>>& rows) {
+/// Rows of a scalar between two bounds; none for a bound that is not there. `at_start` tells the scalar when
+/// the step began, and is asked only where the bound is near.
+template <class T, class AtStart>
+void append_bounds(const JointStep<T>& joint, T scalar, T lower, T upper, AtStart at_start, JointRow<T> row,
+                   std::vector<JointRow<T>>& rows) {
+  constexpr T near = T(0.05);  // rad or m
   row.kind = RowKind::kOneSided;
-  row.stiffness = stiffness;
-  if (above > kFar<T>) {
-    row.value = above;
+  row.stiffness = joint.limit_stiffness;
+  const auto append = [&](T sign, T bound) {
+    row.value = sign * (scalar - bound);
+    row.damp(joint.limit_damping, joint.h, row.value > -near ? sign * (at_start() - bound) : T(0));
     rows.push_back(row);
-  }
-  if (below > kFar<T>) {
-    row.value = below;
-    row.sign = -row.sign;
-    for (T& g : row.gradient) g = -g;
-    rows.push_back(row);
-  }
+  };
+  if (upper < joint.law.kUnlimited) append(T(1), upper);
+  if (lower <= -joint.law.kUnlimited) return;
+  row.sign = -row.sign;
+  for (T& g : row.gradient) g = -g;
+  append(T(-1), lower);
 }
 
 }  // namespace
@@ -38,9 +36,11 @@ void JointLimitRows<T>::append(const JointStep<T>& joint, int k, std::vector<Joi
   const int dof = joint.first_dof() + k;
   const T lower = joint.law.lower[dof], upper = joint.law.upper[dof], most = joint.law.kUnlimited;
   if (!(lower > -most || upper < most)) return;
-  const T q = from_rest_.value[k];
-  append_sides<T>(joint.limit_stiffness, upper < most ? q - upper : kFar<T>,
-                  lower > -most ? lower - q : kFar<T>, joint.row(from_rest_, RowScalar::kFromRest, k), rows);
+  const Transform<T>& rest = joint.tree.rest[joint.body];
+  append_bounds<T>(
+      joint, from_rest_.value[k], lower, upper,
+      [&] { return joint_offset_value<T>(joint.tree, joint.body, rest, joint.start)[k]; },
+      joint.row(from_rest_, RowScalar::kFromRest, k), rows);
 }
 
 template <class T>
@@ -52,6 +52,7 @@ void append_cone(const JointStep<T>& joint, std::vector<JointRow<T>>& rows) {
   const Vec3<T> b = relative * a;
   const Vec3<T> across = a.cross(b);
   const T sine = across.norm(), cosine = a.dot(b);
+  const auto start = [&] { return Quat<T>(joint.tree.rest[i].rotation.conjugate() * joint.start.rotation); };
   JointRow<T> row;
   row.dof = joint.first_dof();
   row.count = 3;
@@ -63,18 +64,22 @@ void append_cone(const JointStep<T>& joint, std::vector<JointRow<T>>& rows) {
   constexpr T near = T(0.5);
   const T limit = law.swing_limit[i];
   if (sine > T(1e-6) && limit - near < T(3.14159265) && cosine < std::cos(std::max(limit - near, T(0)))) {
-    const T swing = std::atan2(sine, cosine);
     row.scalar = RowScalar::kSwing;
     set(across / sine);
-    append_sides<T>(joint.limit_stiffness, swing - limit, kFar<T>, row, rows);
+    const auto swing_at_start = [&] {
+      const Vec3<T> bone = start() * a;
+      return std::atan2(a.cross(bone).norm(), a.dot(bone));
+    };
+    append_bounds<T>(joint, std::atan2(sine, cosine), -law.kUnlimited, limit, swing_at_start, row, rows);
   }
   if (const T toward = T(1) + a.dot(b); toward > T(0.05)) {
     const T twist = twist_angle<T>(relative, a);
     row.scalar = RowScalar::kTwist;
     set((a + b) / toward);
-    const T above = twist - law.twist_upper[i], below = law.twist_lower[i] - twist;
-    append_sides<T>(joint.limit_stiffness, above > -near ? above : kFar<T>, below > -near ? below : kFar<T>,
-                    row, rows);
+    const T lower = law.twist_lower[i], upper = law.twist_upper[i];
+    append_bounds<T>(
+        joint, twist, twist < lower + near ? lower : -law.kUnlimited,
+        twist > upper - near ? upper : law.kUnlimited, [&] { return twist_angle<T>(start(), a); }, row, rows);
   }
 }
 

@@ -1,5 +1,5 @@
 // Limits of joints: ranges of single degrees of freedom from the rest pose, or a ball joint's swing cone and
-// twist range. One-sided springs of Accuracy::limit_stiffness.
+// twist range. One-sided springs of Accuracy::limit_stiffness, damped as contacts are.
 #pragma once
 
 #include "sinew/effects/joint_step.h"

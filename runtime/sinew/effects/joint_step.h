@@ -22,6 +22,7 @@ struct JointStep {
   T h = T(0);                                 ///< s
   T kink_width = T(0);                        ///< rad: muscles and dry friction are rounded over it
   T limit_stiffness = T(0);                   ///< N·m/rad
+  T limit_damping = T(0);                     ///< s
 
   int first_dof() const { return tree.first_dof[body]; }
   int dofs() const { return tree.dof_count(body); }

@@ -141,7 +141,7 @@ void Restitution<T>::unload(Trees trees) {
   for (const Impact& impact : impacts_) {
     if (!(impact.impulse > T(0))) continue;
     Contact<T>& c = *impact.contact;
-    trees[c.tree_a].elastic_energy -= double(ContactLaw<T>::energy(c.stiffness, c.gap));
+    trees[c.tree_a].elastic_energy -= double(stored_energy(c));
     c.offset -= c.gap;
     c.gap = T(0);
   }

@@ -23,7 +23,8 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
                              p.start[i],
                              settings.h,
                              settings.kink_width,
-                             settings.limit_stiffness};
+                             settings.limit_stiffness,
+                             settings.limit_damping};
     std::optional<MuscleRows<T>> muscles;
     std::optional<JointDampingRows<T>> damping;
     std::optional<JointLimitRows<T>> limits;
