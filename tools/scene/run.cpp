@@ -8,6 +8,8 @@
 #include "scene/ties.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/effects/continuous_detection.h"
+#include "sinew/effects/restitution.h"
 
 namespace sinew::scene {
 namespace {
@@ -222,6 +224,10 @@ class Runner {
   }
 
   convert::Error add_effects() {
+    if (s_.restitution)
+      if (Status status = world_.template declare<Restitution>(); !status) return {status.reason};
+    if (s_.continuous_detection)
+      if (Status status = world_.template declare<ContinuousDetection>(); !status) return {status.reason};
     for (const SceneEffect& effect : s_.effects) {
       Status status;
       for (const int c : effect.characters)

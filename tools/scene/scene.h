@@ -87,6 +87,7 @@ struct Scene {
   std::vector<LoopSettings> loops;
   std::vector<ParticleBody> particles;
   std::vector<SceneEffect> effects;
+  bool restitution = true, continuous_detection = true;  ///< declared in the world
   Timeline<std::string> captions;
   Camera camera;
   int plotted_joint = -1;

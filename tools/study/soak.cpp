@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "sinew/effects/continuous_detection.h"
 #include "study/bodies.h"
 #include "study/humanoid.h"
 
@@ -47,6 +48,7 @@ template <class T>
 SoakReport soak(double seconds, double h, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   World<T> world((WorldSettings()));
+  (void)world.template declare<ContinuousDetection>();
   const Skeleton body = humanoid();
   std::vector<std::vector<JointJet<T>>> jets(kCharacters, rest_jets<T>(body));
   for (int i = 0; i < kCharacters; ++i) {

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "sinew/effects/continuous_detection.h"
+#include "sinew/effects/restitution.h"
 #include "sinew/muscle/joint_coordinates.h"
 
 namespace sinew::study {
@@ -78,7 +80,11 @@ Energy energy_of(const Skeleton& skeleton, const std::vector<JointJet<T>>& jets,
 
 template <class T>
 Stage<T>::Stage(const WorldSettings& settings)
-    : settings_(settings), world_(std::make_unique<World<T>>(settings)) {}
+    : settings_(settings), world_(std::make_unique<World<T>>(settings)) {
+  for (const Status& status :
+       {world_->template declare<ContinuousDetection>(), world_->template declare<Restitution>()})
+    if (!status) m_.refused = status.reason;
+}
 
 template <class T>
 int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,

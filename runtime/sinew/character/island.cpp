@@ -7,6 +7,7 @@
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/way_back.h"
+#include "sinew/effects/gravity.h"
 #include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
@@ -52,11 +53,20 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   free_share_.reserve(room.trees);
   is_held_.reserve(room.trees);
   ledger_.reserve(room.trees);
-  bounce_.reserve(room);
+  trees_.reserve(room.trees);
+  for (const auto& effect : effects_) effect->reserve(room);
   finder_.reserve(room);
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
+}
+
+template <class T>
+std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
+  std::size_t sum =
+      ContactFinder<T>::bytes(room) + NewtonSolver<T>::bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+  for (const auto& effect : effects_) sum += effect->bytes(room);
+  return sum;
 }
 
 /// Of all the world's forces, those of the island's own features: identities begin with the tree's number.
@@ -277,6 +287,15 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   }
 }
 
+/// Starts the solve nearer to where it was, where an effect says so.
+template <class T>
+void IslandStepper<T>::limit_guess(T h) {
+  free_share_.assign(states_.size(), T(1));
+  for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+}
+
 /// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
 template <class T>
 void IslandStepper<T>::begin_part(T h, T fraction) {
@@ -333,9 +352,7 @@ SolveReport IslandStepper<T>::attempt() {
     } else {
       for (CharacterState<T>* s : states_)
         for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
-      sweep<T>(states_, contacts_, h, free_share_);
-      for (std::size_t n = 0; n < states_.size(); ++n)
-        if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+      if (!effects_.empty()) limit_guess(h);
       second = world.accuracy.scheme == Scheme::kBdf2;
       for (std::size_t n = 0; n < states_.size() && second; ++n)
         second = states_[n]->steps_unchanged >= kUnchangedSteps &&
@@ -379,7 +396,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
-  const bool may_bounce = Bounce<T>::possible(contacts_);
+  const bool may_bounce = std::any_of(effects_.begin(), effects_.end(), [&](const auto& effect) {
+    return effect->may_change_speeds(contacts_);
+  });
   const bool closed = passive();
   const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
   const double budget = booked ? ledger_.open(states_, world_->gravity) : 0;
@@ -402,7 +421,10 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
   }
-  if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
+  for (const auto& effect : effects_) {
+    if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget)) continue;
+    for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
+  }
   if (!solved.converged || closed) {
     if (ledger_.settle(states_, world_->gravity, !solved.converged, !couplings_.empty())) ++damped_;
   } else {
@@ -441,7 +463,7 @@ double IslandStepper<T>::pose_energy() const {
     for (int i = 0; i < s->tree.bodies; ++i) {
       const Vec3<double> center =
           settings_.common_origin + s->problem.kinematics.center[i].template cast<double>();
-      sum -= double(s->tree.mass[i]) * gravity.dot(center);
+      sum += gravity_energy<double>(s->tree.mass[i], gravity, center);
     }
     for (const JointRow<T>& row : s->problem.rows)
       if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
@@ -573,7 +595,10 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   couplings_ = couplings;
   frame_ = h;
   choose_lagged(lagged);
-  free_share_.assign(states.size(), T(1));
+  trees_.clear();
+  for (CharacterState<T>* s : effects_.empty() ? std::span<CharacterState<T>* const>() : states)
+    trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
+                      s->steps_unchanged, s->contact_signature});
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   settings_.limit_damping = T(world.accuracy.limit_damping);

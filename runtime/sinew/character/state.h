@@ -121,7 +121,7 @@ struct CharacterState {
 
   TreeProblem<T> problem;
   std::vector<std::unique_ptr<Effect<T>>> effects;  ///< declared for this tree, in the plan or not
-  Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
+  Kinematics<T> guessed;                            ///< room, see IslandTree; and for snapshots
   History<T> history;
   Motion<T> motion;
   std::vector<StandingPoint<T>> standing;  ///< room for share_support

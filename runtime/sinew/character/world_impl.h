@@ -43,6 +43,7 @@ struct World<T>::Impl {
   std::vector<HostObstacle> hosts;
   std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
   std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sinew/effects/gravity.h"
+
 namespace sinew {
 
 // Zeros, not garbage: what lies before the first state is multiplied by 0, which NaN would survive.
@@ -281,7 +283,7 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
                           ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
                           : spin.dot(tree.inverse_inertia[i] * spin);
     sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
-    sum.potential_energy -= m * gravity.dot(center);
+    sum.potential_energy += gravity_energy<double>(m, gravity, center);
     sum.momentum += m * velocity;
     about_origin += m * center.cross(velocity) + history.momentum[i].template cast<double>();
     mass += m;
