@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "scene/humanoid.h"
 #include "study/bodies.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
