@@ -49,10 +49,11 @@ struct Scene {
   void step(const ParallelFor& parallel_for) {
     ++frame;
     for (int n = 0; n < 12; ++n) aim(n);
-    if (frame % 10 == 3) {
-      Character<float> c = world.character(frame % 12);
-      EXPECT_TRUE(c.apply_impulse(4, c.model()[4].translation, {20, 5, 0}).ok());
-    }
+    if (frame % 10 == 3)
+      for (const int pushed : {frame % 12, (frame + 5) % 12}) {
+        Character<float> c = world.character(pushed);
+        EXPECT_TRUE(c.apply_impulse(4, c.model()[4].translation, {20, 5, 0}).ok());
+      }
     ASSERT_TRUE(world.step(kStep, parallel_for).ok());
   }
   std::vector<std::byte> snapshot() const {

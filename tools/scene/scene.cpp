@@ -208,10 +208,10 @@ Push read_push(const json& value, const std::string& where, const Scene& scene) 
 void read_accuracy(const json& value, Scene& s) {
   MeasuredAccuracy preset;
   const json named = value.is_string() ? json{{"preset", value}} : value;
-  const Reader a(
-      named, "accuracy",
-      {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation", "max_splits",
-       "sink_depth", "stick_speed", "limit_stiffness", "return_time", "precision", "estimate_error"});
+  const Reader a(named, "accuracy",
+                 {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation",
+                  "impact_step", "max_splits", "sink_depth", "contact_damping", "stick_speed",
+                  "limit_stiffness", "limit_damping", "return_time", "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
     set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);
@@ -225,11 +225,14 @@ void read_accuracy(const json& value, Scene& s) {
   }
   s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
   s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);
+  s.world.accuracy.impact_step = a.time("impact_step", s.world.accuracy.impact_step);
   s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
   s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);
+  s.world.accuracy.limit_damping = a.time("limit_damping", s.world.accuracy.limit_damping);
   s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);
   s.world.accuracy.max_iterations = a.count("max_iterations", s.world.accuracy.max_iterations, 1, 1000);
   s.world.accuracy.sink_depth = a.positive("sink_depth", s.world.accuracy.sink_depth);
+  s.world.accuracy.contact_damping = a.time("contact_damping", s.world.accuracy.contact_damping);
   s.world.accuracy.stick_speed = a.positive("stick_speed", s.world.accuracy.stick_speed);
   s.world.accuracy.return_time = a.positive("return_time", s.world.accuracy.return_time);
   s.world.accuracy.estimate_error = a.flag("estimate_error", false);

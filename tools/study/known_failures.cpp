@@ -21,7 +21,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"limp_fall_counts", "more factorisations than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
-    {"tumbling_box", "1.2 mJ where it comes to rest: the surface that it sank through comes back"},
     {"baked_limbs", kMissing},
     {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };

@@ -133,7 +133,7 @@ void Bounce<T>::unload(std::span<CharacterState<T>* const> states) {
   for (const Impact& impact : impacts_) {
     if (!(impact.impulse > T(0))) continue;
     Contact<T>& c = *impact.contact;
-    states[c.tree_a]->report.elastic_energy -= double(ContactLaw<T>::energy(c.stiffness, c.gap));
+    states[c.tree_a]->report.elastic_energy -= double(stored_energy(c));
     c.offset -= c.gap;
     c.gap = T(0);
   }

@@ -9,6 +9,7 @@ namespace {
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
 constexpr int kFirstHost = 0x4000;      ///< of contact identities
+constexpr double kMostPiled = 8;       ///< of the heaviest body: what a contact may bear of a pile
 constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something
 constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
@@ -54,7 +55,7 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.half_axis_a = point.half_axis;
   c.radius = point.radius;
   c.restitution = point.restitution;
-  c.stiffness = states_[n]->contact_stiffness(*world_, heaviest_);
+  c.stiffness = states_[n]->contact_stiffness(*world_, bears_);
   return c;
 }
 
@@ -69,6 +70,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
     lead_out(c);
   }
   c.start_gap = c.gap;
+  if (c.offset <= T(kLeftInside)) c.damp(damping_time_, h_);
   contacts_.push_back(c);
 }
 
@@ -93,11 +95,13 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.lagged_normal_force = found->force;
   c.offset = found->offset;
   if (c.offset > T(kLeftInside)) c.offset = std::max(c.offset - T(kExitSpeed) * h_, T(kLeftInside));
-  if (found->stiffness < c.stiffness)
-    c.offset += ContactLaw<T>::depth(found->stiffness, found->force) -
-                ContactLaw<T>::depth(c.stiffness, found->force);
-  c.stiffness = std::max(c.stiffness, found->stiffness);
   c.gap += c.offset;
+  if (found->stiffness < c.stiffness && c.gap < T(0)) {
+    const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
+    c.offset += gap - c.gap;
+    c.gap = gap;
+  }
+  c.stiffness = std::max(c.stiffness, found->stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
@@ -208,7 +212,7 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
     c.shape = shape.shape;
     c.size = shape.size.template cast<T>();
     c.shape_pose = shape.local.template cast<T>();
-    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, heaviest_));
+    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, bears_));
     c.friction = std::sqrt(point.friction * T(shape.friction));
     c.restitution = std::max(c.restitution, T(shape.restitution));
     c.id = contact_id(indices_[n], k, indices_[m], other);
@@ -238,12 +242,17 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   apart_ = surroundings.apart;
   common_origin_ = common_origin;
   h_ = h;
-  heaviest_ = T(0);
+  // Of an oscillator that sinks as deep under its weight, whatever the weight.
+  damping_time_ = T(2 * world.accuracy.contact_damping *
+                    std::sqrt(world.accuracy.sink_depth / std::max(1.0, world.gravity.norm())));
+  T heaviest = T(0), together = T(0);
   most_ = 0;
   for (const CharacterState<T>* s : states) {
-    heaviest_ = std::max(heaviest_, T(s->total_mass));
+    heaviest = std::max(heaviest, T(s->total_mass));
+    together += T(s->total_mass);
     most_ += static_cast<std::size_t>(s->problem.room.contacts);
   }
+  bears_ = std::min(together, T(kMostPiled) * heaviest);
   most_ = std::min(most_, room_);
   contacts_.clear();
   bounds_.clear();

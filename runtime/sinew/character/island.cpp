@@ -12,8 +12,9 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kTouch = 5e-5;     ///< m; shallower contacts bear half a percent of the weight: no impact
+constexpr double kCertified = 0.9;    ///< of the limit: below, a joint at its target leaves the unknowns
+constexpr double kTouch = 5e-5;       ///< m; shallower contacts bear half a percent of the weight: no impact
+constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
@@ -253,11 +254,11 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
-    if (c.tree_a == tree) r.elastic_energy += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+    if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
   }
   for (const JointRow<T>& row : p.rows)
-    if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.energy(row.value));
+    if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
@@ -278,9 +279,9 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   }
 }
 
-/// Solves one part of the step without moving anything: the result stays in the problems.
+/// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
 template <class T>
-SolveReport IslandStepper<T>::attempt(T h, T fraction) {
+void IslandStepper<T>::begin_part(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
@@ -304,16 +305,34 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
+  contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+}
+
+/// Whether a limp body is about to strike something within h.
+template <class T>
+bool IslandStepper<T>::strikes(T h) const {
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+    const bool limp = (states_[c.tree_a]->limp() && !states_[c.tree_a]->is_prop) ||
+                      (c.tree_b >= 0 && states_[c.tree_b]->limp() && !states_[c.tree_b]->is_prop);
+    return limp && c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach;
+  });
+}
+
+/// Solves one part of the step without moving anything: the result stays in the problems.
+template <class T>
+SolveReport IslandStepper<T>::attempt() {
+  const WorldSettings& world = *world_;
+  const T h = settings_.h;
   SolveReport total;
   bool second = false;
   mispredicted_ = false;
   for (int round = 0; round < kReleaseRounds; ++round) {
     // Which points can move depends on what was released.
-    if (round > 0)
+    if (round > 0) {
       for (CharacterState<T>* s : states_)
         forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
-    if (round == 0) {
+      contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+    } else {
       for (CharacterState<T>* s : states_)
         for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
       sweep<T>(states_, contacts_, h, free_share_);
@@ -341,19 +360,24 @@ SolveReport IslandStepper<T>::attempt(T h, T fraction) {
   return total;
 }
 
-/// One part of the step, from `begin` to `end` (fractions of the frame): halved where the solve does not
-/// converge.
+/// One part of the step, from `begin` to `end` (fractions of the frame): halved where it is long for an
+/// impact or the solve does not converge.
 template <class T>
 void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const T h = (end - begin) * frame_;
-  const SolveReport solved = attempt(h, end);
+  const auto halve = [&](int splits) {
+    const T middle = (begin + end) / 2;
+    advance_part(begin, middle, splits);
+    advance_part(middle, end, splits);
+  };
+  begin_part(h, end);
+  const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
+  if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
+  const SolveReport solved = attempt();
   total_.add(solved);
   if (!solved.converged && splits_left > 0) {
     ++splits_;
-    const T middle = (begin + end) / 2;
-    advance_part(begin, middle, splits_left - 1);
-    advance_part(middle, end, splits_left - 1);
-    return;
+    return halve(splits_left - 1);
   }
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
@@ -388,9 +412,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
-    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
-    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
-    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+    const bool inside = c.gap < T(0) || (c.gap == T(0) && c.offset > T(0));  // 0: unloaded by a bounce
+    if (inside) lagged_.push_back({c.id, normal_force(c), c.stiffness, c.offset});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
@@ -422,9 +445,9 @@ double IslandStepper<T>::pose_energy() const {
       sum -= double(s->tree.mass[i]) * gravity.dot(center);
     }
     for (const JointRow<T>& row : s->problem.rows)
-      if (row.kind == RowKind::kOneSided) sum += double(row.energy(row.value));
+      if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
   }
-  for (const Contact<T>& c : contacts_) sum += double(ContactLaw<T>::energy(c.stiffness, c.gap));
+  for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
   for (const Coupling<T>* c : couplings_) sum += c->energy;
   return sum;
 }
@@ -554,6 +577,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   free_share_.assign(states.size(), T(1));
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  settings_.limit_damping = T(world.accuracy.limit_damping);
   total_ = {};
   all_converged_ = true;
   splits_ = parts_ = damped_ = held_ = 0;

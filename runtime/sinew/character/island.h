@@ -37,7 +37,9 @@ class IslandStepper {
   bool starts() const;
   void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
-  SolveReport attempt(T h, T fraction);
+  void begin_part(T h, T fraction);
+  bool strikes(T h) const;
+  SolveReport attempt();
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sinew {
 namespace {
 
 /// rad (0.1°) and m: a returning joint this close is on the animation again
+/// A joint is on its animation again within these at 1/60 s; in shorter steps within less, so that what is
+/// left out is an acceleration that muscles do not notice.
 constexpr double kSnapAngle = 2e-3;
 constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
@@ -334,7 +337,9 @@ void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T r
     offset = std::max(offset, std::abs(d.offset[k]));
     speed = std::max(speed, std::abs(d.rate[k]));
   }
-  d.on_animation = !d.released && offset < T(kSnapAngle) && speed < T(kSnapRate);
+  const T fine = std::min(60 * h, T(1));
+  const T snap = std::max(T(kSnapAngle) * fine * fine, 16 * std::numeric_limits<T>::epsilon());
+  d.on_animation = !d.released && offset < snap && speed < T(kSnapRate) * fine;
   if (!d.on_animation) return;
   d.offset = {};
   d.rate = {};

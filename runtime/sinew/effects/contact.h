@@ -2,11 +2,16 @@
 //
 // A contact is a small sphere (or bare point) fixed to one body against a shape with a signed distance. Its
 // energy is one-sided in the gap at the END of the step, ½k·gap² with a cubic start, so stiffness costs no
-// stability. Friction is the smoothed Coulomb potential μ·λ·f₀(slip) with the normal force λ of the last
-// step: refreshing λ within a step left 15 % of steps unconverged. The slip is that of the material points
-// that touched when the step began; measured anywhere else the force is no gradient of the energy.
+// stability. A surface is damped: its force is that of the gap a damping time τ later, f(gap + τ·gap'), with
+// gap' = (gap₁ − gap₀)/h and never a pull. In a step that is the same law in a stretched gap, convex as
+// before, and passive: for every step f·(gap₀ − gap₁) ≥ ½k(gap₁² − gap₀²). Without it impacts turn elastic
+// as h → 0, and nothing converges. Friction is the smoothed Coulomb potential μ·λ·f₀(slip) with the normal
+// force λ of the last step: refreshing λ within a step left 15 % of steps unconverged. The slip is that of
+// the material points that touched when the step began; measured anywhere else the force is no gradient of
+// the energy.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -85,6 +90,8 @@ struct Contact {
   T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
   bool fresh = true;             ///< bore nothing after the last step
   T start_gap = T(0);            ///< when the step began, m
+  T stretch = T(1);              ///< 1 + τ/h: change of the damped gap by the gap
+  T lag = T(0);                  ///< m; the damped gap where the gap is 0, ≥ 0
   T approach = T(0);             ///< closing speed then (fresh ones only), m/s
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
@@ -96,6 +103,14 @@ struct Contact {
   Vec3<T> material_point = Vec3<T>::Zero(), material_point_b = Vec3<T>::Zero();
   T gap = T(0);
   T slip[2] = {T(0), T(0)};
+
+  /// From a step of h seconds that begins at `start_gap` on, for a damping time in seconds.
+  void damp(T damping_time, T h) {
+    stretch = T(1) + damping_time / h;
+    lag = damping_time / h * std::max(-start_gap, T(0));
+  }
+  /// gap + τ·gap', m: what the normal force is a function of. Above the gap where the contact opens.
+  T damped_gap() const { return stretch * gap + lag; }
   /// Half the thickness of what is met, m.
   T half_thickness() const;
 
@@ -144,11 +159,23 @@ struct FrictionLaw {
   static T curvature(T s, T stick) { return s < stick ? 2 * (1 - s / stick) / stick : T(0); }
 };
 
-/// Normal and friction energy at the present gap and slip (J).
+/// What a contact stores at the present gap (J).
+template <class T>
+T stored_energy(const Contact<T>& c) {
+  return ContactLaw<T>::energy(c.stiffness, c.gap);
+}
+
+/// Normal force at the present gap, ≥ 0 (N).
+template <class T>
+T normal_force(const Contact<T>& c) {
+  return ContactLaw<T>::force(c.stiffness, c.damped_gap());
+}
+
+/// Normal and friction potential of the step at the present gap and slip (J).
 template <class T>
 T contact_energy(const Contact<T>& c, T stick) {
   const T grip = c.friction * c.lagged_normal_force;
-  T energy = ContactLaw<T>::energy(c.stiffness, c.gap);
+  T energy = ContactLaw<T>::energy(c.stiffness, c.damped_gap()) / c.stretch;
   if (grip > T(0))
     energy += grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
   return energy;
@@ -157,7 +184,7 @@ T contact_energy(const Contact<T>& c, T stick) {
 /// Gradient of the normal energy by the contact point of body a (N, pointing into the obstacle).
 template <class T>
 Vec3<T> normal_gradient(const Contact<T>& c) {
-  return -ContactLaw<T>::force(c.stiffness, c.gap) * c.normal;
+  return -normal_force(c) * c.normal;
 }
 
 /// Gradient of the friction energy by the material point of body a (N).

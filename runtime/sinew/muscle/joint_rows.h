@@ -4,6 +4,7 @@
 // step's start, or beyond a limit). Within the inner convex problem s is linear in the joint's unknowns.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace sinew {
 enum class RowKind : std::uint8_t {
   kKink,  ///< |s| times the limit of its side, rounded over `width`: a muscle at its target, or dry friction
   kSpring,    ///< ½ k s²: damping over the step
-  kOneSided,  ///< ½ k max(s, 0)²: joint limit
+  kOneSided,  ///< ½ k max(s, 0)²: joint limit, damped as a contact is (see JointRow::damp)
 };
 
 /// Which scalar of its joint a row is a function of.
@@ -34,20 +35,30 @@ struct JointRow {
   int component = 0;  ///< of the offset: which of a ball's or free joint's three rotations, if any
   T sign = T(1);      ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
-  int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
-  int count = 1;                ///< how many
-  std::array<T, 3> gradient{};  ///< ds/dd
-  T value = T(0);               ///< s at the chart centre
-  T minus = T(0), plus = T(0);  ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
-  T width = T(1e-5);            ///< kink: rounding
-  T stiffness = T(0);           ///< spring and one-sided
+  int dof = 0;                   ///< first degree of freedom that `gradient` refers to, within its tree
+  int count = 1;                 ///< how many
+  std::array<T, 3> gradient{};   ///< ds/dd
+  T value = T(0);                ///< s at the chart centre
+  T minus = T(0), plus = T(0);   ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
+  T width = T(1e-5);             ///< kink: rounding
+  T stiffness = T(0);            ///< spring and one-sided
+  T stretch = T(1), lag = T(0);  ///< one-sided: what bears is stretch·s − lag
+
+  /// One-sided: the force is that of where s will be a damping time (s) later, and never a pull. `start` is s
+  /// when the step of h seconds began.
+  void damp(T damping_time, T h, T start) {
+    stretch = T(1) + damping_time / h;
+    lag = damping_time / h * std::max(start, T(0));
+  }
+  /// What a one-sided row stores at s; its energy(s) is the potential of the step, damping included.
+  T stored_energy(T s) const { return s > T(0) ? T(0.5) * stiffness * s * s : T(0); }
 
   T energy(T s) const {
     switch (kind) {
       case RowKind::kSpring:
         return T(0.5) * stiffness * s * s;
       case RowKind::kOneSided:
-        return s > T(0) ? T(0.5) * stiffness * s * s : T(0);
+        return beyond(s) > T(0) ? T(0.5) * stiffness * beyond(s) * beyond(s) / stretch : T(0);
       case RowKind::kKink:
         break;
     }
@@ -60,7 +71,7 @@ struct JointRow {
       case RowKind::kSpring:
         return stiffness * s;
       case RowKind::kOneSided:
-        return s > T(0) ? stiffness * s : T(0);
+        return beyond(s) > T(0) ? stiffness * beyond(s) : T(0);
       case RowKind::kKink:
         break;
     }
@@ -74,12 +85,15 @@ struct JointRow {
       case RowKind::kSpring:
         return stiffness;
       case RowKind::kOneSided:
-        return s > T(0) ? stiffness : T(0);
+        return beyond(s) > T(0) ? stiffness * stretch : T(0);
       case RowKind::kKink:
         break;
     }
     return std::abs(s) < width ? (s > T(0) ? minus : plus) / width : T(0);
   }
+
+ private:
+  T beyond(T s) const { return stretch * s - lag; }
 };
 
 }  // namespace sinew

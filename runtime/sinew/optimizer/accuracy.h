@@ -20,11 +20,15 @@ struct Accuracy {
   int max_iterations = 60;  ///< outer passes; the mean is 1.7, hard impacts at 1/30 s need the tail
   int substeps = 1;         ///< every step in so many equal parts
   int start_parts = 4;  ///< a step from a reset, which bdf2 has no history for, is cut into parts that double
-  double max_rotation = 0;        ///< rad; more substeps where a body would turn further in one. 0: never
-  int max_splits = 3;             ///< an unconverged step is halved, and its halves, so often
-  double sink_depth = 5e-4;       ///< how deep one contact point sinks under the character's weight (m)
+  double max_rotation = 0;  ///< rad; more substeps where a body would turn further in one. 0: never
+  double impact_step =
+      1.0 / 60;              ///< s; a longer step in which a limp body strikes something is halved. 0: never
+  int max_splits = 3;        ///< an unconverged step is halved, and its halves, so often
+  double sink_depth = 5e-4;  ///< how deep one contact point sinks under the character's weight (m)
+  double contact_damping = 0.5;   ///< of surfaces; 1 is critical for the character's weight on one point
   double stick_speed = 0.005;     ///< slip speed below which friction sticks (m/s)
   double limit_stiffness = 2000;  ///< joint limits, N·m/rad
+  double limit_damping = 0.02;    ///< joint limits: s; their torque is that of the angle so much later
   double return_time = 0.1;       ///< time constant of the way back to the animation (s)
   bool estimate_error =
       false;  ///< fill CharacterReport::estimated_error (error_estimate.h says what it costs)

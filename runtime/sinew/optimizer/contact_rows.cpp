@@ -70,7 +70,8 @@ void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<c
     row.contact = static_cast<int>(n);
     row.stiffness = c.stiffness;
     row.grip = c.friction * c.lagged_normal_force;
-    row.gap = c.gap;
+    row.stretch = c.stretch;
+    row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];
     row.slip[1] = c.slip[1];
     const auto leaf = [&](int tree, int body) {
@@ -84,7 +85,7 @@ void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<c
     if (c.tree_b >= 0)
       row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
     if (row.side[0].count + row.side[1].count == 0) continue;
-    const T force = ContactLaw<T>::force(c.stiffness, c.gap);
+    const T force = normal_force(c);
     row.bends = force > T(0) && c.bends;
     if (row.bends) row.bending = -force * c.bending;
     coupled_ = coupled_ || (row.side[0].count > 0 && row.side[1].count > 0);
@@ -103,7 +104,7 @@ void ContactRows<T>::look_along(std::span<const T> direction) {
         first += slip_[0][e] * d;
         second += slip_[1][e] * d;
       }
-    row.d_gap = gap;
+    row.d_gap = row.stretch * gap;
     row.d_slip[0] = first;
     row.d_slip[1] = second;
   }
@@ -113,7 +114,7 @@ template <class T>
 T ContactRows<T>::slope(T t) const {
   T slope = T(0);
   for (const Row& row : rows_) {
-    slope -= ContactLaw<T>::force(row.stiffness, row.gap + t * row.d_gap) * row.d_gap;
+    slope -= ContactLaw<T>::force(row.stiffness, row.gap + t * row.d_gap) * row.d_gap / row.stretch;
     if (row.grip <= T(0)) continue;
     const T s0 = row.slip[0] + t * row.d_slip[0], s1 = row.slip[1] + t * row.d_slip[1];
     slope += row.grip * FrictionLaw<T>::slope_over_slip(std::sqrt(s0 * s0 + s1 * s1), stick_) *
@@ -135,7 +136,7 @@ template <class T>
 void ContactRows<T>::correct(std::span<const Contact<T>> contacts) {
   for (Row& row : rows_) {
     const Contact<T>& c = contacts[row.contact];
-    row.gap = c.gap - row.d_gap;
+    row.gap = c.damped_gap() - row.d_gap;
     row.slip[0] = c.slip[0] - row.d_slip[0];
     row.slip[1] = c.slip[1] - row.d_slip[1];
   }
@@ -146,8 +147,8 @@ bool ContactRows<T>::measure(std::span<const Contact<T>> contacts) {
   bool same = true;
   for (Row& row : rows_) {
     const Contact<T>& c = contacts[row.contact];
-    same = same && !row.in_factor && c.gap >= T(0) && row.grip <= T(0);
-    row.gap = c.gap;
+    same = same && !row.in_factor && c.damped_gap() >= T(0) && row.grip <= T(0);
+    row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];
     row.slip[1] = c.slip[1];
   }
@@ -176,7 +177,7 @@ void ContactRows<T>::add_gradient(std::span<T> gradient) const {
 template <class T>
 typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
   Block b;
-  b.normal = ContactLaw<T>::curvature(row.stiffness, row.gap);
+  b.normal = row.stretch * ContactLaw<T>::curvature(row.stiffness, row.gap);
   if (row.grip <= T(0)) return b;
   const T slip = std::sqrt(row.slip[0] * row.slip[0] + row.slip[1] * row.slip[1]);
   const T across = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);

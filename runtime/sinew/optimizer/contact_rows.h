@@ -66,7 +66,8 @@ class ContactRows {
     int contact = 0;
     Side side[2];
     T stiffness = T(0), grip = T(0);  ///< N/m, μλ in N
-    T gap = T(0), slip[2]{};          ///< at the inner solution so far
+    T stretch = T(1);                 ///< change of the damped gap by the gap
+    T gap = T(0), slip[2]{};          ///< at the inner solution so far; the gap is the damped one
     T d_gap = T(0), d_slip[2]{};      ///< along the direction looked at
     bool in_factor = false;           ///< the last factor holds some curvature of it
     bool bends = false;

@@ -22,21 +22,24 @@ void set_gradient(const JointOffset<T>& offset, int rotational_first, int k, int
   }
 }
 
-template <class T>
-void append_limit(T stiffness, T violation_of_upper, T violation_of_lower, JointRow<T> row,
-                  std::vector<JointRow<T>>& rows) {
+/// Rows of a scalar between two bounds; none for a bound that is not there. `at_start` tells the scalar when
+/// the step began, and is asked only where the bound is near.
+template <class T, class AtStart>
+void append_limit(const StepSettings<T>& settings, T scalar, T lower, T upper, AtStart at_start,
+                  JointRow<T> row, std::vector<JointRow<T>>& rows) {
+  constexpr T near = T(0.05);  // rad or m
   row.kind = RowKind::kOneSided;
-  row.stiffness = stiffness;
-  if (violation_of_upper < T(1e8)) {
-    row.value = violation_of_upper;
+  row.stiffness = settings.limit_stiffness;
+  const auto append = [&](T sign, T bound) {
+    row.value = sign * (scalar - bound);
+    row.damp(settings.limit_damping, settings.h, row.value > -near ? sign * (at_start() - bound) : T(0));
     rows.push_back(row);
-  }
-  if (violation_of_lower < T(1e8)) {
-    row.value = violation_of_lower;
-    row.sign = -row.sign;
-    for (T& g : row.gradient) g = -g;
-    rows.push_back(row);
-  }
+  };
+  if (upper < T(kUnlimited)) append(T(1), upper);
+  if (lower <= T(-kUnlimited)) return;
+  row.sign = -row.sign;
+  for (T& g : row.gradient) g = -g;
+  append(T(-1), lower);
 }
 
 template <class T>
@@ -56,13 +59,15 @@ void append_ellipsoid(const StepSettings<T>& settings, int i, const JointOffset<
 /// Swing cone and twist range of a ball joint, about the bone direction a at rest. With b the direction now,
 /// the swing angle changes by n·w, n = (a × b)/|a × b|, the twist by (a + b)·w/(1 + a·b); w in rest axes.
 template <class T>
-void append_cone(const TreeProblem<T>& p, int i, T stiffness, std::vector<JointRow<T>>& rows) {
+void append_cone(const StepSettings<T>& settings, const TreeProblem<T>& p, int i,
+                 std::vector<JointRow<T>>& rows) {
   const Tree<T>& tree = *p.tree;
   const Quat<T> relative = tree.rest[i].rotation.conjugate() * p.local[i].rotation;
   const Vec3<T>& a = p.law.swing_axis[i];
   const Vec3<T> b = relative * a;
   const Vec3<T> across = a.cross(b);
   const T sine = across.norm(), cosine = a.dot(b);
+  const auto start = [&] { return Quat<T>(tree.rest[i].rotation.conjugate() * p.start[i].rotation); };
   JointRow<T> row;
   row.dof = tree.first_dof[i];
   row.count = 3;
@@ -74,18 +79,22 @@ void append_cone(const TreeProblem<T>& p, int i, T stiffness, std::vector<JointR
   constexpr T near = T(0.5);
   const T limit = p.law.swing_limit[i];
   if (sine > T(1e-6) && limit - near < T(3.14159265) && cosine < std::cos(std::max(limit - near, T(0)))) {
-    const T swing = std::atan2(sine, cosine);
     row.scalar = RowScalar::kSwing;
     set(across / sine);
-    append_limit<T>(stiffness, swing - limit, T(kUnlimited), row, rows);
+    const auto swing_at_start = [&] {
+      const Vec3<T> bone = start() * a;
+      return std::atan2(a.cross(bone).norm(), a.dot(bone));
+    };
+    append_limit<T>(settings, std::atan2(sine, cosine), T(-kUnlimited), limit, swing_at_start, row, rows);
   }
   if (const T toward = T(1) + a.dot(b); toward > T(0.05)) {
     const T twist = twist_angle<T>(relative, a);
     row.scalar = RowScalar::kTwist;
     set((a + b) / toward);
-    const T above = twist - p.law.twist_upper[i], below = p.law.twist_lower[i] - twist;
-    append_limit<T>(stiffness, above > -near ? above : T(kUnlimited), below > -near ? below : T(kUnlimited),
-                    row, rows);
+    const T lower = p.law.twist_lower[i], upper = p.law.twist_upper[i];
+    append_limit<T>(
+        settings, twist, twist < lower + near ? lower : T(-kUnlimited),
+        twist > upper - near ? upper : T(kUnlimited), [&] { return twist_angle<T>(start(), a); }, row, rows);
   }
 }
 
@@ -171,13 +180,12 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
       if (boxed && (p.law.lower[dof] > T(-kUnlimited) || p.law.upper[dof] < T(kUnlimited))) {
         row.scalar = RowScalar::kFromRest;
         set_gradient(from_rest, rotational, k, first, row);
-        const T q = from_rest.value[k];
         append_limit<T>(
-            settings.limit_stiffness, p.law.upper[dof] < T(kUnlimited) ? q - p.law.upper[dof] : T(kUnlimited),
-            p.law.lower[dof] > T(-kUnlimited) ? p.law.lower[dof] - q : T(kUnlimited), row, p.rows);
+            settings, from_rest.value[k], p.law.lower[dof], p.law.upper[dof],
+            [&] { return joint_offset_value<T>(tree, i, tree.rest[i], p.start[i])[k]; }, row, p.rows);
       }
     }
-    if (coned) append_cone(p, i, settings.limit_stiffness, p.rows);
+    if (coned) append_cone(settings, p, i, p.rows);
   }
 }
 

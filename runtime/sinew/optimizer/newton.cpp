@@ -30,8 +30,8 @@ double NewtonSolver<T>::evaluate() {
     TreeProblem<T>& a = *trees_[c.tree_a];
     TreeProblem<T>* b = c.tree_b < 0 ? nullptr : trees_[c.tree_b];
     measure(a.kinematics, b ? &b->kinematics : nullptr, c);
-    const bool touches = c.gap<T(0), grips = c.friction * c.lagged_normal_force> T(0);
-    if (!touches && !grips) continue;
+    const bool bears = c.damped_gap()<T(0), grips = c.friction * c.lagged_normal_force> T(0);
+    if (!bears && !grips) continue;
     energy += double(contact_energy(c, settings_->stick));
     const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
     a.force[c.body_a] += normal + tangent;

@@ -90,6 +90,7 @@ struct StepSettings {
   Vec3<T> gravity{0, 0, T(-9.81)};                    ///< m/s²
   Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed
   T limit_stiffness = T(2000);                        ///< N·m/rad
+  T limit_damping = T(0.02);                          ///< s
   T stick = T(0.01) / 60;                             ///< m per step
   T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
 };
