@@ -16,7 +16,7 @@ constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
 /// second on all of it: in a figure that turns as if rigid, what swings is the turning.
 constexpr double kTooRigid = 1e-3, kLooseEnough = 1e-2;
 
-constexpr double kRounding = 1 - 1e-4;  ///< of speeds, and more
+constexpr double kSmall = 0.99;  ///< of speeds: a change that bdf2's history bears
 
 double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
@@ -28,8 +28,8 @@ double rounding(double energy, double kinetic) {
   return 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(energy) + kinetic);
 }
 
-/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, what is more than a
-/// rounding ends the history that bdf2 builds on.
+/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, much of a change
+/// ends the history that bdf2 builds on.
 template <class T>
 void slow(CharacterState<T>& s, double factor, bool about_center) {
   RigidMotion kept;
@@ -37,7 +37,7 @@ void slow(CharacterState<T>& s, double factor, bool about_center) {
   scale_relative<T>(s.tree, kept, T(factor), s.history);
   for (std::array<T, 6>& rate : s.rate)
     for (T& r : rate) r *= T(factor);
-  if (factor > kRounding || s.report.contacts == 0) return;
+  if (factor > kSmall || s.report.contacts == 0) return;
   s.history.step_before = T(0);
   s.steps_unchanged = 0;
 }
