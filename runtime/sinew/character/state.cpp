@@ -315,6 +315,7 @@ void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
+  settling = 0;
   energy_ceiling = std::numeric_limits<double>::infinity();
 }
 
