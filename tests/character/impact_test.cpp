@@ -5,6 +5,8 @@
 #include <random>
 
 #include "sinew/character/world.h"
+#include "sinew/effects/continuous_detection.h"
+#include "sinew/effects/restitution.h"
 
 namespace sinew {
 namespace {
@@ -15,7 +17,10 @@ template <class T>
 struct Props {
   World<T> world;
 
-  explicit Props(const WorldSettings& settings = {}) : world(settings) {}
+  explicit Props(const WorldSettings& settings = {}) : world(settings) {
+    EXPECT_TRUE(world.template declare<Restitution>().ok());
+    EXPECT_TRUE(world.template declare<ContinuousDetection>().ok());
+  }
   int add(const PropSettings& prop) {
     Status status;
     const int index = world.add_prop(prop, status);
@@ -87,6 +92,46 @@ TYPED_TEST(Impact, BallWithoutRestitutionStays) {
     if (n > 40) highest = std::max(highest, scene.height(0) - 0.1);
   }
   EXPECT_LT(highest, 0.01);
+}
+
+TYPED_TEST(Impact, WorldThatDeclaresNothingNeitherBouncesNorLooksAhead) {
+  using T = TypeParam;
+  World<T> world({});
+  Status status;
+  PropSettings bouncy = ball(0.1, 1, {0, 0, 1.1});
+  bouncy.restitution = 0.5;
+  ASSERT_EQ(world.add_prop(bouncy, status), 0);
+  Collider wall;
+  wall.shape = Shape::kBox;
+  wall.size = {0.005, 2, 2};
+  wall.local.translation = {5, 0, 0};
+  ASSERT_TRUE(world.add_obstacle(wall).ok());
+  ASSERT_EQ(world.add_prop(ball(0.005, 1, {4, 0, 1}, {200, 0, 0}), status), 1);
+  T highest = T(0);
+  for (int n = 0; n < 120; ++n) {
+    ASSERT_TRUE(world.step(T(1) / 60).ok());
+    if (n > 40) highest = std::max(highest, world.prop_pose(0).translation.z());
+  }
+  EXPECT_LT(highest, T(0.11));
+  EXPECT_GT(world.prop_pose(1).translation.x(), T(5));
+}
+
+TEST(ImpactMemory, DeclaredEffectsAreCountedOnceAndTheCapRefusesThem) {
+  Status status;
+  World<float> world({});
+  world.add_prop(ball(0.1, 1, V::Zero()), status);
+  const std::size_t without = world.memory().total();
+  ASSERT_TRUE(world.declare<Restitution>().ok());
+  const std::size_t with = world.memory().total();
+  EXPECT_GT(with, without);
+  ASSERT_TRUE(world.declare<Restitution>().ok());
+  EXPECT_EQ(world.memory().total(), with);
+  WorldSettings narrow;
+  narrow.memory_cap = without + 64;
+  World<float> capped(narrow);
+  ASSERT_EQ(capped.add_prop(ball(0.1, 1, V::Zero()), status), 0);
+  EXPECT_EQ(capped.declare<Restitution>().code, Code::kOutOfRange);
+  EXPECT_EQ(capped.memory().total(), without);
 }
 
 TYPED_TEST(Impact, HeadOnBallsPartByHalfTheirSpeedAndKeepMomentum) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sinew/character/world.h"
+#include "sinew/effects/continuous_detection.h"
 
 namespace sinew {
 namespace {
@@ -122,6 +123,7 @@ TYPED_TEST(StaticShapes, ConvexRampIsSlidDownAndNotPassedAtSpeed) {
   for (const double speed : {0.0, 40.0}) {
     World<T> world(without_floor());
     ASSERT_TRUE(world.add_obstacle(plate, 0).ok());
+    ASSERT_TRUE(world.template declare<ContinuousDetection>().ok());
     Status status;
     ASSERT_EQ(world.add_prop(ball(0.9 * up, -speed * up), status), 0);
     double deepest = 1;

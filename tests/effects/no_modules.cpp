@@ -8,6 +8,10 @@ std::unique_ptr<Effect<float>> make_module(const std::string& /*name*/,
   return nullptr;
 }
 
+bool declare_module(const std::string& /*name*/, World<float>& /*world*/) {
+  return false;
+}
+
 Status add_ties(const std::string& /*name*/, int /*count*/, World<float>& /*world*/) {
   return Status::error(Code::kInvalidArgument, "no effects");
 }

@@ -57,15 +57,6 @@ void without_friction(Scene& scene) {
   for (Collider& o : scene.obstacles) o.friction = 0;
 }
 
-void without_restitution(Scene& scene) {
-  scene.world.ground_restitution = 0;
-  edit_skeletons(scene, [](Skeleton& s) {
-    for (Collider& c : s.colliders) c.restitution = 0;
-  });
-  for (SceneProp& p : scene.props) p.settings.restitution = 0;
-  for (Collider& o : scene.obstacles) o.restitution = 0;
-}
-
 void without_contact(Scene& scene) {
   scene.world.body_contact = false;
   scene.obstacles.clear();
@@ -101,7 +92,9 @@ std::span<const EffectRow> effect_registry() {
       built_in("support", "the floor bears what a driven root would",
                [](Scene& s) { s.world.ground_support = false; }),
       built_in("friction", "of contacts", without_friction),
-      built_in("restitution", "bounce of contacts", without_restitution),
+      built_in("restitution", "bounce of contacts", [](Scene& s) { s.restitution = false; }),
+      built_in("continuous_detection", "what is fast does not pass what is thin",
+               [](Scene& s) { s.continuous_detection = false; }),
       built_in("contact", "between characters, props and obstacles", without_contact),
       built_in(
           "self_collision", "within each character", [](Scene& s) { self_collision(s, false); },

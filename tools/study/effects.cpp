@@ -49,6 +49,7 @@ constexpr Kind kKinds[] = {
     {"character_contact", "solve", "point, with friction"},
     {"loops", "step", "point of a limp wheel"},
     {"restitution", "step", "ball that bounces"},
+    {"continuous_detection", "step", "ball that may pass a plate"},
     {"prop", "step", "box in flight"},
     {"resting_prop", "step", "box on the floor: 4 points"},
     {"prop_contact", "step", "box on a box on the floor"},

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "sinew/effects/continuous_detection.h"
 #include "study/bodies.h"
 #include "study/engine.h"
 
@@ -25,6 +26,8 @@ class SinewEngine : public Engine {
  public:
   SinewEngine(const EngineScene& scene, double h, const Accuracy& accuracy)
       : h_(h), world_(settings(scene, accuracy)) {
+    if (const Status status = world_.template declare<ContinuousDetection>(); !status)
+      refusal_ = status.reason;
     for (const Figure& figure : scene.figures) {
       CharacterSettings how = limp();
       if (figure.driven) how = CharacterSettings{};

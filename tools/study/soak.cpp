@@ -7,8 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "scene/humanoid.h"
+#include "sinew/effects/continuous_detection.h"
 #include "study/bodies.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
@@ -47,6 +48,7 @@ template <class T>
 SoakReport soak(double seconds, double h, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   World<T> world((WorldSettings()));
+  (void)world.template declare<ContinuousDetection>();
   const Skeleton body = humanoid();
   std::vector<std::vector<JointJet<T>>> jets(kCharacters, rest_jets<T>(body));
   for (int i = 0; i < kCharacters; ++i) {

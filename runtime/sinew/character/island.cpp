@@ -8,6 +8,7 @@
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/way_back.h"
+#include "sinew/effects/gravity.h"
 #include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
@@ -19,6 +20,7 @@ constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the 
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
+constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
 
@@ -53,11 +55,20 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   free_share_.reserve(room.trees);
   is_held_.reserve(room.trees);
   ledger_.reserve(room.trees);
-  bounce_.reserve(room);
+  trees_.reserve(room.trees);
+  for (const auto& effect : effects_) effect->reserve(room);
   finder_.reserve(room);
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
+}
+
+template <class T>
+std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
+  std::size_t sum =
+      ContactFinder<T>::bytes(room) + NewtonSolver<T>::bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+  for (const auto& effect : effects_) sum += effect->bytes(room);
+  return sum;
 }
 
 /// Of all the world's forces, those of the island's own features: identities begin with the tree's number.
@@ -262,6 +273,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
+  s.settling = s.impulses.empty() ? std::max(s.settling - 1, 0) : kSettling;
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world.gravity);
@@ -276,6 +288,15 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
                                                 : Transform<T>{now.rotation, now.translation};
     s.wanted[i] = s.in_solve(i, wanted, settings_.common_origin);
   }
+}
+
+/// Starts the solve nearer to where it was, where an effect says so.
+template <class T>
+void IslandStepper<T>::limit_guess(T h) {
+  free_share_.assign(states_.size(), T(1));
+  for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
 }
 
 /// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
@@ -324,9 +345,7 @@ void IslandStepper<T>::begin_solve() {
   const T h = settings_.h;
   for (CharacterState<T>* s : states_)
     for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
-  sweep<T>(states_, contacts_, h, free_share_);
-  for (std::size_t n = 0; n < states_.size(); ++n)
-    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+  if (!effects_.empty()) limit_guess(h);
   second_ = world.accuracy.scheme == Scheme::kBdf2;
   for (std::size_t n = 0; n < states_.size() && second_; ++n)
     second_ =
@@ -392,7 +411,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   all_converged_ = all_converged_ && solved.converged;
   ++parts_;
-  const bool may_bounce = Bounce<T>::possible(contacts_);
+  const bool may_bounce = std::any_of(effects_.begin(), effects_.end(), [&](const auto& effect) {
+    return effect->may_change_speeds(contacts_);
+  });
   const bool closed = passive();
   const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
   const double budget = booked ? ledger_.open(states_, world_->gravity) : 0;
@@ -415,7 +436,10 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
   }
-  if (may_bounce) bounce_.apply(states_, contacts_, world_->gravity, h, budget);
+  for (const auto& effect : effects_) {
+    if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget)) continue;
+    for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
+  }
   if (!solved.converged || closed) {
     if (ledger_.settle(states_, world_->gravity, !solved.converged, !couplings_.empty())) ++damped_;
   } else {
@@ -423,15 +447,16 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
-    const bool inside = c.gap < T(0) || (c.gap == T(0) && c.offset > T(0));  // 0: unloaded by a bounce
-    if (inside) lagged_.push_back({c.id, normal_force(c), c.stiffness, c.offset});
+    const T force = normal_force(c);
+    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
+    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no loop that is being
-/// closed.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no
+/// loop that is being closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
   const bool closing =
@@ -440,7 +465,8 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+    return s->impulses.empty() && s->settling == 0 && s->limp() &&
+           std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 
@@ -453,7 +479,7 @@ double IslandStepper<T>::pose_energy() const {
     for (int i = 0; i < s->tree.bodies; ++i) {
       const Vec3<double> center =
           settings_.common_origin + s->problem.kinematics.center[i].template cast<double>();
-      sum -= double(s->tree.mass[i]) * gravity.dot(center);
+      sum += gravity_energy<double>(s->tree.mass[i], gravity, center);
     }
     for (const JointRow<T>& row : s->problem.rows)
       if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
@@ -581,7 +607,10 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
   indices_ = indices;
   couplings_ = couplings;
   choose_lagged(lagged);
-  free_share_.assign(states.size(), T(1));
+  trees_.clear();
+  for (CharacterState<T>* s : effects_.empty() ? std::span<CharacterState<T>* const>() : states)
+    trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
+                      s->steps_unchanged, s->contact_signature});
   total_ = {};
   all_converged_ = true;
   splits_ = parts_ = damped_ = held_ = 0;

@@ -4,10 +4,9 @@
 
 #include <vector>
 
-#include "sinew/character/bounce.h"
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/energy_ledger.h"
-#include "sinew/character/sweep.h"
+#include "sinew/effects/island_effect.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
@@ -19,10 +18,10 @@ class IslandStepper {
  public:
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return ContactFinder<T>::bytes(room) + Bounce<T>::bytes(room) + NewtonSolver<T>::bytes(room) +
-           room.contacts * sizeof(LaggedForce<T>);
-  }
+  std::size_t bytes(const SolveRoom& room) const;
+  /// Set-up, before reserve().
+  void declare(std::unique_ptr<IslandEffect<T>> effect) { effects_.push_back(std::move(effect)); }
+  void drop_last_effect() { effects_.pop_back(); }
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
@@ -56,6 +55,7 @@ class IslandStepper {
  private:
   int parts_of(T h) const;
   bool starts() const;
+  void limit_guess(T h);
   void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
   void begin_part(T h, T fraction);
@@ -103,9 +103,10 @@ class IslandStepper {
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;
   ContactFinder<T> finder_;
-  Bounce<T> bounce_;
+  std::vector<std::unique_ptr<IslandEffect<T>>> effects_;  ///< declared
+  std::vector<IslandTree<T>> trees_;                       ///< as these see them; empty where there are none
   EnergyLedger<T> ledger_;
-  std::vector<T> free_share_;  ///< [tree] see sweep()
+  std::vector<T> free_share_;  ///< [tree] see IslandEffect::limit_guess
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
 };

@@ -35,11 +35,8 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
   const Vec3<T> origin = s.target[0].translation;
   inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
                        p.force, p.moment);
-  for (const ExternalForce<T>& j : s.impulses) {
-    const Vec3<T> x = p.kinematics.origin[j.body] + p.kinematics.rotation[j.body] * j.local;
-    p.force[j.body] -= j.force / h;
-    p.moment[j.body] -= x.cross(j.force / h);
-  }
+  for (const ExternalForce<T>& j : s.impulses)
+    add_gradient<T>({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
   if (world.ground && world.ground_support && s.settings.ground_contact)
     share_support<T>(s.rig->support, p.kinematics.rotation, p.kinematics.origin,
                      T(world.ground_height) - origin.z(), {}, s.standing, p.force, p.moment);

@@ -186,6 +186,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
+  stream.value("steps since a push", s.settling);
   stream.value("energy ceiling", s.energy_ceiling);
   stream.value("stored energy", s.report.elastic_energy);
   visit_levels(s, stream);
@@ -277,7 +278,7 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
     }
   }
   const auto visit = [&](const char* name, auto visit_contact) {
-    ResidualCoder<T> coder(name, stream);
+    ResidualCoder<T> coder(name, stream, true);
     T before = T(0);
     for (LaggedForce<T>& contact : lagged) {
       auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here

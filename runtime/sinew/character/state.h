@@ -121,7 +121,7 @@ struct CharacterState {
 
   TreeProblem<T> problem;
   std::vector<std::unique_ptr<Effect<T>>> effects;  ///< declared for this tree, in the plan or not
-  Kinematics<T> guessed;  ///< at the guess a solve starts from, where continuous detection asks for it
+  Kinematics<T> guessed;                            ///< room, see IslandTree; and for snapshots
   History<T> history;
   Motion<T> motion;
   std::vector<StandingPoint<T>> standing;  ///< room for share_support
@@ -130,6 +130,7 @@ struct CharacterState {
   std::uint64_t contact_signature = 0;     ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;       ///< of the joint limits that bore
   int steps_unchanged = 0;
+  int settling = 0;  ///< steps in which bdf2's velocity has not quite taken in the last push yet
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;

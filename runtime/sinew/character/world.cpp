@@ -81,7 +81,8 @@ WorldMemory World<T>::Impl::memory() const {
   for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   const auto [most, small] = rooms_of_workers();
-  bytes.solving = IslandStepper<T>::bytes(most) + (workers.size() - 1) * IslandStepper<T>::bytes(small);
+  for (std::size_t n = 0; n < workers.size(); ++n)
+    bytes.solving += workers[n]->stepper.bytes(n == 0 ? most : small);
   bytes.solving += workers.size() * workers[0]->batch.bytes(batch_room);
   return bytes;
 }
@@ -219,36 +220,6 @@ void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velo
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
   s.reset_to_target(Vec3<T>::Zero());
-}
-
-template <class T>
-Status World<T>::Impl::add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect) {
-  if (!effect) return Status::error(Code::kInvalidArgument, "no effect");
-  if (Status status = effect->attach(state.skeleton, state.tree); !status) return status;
-  state.problem.plan(*effect);
-  state.effects.push_back(std::move(effect));
-  meet_surroundings();
-  return {};
-}
-
-template <class T>
-Status World<T>::add_effect(int character, std::unique_ptr<Effect<T>> effect) {
-  return impl_->add_effect(*impl_->states[impl_->characters[character]], std::move(effect));
-}
-
-template <class T>
-Status World<T>::add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect) {
-  return impl_->add_effect(*impl_->states[impl_->props[prop]], std::move(effect));
-}
-
-template <class T>
-void World<T>::remove_effects(int character) {
-  CharacterState<T>& s = *impl_->states[impl_->characters[character]];
-  s.problem.effects.clear();
-  s.problem.effect_rows.clear();
-  s.problem.stiff = false;
-  s.effects.clear();
-  s.levels.wake = true;
 }
 
 template <class T>

@@ -20,6 +20,7 @@
 #include "sinew/animation/clip.h"
 #include "sinew/character/level_of_detail.h"
 #include "sinew/effects/effect.h"
+#include "sinew/effects/island_effect.h"
 #include "sinew/effects/loop.h"
 #include "sinew/effects/particles.h"
 #include "sinew/optimizer/accuracy.h"
@@ -215,6 +216,14 @@ class World {
   Status add_effect(int character, std::unique_ptr<Effect<T>> effect);
   Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect);
   void remove_effects(int character);
+  /// Set-up: what acts on all that is solved together, by its type: declare<Restitution>(),
+  /// declare<ContinuousDetection>(). Without, nothing bounces, and what is fast may pass what is thin. Again
+  /// changes nothing.
+  template <template <class> class E>
+  Status declare() {
+    return declare([]() -> std::unique_ptr<IslandEffect<T>> { return std::make_unique<E<T>>(); });
+  }
+  Status declare(MakeIslandEffect<T> make);
 
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   void park_prop(int index);

@@ -53,6 +53,7 @@ struct World<T>::Impl {
   std::vector<HostObstacle> hosts;
   std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
   std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
   SolveRoom batch_room;  ///< of the largest rig that batches solve
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all

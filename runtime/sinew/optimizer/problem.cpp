@@ -9,38 +9,6 @@
 namespace sinew {
 
 template <class T>
-JointLaw<T>::JointLaw(const Tree<T>& tree, const Skeleton& skeleton) {
-  for (int i = 0; i < tree.bodies; ++i) {
-    const Joint& joint = skeleton.joints[i];
-    for (int k = 0; k < tree.dof_count(i); ++k) {
-      const DofLimits& dof = joint.dofs[k];
-      torque_minus.push_back(T(dof.torque_minus));
-      torque_plus.push_back(T(dof.torque_plus));
-      dry_friction.push_back(joint.type == JointType::kFree ? T(0) : T(dof.dry_friction));
-      damping.push_back(T(dof.damping));
-      lower.push_back(T(dof.lower));
-      upper.push_back(T(dof.upper));
-    }
-    swing_limit.push_back(joint.type == JointType::kBall ? T(joint.swing_limit) : T(-1));
-    swing_axis.push_back(joint.swing_axis.cast<T>());
-    twist_lower.push_back(T(joint.twist_lower));
-    twist_upper.push_back(T(joint.twist_upper));
-    ellipsoidal.push_back(joint.ellipsoidal_limit);
-  }
-}
-
-template <class T>
-T JointLaw<T>::load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
-  const auto share = [&](int n) {
-    const T most = limit(n, torque[n]);
-    return most > T(0) && std::isfinite(most) ? std::abs(torque[n]) / most : T(0);
-  };
-  if (!ellipsoidal[body]) return share(dof);
-  const int first = tree.first_dof[body];
-  return Vec3<T>(share(first), share(first + 1), share(first + 2)).norm();
-}
-
-template <class T>
 TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
     : tree(&t),
       law(t, skeleton),
@@ -83,12 +51,8 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
   forward_kinematics<T>(tree, p.local, p.common_origin, p.kinematics);
   double energy = inertial_energy<T>(settings, p);
-  for (const ExternalForce<T>& push : p.pushes) {
-    const Vec3<T> x = p.kinematics.origin[push.body] + p.kinematics.rotation[push.body] * push.local;
-    energy -= double(push.force.dot(x));
-    p.force[push.body] -= push.force;
-    p.moment[push.body] -= x.cross(push.force);
-  }
+  for (const ExternalForce<T>& push : p.pushes)
+    energy += add_gradient<T>(push, p.kinematics, {p.force, p.moment});
   measure_joint_rows(settings, p);
   if (!p.effects.empty()) {
     for (const Effect<T>* effect : p.effects)
@@ -119,10 +83,7 @@ void finish_gradient(TreeProblem<T>& p) {
 template <class T>
 void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& p) {
   inertial_composite<T>(p);
-  for (const ExternalForce<T>& push : p.pushes) {
-    const Vec3<T> x = p.kinematics.origin[push.body] + p.kinematics.rotation[push.body] * push.local;
-    p.composite[push.body].add_force(x, -push.force);
-  }
+  for (const ExternalForce<T>& push : p.pushes) add_curvature<T>(push, p.kinematics, p.composite);
   if (p.effects.empty()) return;
   if (p.stiff) std::fill(p.stiffness.begin(), p.stiffness.end(), SpatialStiffness<T>{});
   p.stiff = false;

@@ -8,47 +8,16 @@
 
 #include "sinew/effects/contact.h"
 #include "sinew/effects/effect.h"
+#include "sinew/effects/impulse.h"
 #include "sinew/muscle/ellipsoid_row.h"
 #include "sinew/muscle/joint_coordinates.h"
+#include "sinew/muscle/joint_law.h"
 #include "sinew/muscle/joint_rows.h"
-#include "sinew/muscle/muscle_side.h"
 #include "sinew/optimizer/scheme.h"
 #include "sinew/optimizer/solve_room.h"
 #include "sinew/residual/composite.h"
 
 namespace sinew {
-
-/// Limits and passive properties of a tree's joints, as the step needs them.
-template <class T>
-struct JointLaw {
-  std::vector<T> torque_minus, torque_plus;  ///< [dof] muscle limits now (strength applied), N·m
-  std::vector<T> dry_friction, damping;      ///< [dof] N·m, N·m·s/rad
-  std::vector<T> lower, upper;               ///< [dof] rad or m; |bound| ≥ 1e9: none
-  std::vector<T> swing_limit;                ///< [body] rad, < 0: none
-  std::vector<Vec3<T>> swing_axis;           ///< [body]
-  std::vector<T> twist_lower, twist_upper;   ///< [body]
-  std::vector<std::uint8_t> ellipsoidal;     ///< [body] 1: the three limits are an ellipsoid's half axes
-
-  JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
-  /// Muscle limit of a degree of freedom on the side of `torque`.
-  T limit(int dof, T torque) const { return on_side(torque, torque_minus[dof], torque_plus[dof]); }
-  /// Whether `torque` [dof] is more than the muscle of a degree of freedom can give. Cheaper than load().
-  bool overloaded(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
-    return ellipsoidal[body] ? load(tree, body, dof, torque) > T(1)
-                             : std::abs(torque[dof]) > limit(dof, torque[dof]);
-  }
-  /// Share of its limit that a muscle gives for `torque` [dof]; 0 where there is none. An ellipsoid's three
-  /// share one.
-  T load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const;
-};
-
-/// A force (N) on a material point of a body, constant over the step.
-template <class T>
-struct ExternalForce {
-  int body = 0;
-  Vec3<T> local = Vec3<T>::Zero();  ///< body axes
-  Vec3<T> force = Vec3<T>::Zero();  ///< world
-};
 
 /// Everything a solve knows and computes about one tree. Sized once.
 template <class T>
@@ -129,7 +98,6 @@ template <class T>
 void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& problem);
 
 #define SINEW_PROBLEM_INSTANCES(prefix, T)                                     \
-  prefix struct JointLaw<T>;                                                   \
   prefix struct TreeProblem<T>;                                                \
   prefix void measure_effect_rows<T>(const StepSettings<T>&, TreeProblem<T>&); \
   prefix double begin_evaluation<T>(const StepSettings<T>&, TreeProblem<T>&);  \

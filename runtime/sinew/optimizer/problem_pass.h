@@ -5,6 +5,7 @@
 
 #include <type_traits>
 
+#include "sinew/effects/gravity.h"
 #include "sinew/optimizer/problem.h"
 #include "sinew/residual/tree_pass.h"
 
@@ -41,8 +42,9 @@ auto inertial_energy(const StepSettings<Number<T>>& settings, Problem& p) {
     const T mass = T(tree.mass[i]);
     const Mat3<T> second = tree.second_moment[i].template cast<T>();
     const Mat3<T> turned = r - p.prediction.rotation[i];
-    energy += widened(T(T(0.5) * weight * mass * off.squaredNorm())) - widened(T(mass * gravity.dot(c)));
-    p.body_force[i] = (weight * mass) * off - mass * gravity;
+    energy +=
+        widened(T(T(0.5) * weight * mass * off.squaredNorm())) + widened(gravity_energy<T>(mass, gravity, c));
+    p.body_force[i] = (weight * mass) * off + gravity_gradient<T>(mass, gravity);
     if (p.prediction.scheme == Scheme::kMomentum) {
       if constexpr (std::is_arithmetic_v<T>) p.couple[i] = momentum_couple(settings, p, i);
     } else {

@@ -43,7 +43,7 @@ struct Collider {
   Vec3<double> size = Vec3<double>::Constant(0.05);  ///< sphere: x = radius; capsule: x = radius, z = half
                                                      ///< length of the segment; box: half extents
   double friction = 0.8;
-  double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'
+  double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'. See Restitution
 
   bool operator==(const Collider&) const = default;
 };

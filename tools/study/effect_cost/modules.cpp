@@ -2,8 +2,10 @@
 
 #include "sinew/effects/buoyancy.h"
 #include "sinew/effects/cloth.h"
+#include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/force_field.h"
 #include "sinew/effects/joint_spring.h"
+#include "sinew/effects/restitution.h"
 #include "sinew/effects/soft_tissue.h"
 #include "sinew/effects/strand.h"
 #include "sinew/effects/wind.h"
@@ -38,6 +40,12 @@ std::unique_ptr<Effect<float>> make_module(const std::string& name, const std::v
     return std::make_unique<ForceField<float>>(pull);
   }
   return nullptr;
+}
+
+bool declare_module(const std::string& name, World<float>& world) {
+  if (name == "restitution") return bool(world.declare<Restitution>());
+  if (name == "continuous_detection") return bool(world.declare<ContinuousDetection>());
+  return false;
 }
 
 namespace {

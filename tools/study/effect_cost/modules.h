@@ -12,6 +12,9 @@ namespace sinew::study {
 /// An effect of runtime/sinew/effects on the named joints, or null where the program has none of that name.
 std::unique_ptr<Effect<float>> make_module(const std::string& name, const std::vector<std::string>& joints);
 
+/// Declares what acts on whatever is solved together; false where the program has none of that name.
+bool declare_module(const std::string& name, World<float>& world);
+
 /// So many loops between the world's first character and the world; particles of a strand, rows of a strip of
 /// cloth, cells of a bar of soft tissue.
 Status add_ties(const std::string& name, int count, World<float>& world);

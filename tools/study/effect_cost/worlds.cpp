@@ -69,6 +69,7 @@ struct Checked : Work {
 struct Solved : Work {
   World<float> world;
   std::string effect;
+  std::vector<double> radii;  ///< [ball]
   std::size_t without = 0;
 
   Solved(const std::string& what, int instances) : world(settings(what)), effect(what) {
@@ -76,13 +77,15 @@ struct Solved : Work {
     without = world.memory().characters;
     if (effect == "prop" || effect == "resting_prop" || effect == "prop_contact") {
       for (int i = 0; i < instances; ++i) add_props(i);
-    } else if (effect == "restitution") {
-      for (int i = 0; i < kRods; ++i) add_ball(i, i < instances ? 0.5 : 0);
+    } else if (has_balls()) {
+      for (int i = 0; i < kRods; ++i) add_ball(i < instances);
+      if (effect == "continuous_detection") check(world.add_obstacle(plate()));
       without = world.memory().characters;
+      if (instances > 0 && !declare_module(effect, world)) unknown(effect);
     } else if (effect != "none") {
       check(add_ties(effect, instances, world));
     }
-    if (effect == "none" || effect == "restitution") return;
+    if (effect == "none" || has_balls()) return;
     for (int n = 0; n < kSettling; ++n) step();
   }
   static WorldSettings settings(const std::string& effect) {
@@ -121,19 +124,31 @@ struct Solved : Work {
     (void)world.add_prop(box, status);
     check(status);
   }
-  void add_ball(int i, double restitution) {
+  bool has_balls() const { return effect == "restitution" || effect == "continuous_detection"; }
+  /// One that bounces, or is small enough to pass the plate; the others do neither.
+  void add_ball(bool acted_on) {
     Status status;
     PropSettings ball;
-    ball.restitution = restitution;
-    ball.pose = place(i, 0.11);
+    if (effect == "restitution") ball.restitution = acted_on ? 0.5 : 0;
+    if (effect == "continuous_detection") ball.size.setConstant(acted_on ? 0.02 : 0.2);
+    radii.push_back(ball.size.x());
     (void)world.add_prop(ball, status);
     check(status);
   }
-  /// Balls drop onto the floor anew.
+  /// A thin one below all balls.
+  static Collider plate() {
+    Collider box;
+    box.shape = Shape::kBox;
+    box.size = {100, 100, 0.005};
+    return box;
+  }
+  /// Balls drop onto the floor anew, or fly along the plate.
   void prepare() override {
-    if (effect != "restitution") return;
+    if (!has_balls()) return;
+    const bool drop = effect == "restitution";
     for (int i = 0; i < world.prop_count(); ++i)
-      world.set_prop(i, place(i, 0.11).cast<float>(), {0, 0, -3}, Vec3<float>::Zero());
+      world.set_prop(i, place(i, radii[i] + 0.01).cast<float>(),
+                     drop ? Vec3<float>(0, 0, -3) : Vec3<float>(4, 0, 0), Vec3<float>::Zero());
   }
   void step() override { (void)world.step(kStep); }
   std::size_t bytes() const override { return world.memory().characters - without; }

@@ -119,10 +119,13 @@ struct PackPrediction {
 /// Limits of each lane; the rest is the rig's.
 template <class P>
 struct PackLaw {
+  static constexpr float kUnlimited = JointLaw<float>::kUnlimited;
+
   std::span<P> torque_minus, torque_plus;
   std::span<const float> dry_friction, damping, lower, upper, swing_limit, twist_lower, twist_upper;
   std::span<const Vec3<float>> swing_axis;
-  std::span<const std::uint8_t> ellipsoidal;
+
+  MaskOf<P> has_muscle(int dof) const { return either(torque_minus[dof] > P(0), torque_plus[dof] > P(0)); }
 };
 
 template <class P>
@@ -211,7 +214,6 @@ struct PackProblem {
     law.swing_axis = first.law.swing_axis;
     law.twist_lower = first.law.twist_lower;
     law.twist_upper = first.law.twist_upper;
-    law.ellipsoidal = first.law.ellipsoidal;
     // Lanes that nobody is in do as the first.
     const auto in = [&](int lane) -> const TreeProblem<float>& {
       return batch.problems[lane] ? *batch.problems[lane] : first;

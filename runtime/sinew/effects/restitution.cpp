@@ -1,9 +1,7 @@
-#include "sinew/character/bounce.h"
+#include "sinew/effects/restitution.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "sinew/character/energy_ledger.h"
 
 namespace sinew {
 namespace {
@@ -26,10 +24,21 @@ void pretend_flight(History<T>& history, const Vec3<T>& gravity, T h) {
   history.step_before = h;
 }
 
+/// Kinetic, potential and stored, J.
+template <class T>
+double energy(std::span<const IslandTree<T>> trees, const Vec3<double>& gravity) {
+  double sum = 0;
+  for (const IslandTree<T>& t : trees) {
+    const Totals now = totals<T>(*t.problem.tree, t.history, gravity);
+    sum += now.kinetic_energy + now.potential_energy + t.elastic_energy;
+  }
+  return sum;
+}
+
 }  // namespace
 
 template <class T>
-void Bounce<T>::reserve(const SolveRoom& room) {
+void Restitution<T>::reserve(const SolveRoom& room) {
   const int dofs = room.dofs;
   unknowns_.reserve(dofs);
   axes_.reserve(dofs, room.path_entries);
@@ -45,15 +54,14 @@ void Bounce<T>::reserve(const SolveRoom& room) {
 }
 
 template <class T>
-bool Bounce<T>::possible(std::span<const Contact<T>> contacts) {
+bool Restitution<T>::may_change_speeds(std::span<const Contact<T>> contacts) const {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact<T>& c) {
     return c.fresh && c.restitution > T(0) && c.gap < T(0) && c.approach > T(kSlowest);
   });
 }
 
 template <class T>
-void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
-                        const Vec3<double>& gravity, T h) {
+void Restitution<T>::collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h) {
   impacts_.clear();
   const T slowest = std::max(T(kSlowest), 2 * h * T(gravity.norm()));
   for (Contact<T>& c : contacts) {
@@ -64,8 +72,8 @@ void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<Co
     const T arrives = c.restitution * c.restitution *
                       std::max(c.approach * c.approach + 2 * pull * std::max(c.start_gap, T(0)), T(0));
     const T speed = std::sqrt(std::max(arrives - 2 * pull * c.gap, T(0)));
-    Vec3<T> parting = states[c.tree_a]->point_velocity(c.body_a, c.point);
-    if (c.tree_b >= 0) parting -= states[c.tree_b]->point_velocity(c.body_b, c.point);
+    Vec3<T> parting = trees[c.tree_a].point_velocity(c.body_a, c.point);
+    if (c.tree_b >= 0) parting -= trees[c.tree_b].point_velocity(c.body_b, c.point);
     const T left = parting.dot(c.normal);
     impacts_.push_back({&c, left, speed - left, T(0)});
   }
@@ -73,40 +81,40 @@ void Bounce<T>::collect(std::span<CharacterState<T>* const> states, std::span<Co
 
 /// Mass matrix over the unknowns at the present kinematics.
 template <class T>
-bool Bounce<T>::factorise(std::span<CharacterState<T>* const> states) {
+bool Restitution<T>::factorise(Trees trees) {
   unknowns_.clear();
   axes_.clear();
   first_.clear();
-  for (CharacterState<T>* s : states)
-    first_.push_back(append_unknowns<T>(s->tree, s->problem.free, unknowns_));
+  for (const IslandTree<T>& t : trees)
+    first_.push_back(append_unknowns<T>(*t.problem.tree, t.problem.free, unknowns_));
   mass_.set_zero();
-  for (std::size_t n = 0; n < states.size(); ++n) {
-    CharacterState<T>& s = *states[n];
-    const Kinematics<T>& k = s.problem.kinematics;
-    axes_.append(s.tree, k, unknowns_, first_[n]);
-    for (int i = 0; i < s.tree.bodies; ++i) {
-      s.problem.composite[i] = {};
-      s.problem.composite[i].add_body(s.tree.mass[i], k.center[i],
-                                      k.rotation[i] * s.tree.inertia[i] * k.rotation[i].transpose());
+  for (std::size_t n = 0; n < trees.size(); ++n) {
+    TreeProblem<T>& p = trees[n].problem;
+    const Tree<T>& tree = *p.tree;
+    const Kinematics<T>& k = p.kinematics;
+    axes_.append(tree, k, unknowns_, first_[n]);
+    for (int i = 0; i < tree.bodies; ++i) {
+      p.composite[i] = {};
+      p.composite[i].add_body(tree.mass[i], k.center[i],
+                              k.rotation[i] * tree.inertia[i] * k.rotation[i].transpose());
     }
-    assemble_tree_matrix<T>(s.tree, k, axes_, s.problem.composite, unknowns_, first_[n], false, mass_);
-    add_floor<T>(s.tree, k, s.problem.composite, unknowns_, first_[n], mass_);
+    assemble_tree_matrix<T>(tree, k, axes_, p.composite, unknowns_, first_[n], false, mass_);
+    add_floor<T>(tree, k, p.composite, unknowns_, first_[n], mass_);
   }
   return mass_.factorise();
 }
 
 /// Parting speed of a contact per unit of each unknown's speed.
 template <class T>
-void Bounce<T>::project(std::span<CharacterState<T>* const> states, const Contact<T>& c,
-                        std::span<T> row) const {
+void Restitution<T>::project(Trees trees, const Contact<T>& c, std::span<T> row) const {
   std::fill(row.begin(), row.end(), T(0));
   const auto side = [&](int n, int body, T sign) {
-    const CharacterState<T>& s = *states[n];
+    const TreeProblem<T>& p = trees[n].problem;
     const Vec3<T> moment = c.point.cross(c.normal);
-    for (int k = unknown_above<T>(s.tree, body, unknowns_, first_[n]); k >= 0;
+    for (int k = unknown_above<T>(*p.tree, body, unknowns_, first_[n]); k >= 0;
          k = unknowns_.pattern.parent[k]) {
       const int dof = unknowns_.dof[k];
-      row[k] += sign * (s.problem.kinematics.v[dof].dot(c.normal) + s.problem.kinematics.w[dof].dot(moment));
+      row[k] += sign * (p.kinematics.v[dof].dot(c.normal) + p.kinematics.w[dof].dot(moment));
     }
   };
   side(c.tree_a, c.body_a, T(1));
@@ -114,7 +122,7 @@ void Bounce<T>::project(std::span<CharacterState<T>* const> states, const Contac
 }
 
 template <class T>
-void Bounce<T>::solve_impulses() {
+void Restitution<T>::solve_impulses() {
   const std::size_t m = impacts_.size();
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < m; ++i) {
@@ -129,11 +137,11 @@ void Bounce<T>::solve_impulses() {
 /// whose implicit force would return nothing of it. The surface is let down to where the feature is, and
 /// comes back as for what begins inside something.
 template <class T>
-void Bounce<T>::unload(std::span<CharacterState<T>* const> states) {
+void Restitution<T>::unload(Trees trees) {
   for (const Impact& impact : impacts_) {
     if (!(impact.impulse > T(0))) continue;
     Contact<T>& c = *impact.contact;
-    states[c.tree_a]->report.elastic_energy -= double(stored_energy(c));
+    trees[c.tree_a].elastic_energy -= double(stored_energy(c));
     c.offset -= c.gap;
     c.gap = T(0);
   }
@@ -142,7 +150,7 @@ void Bounce<T>::unload(std::span<CharacterState<T>* const> states) {
 /// Largest share of the impulses whose work stays within `allowed` (J): with J v the speeds that are there,
 /// the work is s·pᵀJv + ½s²·pᵀJM⁻¹Jᵀp.
 template <class T>
-T Bounce<T>::affordable(double allowed) const {
+T Restitution<T>::affordable(double allowed) const {
   const std::size_t m = impacts_.size();
   double linear = 0, quadratic = 0;
   for (std::size_t i = 0; i < m; ++i) {
@@ -157,41 +165,42 @@ T Bounce<T>::affordable(double allowed) const {
 
 /// Adds changes of the unknowns' speeds to what a history carries of the bodies' motion.
 template <class T>
-void Bounce<T>::move(CharacterState<T>& s, int first) {
-  const Kinematics<T>& k = s.problem.kinematics;
-  turn_.assign(s.tree.bodies, Vec3<T>::Zero());
-  slide_.assign(s.tree.bodies, Vec3<T>::Zero());
-  for (int i = 0; i < s.tree.bodies; ++i) {
+void Restitution<T>::move(const IslandTree<T>& moved, int first) {
+  const Tree<T>& tree = *moved.problem.tree;
+  const Kinematics<T>& k = moved.problem.kinematics;
+  turn_.assign(tree.bodies, Vec3<T>::Zero());
+  slide_.assign(tree.bodies, Vec3<T>::Zero());
+  for (int i = 0; i < tree.bodies; ++i) {
     Vec3<T>&w = turn_[i], &v = slide_[i];
-    if (const int parent = s.tree.parent[i]; parent >= 0) {
+    if (const int parent = tree.parent[i]; parent >= 0) {
       w = turn_[parent];
       v = slide_[parent];
     }
-    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
+    for (int dof = tree.first_dof[i]; dof < tree.first_dof[i + 1]; ++dof) {
       const int unknown = unknowns_.of_dof[first + dof];
       if (unknown < 0) continue;
       w += change_[unknown] * k.w[dof];
       v += change_[unknown] * k.v[dof];
-      s.rate[i][dof - s.tree.first_dof[i]] += change_[unknown];
+      moved.rate[i][dof - tree.first_dof[i]] += change_[unknown];
     }
-    s.history.velocity[i] += v + w.cross(k.center[i]);
-    s.history.rotation_rate[i] += skew<T>(w) * k.rotation[i];
-    s.history.momentum[i] += k.rotation[i] * (s.tree.inertia[i] * (k.rotation[i].transpose() * w));
+    moved.history.velocity[i] += v + w.cross(k.center[i]);
+    moved.history.rotation_rate[i] += skew<T>(w) * k.rotation[i];
+    moved.history.momentum[i] += k.rotation[i] * (tree.inertia[i] * (k.rotation[i].transpose() * w));
   }
 }
 
 template <class T>
-bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
-                      const Vec3<double>& gravity, T h, double budget) {
-  collect(states, contacts, gravity, h);
-  if (impacts_.empty() || !factorise(states)) return false;
+bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity,
+                                   T h, double budget) {
+  collect(trees, contacts, gravity, h);
+  if (impacts_.empty() || !factorise(trees)) return false;
   const std::size_t m = impacts_.size(), n = unknowns_.pattern.size;
   rows_.assign(m * n, T(0));
   answers_.assign(m * n, T(0));
   delassus_.assign(m * m, T(0));
   for (std::size_t i = 0; i < m; ++i) {
     const std::span<T> row(rows_.data() + i * n, n), answer(answers_.data() + i * n, n);
-    project(states, *impacts_[i].contact, row);
+    project(trees, *impacts_[i].contact, row);
     std::copy(row.begin(), row.end(), answer.begin());
     mass_.solve(answer);
   }
@@ -199,26 +208,24 @@ bool Bounce<T>::apply(std::span<CharacterState<T>* const> states, std::span<Cont
     for (std::size_t j = 0; j < m; ++j)
       for (std::size_t k = 0; k < n; ++k) delassus_[i * m + j] += rows_[i * n + k] * answers_[j * n + k];
   solve_impulses();
-  unload(states);
-  const T share = affordable(budget - energy<T>(states, gravity));
+  unload(trees);
+  const T share = affordable(budget - energy<T>(trees, gravity));
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t k = 0; k < n; ++k) change_[k] += share * impacts_[i].impulse * answers_[i * n + k];
-  for (std::size_t t = 0; t < states.size(); ++t) {
-    CharacterState<T>& s = *states[t];
-    move(s, first_[t]);
-    s.steps_unchanged = 0;  // the velocities before are no guide to those after
-    if (s.tree.bodies == 1) {
-      pretend_flight<T>(s.history, gravity.template cast<T>(), h);
-      s.contact_signature = 0;
-      s.steps_unchanged = kTrusted;
-    }
-    s.report_totals(gravity);
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    const IslandTree<T>& tree = trees[t];
+    move(tree, first_[t]);
+    tree.steps_unchanged = 0;  // the velocities before are no guide to those after
+    if (tree.problem.tree->bodies > 1) continue;
+    pretend_flight<T>(tree.history, gravity.template cast<T>(), h);
+    tree.contact_signature = 0;
+    tree.steps_unchanged = kTrusted;
   }
   return true;
 }
 
-template class Bounce<float>;
-template class Bounce<double>;
+template class Restitution<float>;
+template class Restitution<double>;
 
 }  // namespace sinew

@@ -1,4 +1,4 @@
-#include "sinew/character/sweep.h"
+#include "sinew/effects/continuous_detection.h"
 
 #include <algorithm>
 
@@ -16,17 +16,17 @@ T safe_motion(const Contact<T>& c) {
 
 /// Whether the speeds at the beginning of the step can carry a contact's feature through the shape.
 template <class T>
-bool may_pass(std::span<CharacterState<T>* const> states, const Contact<T>& c, T h) {
+bool may_pass(std::span<const IslandTree<T>> trees, const Contact<T>& c, T h) {
   if (c.plane) return false;
-  Vec3<T> closing = states[c.tree_a]->point_velocity(c.body_a, c.point);
-  if (c.tree_b >= 0) closing -= states[c.tree_b]->point_velocity(c.body_b, c.point);
+  Vec3<T> closing = trees[c.tree_a].point_velocity(c.body_a, c.point);
+  if (c.tree_b >= 0) closing -= trees[c.tree_b].point_velocity(c.body_b, c.point);
   const T motion = h * closing.norm();
   return motion > safe_motion(c) && motion > c.gap;
 }
 
 /// Displacement of a body's material point by the guess.
 template <class T>
-Vec3<T> guessed_motion(const CharacterState<T>& s, int body, const Vec3<T>& point) {
+Vec3<T> guessed_motion(const IslandTree<T>& s, int body, const Vec3<T>& point) {
   const Kinematics<T>&now = s.problem.kinematics, &then = s.guessed;
   const Vec3<T> local = now.rotation[body].transpose() * (point - now.origin[body]);
   return then.origin[body] + then.rotation[body] * local - point;
@@ -34,11 +34,11 @@ Vec3<T> guessed_motion(const CharacterState<T>& s, int body, const Vec3<T>& poin
 
 /// Part of the relative motion until the feature touches, 1 if it does not.
 template <class T>
-T time_of_impact(std::span<CharacterState<T>* const> states, const Contact<T>& c) {
-  const CharacterState<T>& a = *states[c.tree_a];
-  const Kinematics<T>* b = c.tree_b < 0 ? nullptr : &states[c.tree_b]->problem.kinematics;
+T time_of_impact(std::span<const IslandTree<T>> trees, const Contact<T>& c) {
+  const IslandTree<T>& a = trees[c.tree_a];
+  const Kinematics<T>* b = c.tree_b < 0 ? nullptr : &trees[c.tree_b].problem.kinematics;
   Vec3<T> motion = guessed_motion(a, c.body_a, c.point);
-  if (b) motion -= guessed_motion(*states[c.tree_b], c.body_b, c.point);
+  if (b) motion -= guessed_motion(trees[c.tree_b], c.body_b, c.point);
   const T length = motion.norm();
   if (length <= safe_motion(c)) return T(1);
   // What touches already is held by its row, unless it is pushed right through.
@@ -58,25 +58,22 @@ T time_of_impact(std::span<CharacterState<T>* const> states, const Contact<T>& c
 }  // namespace
 
 template <class T>
-void sweep(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts, T h,
-           std::span<T> share) {
-  std::fill(share.begin(), share.end(), T(1));
+void ContinuousDetection<T>::limit_guess(Trees trees, std::span<const Contact<T>> contacts, T h,
+                                         std::span<T> share) {
   bool guessed = false;
   for (const Contact<T>& c : contacts) {
-    if (!may_pass(states, c, h)) continue;
+    if (!may_pass(trees, c, h)) continue;
     if (!guessed)
-      for (CharacterState<T>* s : states)
-        forward_kinematics<T>(s->tree, s->problem.local, s->problem.common_origin, s->guessed);
+      for (const IslandTree<T>& t : trees)
+        forward_kinematics<T>(*t.problem.tree, t.problem.local, t.problem.common_origin, t.guessed);
     guessed = true;
-    const T t = time_of_impact(states, c);
-    share[c.tree_a] = std::min(share[c.tree_a], t);
-    if (c.tree_b >= 0) share[c.tree_b] = std::min(share[c.tree_b], t);
+    const T free = time_of_impact(trees, c);
+    share[c.tree_a] = std::min(share[c.tree_a], free);
+    if (c.tree_b >= 0) share[c.tree_b] = std::min(share[c.tree_b], free);
   }
 }
 
-template void sweep<float>(std::span<CharacterState<float>* const>, std::span<const Contact<float>>, float,
-                           std::span<float>);
-template void sweep<double>(std::span<CharacterState<double>* const>, std::span<const Contact<double>>,
-                            double, std::span<double>);
+template class ContinuousDetection<float>;
+template class ContinuousDetection<double>;
 
 }  // namespace sinew

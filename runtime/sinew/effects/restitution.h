@@ -11,39 +11,38 @@
 #include <span>
 #include <vector>
 
-#include "sinew/character/state.h"
+#include "sinew/effects/island_effect.h"
 
 namespace sinew {
 
 template <class T>
-class Bounce {
+class Restitution final : public IslandEffect<T> {
  public:
-  void reserve(const SolveRoom& room);
-  /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return room.path_entries * 7 * sizeof(T) + room.dofs * ((2 * kMost + 2) * sizeof(T) + 8 * sizeof(int)) +
-           room.bodies * 2 * sizeof(Vec3<T>) + kMost * (sizeof(Impact) + kMost * sizeof(T));
+  using typename IslandEffect<T>::Trees;
+
+  void reserve(const SolveRoom& room) override;
+  std::size_t bytes(const SolveRoom& room) const override {
+    return sizeof *this + room.path_entries * 7 * sizeof(T) +
+           room.dofs * ((2 * kMost + 2) * sizeof(T) + 8 * sizeof(int)) + room.bodies * 2 * sizeof(Vec3<T>) +
+           kMost * (sizeof(Impact) + kMost * sizeof(T));
   }
 
   /// Whether any contact both bounces and closed in this step.
-  static bool possible(std::span<const Contact<T>> contacts);
-  /// Changes the velocities of the trees' histories where contacts closed in the step of h seconds that led
-  /// to the problems' kinematics. `budget` is the energy before that step. True if anything bounced. Costs
-  /// one tree solve per bouncing contact.
-  bool apply(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
-             const Vec3<double>& gravity, T h, double budget);
+  bool may_change_speeds(std::span<const Contact<T>> contacts) const override;
+  /// Costs one tree solve per bouncing contact.
+  bool change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h,
+                     double budget) override;
 
  private:
   static constexpr int kMost = 48;  ///< bouncing contacts of one step; more stay inelastic
 
-  void collect(std::span<CharacterState<T>* const> states, std::span<Contact<T>> contacts,
-               const Vec3<double>& gravity, T h);
-  bool factorise(std::span<CharacterState<T>* const> states);
-  void project(std::span<CharacterState<T>* const> states, const Contact<T>& contact, std::span<T> row) const;
+  void collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h);
+  bool factorise(Trees trees);
+  void project(Trees trees, const Contact<T>& contact, std::span<T> row) const;
   void solve_impulses();
-  void unload(std::span<CharacterState<T>* const> states);
+  void unload(Trees trees);
   T affordable(double allowed) const;
-  void move(CharacterState<T>& state, int first);
+  void move(const IslandTree<T>& moved, int first);
 
   struct Impact {
     Contact<T>* contact = nullptr;
@@ -63,7 +62,7 @@ class Bounce {
   std::vector<Vec3<T>> turn_, slide_;  ///< [body]
 };
 
-extern template class Bounce<float>;
-extern template class Bounce<double>;
+extern template class Restitution<float>;
+extern template class Restitution<double>;
 
 }  // namespace sinew

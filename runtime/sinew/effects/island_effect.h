@@ -1,0 +1,64 @@
+// What acts on everything that is solved together and is no energy of a pose: on the guess that a solve
+// starts from, or on the speeds that it left.
+//
+// Declared by its type, once for a world: World::declare<Restitution>(). Where nobody declares it, it is
+// neither called nor linked. Each worker has its own, which keeps nothing from one step to the next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sinew/optimizer/problem.h"
+
+namespace sinew {
+
+/// One tree of a solve.
+template <class T>
+struct IslandTree {
+  TreeProblem<T>& problem;
+  History<T>& history;
+  std::span<std::array<T, 6>> rate;  ///< [body] joint speeds over the last step
+  Kinematics<T>& guessed;            ///< room, for the pose that a solve starts from
+  double& elastic_energy;            ///< J, stored in contacts and joint limits
+  int& steps_unchanged;              ///< steps since contacts changed: few, and bdf2 is not used
+  std::uint64_t& contact_signature;  ///< of the contacts that touched after the last step
+
+  /// Velocity (m/s) of a body's material point, given from the common origin of the problem's kinematics.
+  Vec3<T> point_velocity(int body, const Vec3<T>& point) const {
+    const Mat3<T> spin = history.rotation_rate[body] * history.rotation[body].transpose();
+    return history.velocity[body] + spin * (point - problem.kinematics.center[body]);
+  }
+};
+
+template <class T>
+class IslandEffect {
+ public:
+  using Trees = std::span<const IslandTree<T>>;
+
+  virtual ~IslandEffect() = default;
+  /// Set-up: memory for what may be solved together. The only place to allocate.
+  virtual void reserve(const SolveRoom& room) = 0;
+  /// That reserve() takes.
+  virtual std::size_t bytes(const SolveRoom& room) const = 0;
+
+  /// Before a solve of h seconds: lowers `share` [tree], the part of the motion from `problem.start` to
+  /// `problem.local` that the solve may start with. Contacts and kinematics stand at the step's beginning.
+  virtual void limit_guess(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/, T /*h*/,
+                           std::span<T> /*share*/) {}
+  /// After a solve: whether change_speeds() has anything to look at.
+  virtual bool may_change_speeds(std::span<const Contact<T>> /*contacts*/) const { return false; }
+  /// Then: changes the histories' velocities, never to more energy than `budget` (J, before the step). True
+  /// if it did.
+  virtual bool change_speeds(Trees /*trees*/, std::span<Contact<T>> /*contacts*/,
+                             const Vec3<double>& /*gravity*/, T /*h*/, double /*budget*/) {
+    return false;
+  }
+};
+
+/// Makes one of its type; what World::declare takes.
+template <class T>
+using MakeIslandEffect = std::unique_ptr<IslandEffect<T>> (*)();
+
+}  // namespace sinew

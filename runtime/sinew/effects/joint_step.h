@@ -1,0 +1,62 @@
+// One joint within a step, as the effects see it that are energies of a joint's own freedom: muscle.h,
+// joint_damping.h, joint_limit.h. Each looks at the joint once and appends a row per degree of freedom that
+// it acts on; together they go from one degree of freedom to the next. Rows go to what has TreeProblem's
+// add_row(row, present).
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+#include <vector>
+
+#include "sinew/muscle/ellipsoid_row.h"
+#include "sinew/muscle/joint_coordinates_pass.h"
+#include "sinew/muscle/joint_law.h"
+#include "sinew/muscle/joint_rows.h"
+
+namespace sinew {
+
+/// T may be a pack of characters of one rig (pack.h), with a law that has a JointLaw's members.
+template <class T, class Law = JointLaw<T>>
+struct JointStep {
+  const Tree<Number<T>>& tree;
+  const Law& law;
+  int body = 0;
+  const Transform<T>&local, &target, &start;  ///< now, where muscles pull, when the step began
+  Number<T> h = 0;                            ///< s
+  Number<T> kink_width = 0;                   ///< rad: muscles and dry friction are rounded over it
+  Number<T> limit_stiffness = 0;              ///< N·m/rad
+  Number<T> limit_damping = 0;                ///< s
+
+  int first_dof() const { return tree.first_dof[body]; }
+  int dofs() const { return tree.dof_count(body); }
+  /// The first of a ball's or free joint's three rotations, within the joint; −1: it has none such.
+  int rotational() const {
+    return tree.type[body] == JointType::kBall ? 0 : (tree.type[body] == JointType::kFree ? 3 : -1);
+  }
+  /// Whether `is` holds for any of its degrees of freedom.
+  template <class Predicate>
+  bool any_dof(Predicate is) const {
+    for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof)
+      if (any(is(dof))) return true;
+    return false;
+  }
+  /// A row of the kth offset, with its value and gradient.
+  JointRow<T> row(const JointOffset<T>& offset, RowScalar scalar, int k) const {
+    const int rotations = rotational();
+    JointRow<T> row;
+    row.scalar = scalar;
+    row.component = k - std::max(rotations, 0);
+    row.value = offset.value[k];
+    if (rotations >= 0 && k >= rotations) {
+      row.dof = first_dof() + rotations;
+      row.count = 3;
+      for (int a = 0; a < 3; ++a) row.gradient[a] = offset.rotational(k - rotations, a);
+    } else {
+      row.dof = first_dof() + k;
+      row.gradient[0] = T(1);
+    }
+    return row;
+  }
+};
+
+}  // namespace sinew

@@ -1,0 +1,40 @@
+#include "sinew/muscle/joint_law.h"
+
+namespace sinew {
+
+template <class T>
+JointLaw<T>::JointLaw(const Tree<T>& tree, const Skeleton& skeleton) {
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Joint& joint = skeleton.joints[i];
+    for (int k = 0; k < tree.dof_count(i); ++k) {
+      const DofLimits& dof = joint.dofs[k];
+      torque_minus.push_back(T(dof.torque_minus));
+      torque_plus.push_back(T(dof.torque_plus));
+      dry_friction.push_back(joint.type == JointType::kFree ? T(0) : T(dof.dry_friction));
+      damping.push_back(T(dof.damping));
+      lower.push_back(T(dof.lower));
+      upper.push_back(T(dof.upper));
+    }
+    swing_limit.push_back(joint.type == JointType::kBall ? T(joint.swing_limit) : T(-1));
+    swing_axis.push_back(joint.swing_axis.cast<T>());
+    twist_lower.push_back(T(joint.twist_lower));
+    twist_upper.push_back(T(joint.twist_upper));
+    ellipsoidal.push_back(joint.ellipsoidal_limit);
+  }
+}
+
+template <class T>
+T JointLaw<T>::load(const Tree<T>& tree, int body, int dof, std::span<const T> torque) const {
+  const auto share = [&](int n) {
+    const T most = limit(n, torque[n]);
+    return most > T(0) && std::isfinite(most) ? std::abs(torque[n]) / most : T(0);
+  };
+  if (!ellipsoidal[body]) return share(dof);
+  const int first = tree.first_dof[body];
+  return Vec3<T>(share(first), share(first + 1), share(first + 2)).norm();
+}
+
+template struct JointLaw<float>;
+template struct JointLaw<double>;
+
+}  // namespace sinew
