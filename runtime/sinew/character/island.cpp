@@ -22,6 +22,7 @@ constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the 
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
+constexpr int kPassing = 30;    ///< steps after a tree was held
 constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 
 /// Whose step may be divided; else it is halved once where it must be.
@@ -143,6 +144,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.settling = s.impulses.empty() ? std::max(s.settling - 1, 0) : kSettling;
+  if (!is_held_[tree] && s.passing > 0) --s.passing;
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world.gravity);
@@ -166,6 +168,18 @@ void IslandStepper<T>::limit_guess(T h) {
   for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+}
+
+/// What may touch within h, but for what trees that were held are caught in.
+template <class T>
+void IslandStepper<T>::find_contacts(T h) {
+  contacts_ = finder_.find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  const auto passes = [&](const Contact<T>& c) {
+    const bool caught = c.tree_b >= 0 && c.offset > T(0);
+    return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
+  };
+  const auto rest = std::remove_if(contacts_.begin(), contacts_.end(), passes);
+  contacts_ = contacts_.first(static_cast<std::size_t>(rest - contacts_.begin()));
 }
 
 /// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
@@ -194,7 +208,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
-  contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  find_contacts(h);
 }
 
 /// Whether a limp body is about to strike something within h.
@@ -254,7 +268,7 @@ SolveReport IslandStepper<T>::attempt() {
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
       forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-    contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+    find_contacts(h);
     total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
   }
 }
@@ -379,7 +393,8 @@ void IslandStepper<T>::begin_couplings(T h) {
 }
 
 /// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
-/// the tree stays where it was, at rest.
+/// the tree stays where it was, at rest. If it is caught in another one, neither finds a side to part to: for
+/// half a second they pass.
 template <class T>
 void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
@@ -388,6 +403,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
+  s.passing = kPassing;
   predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;

@@ -58,6 +58,7 @@ class IslandStepper {
   void limit_guess(T h);
   void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
+  void find_contacts(T h);
   void begin_part(T h, T fraction);
   bool strikes(T h) const;
   void begin_solve();
