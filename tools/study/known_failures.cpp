@@ -13,15 +13,12 @@ struct KnownFailure {
   const char* why;
 };
 
-constexpr const char* kMissing = "not supported";
-
 constexpr KnownFailure kKnownFailures[] = {
     {"free_flight_1_rad_s", "float loses 0.3 % of its momentum in 480 steps of 1/240 s"},
     {"root_turned_by_pi", "float: 6 mrad; the limbs of a figure that turns as if rigid bear its swing"},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"limp_fall_counts", "more factorisations than the prototype"},
     {"ball_pile", "contact as stiff as the lighter body's weight asks"},
-    {"baked_limbs", kMissing},
     {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };
 

@@ -290,7 +290,7 @@ int World<T>::prop_count() const {
 
 template <class T>
 Transform<T> World<T>::prop_pose(int index) const {
-  return impl_->states[impl_->props[index]]->model[0];
+  return impl_->states[impl_->props[index]]->model()[0];
 }
 
 template <class T>
@@ -356,7 +356,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
     s->impulses.clear();
-    s->target_before = s->target;
+    s->target_stands = true;
     s->report.carried = s->carried;
   }
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "sinew/residual/residual_pass.h"
+#include "sinew/residual/motion_axes.h"
 
 namespace sinew {
 
@@ -16,13 +16,6 @@ Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
   for (int a = 0; a < 3; ++a)
     if (axes.eigenvalues()[a] > 1e-9 * axes.eigenvalues()[2]) inverse[a] = 1 / axes.eigenvalues()[a];
   return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
-}
-
-/// The two directions that a planar joint slides along.
-template <class T>
-void planar_axes(const Vec3<T>& normal, Vec3<T>& a, Vec3<T>& b) {
-  a = normal.unitOrthogonal();
-  b = normal.cross(a);
 }
 
 /// Columns: axes of a joint that do not move with its child, rest axes.
@@ -80,70 +73,6 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
   std::sort(by_depth.begin(), by_depth.end(),
             [&](int a, int b) { return depth[a] != depth[b] ? depth[a] < depth[b] : a < b; });
 }
-
-namespace {
-
-/// Motion axes of one joint at its present local transform.
-template <class T>
-void motion_axes(const Tree<T>& tree, int i, const Transform<T>& local, Kinematics<T>& k) {
-  const int first = tree.first_dof[i];
-  const Vec3<T>& o = k.origin[i];
-  const int p = tree.parent[i];
-  const auto turn = [&](int dof, const Vec3<T>& w) {
-    k.w[dof] = w;
-    k.v[dof] = o.cross(w);
-  };
-  const auto slide = [&](int dof, const Vec3<T>& v) {
-    k.w[dof].setZero();
-    k.v[dof] = v;
-  };
-  switch (tree.type[i]) {
-    case JointType::kFixed:
-      break;
-    case JointType::kRevolute:
-      turn(first, k.rotation[i] * tree.axis[i]);
-      break;
-    case JointType::kPrismatic:
-      slide(first, k.rotation[i] * tree.axis[i]);
-      break;
-    case JointType::kUniversal: {
-      // local = rest·exp(axis·q0)·exp(axis2·q1): the first axis turns with the parent side.
-      const Vec3<T> second = k.rotation[i] * tree.axis2[i];
-      const T q1 = twist_angle<T>(tree.rest[i].rotation.conjugate() * local.rotation, tree.axis2[i]);
-      turn(first, k.rotation[i] * (rotation_exp<T>(-q1 * tree.axis2[i]) * tree.axis[i]));
-      turn(first + 1, second);
-      break;
-    }
-    case JointType::kBall:
-      for (int a = 0; a < 3; ++a) turn(first + a, k.rotation[i].col(a));
-      break;
-    case JointType::kPlanar: {
-      const Mat3<T> frame =
-          (p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p]) * tree.rest[i].rotation.toRotationMatrix();
-      Vec3<T> a, b;
-      planar_axes(tree.axis[i], a, b);
-      slide(first, frame * a);
-      slide(first + 1, frame * b);
-      turn(first + 2, frame * tree.axis[i]);
-      break;
-    }
-    case JointType::kFree: {
-      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
-      for (int a = 0; a < 3; ++a) {
-        slide(first + a, frame.col(a));
-        turn(first + 3 + a, frame.col(a));
-      }
-      break;
-    }
-    case JointType::kTranslation: {
-      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
-      for (int a = 0; a < 3; ++a) slide(first + a, frame.col(a));
-      break;
-    }
-  }
-}
-
-}  // namespace
 
 template <class T>
 void forward_kinematics(const Tree<T>& tree, std::span<const Transform<T>> local,
@@ -214,37 +143,6 @@ void project_wrenches(const Tree<T>& tree, const Kinematics<T>& k, std::span<Vec
       force[p] += force[i];
       moment[p] += moment[i];
     }
-  }
-}
-
-template <class T>
-void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
-                       const Vec3<T>& common_origin, Kinematics<T>& k, Motion<T>& m, std::span<Vec3<T>> force,
-                       std::span<Vec3<T>> moment) {
-  for (int i = 0; i < tree.bodies; ++i) {
-    const int p = tree.parent[i];
-    const JointJet<T>& jet = jets[i];
-    BodyMotion<T>& body = m.body[i];
-    move_body<T>(tree, i, jet, gravity, p < 0 ? nullptr : &m.body[p], body);
-    if (p < 0) {
-      k.rotation[i] = body.turn;
-      k.origin[i] = jet.translation - common_origin;
-      m.origin_velocity[i] = jet.velocity;
-    } else {
-      const Mat3<T>& rp = k.rotation[p];
-      k.rotation[i].noalias() = rp * body.turn;
-      const Vec3<T> arm = rp * jet.translation;
-      k.origin[i] = k.origin[p] + arm;
-      m.origin_velocity[i] = m.origin_velocity[p] + m.omega[p].cross(arm) + rp * jet.velocity;
-    }
-    const Mat3<T>& r = k.rotation[i];
-    const Vec3<T> arm = r * tree.center_of_mass[i];
-    k.center[i] = k.origin[i] + arm;
-    m.omega[i] = r * body.omega;
-    m.velocity[i] = m.origin_velocity[i] + m.omega[i].cross(arm);
-    motion_axes(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
-    force[i] = r * body.force;
-    moment[i] = r * body.moment + k.origin[i].cross(force[i]);
   }
 }
 
