@@ -18,7 +18,6 @@ constexpr KnownFailure kKnownFailures[] = {
     {"root_turned_by_pi", "float: 6 mrad; the limbs of a figure that turns as if rigid bear its swing"},
     {"coplanar_contacts", "stiffness is per point, not per patch"},
     {"limp_fall_counts", "more factorisations than the prototype"},
-    {"ball_pile", "contact as stiff as the lighter body's weight asks"},
     {"piston", "limbs whip at 9 to 10 m/s between piston and wall; the fall alone makes 4.4"},
 };
 

@@ -16,7 +16,7 @@ constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
 /// second on all of it: in a figure that turns as if rigid, what swings is the turning.
 constexpr double kTooRigid = 1e-3, kLooseEnough = 1e-2;
 
-constexpr double kRounding = 1 - 1e-4;  ///< of speeds, and more
+constexpr double kSmall = 0.99;  ///< of speeds: a change that bdf2's history bears
 
 double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
@@ -28,16 +28,22 @@ double rounding(double energy, double kinetic) {
   return 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(energy) + kinetic);
 }
 
-/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, what is more than a
-/// rounding ends the history that bdf2 builds on.
+/// Scales a tree's motion relative to a rigid one.
+template <class T>
+void scale(CharacterState<T>& s, const RigidMotion& rigid, T factor) {
+  scale_relative<T>(s.tree, rigid, factor, s.history);
+  for (std::array<T, 6>& rate : s.rate)
+    for (T& r : rate) r *= factor;
+}
+
+/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, much of a change
+/// ends the history that bdf2 builds on.
 template <class T>
 void slow(CharacterState<T>& s, double factor, bool about_center) {
   RigidMotion kept;
   if (about_center) kept.velocity = s.report.momentum / s.total_mass;
-  scale_relative<T>(s.tree, kept, T(factor), s.history);
-  for (std::array<T, 6>& rate : s.rate)
-    for (T& r : rate) r *= T(factor);
-  if (factor > kRounding || s.report.contacts == 0) return;
+  scale(s, kept, T(factor));
+  if (factor > kSmall || s.report.contacts == 0) return;
   s.history.step_before = T(0);
   s.steps_unchanged = 0;
 }
@@ -111,7 +117,7 @@ void keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity, double be
   if (!(loose > 0)) return;
   const double wanted = std::min(loose, 1.0) * missing / rigid.relative_energy;
   const double share = std::clamp(wanted, -kMostTaken, kMostGiven);
-  scale_relative<T>(s.tree, rigid, T(std::sqrt(1 + share)), s.history);
+  scale(s, rigid, T(std::sqrt(1 + share)));
   s.report_totals(gravity);
 }
 

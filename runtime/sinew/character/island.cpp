@@ -432,8 +432,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
-    const bool inside = c.gap < T(0) || (c.gap == T(0) && c.offset > T(0));  // 0: unloaded by a bounce
-    if (inside) lagged_.push_back({c.id, normal_force(c), c.stiffness, c.offset});
+    const T force = normal_force(c);
+    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
+    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });

@@ -279,7 +279,7 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
     }
   }
   const auto visit = [&](const char* name, auto visit_contact) {
-    ResidualCoder<T> coder(name, stream);
+    ResidualCoder<T> coder(name, stream, true);
     T before = T(0);
     for (LaggedForce<T>& contact : lagged) {
       auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here

@@ -244,6 +244,7 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
   }
   history.scheme = prediction.scheme;
   history.step_before = h;
+  history.scaled = {};
 }
 
 template <class T>
@@ -264,6 +265,7 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
   }
   history.scheme = Scheme::kBdf2;
   history.step_before = h;
+  history.scaled = {};
 }
 
 template <class T>
@@ -311,19 +313,17 @@ RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const T
 
 template <class T>
 void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, History<T>& history) {
-  const Vec3<T> center = rigid.center.template cast<T>(), velocity = rigid.velocity.template cast<T>(),
-                spin = rigid.spin.template cast<T>();
+  history.scaled = {rigid.center.template cast<T>(), rigid.velocity.template cast<T>(),
+                    rigid.spin.template cast<T>(), factor};
   for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> shared = velocity + spin.cross(history.center[i] - center);
-    const Vec3<T> faster = (factor - 1) * (history.velocity[i] - shared);
-    const Vec3<T> carried = world_inertia(tree, history, i) * spin;
+    const Vec3<T> faster = history.scaled.faster(history.center[i], history.velocity[i]);
+    const Vec3<T> carried = world_inertia(tree, history, i) * history.scaled.spin;
     const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - carried);
     history.velocity[i] += faster;
     history.velocity_before[i] += faster;
     history.momentum[i] += stronger;
     history.momentum_before[i] += stronger;
-    Mat3<T>& rate = history.rotation_rate[i];
-    rate += (factor - 1) * (rate - skew<T>(spin) * history.rotation[i]);
+    history.rotation_rate[i] += history.scaled.faster(history.rotation[i], history.rotation_rate[i]);
   }
 }
 

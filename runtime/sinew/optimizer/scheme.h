@@ -20,6 +20,24 @@
 
 namespace sinew {
 
+/// How the motion of a step was scaled after it was solved (scale_relative): what is relative to a rigid
+/// motion, by `factor`. Kept for snapshots, which go by it.
+template <class T>
+struct RelativeScaling {
+  Vec3<T> center = Vec3<T>::Zero(), velocity = Vec3<T>::Zero();  ///< m, m/s
+  Vec3<T> spin = Vec3<T>::Zero();                                ///< rad/s
+  T factor = T(1);
+
+  /// What the velocity of a point at x gains.
+  Vec3<T> faster(const Vec3<T>& x, const Vec3<T>& v) const {
+    return (factor - 1) * (v - (velocity + spin.cross(x - center)));
+  }
+  /// What the rate of a rotation gains.
+  Mat3<T> faster(const Mat3<T>& rotation, const Mat3<T>& rate) const {
+    return (factor - 1) * (rate - skew<T>(spin) * rotation);
+  }
+};
+
 /// Present and previous state of every body. Positions are relative to `place`, which follows the root in
 /// double precision: float keeps its digits however far from the world's origin a character is.
 template <class T>
@@ -31,6 +49,7 @@ struct History {
   std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
   std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
   Scheme scheme = Scheme::kBdf2;                   ///< that led here
+  RelativeScaling<T> scaled;                       ///< of the last step; factor 1: not
   T step_before = T(0);                            ///< s between before and now; 0: no earlier state
 
   explicit History(int bodies);
