@@ -200,17 +200,20 @@ Verdict animation_cut(const Trial& t) {
   return v;
 }
 
-/// Stands, with weak hands and feet, and is struck at an elbow or a knee every third of a second.
+/// Stands, with weakened hands and feet, and is struck at an elbow or a knee every third of a second.
 template <class T>
 struct Struck {
   Stage<T> stage{WorldSettings{}};
   Skeleton body = humanoid();
+  std::vector<int> limbs;
   int strike = 0;
 
   explicit Struck(bool bake) {
     stage.add(body, {});
-    for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"})
-      stage.character(0).set_strength(body.find(name), T(0.1));
+    for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) {
+      limbs.push_back(body.find(name));
+      stage.character(0).set_strength(limbs.back(), T(0.3));
+    }
     CharacterDetail detail;
     detail.bake = bake;
     stage.character(0).set_detail(detail);
@@ -219,7 +222,7 @@ struct Struck {
     const char* const struck[] = {"forearm_r", "shin_l", "forearm_l", "shin_r"};
     const int joint = body.find(struck[strike % 4]);
     const Vec3<double> at = stage.character(0).model()[joint].translation.template cast<double>();
-    if (strikes) stage.push(0, joint, at, {strike++ % 2 == 0 ? 15.0 : -15.0, 6, 0});
+    if (strikes) stage.push(0, joint, at, {strike++ % 2 == 0 ? 30.0 : -30.0, 12, 0});
     stage.step(h);
   }
 };
@@ -241,15 +244,17 @@ Verdict baked_limbs(const Trial& t) {
     }
     hottest_dynamic = std::max(hottest_dynamic, dynamic.stage.kinetic());
     hottest_baked = std::max(hottest_baked, baked.stage.kinetic());
-    solved_dynamic += one.report().unknown_dofs;
-    solved_baked += two.report().unknown_dofs;
+    for (const int limb : dynamic.limbs) {
+      solved_dynamic += one.unknown()[one.first_dof(limb)];
+      solved_baked += two.unknown()[two.first_dof(limb)];
+    }
   }
   Verdict v(baked.stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
   v.at_most("pose off that of the always dynamic one, rms (deg)", std::sqrt(squares / terms) * 180 / kPi, 3);
   v.at_most("most kinetic energy, of the always dynamic one's", hottest_baked / hottest_dynamic, 1.01);
-  v.at_most("degrees of freedom solved, of the always dynamic one's", double(solved_baked) / solved_dynamic,
-            0.9);
+  v.at_most("steps in which limbs are solved for, of the always dynamic one's",
+            double(solved_baked) / solved_dynamic, 0.9);
   return v;
 }
 

@@ -11,7 +11,6 @@ constexpr int kOverSteps = 2;          ///< above the limit before somebody is c
 constexpr int kUnderSteps = 30;        ///< well below it before a cap is taken off
 constexpr double kWellBelow = 0.75;    ///< of the limit
 constexpr double kAim = 0.85;          ///< of the limit, that capping and raising keep to
-constexpr double kSaturated = 0.99;    ///< of its limit: a muscle that gave all it has
 constexpr float kPartialShare = 0.6f;  ///< of a full solve's cost, that one with baked limbs takes
 /// rad (or m) and rad/s off the animation, from which the way back leads without asking the muscles: within a
 /// step they would make less than 0.5° of difference
@@ -65,11 +64,7 @@ void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const bool driven = s.joint_is_driven(i);
     s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
-    T load = T(0);
-    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
-      load = std::max(load, s.load[dof]);
-    // A muscle that was strong enough keeps to its way back, as it would where it is solved for.
-    if (!s.baked[i] || (driven && load < T(kSaturated))) continue;
+    if (!s.baked[i] || driven) continue;
     std::array<T, 6> moved{};
     for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
     s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
