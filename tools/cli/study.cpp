@@ -58,6 +58,7 @@ convert::Error StabilityCommand::run() const {
   const auto print = [&](const study::StabilityResult& result) {
     if (json_output) return;
     std::fputs(study::stability_table(result).c_str(), stdout);
+    if (!only.empty()) std::printf("%s\n", study::set_up_of(result.hard_case).c_str());
     std::fflush(stdout);
   };
   const auto results =

@@ -10,6 +10,7 @@
 
 #include "convert/roles.h"
 #include "scene/effect_registry.h"
+#include "scene/figure.h"
 #include "scene/presets.h"
 #include "scene/reader.h"
 #include "scene/ties.h"
@@ -18,6 +19,8 @@ namespace sinew::scene {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kRadians = 3.14159265358979323846 / 180;  ///< of a degree
 
 RootDrive drive_of(const json& v, const std::string& where) {
   const std::string text = v.is_string() ? v.get<std::string>() : "";
@@ -33,9 +36,12 @@ double strength_of(const json& v, const std::string& where) {
   return s;
 }
 
+/// [[time, value], …], or one value for good.
 template <class Value, class Convert>
 Timeline<Value> timeline(const Reader& in, const char* key, Timeline<Value> otherwise, Convert convert) {
   if (!in.has(key)) return otherwise;
+  const json& lone = in.at(key);
+  if (!lone.is_array() || (!lone.empty() && !lone[0].is_array())) return {{0, convert(lone, in.inside(key))}};
   Timeline<Value> out;
   const json& list = in.list(key);
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -49,31 +55,63 @@ Timeline<Value> timeline(const Reader& in, const char* key, Timeline<Value> othe
   return out;
 }
 
-Shape shape_of(const Reader& in) {
-  const std::string shape = in.text("shape", "sphere");
-  if (shape == "sphere") return Shape::kSphere;
-  if (shape == "capsule") return Shape::kCapsule;
-  if (shape == "box") return Shape::kBox;
-  fail(in.inside("shape"), "unknown shape '" + shape + "'");
-}
-
-SceneCharacter read_character(const json& value, const std::string& where,
-                              const std::filesystem::path& base) {
-  const Reader in(value, where,
-                  {"asset", "name", "position", "yaw_deg", "clips", "strength", "group_strength", "root",
-                   "root_force", "root_torque", "ground_contact", "self_collision", "options"});
-  SceneCharacter c;
+/// A file, or a skeleton that the scene describes itself.
+std::shared_ptr<const Asset> read_asset(const Reader& in, const std::filesystem::path& base) {
+  auto asset = std::make_shared<Asset>();
+  if (in.has("figure")) {
+    if (in.has("asset")) fail(in.inside("figure"), "there is an asset too");
+    asset->skeleton = read_figure(in.at("figure"), in.inside("figure"));
+    return asset;
+  }
   if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
   std::filesystem::path path = in.at("asset").get<std::string>();
   if (path.is_relative()) path = base / path;
-  auto asset = std::make_shared<Asset>();
   json report;
   if (convert::Error error =
           convert::open_any(path.string(), in.has("options") ? in.at("options") : json(), *asset, report))
     fail(in.inside("asset"), error.message);
+  return asset;
+}
+
+/// How a character without clips moves, and how fast it is at first.
+void read_motion(const Reader& in, const Skeleton& skeleton, SceneCharacter& c) {
+  c.path = timeline<Vec3<double>>(in, "path", {}, Reader::vector_of);
+  c.turn_rate = timeline<double>(in, "turn_rate", {}, Reader::number_of);
+  const auto named = [&](const char* key, const auto& take) {
+    if (!in.has(key)) return;
+    if (!in.at(key).is_object()) fail(in.inside(key), "expected joints and what they do");
+    std::vector<const char*> joints;
+    for (const auto& [name, v] : in.at(key).items()) joints.push_back(name.c_str());
+    const Reader entry(in.at(key), in.inside(key), joints);
+    for (const char* name : joints) take(entry, name, joint_of(skeleton, name, entry.inside(name)));
+  };
+  named("pose", [&](const Reader& entry, const char* name, int joint) {
+    c.pose.emplace_back(joint, timeline<Vec3<double>>(entry, name, {}, Reader::vector_of));
+  });
+  if (!c.clips.empty() && !(c.path.empty() && c.turn_rate.empty() && c.pose.empty()))
+    fail(in.inside("clips"), "a character that plays clips has no path, turn_rate or pose");
+  named("spin", [&](const Reader& entry, const char* name, int joint) {
+    c.speeds.spin.emplace_back(joint, entry.vector(name, Vec3<double>::Zero()));
+  });
+  c.speeds.velocity = in.vector("velocity", c.speeds.velocity);
+  if (in.has("random_spin")) {
+    const Reader random(in.at("random_spin"), in.inside("random_spin"), {"rms", "seed"});
+    c.speeds.random = random.time("rms", 1);
+    c.speeds.seed = static_cast<unsigned>(random.count("seed", 1, 0, 1000000));
+  }
+}
+
+SceneCharacter read_character(const json& value, const std::string& where,
+                              const std::filesystem::path& base) {
+  const Reader in(value, where, {"asset",      "figure",      "name",           "position",       "yaw_deg",
+                                 "clips",      "path",        "turn_rate",      "pose",           "velocity",
+                                 "spin",       "random_spin", "strength",       "group_strength", "root",
+                                 "root_force", "root_torque", "ground_contact", "self_collision", "options"});
+  SceneCharacter c;
+  const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
   c.position = in.vector("position", c.position);
-  c.yaw = in.number("yaw_deg", 0) * 3.14159265358979323846 / 180;
+  c.yaw = in.number("yaw_deg", 0) * kRadians;
   const json& clips = in.list("clips");
   for (std::size_t i = 0; i < clips.size(); ++i) {
     const Reader use(clips[i], in.item("clips", i),
@@ -97,6 +135,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
       fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);
   }
+  read_motion(in, asset->skeleton, c);
   c.strength = timeline<double>(in, "strength", c.strength, strength_of);
   const json& groups = in.list("group_strength");
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -117,23 +156,24 @@ SceneCharacter read_character(const json& value, const std::string& where,
 }
 
 int character_of(const Scene& scene, const Reader& in, const char* key) {
+  if (scene.characters.empty()) fail(in.inside(key), "the scene has no character");
   return in.has(key) ? character_named(scene, in.at(key), in.inside(key)) : 0;
 }
 
 SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
-  const Reader in(
-      value, where,
-      {"name", "shape", "size", "mass", "friction", "position", "velocity", "launch_time", "throw_at"});
+  const Reader in(value, where,
+                  {"name", "shape", "size", "mass", "friction", "restitution", "position", "velocity",
+                   "angular_velocity", "launch_time", "throw_at"});
   SceneProp p;
   p.name = in.text("name", "ball");
   p.settings.shape = shape_of(in);
-  p.settings.size = in.has("size") && in.at("size").is_number()
-                        ? Vec3<double>(Vec3<double>::Constant(in.positive("size", 0.1)))
-                        : in.vector("size", p.settings.size);
+  p.settings.size = size_of(in, p.settings.size);
   p.settings.mass = in.positive("mass", 1);
   p.settings.friction = in.time("friction", p.settings.friction);
+  p.settings.restitution = in.time("restitution", p.settings.restitution);
   p.settings.pose.translation = in.vector("position", {0, 0, 1});
   p.settings.velocity = in.vector("velocity", p.settings.velocity);
+  p.settings.angular_velocity = in.vector("angular_velocity", p.settings.angular_velocity);
   p.launch_time = in.time("launch_time", 0);
   if (in.has("throw_at")) {
     const Reader at(in.at("throw_at"), in.inside("throw_at"),
@@ -146,6 +186,22 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
     p.launch_time = at.time("time", 0);
   }
   return p;
+}
+
+Push read_push(const json& value, const std::string& where, const Scene& scene) {
+  const Reader p(value, where,
+                 {"time", "duration", "every", "character", "joint", "point", "impulse", "force"});
+  Push push;
+  push.time = p.time("time", 0);
+  push.duration = p.time("duration", 0);
+  push.every = p.time("every", 0);
+  push.point = p.vector("point", push.point);
+  push.character = character_of(scene, p, "character");
+  push.joint =
+      joint_of(scene.characters[push.character].asset->skeleton, p.text("joint", "chest"), p.inside("joint"));
+  push.impulse = p.vector("impulse", push.impulse);
+  push.force = timeline<Vec3<double>>(p, "force", {}, Reader::vector_of);
+  return push;
 }
 
 /// "game", or an object whose "preset" the other keys change.
@@ -201,10 +257,11 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   const json& characters = in.list("characters");
   for (std::size_t i = 0; i < characters.size(); ++i)
     s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
-  if (s.characters.empty()) fail("characters", "the scene has no character");
   const json& props = in.list("props");
   for (std::size_t i = 0; i < props.size(); ++i)
     s.props.push_back(read_prop(props[i], in.item("props", i), s));
+  if (s.characters.empty() && s.props.empty())
+    fail("characters", "the scene has neither characters nor props");
   const json& loops = in.list("loops");
   for (std::size_t i = 0; i < loops.size(); ++i)
     s.loops.push_back(read_loop(loops[i], in.item("loops", i), s));
@@ -213,28 +270,19 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
     s.particles.push_back(read_particles(particles[i], in.item("particles", i), s));
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const Reader o(obstacles[i], in.item("obstacles", i), {"shape", "size", "position", "friction"});
+    const Reader o(obstacles[i], in.item("obstacles", i),
+                   {"shape", "size", "position", "yaw_deg", "friction"});
     Collider c;
     c.shape = shape_of(o);
-    c.size = o.vector("size", c.size);
+    c.size = size_of(o, c.size);
     c.local.translation = o.vector("position", Vec3<double>::Zero());
+    c.local.rotation = Eigen::AngleAxisd(o.number("yaw_deg", 0) * kRadians, Vec3<double>::UnitZ());
     c.friction = o.time("friction", 0.8);
     s.obstacles.push_back(c);
   }
   const json& pushes = in.list("pushes");
-  for (std::size_t i = 0; i < pushes.size(); ++i) {
-    const Reader p(pushes[i], in.item("pushes", i),
-                   {"time", "duration", "character", "joint", "point", "impulse"});
-    Push push;
-    push.time = p.time("time", 0);
-    push.duration = p.time("duration", 0);
-    push.point = p.vector("point", push.point);
-    push.character = character_of(s, p, "character");
-    push.joint =
-        joint_of(s.characters[push.character].asset->skeleton, p.text("joint", "chest"), p.inside("joint"));
-    push.impulse = p.vector("impulse", push.impulse);
-    s.pushes.push_back(push);
-  }
+  for (std::size_t i = 0; i < pushes.size(); ++i)
+    s.pushes.push_back(read_push(pushes[i], in.item("pushes", i), s));
   s.captions = timeline<std::string>(in, "captions", {}, [](const json& v, const std::string& w) {
     if (!v.is_string()) fail(w, "expected a text");
     return v.get<std::string>();
@@ -245,9 +293,10 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
     s.camera.target = c.vector("target", s.camera.target.cast<double>()).cast<float>();
     s.camera.vertical_fov_deg = static_cast<float>(c.positive("fov_deg", 32));
     s.camera.frame_automatically = c.flag("frame_automatically", !c.has("eye"));
-    s.camera.follow_character = c.flag("follow", false) ? 0 : -1;
+    s.camera.follow_character = c.flag("follow", false) && !s.characters.empty() ? 0 : -1;
   }
   declare_effects(in, registry, s);
+  if (in.has("plot") && s.characters.empty()) fail("plot", "the scene has no character");
   if (in.has("plot"))
     s.plotted_joint = joint_of(s.characters[0].asset->skeleton, in.text("plot", ""), "plot");
   return s;

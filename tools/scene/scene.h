@@ -11,12 +11,11 @@
 
 #include "convert/convert.h"
 #include "scene/recording.h"
+#include "scene/start.h"
+#include "scene/timeline.h"
 #include "sinew/character/world.h"
 
 namespace sinew::scene {
-
-template <class Value>
-using Timeline = std::vector<std::pair<double, Value>>;  ///< (time, value), times rising
 
 struct ClipUse {
   int clip = 0;
@@ -33,6 +32,12 @@ struct SceneCharacter {
   Vec3<double> position = Vec3<double>::Zero();
   double yaw = 0;  ///< rad
   std::vector<ClipUse> clips;
+  // What it does without clips: stands at `position`, or goes along `path`, turning from `yaw` on; all joined
+  // by straight lines.
+  Timeline<Vec3<double>> path;                               ///< m; a jump where a time stands twice
+  Timeline<double> turn_rate;                                ///< about the vertical, rad/s
+  std::vector<std::pair<int, Timeline<Vec3<double>>>> pose;  ///< joints' rotation vectors from rest, rad
+  StartSpeeds speeds;
   Timeline<double> strength{{0, 1}};
   /// Further factors for the subtrees below joints, parents first; a subtree's own factor replaces that of a
   /// larger one around it.
@@ -53,9 +58,11 @@ struct SceneProp {
 
 struct Push {
   double time = 0, duration = 0;  ///< s; 0: within one step
+  double every = 0;               ///< s after which it comes again; 0: once
   int character = 0, joint = 0;
   Vec3<double> point = Vec3<double>::Zero();    ///< m, in the joint's axes
   Vec3<double> impulse = Vec3<double>::Zero();  ///< N·s in total, world
+  Timeline<Vec3<double>> force;  ///< N, world, from its first to its last time; instead of all of the above
 };
 
 /// An effect of the runtime that acts on some characters and props, each of which gets its own.

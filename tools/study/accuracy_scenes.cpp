@@ -2,10 +2,10 @@
 #include <cmath>
 #include <memory>
 
+#include "scene/humanoid.h"
 #include "sinew/animation/sampling_job.h"
 #include "study/accuracy.h"
 #include "study/bodies.h"
-#include "study/humanoid.h"
 #include "study/mannequin.h"
 
 namespace sinew::study {

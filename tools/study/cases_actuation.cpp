@@ -3,63 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A driven box: follows its jets whatever it takes.
-template <class T>
-struct DrivenBox {
-  std::vector<JointJet<T>> jets;
-  int index = -1;
-
-  DrivenBox(Stage<T>& stage, const Vec3<double>& size, const Vec3<double>& at,
-            const Vec3<double>& velocity = Vec3<double>::Zero()) {
-    const Skeleton body = box_body(1000, size, 1);
-    jets = rest_jets<T>(body);
-    jets[0].translation = at.template cast<T>();
-    jets[0].velocity = velocity.template cast<T>();
-    CharacterSettings driven;
-    driven.ground_contact = false;
-    index = stage.add(body, driven, jets);
-  }
-  void move(Stage<T>& stage, const Vec3<double>& to, const Vec3<double>& velocity, double yaw = 0,
-            double rate = 0) {
-    jets[0].translation = to.template cast<T>();
-    jets[0].velocity = velocity.template cast<T>();
-    jets[0].rotation = Quat<T>(Eigen::AngleAxis<T>(T(yaw), Vec3<T>::UnitZ()));
-    jets[0].omega = Vec3<T>(0, 0, T(rate));
-    stage.character(index).set_target(jets);
-  }
-};
-
 template <class T>
 Verdict piston(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  stage.add_obstacle(obstacle_box({1.5, 0, 1}, {0.5, 2, 1}));  // face at x = 1
-  add_thrown_humanoid(stage, 0, 0, 1);
-  // Pushes from behind towards the wall until 1 cm is left, waits, goes back.
-  DrivenBox<T> box(stage, {0.2, 2, 2}, {-0.6, 0, 1});
-  const double reach = 0.99 - 0.1, start = -0.6, there = reach - start;
+  Stage<T> stage(t.scene);
   double fastest = 0;
   std::vector<Vec3<T>> last;
-  stage.run(2 * there + 3, t.h, [&](double time) {
+  stage.run(t.scene.duration, t.h, [&](double) {
     const auto model = stage.character(0).model();
     if (!last.empty())
       for (std::size_t i = 0; i < last.size(); ++i)
         fastest = std::max(fastest, double((model[i].translation - last[i]).norm()) / t.h);
     last.clear();
     for (const Transform<T>& joint : model) last.push_back(joint.translation);
-    const double now = time + t.h;
-    const double way = now < there ? now : now < there + 1 ? there : std::max(0.0, 2 * there + 1 - now);
-    const double speed = now < there ? 1 : now < there + 1 ? 0 : now < 2 * there + 1 ? -1 : 0;
-    box.move(stage, {start + way, 0, 1}, {speed, 0, 0});
   });
   Verdict v(stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
@@ -81,26 +44,13 @@ double level(const Vec3<double>& way) {
 
 template <class T>
 Verdict moving_platform(const Trial& t) {
-  WorldSettings settings;
-  settings.ground = false;
-  Stage<T> stage(settings);
-  DrivenBox<T> platform(stage, {6, 6, 0.2}, {0, 0, -0.1}, {5, 0, 0});
-  const Skeleton body = box_body(5, {0.4, 0.4, 0.1}, 1);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].translation = Vec3<T>(0, 0, T(0.05));
-  jets[0].velocity = Vec3<T>(5, 0, 0);
-  const int rider = stage.add(body, limp(), jets);
-  double x = 0, slip = 0, rise = 0;
-  const auto ride = [&](double speed, double seconds, const auto& after) {
-    stage.run(seconds, t.h, [&](double time) {
-      if (time > 0) after();
-      x += speed * t.h;
-      platform.move(stage, {x, 0, -0.1}, {speed, 0, 0});
-    });
-  };
-  ride(5, 2, [&] { slip = std::max(slip, level(riding_place(stage, platform.index, rider))); });
-  ride(0, 3, [&] { rise = std::max(rise, riding_place(stage, platform.index, rider).z() - 0.15); });
-  const double slid = riding_place(stage, platform.index, rider).x();
+  Stage<T> stage(t.scene);
+  constexpr int kPlatform = 0, kRider = 1;
+  double slip = 0, rise = 0;
+  stage.run(2, t.h, [&](double) { slip = std::max(slip, level(riding_place(stage, kPlatform, kRider))); });
+  stage.run(3, t.h,
+            [&](double) { rise = std::max(rise, riding_place(stage, kPlatform, kRider).z() - 0.15); });
+  const double slid = riding_place(stage, kPlatform, kRider).x();
   Verdict v(stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
   v.at_most("slip at constant speed (m)", slip, 0.01);
@@ -111,21 +61,10 @@ Verdict moving_platform(const Trial& t) {
 
 template <class T>
 Verdict turning_platform(const Trial& t) {
-  WorldSettings settings;
-  settings.ground = false;
-  Stage<T> stage(settings);
-  DrivenBox<T> platform(stage, {4, 4, 0.2}, {0, 0, -0.1});
-  const Skeleton body = box_body(5, {0.4, 0.4, 0.1}, 1);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].translation = Vec3<T>(T(0.5), 0, T(0.05));
-  const int rider = stage.add(body, limp(), jets);
+  Stage<T> stage(t.scene);  // up to 2 rad/s in a second: 2 m/s² outwards, a fifth of what friction holds
   double slip = 0;
-  stage.run(5, t.h, [&](double time) {
-    if (time > 0)
-      slip = std::max(slip, level(riding_place(stage, platform.index, rider) - Vec3<double>(0.5, 0, 0.15)));
-    // Up to 2 rad/s in a second: 2 m/s² outwards, a fifth of what friction holds.
-    const double now = time + t.h, yaw = now < 1 ? now * now : 1 + 2 * (now - 1);
-    platform.move(stage, {0, 0, -0.1}, Vec3<double>::Zero(), yaw, now < 1 ? 2 * now : 2);
+  stage.run(5, t.h, [&](double) {
+    slip = std::max(slip, level(riding_place(stage, 0, 1) - Vec3<double>(0.5, 0, 0.15)));
   });
   Verdict v(stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
@@ -137,10 +76,8 @@ Verdict turning_platform(const Trial& t) {
 /// how many steps its report says that it was carried.
 template <class T>
 double speed_after_jump(bool declared, const Trial& t, Measurement& measured, int& carried) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
-  stage.character(0).set_strength(body.find("upperarm_l"), T(0));  // a limp arm swings on
+  Stage<T> stage(t.scene);
+  const Skeleton& body = t.scene.characters[0].asset->skeleton;
   stage.run(1, t.h);
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
   jets[0].translation.x() += T(1000);
@@ -178,14 +115,9 @@ Verdict teleport(const Trial& t) {
 
 template <class T>
 Verdict animation_cut(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
+  Stage<T> stage(t.scene);
+  const int arm = t.scene.characters[0].asset->skeleton.find("upperarm_l");
   stage.run(0.5, t.h);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  const int arm = body.find("upperarm_l");
-  bend(body, jets, arm, {kPi, 0, 0});  // from hanging to upright in one frame
-  stage.character(0).set_target(jets);
   stage.forget();
   double torque = 0;
   stage.run(3, t.h, [&](double) {

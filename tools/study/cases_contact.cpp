@@ -2,39 +2,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 template <class T>
 Vec3<double> place(Stage<T>& stage, int character = 0) {
   return stage.character(character).model()[0].translation.template cast<double>();
 }
 
-/// Adds a body at a place with a velocity.
-template <class T>
-int add_at(Stage<T>& stage, const Skeleton& body, const Vec3<double>& at,
-           const Vec3<double>& velocity = Vec3<double>::Zero(),
-           const Quat<double>& turned = Quat<double>::Identity()) {
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].translation = at.template cast<T>();
-  jets[0].velocity = velocity.template cast<T>();
-  jets[0].rotation = turned.template cast<T>();
-  return stage.add(body, limp(), jets);
-}
-
 template <class T>
 Verdict foot_on_slope(const Trial& t) {
-  WorldSettings settings;
-  settings.gravity = 9.81 * Vec3<double>(std::sin(20 * kPi / 180), 0, -std::cos(20 * kPi / 180));
-  Stage<T> stage(settings);
-  add_at(stage, box_body(5, {0.26, 0.09, 0.06}, 0.5), {0, 0, 0.03});
+  Stage<T> stage(t.scene);
   stage.run(1, t.h);
   const double start = place(stage).x(), lasting = t.lasting(60, 10);
   stage.run(lasting, t.h);
@@ -46,8 +27,7 @@ Verdict foot_on_slope(const Trial& t) {
 
 template <class T>
 Verdict sliding_cube(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  add_at(stage, box_body(1, {0.1, 0.1, 0.1}, 0.5), {0, 0, 0.05}, {6, 0, 0});
+  Stage<T> stage(t.scene);
   double lift = 0;
   stage.run(3, t.h, [&](double) { lift = std::max(lift, place(stage).z() - 0.05); });
   Verdict v(stage.measured());
@@ -60,19 +40,11 @@ Verdict sliding_cube(const Trial& t) {
 
 template <class T>
 Verdict rolling_balls(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  add_at(stage, box_body(10, {4, 4, 0.2}, 0.4), {0, 0, 0.1});
-  const Skeleton ball = ball_body(1, 0.1, 1.6);  // with the plate's 0.4: 0.8
-  for (int row = 0; row < 5; ++row)
-    for (int column = 0; column < 5; ++column) add_at(stage, ball, {-1 + 0.5 * column, -1 + 0.5 * row, 0.3});
+  Stage<T> stage(t.scene);
   stage.run(0.5, t.h);
-  const Vec3<double> diagonal = Vec3<double>(1, 1, 0).normalized();
   const double seconds = 1;
   Vec3<double> plate_before = place(stage), ball_before = place(stage, 13);
-  stage.run(seconds, t.h, [&](double) {
-    stage.push(0, 0, place(stage), diagonal * 150 * t.h);
-    plate_before = place(stage), ball_before = place(stage, 13);
-  });
+  stage.run(seconds, t.h, [&](double) { plate_before = place(stage), ball_before = place(stage, 13); });
   // The plate drags on the floor under everything's weight; a ball without slip takes 2/7 of its
   // acceleration.
   const double a = (150 - 0.4 * 35 * 9.81) / (10 + 25 * 2.0 / 7);
@@ -88,21 +60,11 @@ Verdict rolling_balls(const Trial& t) {
 
 template <class T>
 Verdict hand_in_crease(const Trial& t) {
-  WorldSettings settings;
-  Stage<T> stage(settings);
-  for (const double side : {1.0, -1.0}) {  // two walls that meet at 60°
-    Collider wall = obstacle_box(Vec3<double>::Zero(), {1, 0.05, 1});
-    const Quat<double> turn(Eigen::AngleAxisd(side * kPi / 6, Vec3<double>::UnitZ()));
-    wall.local.rotation = turn;
-    wall.local.translation = turn * Vec3<double>(0.9, side * 0.05, 0);
-    stage.add_obstacle(wall);
-  }
-  add_at(stage, ball_body(1, 0.05), {0.3, 0.005, 0.06});
+  Stage<T> stage(t.scene);
   double squares = 0;
   int counted = 0;
   Vec3<double> before = place(stage);
   stage.run(6, t.h, [&](double time) {
-    stage.push(0, 0, place(stage), Vec3<double>(-20, 0, 0) * t.h);
     if (time > 3) squares += ((place(stage) - before) / t.h).squaredNorm(), ++counted;
     before = place(stage);
   });
@@ -114,11 +76,10 @@ Verdict hand_in_crease(const Trial& t) {
 
 template <class T>
 Verdict foot_at_an_edge(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  stage.add_obstacle(obstacle_box({0, 0, 0.5}, {0.5, 0.5, 0.5}));
-  add_at(stage, ball_body(1, 0.04), {0.4995, 0, 1.04});
+  Stage<T> stage(t.scene);
+  const Vec3<double> start = place(stage);
   stage.run(0.2, t.h);
-  const Vec3<double> moved = place(stage) - Vec3<double>(0.4995, 0, 1.04);
+  const Vec3<double> moved = place(stage) - start;
   Verdict v(stage.measured());
   v.general();
   v.at_most("lateral way over 1 % of g t^2/2", std::hypot(moved.x(), moved.y()), 0.01 * 9.81 * 0.04 / 2);
@@ -128,11 +89,7 @@ Verdict foot_at_an_edge(const Trial& t) {
 
 template <class T>
 Verdict coplanar_tiles(const Trial& t) {
-  WorldSettings settings;
-  settings.ground = false;
-  Stage<T> stage(settings);
-  for (int i = 0; i < 48; ++i) stage.add_obstacle(obstacle_box({0.25 * i, 0, -0.5}, {0.125, 0.5, 0.5}, 0.05));
-  add_at(stage, box_body(1, {0.2, 0.2, 0.1}, 0.05), {0.2, 0, 0.05}, {5, 0, 0});
+  Stage<T> stage(t.scene);
   double fastest = 0, before = 0.05;
   stage.run(2, t.h, [&](double time) {
     const double z = place(stage).z();
@@ -146,20 +103,14 @@ Verdict coplanar_tiles(const Trial& t) {
   return v;
 }
 
-/// A ball shot at a wall `thickness` thick whose near face is at x = 0; how far it ever got beyond that face.
+/// How far the ball got at most beyond the near face of the wall, which is at x = 0, m.
 template <class T>
-double beyond_wall(double radius, double mass, double speed, double thickness, const Trial& t,
-                   Measurement& measured) {
+double beyond_wall(const Trial& t, Measurement& measured) {
   double most = -1;
   for (const double start : {0.5, 0.73, 1.11, 2.0}) {  // so that frames fall differently on the impact
-    Stage<T> stage(weightless());
-    stage.add_obstacle(obstacle_box({thickness / 2, 0, 0}, {thickness / 2, 1, 1}));
-    PropSettings ball;
-    ball.mass = mass;
-    ball.size = Vec3<double>::Constant(radius);
-    ball.pose.translation = {-start, 0, 0};
-    ball.velocity = {speed, 0, 0};
-    stage.add_prop(ball);
+    scene::Scene scene = t.scene;
+    scene.props[0].settings.pose.translation.x() = -start;
+    Stage<T> stage(scene);
     stage.run(0.25, t.h);
     most = std::max(most, double(stage.world().prop_pose(0).translation.x()));
     measured.merge(stage.measured());
@@ -170,7 +121,7 @@ double beyond_wall(double radius, double mass, double speed, double thickness, c
 template <class T>
 Verdict thrown_at_thin_wall(const Trial& t) {
   Measurement measured;
-  const double beyond = beyond_wall<T>(0.05, 1, 40, 0.01, t, measured);
+  const double beyond = beyond_wall<T>(t, measured);
   Verdict v(measured);
   v.general();
   v.at_most("centre beyond the wall's face (m)", beyond, 0);
@@ -180,7 +131,7 @@ Verdict thrown_at_thin_wall(const Trial& t) {
 template <class T>
 Verdict bullet(const Trial& t) {
   Measurement measured;
-  const double beyond = beyond_wall<T>(0.005, 0.01, 900, 0.005, t, measured);
+  const double beyond = beyond_wall<T>(t, measured);
   Verdict v(measured);
   v.general();
   v.at_most("centre beyond the plate's face (m)", beyond, 0);
@@ -189,8 +140,7 @@ Verdict bullet(const Trial& t) {
 
 template <class T>
 Verdict spawned_in_floor(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  add_at(stage, box_body(5, {0.4, 0.4, 0.4}), {0, 0, 0});
+  Stage<T> stage(t.scene);
   double fastest = 0, before = 0;
   stage.run(4, t.h, [&](double) {
     fastest = std::max(fastest, (place(stage).z() - before) / t.h);
@@ -203,14 +153,12 @@ Verdict spawned_in_floor(const Trial& t) {
   return v;
 }
 
-/// Heights (m) that a ball of restitution `e` reaches after each bounce when dropped from `height`.
+/// Heights (m) that the scene's ball reaches after each bounce.
 template <class T>
-std::vector<double> bounces(double e, double height, double seconds, double h, Measurement& measured) {
-  Stage<T> stage(WorldSettings{});
-  PropSettings ball;
-  ball.restitution = e;
-  ball.pose.translation = {0, 0, height + ball.size.x()};
-  stage.add_prop(ball);
+std::vector<double> bounces(const scene::Scene& scene, double seconds, double h, Measurement& measured) {
+  Stage<T> stage(scene);
+  const PropSettings& ball = scene.props[0].settings;
+  const double height = ball.pose.translation.z() - ball.size.x();
   std::vector<double> tops;
   double before = height;
   bool fallen = false, rising = false;
@@ -227,7 +175,7 @@ std::vector<double> bounces(double e, double height, double seconds, double h, M
 template <class T>
 Verdict bounce_1(const Trial& t) {
   Measurement measured;
-  const std::vector<double> tops = bounces<T>(1, 5, 20, t.h, measured);
+  const std::vector<double> tops = bounces<T>(t.scene, 20, t.h, measured);
   Verdict v(measured);
   v.general();
   v.at_least("bounces in 20 s", double(tops.size()), 9);  // √(8·5/g) = 2.02 s each
@@ -241,7 +189,7 @@ Verdict bounce_1(const Trial& t) {
 template <class T>
 Verdict bounce_half(const Trial& t) {
   Measurement measured;
-  const std::vector<double> tops = bounces<T>(0.5, 1, 3, t.h, measured);
+  const std::vector<double> tops = bounces<T>(t.scene, 3, t.h, measured);
   Verdict v(measured);
   v.general();
   v.at_most("largest rise in a step (J)", v.measured().worst_rise, 1e-3);
@@ -253,16 +201,12 @@ Verdict bounce_half(const Trial& t) {
 template <class T>
 Verdict adjacent_limb_overlap(const Trial& t) {
   Measurement measured;
-  CharacterSettings touching = limp();
-  touching.self_collision = true;
   double moved = 0;
   for (unsigned seed = 0; seed <= (t.quick ? 2u : 10u); ++seed) {
-    Stage<T> stage(seed == 0 ? weightless() : WorldSettings{});
-    Skeleton body = humanoid();
-    make_frictionless(body);
-    std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    if (seed > 0) jets[0].translation.z() += T(0.5), randomise_speeds(body, jets, 3, seed);
-    stage.add(body, touching, jets);
+    scene::Scene scene = t.scene;
+    scene.characters[0].speeds.seed = seed;
+    if (seed == 0) scene.world = weightless(), scene.characters[0].speeds.random = 0;
+    Stage<T> stage(scene);
     const std::vector<Transform<T>> before(stage.character(0).model().begin(),
                                            stage.character(0).model().end());
     stage.run(2, t.h);
@@ -282,8 +226,9 @@ Verdict contact_on_and_off(const Trial& t) {
   Measurement measured;
   double fastest = 0;
   for (const T off : {std::nextafter(T(0.1), T(0)), T(0.1), std::nextafter(T(0.1), T(1))}) {
-    Stage<T> stage(WorldSettings{});
-    add_at(stage, ball_body(1, 0.1), {0, 0, double(off)});
+    scene::Scene scene = t.scene;
+    scene.characters[0].position.z() = double(off);
+    Stage<T> stage(scene);
     double before = double(off);
     stage.run(5, t.h, [&](double time) {
       if (time > 0.5) fastest = std::max(fastest, std::abs(place(stage).z() - before) / t.h);
@@ -300,14 +245,7 @@ Verdict contact_on_and_off(const Trial& t) {
 
 template <class T>
 Verdict painleve_rod(const Trial& t) {
-  Skeleton rod = free_body(1, {1.0 / 12, 1.0 / 12, 1e-4});
-  Collider& c = rod.colliders.emplace_back();
-  c.shape = Shape::kCapsule;
-  c.size = {0.01, 0.01, 0.5};
-  c.friction = 1.5;
-  Stage<T> stage(WorldSettings{});
-  const Quat<double> tilted(Eigen::AngleAxisd(-kPi / 4, Vec3<double>::UnitY()));
-  add_at(stage, rod, {0, 0, 0.5 * std::sqrt(0.5) + 0.01}, {5, 0, 0}, tilted);
+  Stage<T> stage(t.scene);
   stage.run(3, t.h);
   Verdict v(stage.measured());
   v.general();
@@ -320,10 +258,10 @@ Measurement limp_falls(const Trial& t, Scheme scheme) {
   Measurement measured;
   const int seeds = t.quick ? 6 : 40;
   for (int seed = 1; seed <= seeds; ++seed) {
-    WorldSettings settings;
-    settings.accuracy.scheme = scheme;
-    Stage<T> stage(settings);
-    add_thrown_humanoid(stage, 0.8, 3, static_cast<unsigned>(seed));
+    scene::Scene scene = t.scene;
+    scene.world.accuracy.scheme = scheme;
+    scene.characters[0].speeds.seed = static_cast<unsigned>(seed);
+    Stage<T> stage(scene);
     stage.run(3, t.h);
     measured.merge(stage.measured());
   }
@@ -453,16 +391,18 @@ std::vector<HardCase> contact_cases() {
        painleve_rod<float>,
        painleve_rod<double>},
       {"limp_fall_bdf1", "figure", "DESIGN section 3.1", "no energy gained from 1/240 to 1/15 s", every,
-       limp_fall<float, Scheme::kBdf1>, limp_fall<double, Scheme::kBdf1>},
+       limp_fall<float, Scheme::kBdf1>, limp_fall<double, Scheme::kBdf1>, "", "limp_fall"},
       {"limp_fall_bdf2", "figure", "DESIGN section 3.1", "no energy gained from 1/240 to 1/15 s", every,
-       limp_fall<float, Scheme::kBdf2>, limp_fall<double, Scheme::kBdf2>},
+       limp_fall<float, Scheme::kBdf2>, limp_fall<double, Scheme::kBdf2>, "", "limp_fall"},
       {"limp_fall_counts",
        "figure",
        "issue 3",
        "passes and factorisations of the prototype",
        {1.0 / 60, 1.0 / 30},
        limp_fall_counts<float>,
-       limp_fall_counts<double>},
+       limp_fall_counts<double>,
+       "",
+       "limp_fall"},
   };
 }
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <random>
 
+#include "scene/humanoid.h"
 #include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
-#include "study/humanoid.h"
 #include "study/random_trees.h"
 #include "study/soak.h"
 
@@ -32,9 +32,9 @@ bool same_bits(const std::vector<Transform<T>>& a, const std::vector<Transform<T
 /// A thrown figure's pose after a second and a half of steps of h, and whether every step that cannot be
 /// taken was refused in between where `disturbed`. Steps of 10 µs, the shortest, follow.
 template <class T>
-std::vector<Transform<T>> refusing(bool disturbed, double h, Measurement& measured, bool& refused) {
-  Stage<T> stage(WorldSettings{});
-  add_thrown_humanoid(stage, 0.5, 3, 1);
+std::vector<Transform<T>> refusing(const scene::Scene& scene, bool disturbed, double h, Measurement& measured,
+                                   bool& refused) {
+  Stage<T> stage(scene);
   stage.run(0.5, h);
   // 1 ns is refused, not gathered: what is left of it is the host's to add to its next step.
   if (disturbed)
@@ -52,8 +52,8 @@ template <class T>
 Verdict zero_negative_tiny_step(const Trial& t) {
   Measurement measured;
   bool refused = true;
-  const auto plain = refusing<T>(false, t.h, measured, refused);
-  const bool kept = same_bits(plain, refusing<T>(true, t.h, measured, refused));
+  const auto plain = refusing<T>(t.scene, false, t.h, measured, refused);
+  const bool kept = same_bits(plain, refusing<T>(t.scene, true, t.h, measured, refused));
   Verdict v(measured);
   v.require(refused, "a step that cannot be taken was taken");
   v.require(kept, "a refused step moved something");
@@ -65,8 +65,9 @@ template <class T>
 Verdict huge_step(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 5u : 20u); ++seed) {
-    Stage<T> stage(WorldSettings{});
-    add_thrown_humanoid(stage, 0.8, 3, seed);
+    scene::Scene scene = t.scene;
+    scene.characters[0].speeds.seed = seed;
+    Stage<T> stage(scene);
     stage.run(4, t.h);
     measured.merge(stage.measured());
   }
@@ -80,8 +81,9 @@ template <class T>
 Verdict random_steps(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 4u : 20u); ++seed) {
-    Stage<T> stage(WorldSettings{});
-    add_thrown_humanoid(stage, 0.8, 3, seed);
+    scene::Scene scene = t.scene;
+    scene.characters[0].speeds.seed = seed;
+    Stage<T> stage(scene);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> h(1.0 / 240, 1.0 / 20);
     for (double time = 0; time < 4;) {
@@ -98,13 +100,8 @@ Verdict random_steps(const Trial& t) {
 
 /// Two figures; `spoil` feeds the first one nonsense in every step. The second one's pose.
 template <class T, class Spoil>
-std::vector<Transform<T>> neighbour(double h, Measurement& measured, Spoil spoil) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].translation.x() = T(3);
-  stage.add(body, limp(), jets);
+std::vector<Transform<T>> neighbour(const scene::Scene& scene, double h, Measurement& measured, Spoil spoil) {
+  Stage<T> stage(scene);
   stage.run(2, h, [&](double) { spoil(stage); });
   measured.merge(stage.measured());
   return pose(stage, 1);
@@ -113,9 +110,9 @@ std::vector<Transform<T>> neighbour(double h, Measurement& measured, Spoil spoil
 template <class T>
 Verdict absurd_numbers(const Trial& t) {
   Measurement measured;
-  const auto plain = neighbour<T>(t.h, measured, [](Stage<T>&) {});
+  const auto plain = neighbour<T>(t.scene, t.h, measured, [](Stage<T>&) {});
   bool refused = true;
-  const auto spoilt = neighbour<T>(t.h, measured, [&](Stage<T>& stage) {
+  const auto spoilt = neighbour<T>(t.scene, t.h, measured, [&](Stage<T>& stage) {
     Character<T> c = stage.character(0);
     const T nan = std::numeric_limits<T>::quiet_NaN(), infinite = std::numeric_limits<T>::infinity();
     const T absurd = sizeof(T) == 8 ? T(1e300) : T(1e38);
@@ -159,9 +156,8 @@ Verdict denormal_speeds(const Trial& t) {
 
 template <class T>
 Verdict odd_quaternions(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
+  Stage<T> stage(t.scene);
+  const Skeleton& body = t.scene.characters[0].asset->skeleton;
   bool refused = true;
   for (const T norm : {T(1.1), T(1e-20), T(0)}) {
     std::vector<JointJet<T>> jets = rest_jets<T>(body);
@@ -178,15 +174,10 @@ Verdict odd_quaternions(const Trial& t) {
 
 /// Joints relative to the root after a second of limp flight that began `away` metres from the origin.
 template <class T>
-std::vector<Vec3<double>> flown_away(double away, double h, Measurement& measured) {
-  WorldSettings settings = weightless();
-  Stage<T> stage(settings);
-  Skeleton body = humanoid();
-  make_frictionless(body);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  randomise_speeds(body, jets, 2, 9);
-  jets[0].translation += Vec3<T>(T(away), T(away), T(0));
-  stage.add(body, limp(), jets);
+std::vector<Vec3<double>> flown_away(scene::Scene scene, double away, double h, Measurement& measured) {
+  scene.characters[0].position += Vec3<double>(away, away, 0);
+  Stage<T> stage(scene);
+  const Skeleton& body = scene.characters[0].asset->skeleton;
   stage.run(1, h);
   measured.merge(stage.measured());
   // Composed from the local transforms, so that only the motion counts, not how a place is rounded.
@@ -204,8 +195,8 @@ std::vector<Vec3<double>> flown_away(double away, double h, Measurement& measure
 template <class T, int kilometres>
 Verdict far_from_origin(const Trial& t) {
   Measurement measured;
-  const auto here = flown_away<T>(0, t.h, measured);
-  const auto there = flown_away<T>(1000.0 * kilometres, t.h, measured);
+  const auto here = flown_away<T>(t.scene, 0, t.h, measured);
+  const auto there = flown_away<T>(t.scene, 1000.0 * kilometres, t.h, measured);
   double apart = 0;
   for (std::size_t i = 0; i < here.size(); ++i) apart = std::max(apart, (here[i] - there[i]).norm());
   Verdict v(measured);
@@ -214,19 +205,13 @@ Verdict far_from_origin(const Trial& t) {
   return v;
 }
 
-/// A mixed scene of figures far apart; the pose of figure `asked`, whose place in the order is
-/// `order[asked]`.
+/// The scene's figures put into the world in another order; the pose of figure `asked`.
 template <class T>
-std::vector<Transform<T>> in_order(const std::array<int, 3>& order, int asked, double h,
+std::vector<Transform<T>> in_order(scene::Scene scene, const std::array<int, 3>& order, int asked, double h,
                                    Measurement& measured) {
-  Stage<T> stage(WorldSettings{});
-  for (const int who : order) {
-    Skeleton body = humanoid();
-    std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    jets[0].translation += Vec3<T>(T(10 * who), 0, T(0.3));
-    randomise_speeds(body, jets, 2, static_cast<unsigned>(who + 1));
-    stage.add(body, limp(), jets);
-  }
+  const std::vector<scene::SceneCharacter> cast = scene.characters;
+  for (std::size_t place = 0; place < order.size(); ++place) scene.characters[place] = cast[order[place]];
+  Stage<T> stage(scene);
   stage.run(2, h);
   measured.merge(stage.measured());
   return pose(stage, static_cast<int>(std::find(order.begin(), order.end(), asked) - order.begin()));
@@ -237,9 +222,9 @@ Verdict same_bits_in_any_order(const Trial& t) {
   Measurement measured;
   bool same = true;
   for (int who = 0; who < 3; ++who) {
-    const auto first = in_order<T>({0, 1, 2}, who, t.h, measured);
-    same = same && same_bits(first, in_order<T>({0, 1, 2}, who, t.h, measured));
-    same = same && same_bits(first, in_order<T>({2, 0, 1}, who, t.h, measured));
+    const auto first = in_order<T>(t.scene, {0, 1, 2}, who, t.h, measured);
+    same = same && same_bits(first, in_order<T>(t.scene, {0, 1, 2}, who, t.h, measured));
+    same = same && same_bits(first, in_order<T>(t.scene, {2, 0, 1}, who, t.h, measured));
   }
   Verdict v(measured);
   v.require(same, "bits depend on the run or the order of characters");
@@ -249,19 +234,13 @@ Verdict same_bits_in_any_order(const Trial& t) {
 /// A thrown figure and a ball, saved after two seconds, go on twice from there.
 template <class T>
 Verdict save_and_restore(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const int figure = add_thrown_humanoid(stage, 0.2, 2, 3);
-  PropSettings ball;
-  ball.size.setConstant(0.15);
-  ball.mass = 5;
-  ball.pose.translation = {0, 0, 3};
-  stage.add_prop(ball);
+  Stage<T> stage(t.scene);
   stage.run(2, t.h);
   std::vector<std::byte> saved(stage.world().snapshot_capacity());
   const std::size_t size = stage.world().save(saved);
   const auto go_on = [&] {
     stage.run(600 * t.h, t.h);
-    const auto model = stage.character(figure).model();
+    const auto model = stage.character(0).model();
     return std::vector<Transform<T>>(model.begin(), model.end());
   };
   const auto first = go_on();
@@ -276,13 +255,14 @@ Verdict save_and_restore(const Trial& t) {
 
 /// A limp figure's pose after a second in the air, in steps of h that are cut into `substeps` parts.
 template <class T>
-std::vector<Transform<T>> flown_in_parts(double h, int substeps, Measurement& measured, bool& counted) {
-  WorldSettings settings = weightless();
-  settings.accuracy.substeps = substeps;
-  settings.accuracy.start_parts = 1;  // to compare like with like
-  if (sizeof(T) == 8) settings.accuracy.tolerance = 1e-7;
-  Stage<T> stage(settings);
-  add_thrown_humanoid(stage, 0, 2, 3);
+std::vector<Transform<T>> flown_in_parts(scene::Scene scene, double h, int substeps, Measurement& measured,
+                                         bool& counted) {
+  Accuracy& accuracy = scene.world.accuracy = {};
+  accuracy.substeps = substeps;
+  accuracy.start_parts = 1;  // to compare like with like
+  if (sizeof(T) == 8) accuracy.tolerance = 1e-7;
+  scene.characters[0].speeds.random = 2;
+  Stage<T> stage(scene);
   stage.run(1, h, [&](double time) {
     if (time > 0) counted = counted && stage.character(0).report().substeps == substeps;
   });
@@ -309,8 +289,8 @@ template <class T>
 Verdict substeps(const Trial& t) {
   Measurement measured;
   bool counted = true;
-  const auto parts = flown_in_parts<T>(t.h, 4, measured, counted);
-  const auto steps = flown_in_parts<T>(t.h / 4, 1, measured, counted);
+  const auto parts = flown_in_parts<T>(t.scene, t.h, 4, measured, counted);
+  const auto steps = flown_in_parts<T>(t.scene, t.h / 4, 1, measured, counted);
   double apart = 0;
   for (std::size_t i = 0; i < parts.size(); ++i)
     apart = std::max(apart, double((parts[i].translation - steps[i].translation).norm()));
@@ -327,10 +307,11 @@ template <class T>
 Verdict momentum_scheme(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 3u : 20u); ++seed) {
-    WorldSettings settings;
-    settings.accuracy.scheme = Scheme::kMomentum;
-    Stage<T> stage(settings);
-    add_thrown_humanoid(stage, 0.8, 2, seed);
+    scene::Scene scene = t.scene;
+    scene.world.accuracy.scheme = Scheme::kMomentum;
+    scene.characters[0].speeds.random = 2;
+    scene.characters[0].speeds.seed = seed;
+    Stage<T> stage(scene);
     stage.run(3, t.h);
     measured.merge(stage.measured());
   }
@@ -375,14 +356,18 @@ std::vector<HardCase> input_cases() {
        "finite, no energy gained",
        {1.0 / 10, 1.0 / 5},
        huge_step<float>,
-       huge_step<double>},
+       huge_step<double>,
+       "",
+       "limp_fall"},
       {"random_steps",
        "57",
        "bepuphysics2#46; liquidfun#86",
        "h anew in [1/240, 1/20] s every frame",
        {1.0 / 60},
        random_steps<float>,
-       random_steps<double>},
+       random_steps<double>,
+       "",
+       "limp_fall"},
       {"absurd_numbers",
        "58",
        "drake#19322",
@@ -410,14 +395,18 @@ std::vector<HardCase> input_cases() {
        "pose as at the origin to 0.1 mm",
        {1.0 / 60},
        far_from_origin<float, 10>,
-       far_from_origin<double, 10>},
+       far_from_origin<double, 10>,
+       "",
+       "far_from_origin"},
       {"100_km_from_origin",
        "61",
        "bepuphysics2#13",
        "pose as at the origin to 0.1 mm",
        {1.0 / 60},
        far_from_origin<float, 100>,
-       far_from_origin<double, 100>},
+       far_from_origin<double, 100>,
+       "",
+       "far_from_origin"},
       {"same_bits_in_any_order",
        "63",
        "Jolt PhysicsDeterminismTests",
@@ -452,14 +441,18 @@ std::vector<HardCase> input_cases() {
        "the talk's literal residual: no energy gained",
        {1.0 / 60},
        momentum_scheme<float>,
-       momentum_scheme<double>},
+       momentum_scheme<double>,
+       "",
+       "limp_fall"},
       {"substeps",
        "figure",
        "issue 3",
        "n parts as n steps; automatic by rotation; counted",
        {1.0 / 60},
        substeps<float>,
-       substeps<double>},
+       substeps<double>,
+       "",
+       "free_flight"},
   };
 }
 

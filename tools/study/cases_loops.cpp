@@ -14,28 +14,6 @@ using V = Vec3<double>;
 
 constexpr double kClosure = 5e-4;  ///< m
 
-/// The benchmarks' gravity is along −y, without a floor.
-WorldSettings benchmark() {
-  WorldSettings settings;
-  settings.ground = false;
-  settings.gravity = {0, -9.81, 0};
-  return settings;
-}
-
-/// Ties a point of a body to where it is in the world at the reference pose.
-template <class T>
-void tie(Stage<T>& stage, const Linkage& linkage, LoopKind kind, int body, const V& point,
-         const V& axis = V::UnitZ()) {
-  LoopSettings loop;
-  loop.kind = kind;
-  loop.a = linkage.anchor(body, point);
-  loop.b.frame.translation = point;
-  loop.a.frame.rotation = loop.b.frame.rotation = Quat<double>::FromTwoVectors(V::UnitZ(), axis);
-  Status status;
-  stage.world().add_loop(loop, status);
-  if (!status) stage.refuse(status.reason);
-}
-
 /// Largest gap and force of the first `count` loops now.
 template <class T>
 double widest_gap(Stage<T>& stage, int count) {
@@ -50,26 +28,9 @@ double largest_force(Stage<T>& stage, int count) {
   return force;
 }
 
-/// Five bars of square section 0.1 m, the sixth hinge closes the loop (assets of IFToMM/UDC benchmark A04).
-Linkage bricard() {
-  Linkage l;
-  const V ends[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
-  const V axes[] = {V::UnitY(), V::UnitZ(), V::UnitX(), V::UnitY(), V::UnitZ()};
-  for (int n = 0; n < 5; ++n) {
-    const V along = ends[n + 1] - ends[n];
-    const V size = V::Constant(0.1) + 0.9 * along.cwiseAbs();
-    const Mat3<double> inertia = box_inertia(1, size).asDiagonal();
-    l.add(n - 1, JointType::kRevolute, ends[n], axes[n], 1, ends[n] + along / 2, inertia);
-  }
-  return l;
-}
-
 template <class T>
 Verdict bricard_loop(const Trial& t) {
-  const Linkage linkage = bricard();
-  Stage<T> stage(benchmark());
-  stage.add(linkage.skeleton, limp());
-  tie(stage, linkage, LoopKind::kHinge, 4, {0, 0, 1}, V::UnitX());
+  Stage<T> stage(t.scene);
   double gap = 0, furthest = 0;
   const V start = stage.character(0).model()[1].template cast<double>() * V(0, -1, 0);
   stage.run(t.lasting(10, 3), t.h, [&](double) {
@@ -84,7 +45,8 @@ Verdict bricard_loop(const Trial& t) {
   return v;
 }
 
-/// N windows of 1 m bars side by side, upright; rockers after the first close a loop with the ground.
+/// The scene's windows of 1 m bars side by side, upright, continued; rockers after the first close a loop
+/// with the ground.
 Linkage four_bars(int windows) {
   Linkage l;
   int rocker = l.add_rod(-1, JointType::kRevolute, {0, 0, 0}, {0, 1, 0}, V::UnitZ(), 1);
@@ -96,6 +58,23 @@ Linkage four_bars(int windows) {
   return l;
 }
 
+void continue_windows(scene::Scene& scene, int windows) {
+  const Linkage linkage = four_bars(windows);
+  scene::SceneCharacter& bars = scene.characters[0];
+  skeleton_of(scene) = linkage.skeleton;
+  bars.speeds.spin.clear();
+  for (int i = 0; i < linkage.skeleton.body_count; ++i)
+    bars.speeds.spin.emplace_back(i, V(0, 0, i % 2 == 0 ? -1 : 1));
+  scene.loops.clear();
+  for (int n = 1; n <= windows; ++n) {
+    LoopSettings loop;
+    loop.kind = LoopKind::kPoint;
+    loop.a = linkage.anchor(2 * n, {double(n), 0, 0});
+    loop.b.frame.translation = {double(n), 0, 0};
+    scene.loops.push_back(loop);
+  }
+}
+
 template <class T>
 Verdict n_four_bar(const Trial& t) {
   Measurement measured;
@@ -103,12 +82,9 @@ Verdict n_four_bar(const Trial& t) {
   for (const int windows : {2, 40}) {
     // A float's digits do not reach along 81 bars to closures of 0.1 mm: 3 % of such steps do not converge.
     if (sizeof(T) == sizeof(float) && windows > 2) continue;
-    const Linkage linkage = four_bars(windows);
-    Stage<T> stage(benchmark());
-    std::vector<JointJet<T>> jets = rest_jets<T>(linkage.skeleton);
-    for (std::size_t i = 0; i < jets.size(); ++i) jets[i].omega = {0, 0, T(i % 2 == 0 ? -1 : 1)};
-    stage.add(linkage.skeleton, limp(), jets);
-    for (int n = 1; n <= windows; ++n) tie(stage, linkage, LoopKind::kPoint, 2 * n, {double(n), 0, 0});
+    scene::Scene scene = t.scene;
+    if (windows > 2) continue_windows(scene, windows);
+    Stage<T> stage(scene);
     double before = 0, now = 0;
     stage.run(t.lasting(10, windows == 2 ? 3 : 1), t.h, [&](double) {
       gap = std::max(gap, widest_gap(stage, windows));
@@ -129,14 +105,7 @@ Verdict n_four_bar(const Trial& t) {
 
 template <class T>
 Verdict singular_four_bar(const Trial& t) {
-  // Folded flat: all bars on one line, at rest, at the point where two branches meet.
-  Linkage l;
-  const int crank = l.add_rod(-1, JointType::kRevolute, {0, 0, 0}, {1, 0, 0}, V::UnitZ(), 1);
-  const int coupler = l.add_rod(crank, JointType::kRevolute, {1, 0, 0}, {3, 0, 0}, V::UnitZ(), 2);
-  const int rocker = l.add_rod(coupler, JointType::kRevolute, {3, 0, 0}, {2, 0, 0}, V::UnitZ(), 1);
-  Stage<T> stage(benchmark());
-  stage.add(l.skeleton, limp());
-  tie(stage, l, LoopKind::kPoint, rocker, {2, 0, 0});
+  Stage<T> stage(t.scene);
   double gap = 0, force = 0;
   stage.run(t.lasting(10, 3), t.h, [&](double) {
     gap = std::max(gap, widest_gap(stage, 1));
@@ -149,56 +118,11 @@ Verdict singular_four_bar(const Trial& t) {
   return v;
 }
 
-/// A wheel on a fixed axle and two arms from a fixed torso, hands on its rim, 0.25 m off the axle.
-struct Driver {
-  Linkage wheel, arms;
-  int hand[2] = {0, 0};
-  V grip[2] = {{0.4, 0.25, 0}, {0.4, -0.25, 0}};
-};
-
-Driver driver() {
-  Driver d;
-  Mat3<double> rim = V(0.06, 0.03, 0.03).asDiagonal();
-  d.wheel.add(-1, JointType::kRevolute, {0.4, 0, 0}, V::UnitX(), 2, {0.4, 0, 0}, rim);
-  for (const int side : {0, 1}) {
-    const double y = side == 0 ? 0.2 : -0.2;
-    const V shoulder(0, y, 0.3), elbow(0.1, 1.8 * y, 0.05), wrist(0.36, 1.2 * y, 0);
-    const int upper = d.arms.add_rod(-1, JointType::kBall, shoulder, elbow, V::UnitY(), 2, 0.04);
-    const int fore = d.arms.add_rod(upper, JointType::kRevolute, elbow, wrist, V::UnitY(), 1.5, 0.03);
-    d.hand[side] = d.arms.add(fore, JointType::kBall, wrist, V::UnitY(), 0.5, d.grip[side],
-                              V::Constant(8e-4).asDiagonal());
-  }
-  return d;
-}
-
 template <class T>
 Verdict hands_on_a_wheel(const Trial& t) {
-  const Driver d = driver();
-  WorldSettings settings;
-  settings.ground = false;
-  Stage<T> stage(settings);
-  stage.add(d.wheel.skeleton, limp());
-  stage.add(d.arms.skeleton, limp());
-  for (const int side : {0, 1}) {
-    LoopSettings loop;
-    loop.kind = LoopKind::kWeld;
-    loop.a = d.arms.anchor(d.hand[side], d.grip[side], 1);
-    loop.b = d.wheel.anchor(0, d.grip[side], 0);
-    Status status;
-    stage.world().add_loop(loop, status);
-    if (!status) stage.refuse(status.reason);
-  }
+  Stage<T> stage(t.scene);
   double gap = 0;
-  int frame = 0;
-  stage.run(t.lasting(60, 5), t.h, [&](double) {
-    gap = std::max(gap, widest_gap(stage, 2));
-    // Steering left and right: a push of 1 N s up one side of the rim every half second.
-    const int every = std::max(1, static_cast<int>(0.5 / t.h));
-    if (frame++ % every == 0) {
-      const V at = stage.character(0).model()[0].template cast<double>() * V(0, 0.25, 0);
-      stage.push(0, 0, at, {0, 0, (frame / every) % 2 == 0 ? 1.0 : -1.0});
-    }
-  });
+  stage.run(t.lasting(60, 5), t.h, [&](double) { gap = std::max(gap, widest_gap(stage, 2)); });
   Verdict v(stage.measured());
   v.general();
   v.at_most("closure (m)", gap, kClosure);
@@ -211,23 +135,9 @@ Verdict weld_declared_thrice(const Trial& t) {
   Measurement measured;
   double gap = 0;
   for (const int times : {1, 3}) {
-    // Two rods welded end to end, the first on a hinge.
-    Linkage l;
-    l.add_rod(-1, JointType::kRevolute, {0, 0, 0}, {1, 0, 0}, V::UnitZ(), 1);
-    Linkage other;
-    other.add_rod(-1, JointType::kFree, {1, 0, 0}, {1, 1, 0}, V::UnitZ(), 1);
-    Stage<T> stage(benchmark());
-    stage.add(l.skeleton, limp());
-    stage.add(other.skeleton, limp());
-    for (int n = 0; n < times; ++n) {
-      LoopSettings loop;
-      loop.kind = LoopKind::kWeld;
-      loop.a = l.anchor(0, {1, 0, 0}, 0);
-      loop.b = other.anchor(0, {1, 0, 0}, 1);
-      Status status;
-      stage.world().add_loop(loop, status);
-      if (!status) stage.refuse(status.reason);
-    }
+    scene::Scene scene = t.scene;
+    scene.loops.resize(static_cast<std::size_t>(times));
+    Stage<T> stage(scene);
     stage.run(t.lasting(5, 3), t.h, [&](double) {
       gap = std::max(gap, widest_gap(stage, times));
       path[times == 1 ? 0 : 1].push_back(stage.character(1).model()[0].template cast<double>() * V(0, 1, 0));

@@ -4,46 +4,24 @@
 #include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-WorldSettings airborne() {
-  WorldSettings settings;
-  settings.ground = false;
-  return settings;
-}
-
-/// Lets a chain go horizontally.
-template <class T>
-Stage<T> hanging_out(const Skeleton& body) {
-  Stage<T> stage(airborne());
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  bend(body, jets, 0, {0, -kPi / 2, 0});
-  stage.add(body, limp(), jets);
-  return stage;
-}
-
 template <class T>
 Verdict rope_with_heavy_tip(const Trial& t) {
-  Skeleton rope = chain({20, JointType::kBall, JointType::kBall, 0.1, 0.1, 0.1, 0.01});
-  rope.joints.back().mass = 100;
-  rope.joints.back().inertia *= 1000;
-  Stage<T> stage = hanging_out<T>(rope);
+  Stage<T> stage(t.scene);
   stage.run(t.lasting(10, 3), t.h);
   Verdict v(stage.measured());
   v.general();
   return v;
 }
 
-template <class T, bool heavy_end>
+template <class T>
 Verdict mass_ratio_1000(const Trial& t) {
-  ChainShape shape;
-  (heavy_end ? shape.last_mass : shape.first_mass) = 1000;
-  Stage<T> stage = hanging_out<T>(chain(shape));
+  Stage<T> stage(t.scene);
   stage.run(t.lasting(10, 5), t.h);
   Verdict v(stage.measured());
   v.general();
@@ -52,41 +30,23 @@ Verdict mass_ratio_1000(const Trial& t) {
 
 template <class T>
 Verdict whip(const Trial& t) {
-  Stage<T> stage(airborne());
-  Skeleton body = chain({10, JointType::kRevolute, JointType::kRevolute, 0.2, 1, 0.001, 0.01});
-  body.joints[0].dofs[0].torque_minus = body.joints[0].dofs[0].torque_plus = 1e9;
-  CharacterSettings driven;
-  driven.root = RootDrive::kFree;  // its hinge follows the target with all the strength it needs
-  stage.add(body, driven);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  stage.run(3, t.h, [&](double time) {
-    const double now = time + t.h, angle = 10 * std::min(now, 0.3);
-    bend(body, jets, 0, {0, angle, 0});
-    jets[0].omega = Vec3<T>(0, now < 0.3 ? T(10) : T(0), 0);
-    stage.character(0).set_target(jets);
-  });
+  Stage<T> stage(t.scene);
+  stage.run(3, t.h);
   Verdict v(stage.measured());
   v.general();
   return v;
 }
 
-/// Feet of `mass` kg under a standing figure whose chest weighs 300 kg; its pelvis after 5 s.
+/// The figure's pelvis after 5 s on feet of `mass` kg.
 template <class T>
-Vec3<double> heavy_torso(double mass, double h, Measurement& measured) {
-  Stage<T> stage(WorldSettings{});
-  Skeleton body = humanoid();
-  Joint& chest = body.joints[0];
-  chest.inertia *= 300 / chest.mass;
-  chest.mass = 300;
+Vec3<double> heavy_torso(scene::Scene scene, double mass, double h, Measurement& measured) {
+  Skeleton& body = skeleton_of(scene);
   for (const char* foot : {"foot_l", "foot_r"}) {
     Joint& joint = body.joints[body.find(foot)];
     joint.inertia *= mass / joint.mass;
     joint.mass = mass;
   }
-  CharacterSettings strong;
-  strong.root = RootDrive::kFree;
-  strong.strength = 8;
-  stage.add(body, strong);
+  Stage<T> stage(scene);
   stage.run(5, h);
   measured.merge(stage.measured());
   return stage.character(0).model()[1].translation.template cast<double>();
@@ -98,33 +58,17 @@ Verdict light_foot(const Trial& t) {
   double apart = 0, most = 0;
   for (const double mass : {0.001, 0.03, 1.0}) {
     Measurement one;
-    const Vec3<double> found = heavy_torso<T>(mass, t.h, one);
+    const Vec3<double> found = heavy_torso<T>(t.scene, mass, t.h, one);
     most = std::max(most, one.mean_passes());
     measured.merge(one);
-    if (sizeof(T) == 4) apart = std::max(apart, (found - heavy_torso<double>(mass, t.h, ignored)).norm());
+    if (sizeof(T) == 4)
+      apart = std::max(apart, (found - heavy_torso<double>(t.scene, mass, t.h, ignored)).norm());
   }
   Verdict v(measured);
   v.general();
   v.at_most("float off double (m)", apart, 1e-2);
   v.at_most("mean passes", most, 4);
   return v;
-}
-
-/// A hinge of inertia `inertia` (kg·m²) on a driven root, with a handle 10 cm from its axis.
-Skeleton lever(double inertia, double torque, double damping = 0) {
-  Skeleton s = free_body(10, Vec3<double>::Constant(1));
-  Joint foot = s.joints[0];
-  foot.name = "foot";
-  foot.parent = 0;
-  foot.type = JointType::kRevolute;
-  foot.axis = Vec3<double>::UnitY();
-  foot.mass = inertia;  // so that the radius of gyration is 1 m at most
-  foot.inertia = Vec3<double>::Constant(inertia).asDiagonal();
-  foot.dofs[0].torque_minus = foot.dofs[0].torque_plus = torque;
-  foot.dofs[0].damping = damping;
-  s.joints.push_back(foot);
-  s.body_count = 2;
-  return s;
 }
 
 template <class T>
@@ -137,13 +81,13 @@ template <class T>
 Verdict tiny_foot(const Trial& t) {
   Measurement measured;
   double turned = 0;
-  for (const double torque : {300.0, 0.0}) {
-    Stage<T> stage(weightless());
-    stage.add(lever(1e-3, torque), {});
+  for (const bool strong : {true, false}) {
+    scene::Scene scene = t.scene;
+    DofLimits& muscle = skeleton_of(scene).joints[1].dofs[0];
+    if (!strong) muscle.torque_minus = muscle.torque_plus = 0;
+    Stage<T> stage(scene);
     stage.run(1, t.h, [&](double) {
-      const Transform<double> foot = stage.character(0).model()[1].template cast<double>();
-      stage.push(0, 1, foot * Vec3<double>(0.1, 0, 0), Vec3<double>(0, 0, 2000) * t.h);
-      if (torque > 0) turned = std::max(turned, std::abs(hinge_angle(stage)));
+      if (strong) turned = std::max(turned, std::abs(hinge_angle(stage)));
     });
     measured.merge(stage.measured());
   }
@@ -156,19 +100,15 @@ Verdict tiny_foot(const Trial& t) {
 /// Where a damped lever that a constant force turns comes to rest: α·h² = `ratio` at step h, taken in
 /// `parts`.
 template <class T>
-double settled(double ratio, double h, int parts, Measurement& measured) {
-  const double inertia = 0.01, alpha = ratio / (h * h), force = alpha * inertia / 0.1;
-  WorldSettings settings = weightless();
-  Stage<T> stage(settings);
-  const Skeleton body = lever(inertia, 0, 0.4 * std::sqrt(alpha) * inertia);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  bend(body, jets, 1, {0, kPi / 6, 0});
-  stage.add(body, {}, jets);
-  const double fine = h / parts;
-  stage.run(2, fine, [&](double) {
-    const Transform<double> foot = stage.character(0).model()[1].template cast<double>();
-    stage.push(0, 1, foot * Vec3<double>(0.1, 0, 0), Vec3<double>(force, 0, 0) * fine);
-  });
+double settled(scene::Scene scene, double ratio, double h, int parts, Measurement& measured) {
+  Joint& foot = skeleton_of(scene).joints[1];
+  scene::Push& push = scene.pushes[0];
+  const double inertia = foot.inertia(1, 1), alpha = ratio / (h * h),
+               force = alpha * inertia / push.point.x();
+  foot.dofs[0].damping = 0.4 * std::sqrt(alpha) * inertia;
+  push.force = {{0, {force, 0, 0}}};
+  Stage<T> stage(scene);
+  stage.run(2, h / parts);
   measured.merge(stage.measured());
   return hinge_angle(stage);
 }
@@ -178,8 +118,8 @@ Verdict far_root(const Trial& t) {
   Measurement measured, ignored;
   double apart = 0;
   for (const double ratio : {0.5, 1.0, 2.0, 4.0, 8.0})
-    apart =
-        std::max(apart, std::abs(settled<T>(ratio, t.h, 1, measured) - settled<T>(ratio, t.h, 16, ignored)));
+    apart = std::max(apart, std::abs(settled<T>(t.scene, ratio, t.h, 1, measured) -
+                                     settled<T>(t.scene, ratio, t.h, 16, ignored)));
   Verdict v(measured);
   v.general();
   v.at_most("off the angle with 16 substeps (rad)", apart, 2 * kPi / 180);
@@ -188,11 +128,7 @@ Verdict far_root(const Trial& t) {
 
 template <class T>
 Verdict hand_of_no_inertia(const Trial& t) {
-  Stage<T> stage(weightless());
-  const Skeleton body = lever(1e-6, 0, 0.1);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[1].omega = Vec3<T>(0, 10, 0);
-  stage.add(body, {}, jets);
+  Stage<T> stage(t.scene);
   double last = 0, before = 1e9;
   bool monotone = true;
   stage.run(1, t.h, [&](double time) {
@@ -210,11 +146,9 @@ Verdict hand_of_no_inertia(const Trial& t) {
 
 template <class T>
 Verdict stiff_servo(const Trial& t) {
-  WorldSettings settings = weightless();
-  settings.accuracy.return_time = t.h / 30;  // ωₙ·h = 30
-  Stage<T> stage(settings);
-  stage.add(lever(0.05, 20), {});
-  stage.push(0, 1, {0.1, 0, 0}, {0, 0, 10});
+  scene::Scene scene = t.scene;
+  scene.world.accuracy.return_time = t.h / 30;  // ωₙ·h = 30
+  Stage<T> stage(scene);
   double most = 0, under = 0, excess = 0;
   stage.run(3, t.h, [&](double) {
     const double angle = -hinge_angle(stage);
@@ -234,14 +168,9 @@ Verdict stiff_servo(const Trial& t) {
 
 template <class T>
 Verdict massless_inner_link(const Trial& t) {
-  Skeleton body = chain({3, JointType::kBall, JointType::kFree, 0.3});
-  body.joints[1].mass = 0;
-  body.joints[1].inertia.setZero();
-  Stage<T> stage(weightless());
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  randomise_speeds(body, jets, 3, 3);
-  stage.add(body, limp(), jets);
+  Stage<T> stage(t.scene);
   stage.run(3, t.h);
+  Skeleton body = t.scene.characters[0].asset->skeleton;
   body.joints[2].mass = 0;
   body.joints[2].inertia.setZero();
   Status status;
@@ -258,10 +187,9 @@ Verdict contact_stiffness_sweep(const Trial& t) {
   Measurement measured;
   double fewest = 1e9, most = 0;
   for (const double sink : {0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {  // 7e3 … 7e9 N/m
-    WorldSettings settings;
-    settings.accuracy.sink_depth = sink;
-    Stage<T> stage(settings);
-    add_thrown_humanoid(stage, 0.2, 1, 3);
+    scene::Scene scene = t.scene;
+    scene.world.accuracy.sink_depth = sink;
+    Stage<T> stage(scene);
     stage.run(t.lasting(4, 2), t.h);
     fewest = std::min(fewest, stage.measured().mean_iterations());
     most = std::max(most, stage.measured().mean_iterations());
@@ -273,50 +201,27 @@ Verdict contact_stiffness_sweep(const Trial& t) {
   return v;
 }
 
-/// Height of a box that rests on n×n points.
-template <class T>
-double resting_height(int n, double h, Measurement& measured) {
-  Skeleton body = free_body(10, box_inertia(10, {0.4, 0.4, 0.2}));
-  for (int row = 0; row < n; ++row)
-    for (int column = 0; column < n; ++column) {
-      Collider& c = body.colliders.emplace_back();
-      c.size = Vec3<double>::Constant(0.01);
-      c.local.translation = {-0.2 + 0.4 * column / (n - 1), -0.2 + 0.4 * row / (n - 1), -0.09};
-    }
-  Stage<T> stage(WorldSettings{});
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].translation.z() = T(0.1);
-  stage.add(body, limp(), jets);
-  stage.run(2, h);
-  measured.merge(stage.measured());
-  return double(stage.character(0).model()[0].translation.z());
-}
-
 template <class T>
 Verdict coplanar_contacts(const Trial& t) {
-  Measurement measured;
-  const double four = resting_height<T>(2, t.h, measured), sixteen = resting_height<T>(4, t.h, measured),
-               many = resting_height<T>(8, t.h, measured);
-  Verdict v(measured);
+  Stage<T> stage(t.scene);
+  stage.run(2, t.h);
+  const auto height = [&](int box) { return double(stage.character(box).model()[0].translation.z()); };
+  const auto [lowest, highest] = std::minmax({height(0), height(1), height(2)});
+  Verdict v(stage.measured());
   v.general();
-  v.at_most("heights apart (m)", std::max({four, sixteen, many}) - std::min({four, sixteen, many}), 1e-4);
+  v.at_most("heights apart (m)", highest - lowest, 1e-4);
   return v;
 }
 
 template <class T>
 Verdict limits_that_meet(const Trial& t) {
-  Stage<T> stage(airborne());
-  Skeleton body = chain({3, JointType::kRevolute, JointType::kRevolute, 0.4});
-  body.joints[1].dofs[0].lower = body.joints[1].dofs[0].upper = 0.3;
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  bend(body, jets, 0, {0, -1, 0});
-  bend(body, jets, 1, {0, 0.3, 0});
-  stage.add(body, limp(), jets);
+  Stage<T> stage(t.scene);
   double off = 0;
   stage.run(5, t.h, [&](double) {
     const Quat<double> q = stage.character(0).local()[1].rotation.template cast<double>();
     off = std::max(off, std::abs(2 * std::atan2(q.y(), q.w()) - 0.3));
   });
+  Skeleton body = t.scene.characters[0].asset->skeleton;
   body.joints[1].dofs[0].lower = 0.3 + kPi / 180;
   Status status;
   World<T> other((WorldSettings()));
@@ -344,15 +249,15 @@ std::vector<HardCase> mass_cases() {
        "DESIGN section 9",
        "general",
        {1.0 / 60, 1.0 / 30, 1.0 / 10},
-       mass_ratio_1000<float, false>,
-       mass_ratio_1000<double, false>},
+       mass_ratio_1000<float>,
+       mass_ratio_1000<double>},
       {"mass_ratio_1_to_1000",
        "figure",
        "DESIGN section 9",
        "general",
        {1.0 / 60, 1.0 / 30, 1.0 / 10},
-       mass_ratio_1000<float, true>,
-       mass_ratio_1000<double, true>},
+       mass_ratio_1000<float>,
+       mass_ratio_1000<double>},
       {"whip",
        "14",
        "research 1.3",

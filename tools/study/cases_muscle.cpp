@@ -3,12 +3,9 @@
 #include <cmath>
 #include <random>
 
-#include "sinew/animation/sampling_job.h"
 #include "sinew/skeleton/rotation.h"
 #include "study/bodies.h"
 #include "study/hard_case.h"
-#include "study/humanoid.h"
-#include "study/mannequin.h"
 
 namespace sinew::study {
 namespace {
@@ -18,20 +15,9 @@ constexpr double kPi = 3.14159265358979323846;
 /// Plays the mannequin's walk with its muscles scaled by `strength`.
 template <class T>
 Verdict walk_cycle(const Trial& t) {
-  const Asset* asset = mannequin();
-  const int clip = asset ? asset->find_clip("walk") : -1;
-  if (clip < 0) {
-    Verdict v({});
-    v.require(false, "assets/character/mannequin.glb has no walk");
-    return v;
-  }
-  Stage<T> stage(WorldSettings{});
-  std::vector<JointJet<T>> jets(asset->skeleton.joints.size());
-  const auto sample = [&](double time) { SamplingJob<T>{&asset->clips[clip], time, 1, jets}.Run(); };
-  sample(0);
-  CharacterSettings strong;
-  strong.strength = 3;
-  stage.add(asset->skeleton, strong, jets);
+  Stage<T> stage(t.scene);
+  scene::Player<T> clip(t.scene.characters[0]);
+  std::vector<JointJet<T>> jets = clip.start(stage.character(0).local());
   double off = 0;
   int playing = 0;
   stage.run(4, t.h, [&](double time) {
@@ -40,8 +26,7 @@ Verdict walk_cycle(const Trial& t) {
         off = std::max(off, double(stage.character(0).local()[i].rotation.angularDistance(jets[i].rotation)));
       playing += stage.character(0).report().unknown_dofs == 0;
     }
-    sample(time + t.h);
-    stage.character(0).set_target(jets);
+    jets = clip.at(time + t.h, stage.character(0).local());
   });
   Verdict v(stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
@@ -50,70 +35,42 @@ Verdict walk_cycle(const Trial& t) {
   return v;
 }
 
-/// A standing figure with a driven root whose right hand is pulled forward with a share of what its shoulder
-/// can bear.
-template <class T>
-struct PulledArm {
-  static constexpr double kLimit = 70;
-  Skeleton body = humanoid();
-  Stage<T> stage{WorldSettings{}};
-  int hand = body.find("hand_r"), dof = 0;
-
-  PulledArm() {
-    stage.add(body, {});
-    dof = stage.character(0).first_dof(body.find("upperarm_r")) + 1;
-  }
-  void pull(double share, double h) {
-    const Transform<double> at = stage.character(0).model()[hand].template cast<double>();
-    // Hanging straight, the lever about the shoulder is 0.29 + 0.26 + 0.07 m.
-    stage.push(0, hand, at * body.joints[hand].center_of_mass, Vec3<double>(share * kLimit / 0.62 * h, 0, 0));
-  }
-  bool unknown() { return stage.character(0).unknown()[dof] != 0; }
-  double torque() { return double(stage.character(0).torque()[dof]); }
-};
-
 template <class T>
 Verdict ramp_through_limit(const Trial& t) {
-  PulledArm<T> arm;
+  Stage<T> stage(t.scene);  // hanging straight, the hand's lever about the shoulder is 0.29 + 0.26 + 0.07 m
+  const Skeleton& body = t.scene.characters[0].asset->skeleton;
+  const int shoulder = body.find("upperarm_r"), dof = stage.character(0).first_dof(shoulder) + 1;
   int flips = 0;
   bool was = false;
   double jump = 0, before = 0;
-  arm.stage.run(6, t.h, [&](double time) {
-    if (time > 1.5 * t.h) jump = std::max(jump, std::abs(arm.torque() - before));
-    flips += arm.unknown() != was;
-    was = arm.unknown(), before = arm.torque();
-    arm.pull(time < 3 ? 0.98 + 0.04 * time / 3 : 1.02 - 0.04 * (time - 3) / 3, t.h);
+  stage.run(6, t.h, [&](double time) {
+    const bool unknown = stage.character(0).unknown()[dof] != 0;
+    const double torque = double(stage.character(0).torque()[dof]);
+    if (time > 1.5 * t.h) jump = std::max(jump, std::abs(torque - before));
+    flips += unknown != was;
+    was = unknown, before = torque;
   });
-  Verdict v(arm.stage.measured());
+  Verdict v(stage.measured());
   v.sound();
   v.at_most("changes between clip and solver", flips, 2);
-  v.at_most("torque's jump in a step (N m)", jump, 0.01 * PulledArm<T>::kLimit);
+  v.at_most("torque's jump in a step (N m)", jump, 0.01 * body.torque_limits(shoulder, 1)[1]);
   return v;
 }
 
-/// A weightless link on a joint of the given type below a driven one, muscles `torque_plus` = 1.5 times
-/// `torque_minus` (N·m, per axis), against which a couple turns.
+/// The scene's link on a joint below a driven one, against whose muscles a couple turns.
 template <class T>
 struct TwistedLink {
-  Skeleton body;
-  Stage<T> stage{weightless()};
-  Vec3<double> minus{20, 35, 12};
+  Stage<T> stage;
+  const Joint& joint;
 
-  explicit TwistedLink(JointType type, bool ellipsoidal = false, std::vector<Muscle> muscles = {})
-      : body(chain({2, type, JointType::kFree, 0.3})) {
-    body.joints[1].ellipsoidal_limit = ellipsoidal;
-    body.muscles = std::move(muscles);
-    for (int k = 0; k < dof_count(type); ++k) {
-      body.joints[1].dofs[k].torque_minus = minus[k];
-      body.joints[1].dofs[k].torque_plus = 1.5 * minus[k];
-      body.joints[1].dofs[k].damping = 20;  // N·m·s/rad: what is too weak gives way slowly
-    }
-    stage.add(body, {});
-  }
+  explicit TwistedLink(const scene::Scene& scene)
+      : stage(scene), joint(scene.characters[0].asset->skeleton.joints[1]) {}
   /// Σ (torque/limit)² of a torque, square root.
   double load(const Vec3<double>& torque) const {
     double sum = 0;
-    for (int k = 0; k < 3; ++k) sum += std::pow(torque[k] / (torque[k] > 0 ? 1.5 * minus[k] : minus[k]), 2);
+    for (int k = 0; k < 3; ++k)
+      sum +=
+          std::pow(torque[k] / (torque[k] > 0 ? joint.dofs[k].torque_plus : joint.dofs[k].torque_minus), 2);
     return std::sqrt(sum);
   }
   /// Turns the link by a couple (N·m, world) that the muscles must answer; one step.
@@ -141,7 +98,7 @@ Verdict ellipsoidal_limit(const Trial& t) {
   double held = 0, over = 0, short_of = 0;
   for (int n = 0; n < 20; ++n) {
     const Vec3<double> way(normal(random), normal(random), normal(random));
-    TwistedLink<T> link(JointType::kBall, true);
+    TwistedLink<T> link(t.scene);
     const Vec3<double> strongest = way / link.load(-way);  // the muscles pull against it
     for (int k = 0; k < 20; ++k) link.twist(0.99 * strongest, t.h);
     held += link.stage.character(0).on_animation();
@@ -153,7 +110,7 @@ Verdict ellipsoidal_limit(const Trial& t) {
     measured.merge(link.stage.measured());
   }
   // Up and down through the limit in a slanting direction.
-  TwistedLink<T> link(JointType::kBall, true);
+  TwistedLink<T> link(t.scene);
   const Vec3<double> way(1, -2, 0.7), strongest = way / link.load(-way);
   int flips = 0;
   double jump = 0;
@@ -180,10 +137,9 @@ Verdict ellipsoidal_limit(const Trial& t) {
 /// A hinge whose own muscle pulls 30 N·m upwards and which two more, a group, strengthen by 20 and 5.
 template <class T>
 Verdict several_muscles(const Trial& t) {
-  TwistedLink<T> link(JointType::kRevolute, false,
-                      {{"long", "biceps", 1, 0, 4, 20}, {"short", "biceps", 1, 0, 0, 5}});
+  TwistedLink<T> link(t.scene);
   Character<T> c = link.stage.character(0);
-  const Vec3<double> axis = link.body.joints[1].axis;
+  const Vec3<double> axis = link.joint.axis;
   double beyond = 0;
   const auto strength = [&](double couple) {  // what the muscles answer with in the end, up to their limit
     for (int n = 0; n < 30; ++n) {
@@ -211,12 +167,7 @@ Verdict several_muscles(const Trial& t) {
 
 template <class T>
 Verdict limit_toggled_every_frame(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  CharacterSettings settings;
-  settings.root = RootDrive::kFree;
-  Skeleton body = humanoid();
-  make_frictionless(body);
-  stage.add(body, settings);
+  Stage<T> stage(t.scene);
   bool on = false;
   stage.run(5, t.h, [&](double) {
     stage.character(0).set_strength(T(on ? 1 : 0));
@@ -231,18 +182,10 @@ template <class T>
 Verdict pushed_figure(const Trial& t) {
   Measurement measured;
   for (const double strength : {0.1, 0.4, 1.5}) {
-    Stage<T> stage(WorldSettings{});
-    const Skeleton body = humanoid();
-    CharacterSettings settings;
-    settings.root = RootDrive::kFree;
-    settings.strength = strength;
-    stage.add(body, settings);
-    const int chest = 0;
-    stage.run(4, t.h, [&](double time) {
-      if (time > 0.5 && time < 0.7)
-        stage.push(0, chest, stage.character(0).model()[chest].translation.template cast<double>(),
-                   Vec3<double>(400, 60, 0) * t.h);
-    });
+    scene::Scene scene = t.scene;
+    scene.characters[0].strength = {{0, strength}};
+    Stage<T> stage(scene);
+    stage.run(4, t.h);
     measured.merge(stage.measured());
   }
   Verdict v(measured);
@@ -254,21 +197,12 @@ Verdict pushed_figure(const Trial& t) {
 
 template <class T>
 Verdict target_beyond_limit(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  Skeleton body = humanoid();
-  const int elbow = body.find("forearm_l");
-  body.joints[elbow].dofs[0].lower = -2.4;
-  body.joints[elbow].dofs[0].upper = 0;
-  stage.add(body, {});
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
+  Stage<T> stage(t.scene);
+  const int elbow = t.scene.characters[0].asset->skeleton.find("forearm_l");
+  const int dof = stage.character(0).first_dof(elbow);
   double torque = 0;
-  stage.run(5, t.h, [&](double time) {
-    bend(body, jets, elbow, {0, std::min(0.6, time), 0});  // up to 0.6 rad too far
-    jets[elbow].omega = Vec3<T>(0, time < 0.6 ? T(1) : T(0), 0);
-    stage.character(0).set_target(jets);
-    torque =
-        std::max(torque, std::abs(double(stage.character(0).torque()[stage.character(0).first_dof(elbow)])));
-  });
+  stage.run(5, t.h,
+            [&](double) { torque = std::max(torque, std::abs(double(stage.character(0).torque()[dof]))); });
   Verdict v(stage.measured());
   v.sound();
   v.at_most("torque (N m)", torque, 60 * (1 + 1e-5));
@@ -278,20 +212,11 @@ Verdict target_beyond_limit(const Trial& t) {
 
 template <class T>
 Verdict target_through_wall(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
-  stage.add_obstacle(obstacle_box({0.5, 0, 1}, {0.2, 2, 1}));
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  const int arm = body.find("upperarm_l");
-  stage.run(5, t.h, [&](double time) {
-    bend(body, jets, arm, {0, -std::min(1.5, time), 0});  // forward, into the wall
-    jets[arm].omega = Vec3<T>(0, time < 1.5 ? T(-1) : T(0), 0);
-    stage.character(0).set_target(jets);
-  });
+  Stage<T> stage(t.scene);
+  stage.run(5, t.h);
   Verdict v(stage.measured());
   v.sound();
-  const int hand = body.find("hand_l");
+  const int hand = t.scene.characters[0].asset->skeleton.find("hand_l");
   v.at_most("hand beyond the wall's face (m)", double(stage.character(0).model()[hand].translation.x()) - 0.3,
             0);
   v.at_most("kinetic energy at the end (J)", v.measured().kinetic_end, 1e-3);
@@ -300,9 +225,7 @@ Verdict target_through_wall(const Trial& t) {
 
 template <class T>
 Verdict ragdoll_and_back_each_second(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const Skeleton body = humanoid();
-  stage.add(body, {});
+  Stage<T> stage(t.scene);
   int returned = 0, cycles = 0;
   const double lasting = t.lasting(3600, 30);
   bool was_limp = false;
@@ -324,19 +247,11 @@ Verdict ragdoll_and_back_each_second(const Trial& t) {
 
 template <class T>
 Verdict ragdoll_hit_in_the_same_frame(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  Skeleton body = humanoid();
-  for (const char* elbow : {"forearm_l", "forearm_r"}) {
-    body.joints[body.find(elbow)].dofs[0].lower = -2.4;
-    body.joints[body.find(elbow)].dofs[0].upper = 0;
-  }
-  stage.add(body, {});
+  Stage<T> stage(t.scene);
   stage.run(1, t.h);
-  stage.character(0).set_strength(T(0));
-  stage.character(0).set_root_drive(RootDrive::kFree);
+  const Skeleton& body = t.scene.characters[0].asset->skeleton;
   const int hand = body.find("hand_r"), elbow = body.find("forearm_r");
   const Vec3<double> before = stage.character(0).model()[hand].translation.template cast<double>();
-  stage.push(0, hand, before, {200, 0, 0});
   double fastest = 0, beyond = 0;
   Vec3<double> last = before;
   stage.run(3, t.h, [&](double) {

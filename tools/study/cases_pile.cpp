@@ -8,16 +8,6 @@
 namespace sinew::study {
 namespace {
 
-template <class T>
-int add_prop_at(Stage<T>& stage, Shape shape, const Vec3<double>& size, double mass, const Vec3<double>& at) {
-  PropSettings prop;
-  prop.shape = shape;
-  prop.size = size;
-  prop.mass = mass;
-  prop.pose.translation = at;
-  return stage.add_prop(prop);
-}
-
 /// Largest speed of any prop over the last step, m/s.
 template <class T>
 double fastest_prop(Stage<T>& stage) {
@@ -31,11 +21,10 @@ template <class T>
 Verdict heavy_on_light(const Trial& t) {
   Measurement measured;
   double penetration = 0;
-  for (const double density : {5.0, 10.0, 50.0}) {
-    Stage<T> stage(WorldSettings{});
-    const Vec3<double> half = Vec3<double>::Constant(2.5);
-    add_prop_at(stage, Shape::kBox, half, 125e3, {0, 0, 2.5});
-    add_prop_at(stage, Shape::kBox, half, density * 125e3, {0, 0, 7.5});
+  for (const double times : {5.0, 10.0, 50.0}) {
+    scene::Scene scene = t.scene;
+    scene.props[1].settings.mass = times * scene.props[0].settings.mass;
+    Stage<T> stage(scene);
     stage.run(3, t.h);
     for (int p = 0; p < 2; ++p) penetration = std::max(penetration, stage.world().prop_report(p).penetration);
     measured.merge(stage.measured());
@@ -51,9 +40,9 @@ Verdict cube_under_100_kg(const Trial& t) {
   Measurement measured;
   double penetration = 0, fastest = 0;
   for (const double mass : {60.0, 100.0}) {
-    Stage<T> stage(WorldSettings{});
-    add_prop_at(stage, Shape::kBox, Vec3<double>::Constant(0.1), 1, {0, 0, 0.1});
-    add_prop_at(stage, Shape::kBox, {0.3, 0.3, 0.2}, mass, {0, 0, 0.4});
+    scene::Scene scene = t.scene;
+    scene.props[1].settings.mass = mass;
+    Stage<T> stage(scene);
     stage.run(2, t.h);
     fastest = std::max(fastest, fastest_prop(stage));
     for (int p = 0; p < 2; ++p) penetration = std::max(penetration, stage.world().prop_report(p).penetration);
@@ -68,8 +57,7 @@ Verdict cube_under_100_kg(const Trial& t) {
 
 template <class T>
 Verdict box_tower(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  for (int i = 0; i < 5; ++i) add_prop_at(stage, Shape::kBox, {0.25, 0.25, 0.1}, 5, {0, 0, 0.1 + 0.2 * i});
+  Stage<T> stage(t.scene);
   stage.run(t.lasting(5, 3), t.h);
   Verdict v(stage.measured());
   v.general();
@@ -80,13 +68,11 @@ Verdict box_tower(const Trial& t) {
 
 template <class T>
 Verdict ball_pile(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const int n = t.quick ? 2 : 4;
-  for (int x = 0; x < n; ++x)
-    for (int y = 0; y < n; ++y)
-      for (int z = 0; z < n; ++z)
-        add_prop_at(stage, Shape::kSphere, Vec3<double>::Constant(0.5), 10,
-                    {1.001 * x, 1.001 * y, 0.5 + 1.001 * z});
+  scene::Scene scene = t.scene;
+  if (t.quick)  // two by two by two of the balls
+    std::erase_if(scene.props,
+                  [](const scene::SceneProp& ball) { return ball.settings.pose.translation.maxCoeff() > 2; });
+  Stage<T> stage(scene);
   stage.run(t.lasting(3, 1), t.h);
   Verdict v(stage.measured());
   v.general();
@@ -97,10 +83,10 @@ Verdict ball_pile(const Trial& t) {
 /// Limp figures dropped one above the other.
 template <class T>
 Verdict figures_in_a_pile(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const int count = t.quick ? 2 : 5;
-  for (int i = 0; i < count; ++i)
-    add_thrown_humanoid(stage, 0.2 + 1.2 * i, 0.5, static_cast<unsigned>(i + 1));
+  scene::Scene scene = t.scene;
+  if (t.quick) scene.characters.resize(2);
+  const int count = static_cast<int>(scene.characters.size());
+  Stage<T> stage(scene);
   stage.run(t.lasting(8, 3), t.h);
   double fastest = 0;
   for (int i = 0; i < count; ++i)
@@ -117,15 +103,9 @@ template <class T>
 Verdict colliding_figures(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 2u : 10u); ++seed) {
-    Stage<T> stage(weightless());
-    for (const double side : {1.0, -1.0}) {
-      Skeleton body = chain({5, JointType::kBall, JointType::kFree, 0.35, 10, 3, 0.06, true});
-      std::vector<JointJet<T>> jets = rest_jets<T>(body);
-      randomise_speeds(body, jets, 1, seed + (side > 0 ? 100 : 200));
-      jets[0].translation = Vec3<T>(T(-0.6 * side), T(0.03 * seed), T(0));
-      jets[0].velocity = Vec3<T>(T(2 * side), 0, 0);
-      stage.add(body, limp(), jets);
-    }
+    scene::Scene scene = t.scene;
+    for (scene::SceneCharacter& c : scene.characters) c.position.y() *= seed, c.speeds.seed += seed - 1;
+    Stage<T> stage(scene);
     stage.run(1.5, t.h);
     measured.merge(stage.measured());
   }
@@ -140,13 +120,9 @@ template <class T>
 Verdict tumbling_box(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 5u : 40u); ++seed) {
-    Stage<T> stage(WorldSettings{});
-    Skeleton body = box_body(5, {0.3, 0.2, 0.1});
-    std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    randomise_speeds(body, jets, 6, seed);
-    jets[0].translation.z() = T(1);
-    jets[0].velocity = Vec3<T>(2, 0, 0);
-    stage.add(body, limp(), jets);
+    scene::Scene scene = t.scene;
+    scene.characters[0].speeds.seed = seed;
+    Stage<T> stage(scene);
     stage.run(3, t.h);
     measured.merge(stage.measured());
   }
@@ -161,10 +137,9 @@ template <class T>
 Verdict figure_on_stairs(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 2u : 12u); ++seed) {
-    Stage<T> stage(WorldSettings{});
-    for (int i = 0; i < 5; ++i)
-      stage.add_obstacle(obstacle_box({0.3 * i, 0, 0.1 * (5 - i) - 0.5}, {0.15, 1, 0.5}));
-    add_thrown_humanoid(stage, 0.8, 2, seed);
+    scene::Scene scene = t.scene;
+    scene.characters[0].speeds.seed = seed;
+    Stage<T> stage(scene);
     stage.run(3, t.h);
     measured.merge(stage.measured());
   }
@@ -176,15 +151,10 @@ Verdict figure_on_stairs(const Trial& t) {
 
 template <class T>
 Verdict crowd_of_200(const Trial& t) {
-  Stage<T> stage(WorldSettings{});
-  const int count = t.quick ? 40 : 200;
-  for (int i = 0; i < count; ++i) {
-    Skeleton body = chain({3, JointType::kBall, JointType::kFree, 0.3, 3, 1, 0.05, true});
-    std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    const int column = i % 20, row = i / 20;
-    jets[0].translation = Vec3<T>(T(3 * column), T(3 * row), T(1.2));
-    stage.add(body, limp(), jets);
-  }
+  scene::Scene scene = t.scene;
+  if (t.quick) scene.characters.resize(40);
+  const int count = static_cast<int>(scene.characters.size());
+  Stage<T> stage(scene);
   stage.run(t.lasting(4, 2), t.h);
   double lowest = 1;
   for (int i = 0; i < count; ++i)

@@ -10,22 +10,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A free body turning at `omega` (rad/s, body axes), without gravity.
 template <class T>
-Stage<T> spinning(const Vec3<double>& inertia, const Vec3<double>& omega, Scheme scheme = Scheme::kBdf2) {
-  WorldSettings settings = weightless();
-  settings.accuracy.scheme = scheme;
-  Stage<T> stage(settings);
-  const Skeleton body = free_body(1, inertia);
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].omega = omega.template cast<T>();
-  stage.add(body, limp(), jets);
-  return stage;
-}
-
-template <class T>
-Quat<double> attitude(Stage<T>& stage) {
-  return stage.character(0).model()[0].rotation.template cast<double>().normalized();
+Quat<double> attitude(Stage<T>& stage, int character = 0) {
+  return stage.character(character).model()[0].rotation.template cast<double>().normalized();
 }
 
 /// Until the axis about which the box was spun points the other way, s; negative if it never does.
@@ -40,10 +27,9 @@ double first_flip(Stage<T>& stage, double h, double longest) {
 
 template <class T>
 Verdict tennis_racket(const Trial& t) {
-  const Vec3<double> inertia = box_inertia(1, {0.1, 0.2, 0.3}), omega(0.05, 5, 0.05);
-  Stage<double> fine = spinning<double>(inertia, omega);
+  Stage<double> fine(t.scene);
   const double expected = first_flip(fine, 1.0 / 480, 20);
-  Stage<T> stage = spinning<T>(inertia, omega);
+  Stage<T> stage(t.scene);
   const double found = first_flip(stage, t.h, 20);
   stage.run(t.lasting(100, 20) - found, t.h);
   Verdict v(stage.measured());
@@ -54,47 +40,27 @@ Verdict tennis_racket(const Trial& t) {
 
 template <class T>
 Verdict slender_rod(const Trial& t) {
-  Stage<T> stage = spinning<T>({0.05, 1, 1.02}, Vec3<double>(0.3, 1, 0.2).normalized() * 240);
-  stage.run(t.lasting(10, 10), t.h);
+  Stage<T> stage(t.scene);
+  stage.run(10, t.h);
   Verdict v(stage.measured());
   v.general();
   v.at_most("passes", v.measured().most_passes, 8);
   return v;
 }
 
-/// One body, or the same body as a root with a child welded on.
-Skeleton whole_or_welded(bool welded) {
-  Skeleton s = free_body(1, {0.02, 0.05, 0.06});
-  if (!welded) return s;
-  Joint child = s.joints[0];
-  child.name = "welded";
-  child.parent = 0;
-  child.type = JointType::kFixed;
-  for (Joint* half : {&s.joints[0], &child}) half->mass *= 0.5, half->inertia *= 0.5;
-  s.joints.push_back(child);
-  s.body_count = 2;
-  return s;
-}
-
 template <class T>
 Verdict welded_child(const Trial& t) {
-  Stage<T> whole(weightless()), welded(weightless());
-  for (Stage<T>* stage : {&whole, &welded}) {
-    const Skeleton body = whole_or_welded(stage == &welded);
-    std::vector<JointJet<T>> jets = rest_jets<T>(body);
-    jets[0].omega = Vec3<T>(T(0.3), T(4), T(0.2));
-    stage->add(body, limp(), jets);
-    stage->run(10, t.h);
-  }
-  Verdict v(welded.measured());
+  Stage<T> stage(t.scene);
+  stage.run(10, t.h);
+  Verdict v(stage.measured());
   v.general();
-  v.at_most("attitude apart (rad)", attitude(whole).angularDistance(attitude(welded)), 1e-4);
+  v.at_most("attitude apart (rad)", attitude(stage, 0).angularDistance(attitude(stage, 1)), 1e-4);
   return v;
 }
 
 template <class T>
 Verdict hour_of_spin(const Trial& t) {
-  Stage<T> stage = spinning<T>({0.02, 0.05, 0.06}, {0, 0, 60});
+  Stage<T> stage(t.scene);
   double tilt = 0, norm = 0;
   stage.run(t.lasting(3600, 600), t.h, [&](double) {
     tilt = std::max(tilt, std::acos(std::min(1.0, (attitude(stage) * Vec3<double>::UnitZ()).z())));
@@ -111,11 +77,13 @@ Verdict hour_of_spin(const Trial& t) {
 
 /// Angle (rad) between the simulated and the analytic attitude of a symmetric top after 2 s.
 template <class T>
-double top_error(Scheme scheme, double h, Measurement& measured) {
-  const Vec3<double> inertia(0.04, 0.04, 0.07), omega(1, 0, 3);
-  Stage<T> stage = spinning<T>(inertia, omega, scheme);
+double top_error(scene::Scene scene, Scheme scheme, double h, Measurement& measured) {
+  scene.world.accuracy.scheme = scheme;
+  Stage<T> stage(scene);
   stage.run(2, h);
   measured.merge(stage.measured());
+  const Vec3<double> inertia = scene.characters[0].asset->skeleton.joints[0].inertia.diagonal(),
+                     omega = scene.characters[0].speeds.spin[0].second;
   const Vec3<double> momentum = inertia.cwiseProduct(omega);
   const Vec3<double> spin(0, 0, omega.z() * (1 - inertia.z() / inertia.x()));
   const Quat<double> exact =
@@ -127,9 +95,9 @@ template <class T>
 Verdict symmetric_top(const Trial& t) {
   Measurement measured;
   const double h = t.h / 4;  // the whole step is still 0.2 off the asymptotic order
-  const double order =
-      std::log2(top_error<T>(Scheme::kBdf1, h, measured) / top_error<T>(Scheme::kBdf1, h / 2, measured));
-  const double exact = top_error<T>(Scheme::kBdf2, t.h, measured);
+  const double order = std::log2(top_error<T>(t.scene, Scheme::kBdf1, h, measured) /
+                                 top_error<T>(t.scene, Scheme::kBdf1, h / 2, measured));
+  const double exact = top_error<T>(t.scene, Scheme::kBdf2, t.h, measured);
   Verdict v(measured);
   v.general();
   v.at_most("bdf1: order off 1", std::abs(order - 1), 0.1);
@@ -139,10 +107,9 @@ Verdict symmetric_top(const Trial& t) {
 
 template <class T, int speed>
 Verdict free_flight(const Trial& t) {
-  WorldSettings settings = weightless();
-  settings.accuracy.max_rotation = 1;  // rad in one part of a step; faster limbs get more parts
-  Stage<T> stage(settings);
-  add_thrown_humanoid(stage, 0, speed, 7);
+  scene::Scene scene = t.scene;
+  scene.characters[0].speeds.random = speed;
+  Stage<T> stage(scene);
   const double mass = stage.character(0).skeleton().total_mass();
   Vec3<double> before = stage.center_of_mass(0), drift = Vec3<double>::Zero(), first = drift;
   stage.run(2, t.h, [&](double time) {
@@ -164,14 +131,8 @@ Verdict free_flight(const Trial& t) {
 
 template <class T>
 Verdict ball_hits_floating_figure(const Trial& t) {
-  Stage<T> stage(weightless());
-  add_thrown_humanoid(stage, 0, 0, 1);
-  PropSettings ball;
-  ball.mass = 10;
-  ball.size = Vec3<double>::Constant(0.1);
-  ball.pose.translation = {-1.5, 0.02, 1.25};
-  ball.velocity = {5, 0, 0};
-  stage.add_prop(ball);
+  Stage<T> stage(t.scene);
+  const PropSettings& ball = t.scene.props[0].settings;
   const double mass = stage.character(0).skeleton().total_mass();
   Vec3<double> before = stage.center_of_mass(0), momentum = Vec3<double>::Zero();
   double off = 0;
@@ -193,27 +154,9 @@ Verdict ball_hits_floating_figure(const Trial& t) {
   return v;
 }
 
-/// A balanced rod on a ball joint of a heavy root.
-Skeleton balanced_rod() {
-  Skeleton s = free_body(1000, Vec3<double>::Constant(100));
-  Joint rod = s.joints[0];
-  rod.name = "rod";
-  rod.parent = 0;
-  rod.type = JointType::kBall;
-  rod.mass = 1;
-  rod.inertia = Vec3<double>(0.1, 0.1, 0.01).asDiagonal();
-  s.joints.push_back(rod);
-  s.body_count = 2;
-  return s;
-}
-
 template <class T>
 Verdict through_pitch_90(const Trial& t) {
-  Stage<T> stage(weightless());
-  const Skeleton body = balanced_rod();
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[1].omega = Vec3<T>(0, 5, 0);
-  stage.add(body, limp(), jets);
+  Stage<T> stage(t.scene);
   double spike = 0;
   Quat<double> before = Quat<double>::Identity();
   stage.run(4, t.h, [&](double time) {
@@ -230,17 +173,11 @@ Verdict through_pitch_90(const Trial& t) {
 /// Torques of a ball joint whose target is held at `angle` from its rest, after a push; the same motion in
 /// the world whatever the angle.
 template <class T>
-std::vector<double> torques_near(double angle, double h, Measurement& measured) {
-  Stage<T> stage(weightless());
-  Skeleton body = balanced_rod();
-  body.joints[1].center_of_mass = {0, 0, -0.3};
-  for (DofLimits& dof : body.joints[1].dofs) dof.torque_minus = dof.torque_plus = 20;
-  body.joints[1].rest.rotation = rotation_exp<double>({0, -angle, 0});
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  bend(body, jets, 1, {0, angle, 0});
-  stage.add(body, {}, jets);
+std::vector<double> torques_near(scene::Scene scene, double angle, double h, Measurement& measured) {
+  skeleton_of(scene).joints[1].rest.rotation = rotation_exp<double>({0, -angle, 0});
+  scene.characters[0].pose = {{1, {{0, {0, angle, 0}}}}};
+  Stage<T> stage(scene);
   std::vector<double> torques;
-  stage.push(0, 1, {0, 0, -0.3}, {3, 0, 0});
   stage.run(1, h, [&](double time) {
     if (time > 0)
       for (int k = 6; k < 9; ++k) torques.push_back(double(stage.character(0).torque()[k]));
@@ -252,10 +189,10 @@ std::vector<double> torques_near(double angle, double h, Measurement& measured) 
 template <class T>
 Verdict joint_through_pi(const Trial& t) {
   Measurement measured;
-  const std::vector<double> plain = torques_near<T>(0, t.h, measured);
+  const std::vector<double> plain = torques_near<T>(t.scene, 0, t.h, measured);
   double apart = 0;
   for (const double angle : {kPi - 1.7e-4, kPi + 1.7e-4, -kPi + 1.7e-4}) {
-    const std::vector<double> turned = torques_near<T>(angle, t.h, measured);
+    const std::vector<double> turned = torques_near<T>(t.scene, angle, t.h, measured);
     for (std::size_t i = 0; i < std::min(plain.size(), turned.size()); ++i)
       apart = std::max(apart, std::abs(plain[i] - turned[i]));
   }
@@ -267,15 +204,12 @@ Verdict joint_through_pi(const Trial& t) {
 
 /// Local pose of a limp figure after a second of flight that began with its root turned by `turn`.
 template <class T>
-std::vector<Transform<T>> flown(const Quat<double>& turn, double h, Measurement& measured) {
-  WorldSettings settings = weightless();
-  settings.accuracy.tolerance = sizeof(T) == 8 ? 1e-8 : 1e-6;  // asks about the frame, not about the solver
-  Stage<T> stage(settings);
-  Skeleton body = chain({4, JointType::kBall, JointType::kFree, 0.4, 2, 1});
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  randomise_speeds(body, jets, 3, 5);
-  jets[0].rotation = turn.cast<T>();
-  stage.add(body, limp(), jets);
+std::vector<Transform<T>> flown(scene::Scene scene, const Vec3<double>& turn, double h,
+                                Measurement& measured) {
+  // Asks about the frame, not about the solver.
+  scene.world.accuracy.tolerance = sizeof(T) == 8 ? 1e-8 : 1e-6;
+  scene.characters[0].pose = {{0, {{0, turn}}}};
+  Stage<T> stage(scene);
   stage.run(1, h);
   measured.merge(stage.measured());
   const auto local = stage.character(0).local();
@@ -285,10 +219,10 @@ std::vector<Transform<T>> flown(const Quat<double>& turn, double h, Measurement&
 template <class T>
 Verdict root_turned_by_pi(const Trial& t) {
   Measurement measured;
-  const auto plain = flown<T>(Quat<double>::Identity(), t.h, measured);
+  const auto plain = flown<T>(t.scene, Vec3<double>::Zero(), t.h, measured);
   double apart = 0;
   for (const Vec3<double>& axis : {Vec3<double>(1, 0, 0), Vec3<double>(0, 1, 0), Vec3<double>(0.6, 0, 0.8)}) {
-    const auto turned = flown<T>(rotation_exp<double>(axis * kPi), t.h, measured);
+    const auto turned = flown<T>(t.scene, axis * kPi, t.h, measured);
     for (std::size_t i = 1; i < plain.size(); ++i)
       apart = std::max(apart, double(plain[i].rotation.angularDistance(turned[i].rotation)));
   }
@@ -298,16 +232,9 @@ Verdict root_turned_by_pi(const Trial& t) {
   return v;
 }
 
-/// Five hinged rods of 1 m and 1 kg, let go horizontally; tip after `seconds`.
-Vec3<double> swing(double h, double seconds, Measurement& measured) {
-  WorldSettings settings;
-  settings.ground = false;
-  settings.accuracy.tolerance = 1e-8;
-  Stage<double> stage(settings);
-  const Skeleton body = chain({});
-  std::vector<JointJet<double>> jets = rest_jets<double>(body);
-  bend(body, jets, 0, {0, -kPi / 2, 0});
-  stage.add(body, limp(), jets);
+/// Tip of the pendulum after `seconds`.
+Vec3<double> swing(const scene::Scene& scene, double h, double seconds, Measurement& measured) {
+  Stage<double> stage(scene);
   stage.run(seconds, h);
   measured.merge(stage.measured());
   measured.kinetic_end = stage.measured().kinetic_end;
@@ -316,10 +243,10 @@ Vec3<double> swing(double h, double seconds, Measurement& measured) {
 
 Verdict five_bar_pendulum(const Trial& t) {
   Measurement measured, ignored;
-  const Vec3<double> exact = swing(1.0 / 3840, 0.5, ignored);
-  const double coarse = (swing(t.h, 0.5, measured) - exact).norm();
-  const double fine = (swing(t.h / 2, 0.5, measured) - exact).norm();
-  const double halved = (swing(t.h, 1, measured) - swing(t.h / 2, 1, measured)).norm();
+  const Vec3<double> exact = swing(t.scene, 1.0 / 3840, 0.5, ignored);
+  const double coarse = (swing(t.scene, t.h, 0.5, measured) - exact).norm();
+  const double fine = (swing(t.scene, t.h / 2, 0.5, measured) - exact).norm();
+  const double halved = (swing(t.scene, t.h, 1, measured) - swing(t.scene, t.h / 2, 1, measured)).norm();
   Verdict v(measured);
   v.general();
   v.at_least("order", std::log2(coarse / fine), 1.7);
@@ -327,17 +254,10 @@ Verdict five_bar_pendulum(const Trial& t) {
   return v;
 }
 
-/// Ends of two hinged rods at high speeds about square axes, after 100 steps of `h` in `parts` each.
+/// End of the second rod after 100 steps of `h` in `parts` each.
 template <class T>
-Vec3<double> two_hinges(double h, int parts, Measurement& measured) {
-  Stage<T> stage(weightless());
-  Skeleton body = chain({2, JointType::kRevolute, JointType::kRevolute, 0.5});
-  body.joints[0].axis = Vec3<double>::UnitZ();
-  body.joints[0].center_of_mass = {0.2, 0, -0.25};  // off its axis
-  std::vector<JointJet<T>> jets = rest_jets<T>(body);
-  jets[0].omega = Vec3<T>(0, 0, 15);
-  jets[1].omega = Vec3<T>(0, 15, 0);
-  stage.add(body, limp(), jets);
+Vec3<double> two_hinges(const scene::Scene& scene, double h, int parts, Measurement& measured) {
+  Stage<T> stage(scene);
   stage.run(100 * h, h / parts);
   measured.merge(stage.measured());
   return (stage.character(0).model()[1] * Vec3<T>(0, 0, T(-0.5))).template cast<double>();
@@ -346,8 +266,8 @@ Vec3<double> two_hinges(double h, int parts, Measurement& measured) {
 template <class T>
 Verdict orthogonal_hinges(const Trial& t) {
   Measurement measured, ignored;
-  const Vec3<double> exact = two_hinges<double>(t.h, 16, ignored);
-  const Vec3<double> found = two_hinges<T>(t.h, 1, measured);
+  const Vec3<double> exact = two_hinges<double>(t.scene, t.h, 16, ignored);
+  const Vec3<double> found = two_hinges<T>(t.scene, t.h, 1, measured);
   Verdict v(measured);
   v.general();
   v.require(v.measured().solved > 0, "was not simulated");
@@ -400,28 +320,36 @@ std::vector<HardCase> rotation_cases() {
        "no step gains 0.1 %, momentum to 1e-3, p99 of passes 8",
        {1.0 / 240, 1.0 / 60, 1.0 / 30},
        free_flight<float, 1>,
-       free_flight<double, 1>},
+       free_flight<double, 1>,
+       "",
+       "free_flight"},
       {"free_flight_3_rad_s",
        "6",
        "research 1.3",
        "no step gains 0.1 %, momentum to 1e-3, p99 of passes 8",
        {1.0 / 240, 1.0 / 60, 1.0 / 30},
        free_flight<float, 3>,
-       free_flight<double, 3>},
+       free_flight<double, 3>,
+       "",
+       "free_flight"},
       {"free_flight_10_rad_s",
        "6",
        "research 1.3",
        "no step gains 0.1 %, momentum to 1e-3, p99 of passes 8",
        {1.0 / 240, 1.0 / 60, 1.0 / 30},
        free_flight<float, 10>,
-       free_flight<double, 10>},
+       free_flight<double, 10>,
+       "",
+       "free_flight"},
       {"free_flight_30_rad_s",
        "6",
        "research 1.3",
        "no step gains 0.1 %, momentum to 1e-3, p99 of passes 8",
        {1.0 / 240, 1.0 / 60, 1.0 / 30},
        free_flight<float, 30>,
-       free_flight<double, 30>},
+       free_flight<double, 30>,
+       "",
+       "free_flight"},
       {"ball_hits_floating_figure",
        "7",
        "SimBenchmark anymal-momentum",

@@ -10,8 +10,9 @@ namespace sinew::study {
 
 /// One run of a case.
 struct Trial {
-  double h = 1.0 / 60;
-  bool quick = false;  ///< shortened, for the test suite
+  double h = 1.0 / 60;  ///< in place of the scene's frame rate
+  bool quick = false;   ///< shortened, for the test suite
+  scene::Scene scene;  ///< as its file says; a case may change a copy, to repeat it with another seed or mass
   /// Length of a run, s: the catalogue's, or a shorter one in quick trials.
   double lasting(double full, double shortened) const { return quick ? shortened : full; }
 };
@@ -53,7 +54,17 @@ struct HardCase {
   Run in_float = nullptr;     ///< null with in_double: the runtime cannot do this yet
   Run in_double = nullptr;
   const char* unsupported = "";  ///< what is missing
+  /// Its set-up, assets/scenes/hard_cases/NAME.json; as the case is called where null, none where
+  /// why_without_scene says so.
+  const char* scene = nullptr;
 };
+
+/// What has no scene file, and why; nullptr for all others. The one list: scene_files.cpp.
+const char* why_without_scene(const std::string& case_name);
+/// Path of a case's scene file; "" where it has none.
+std::string scene_file(const HardCase& hard_case);
+/// A line for people: the file, or why there is none.
+std::string set_up_of(const HardCase& hard_case);
 
 /// The catalogue, in its order.
 std::vector<HardCase> hard_cases();

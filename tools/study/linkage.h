@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scene/bodies.h"
 #include "sinew/character/world.h"
 
 namespace sinew::study {
@@ -31,11 +32,8 @@ struct Linkage {
   /// A uniform round rod from the joint to `end`, m; slender ones do not resist turning about themselves.
   int add_rod(int parent, JointType type, const Vec3<double>& anchor, const Vec3<double>& end,
               const Vec3<double>& axis, double mass, double radius = 0) {
-    const Vec3<double> along = end - anchor, unit = along.normalized();
-    const Mat3<double> across = Mat3<double>::Identity() - unit * unit.transpose();
-    const Mat3<double> inertia = mass * ((along.squaredNorm() / 12 + radius * radius / 4) * across +
-                                         radius * radius / 2 * (unit * unit.transpose()));
-    return add(parent, type, anchor, axis, mass, anchor + along / 2, inertia);
+    const Vec3<double> along = end - anchor;
+    return add(parent, type, anchor, axis, mass, anchor + along / 2, scene::rod_inertia(mass, along, radius));
   }
   /// The frame with world axes at a point of the reference pose, on a body of the first character.
   Anchor anchor(int body, const Vec3<double>& point, int character = 0) const {

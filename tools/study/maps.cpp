@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/humanoid.h"
 #include "study/bodies.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "scene/humanoid.h"
 #include "sinew/effects/continuous_detection.h"
 #include "study/bodies.h"
-#include "study/humanoid.h"
 
 namespace sinew::study {
 namespace {

@@ -12,9 +12,9 @@ std::string step_name(double h) {
   return text;
 }
 
-StabilityRow run_row(Run run, double h, bool in_float, bool quick) {
-  const Verdict verdict = run({h, quick});
-  return {h, in_float, verdict.passed(), verdict.reason(), verdict.measured()};
+StabilityRow run_row(Run run, const Trial& trial, bool in_float) {
+  const Verdict verdict = run(trial);
+  return {trial.h, in_float, verdict.passed(), verdict.reason(), verdict.measured()};
 }
 
 double per_step(double sum, const Measurement& m) {
@@ -35,9 +35,17 @@ StabilityResult run_case(const HardCase& hard_case, bool quick) {
   StabilityResult result;
   result.hard_case = hard_case;
   result.reason = hard_case.unsupported;
+  Trial trial;
+  trial.quick = quick;
+  if (const std::string file = scene_file(hard_case); !file.empty())
+    if (const convert::Error error = scene::load_scene(file, trial.scene)) {
+      result.reason = error.message;
+      return result;
+    }
   for (const double h : hard_case.steps) {
-    if (hard_case.in_float) result.rows.push_back(run_row(hard_case.in_float, h, true, quick));
-    if (hard_case.in_double) result.rows.push_back(run_row(hard_case.in_double, h, false, quick));
+    trial.h = h;
+    if (hard_case.in_float) result.rows.push_back(run_row(hard_case.in_float, trial, true));
+    if (hard_case.in_double) result.rows.push_back(run_row(hard_case.in_double, trial, false));
   }
   for (const StabilityRow& row : result.rows)
     if (!row.passed && result.reason.empty())
@@ -145,6 +153,7 @@ nlohmann::json stability_json(const std::vector<StabilityResult>& results) {
                      {"row", result.hard_case.row},
                      {"source", result.hard_case.source},
                      {"criterion", result.hard_case.criterion},
+                     {"scene", scene_file(result.hard_case)},
                      {"trials", trials}});
     passed += result.passed;
   }

@@ -87,6 +87,35 @@ Stage<T>::Stage(const WorldSettings& settings)
 }
 
 template <class T>
+Stage<T>::Stage(const scene::Scene& scene) : Stage(scene.world) {
+  script_ = std::make_unique<Script>(scene, *world_);
+  if (convert::Error error = script_->play.set_up()) {
+    refuse(error.message);
+    return;
+  }
+  for (std::size_t c = 0; c < scene.characters.size(); ++c)
+    enter(scene.characters[c].asset->skeleton, script_->play.start(static_cast<int>(c)));
+  for (const scene::SceneProp& prop : scene.props) enter(prop.settings);
+}
+
+/// Opens the books of a character that has been put into the world.
+template <class T>
+void Stage<T>::enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start) {
+  const Energy e = energy_of<T>(skeleton, start, settings_.gravity);
+  kinetic_ += e.kinetic;
+  energy_ += e.kinetic + e.potential;
+  members_.push_back(std::make_unique<Member>(Member{Tree<T>(skeleton), {}}));
+}
+
+template <class T>
+void Stage<T>::enter(const PropSettings& prop) {
+  const double kinetic = 0.5 * prop.mass * prop.velocity.squaredNorm();
+  kinetic_ += kinetic;
+  energy_ += kinetic - prop.mass * settings_.gravity.dot(prop.pose.translation);
+  fresh_ = fresh_ || prop.angular_velocity.norm() > 0;  // its spin is booked when the first report comes
+}
+
+template <class T>
 int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,
                   const std::vector<JointJet<T>>& jets) {
   Status status;
@@ -99,10 +128,7 @@ int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,
   status = world_->character(index).set_target(start);
   if (!status) m_.refused = status.reason;
   world_->character(index).reset();
-  const Energy e = energy_of<T>(skeleton, start, settings_.gravity);
-  kinetic_ += e.kinetic;
-  energy_ += e.kinetic + e.potential;
-  members_.push_back(std::make_unique<Member>(Member{Tree<T>(skeleton), {}}));
+  enter(skeleton, start);
   return index;
 }
 
@@ -114,10 +140,7 @@ int Stage<T>::add_prop(const PropSettings& prop) {
     m_.refused = status.reason;
     return index;
   }
-  const double kinetic = 0.5 * prop.mass * prop.velocity.squaredNorm();
-  kinetic_ += kinetic;
-  energy_ += kinetic - prop.mass * settings_.gravity.dot(prop.pose.translation);
-  fresh_ = fresh_ || prop.angular_velocity.norm() > 0;  // its spin is booked when the first report comes
+  enter(prop);
   return index;
 }
 
@@ -212,6 +235,19 @@ Vec3<double> Stage<T>::center_of_mass(int c) {
   return sum / skeleton.total_mass();
 }
 
+/// What the scene asks for in a step of h seconds.
+template <class T>
+bool Stage<T>::follow_script(double h) {
+  const double from = script_->time, to = script_->time += h;
+  if (convert::Error error = script_->play.prepare(from, to)) {
+    refuse(error.message);
+    return false;
+  }
+  for (const scene::Impulse& p : script_->play.pushes(from, to))
+    push(p.character, p.joint, p.point, p.impulse);
+  return m_.refused.empty();
+}
+
 template <class T>
 bool Stage<T>::step(double h) {
   if (!m_.refused.empty()) return false;
@@ -219,6 +255,7 @@ bool Stage<T>::step(double h) {
     const auto local = character(static_cast<int>(c)).local();
     members_[c]->local.assign(local.begin(), local.end());
   }
+  if (script_ && !follow_script(h)) return false;
   if (m_.steps == 0) base_ = energy_, m_.kinetic_start = m_.kinetic_most = kinetic_;
   const auto begin = std::chrono::steady_clock::now();
   const Status status = world_->step(T(h));

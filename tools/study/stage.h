@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/play.h"
 #include "sinew/character/world.h"
 #include "sinew/residual/tree.h"
 
@@ -44,6 +45,8 @@ template <class T>
 class Stage {
  public:
   explicit Stage(const WorldSettings& settings);
+  /// Plays a scene, of which it keeps a copy: sets it up, and does in every step what the scene asks for.
+  explicit Stage(const scene::Scene& scene);
 
   /// Adds a character that starts in the state of `jets` (its rest pose where empty) and keeps it as target.
   /// Returns its index; a refusal ends the run (`measured().refused`).
@@ -90,6 +93,16 @@ class Stage {
     int character, joint;
     Vec3<double> local, before, impulse;
   };
+  struct Script {
+    Script(const scene::Scene& of, World<T>& world) : scene(of), play(scene, world) {}
+    scene::Scene scene;
+    scene::Play<T> play;
+    double time = 0;  ///< s
+  };
+
+  void enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start);
+  void enter(const PropSettings& prop);
+  bool follow_script(double h);
 
   double work_of_pushes(double h);
   double work_of_muscles();
@@ -98,6 +111,7 @@ class Stage {
 
   WorldSettings settings_;
   std::unique_ptr<World<T>> world_;
+  std::unique_ptr<Script> script_;
   std::vector<std::unique_ptr<Member>> members_;
   std::vector<Push> pushes_;
   Measurement m_;

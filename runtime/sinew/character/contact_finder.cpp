@@ -55,7 +55,7 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.half_axis_a = point.half_axis;
   c.radius = point.radius;
   c.restitution = point.restitution;
-  c.stiffness = states_[n]->contact_stiffness(*world_, bears_);
+  c.stiffness = point.share * states_[n]->contact_stiffness(*world_, bears_);
   return c;
 }
 

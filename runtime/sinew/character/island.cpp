@@ -19,6 +19,7 @@ constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the 
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
+constexpr int kSettling = 8;    ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 constexpr int kUnchangedSteps =
     2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
 
@@ -271,6 +272,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r.elastic_energy += elastic_of(tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
+  s.settling = s.impulses.empty() ? std::max(s.settling - 1, 0) : kSettling;
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world.gravity);
@@ -440,8 +442,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no loop that is being
-/// closed.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no loop
+/// that is being closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
   const bool closing =
@@ -450,7 +452,7 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+    return s->impulses.empty() && s->settling == 0 && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 

@@ -34,6 +34,7 @@ Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleto
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
+  share_stiffness<T>(points);
   support = SupportPoints<T>(tree, points);
   std::vector<Transform<T>> local;
   for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
@@ -321,6 +322,7 @@ void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
+  settling = 0;
   energy_ceiling = std::numeric_limits<double>::infinity();
 }
 

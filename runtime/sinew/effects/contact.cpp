@@ -147,6 +147,17 @@ SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from
 }  // namespace
 
 template <class T>
+void share_stiffness(std::vector<ContactPoint<T>>& points) {
+  const auto touching = [&](int body) {
+    T count = T(0);
+    for (const ContactPoint<T>& p : points)
+      if (p.body == body && p.meets_plane()) count += p.kind == PointKind::kCorner ? T(0.5) : T(1);
+    return count;
+  };
+  for (ContactPoint<T>& p : points) p.share = T(4) / std::max(T(4), touching(p.body));
+}
+
+template <class T>
 void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.point = at(&a, c.body_a, c.local_a);
   if (c.plane) {

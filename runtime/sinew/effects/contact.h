@@ -53,6 +53,7 @@ struct ContactPoint {
   T friction = T(0.8);
   T restitution = T(0);
   int collider = 0;  ///< that it belongs to, within its skeleton
+  T share = T(1);    ///< of the stiffness: less where a body stands on many
 
   bool meets_plane() const { return kind == PointKind::kTip || kind == PointKind::kCorner; }
   bool meets(Shape shape) const {
@@ -63,6 +64,11 @@ struct ContactPoint {
 /// Appends the points of a collider, the `index`th of its skeleton.
 template <class T>
 void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index = 0);
+
+/// A body sinks as deep on many points as on four: sets the shares of those that can touch a plane at once
+/// (half of a box's corners), beyond four per body.
+template <class T>
+void share_stiffness(std::vector<ContactPoint<T>>& points);
 
 class StaticShape;
 
@@ -210,6 +216,7 @@ void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& cont
   prefix struct Contact<T>;                                                                  \
   prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);        \
   prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int); \
+  prefix void share_stiffness<T>(std::vector<ContactPoint<T>>&);                             \
   prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);           \
   prefix void begin_step<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);
 SINEW_CONTACT_INSTANCES(extern template, float)

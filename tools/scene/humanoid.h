@@ -6,7 +6,7 @@
 
 #include "sinew/skeleton/skeleton.h"
 
-namespace sinew::study {
+namespace sinew::scene {
 
 /// Solid capsule along −z below the joint: mass, length and radius in kg and m.
 inline void add_capsule_body(Skeleton& s, const char* name, int parent, JointType type,
@@ -73,4 +73,4 @@ inline Skeleton humanoid() {
   return s;
 }
 
-}  // namespace sinew::study
+}  // namespace sinew::scene

@@ -1,0 +1,18 @@
+// Skeletons that a scene file describes itself.
+#pragma once
+
+#include "scene/reader.h"
+#include "sinew/skeleton/skeleton.h"
+
+namespace sinew::scene {
+
+/// A character's `figure`: one of the kinds made in bodies.h, or a list of joints; then what is to be changed
+/// in it. Fails where the result is no valid skeleton.
+Skeleton read_figure(const json& value, const std::string& where);
+
+/// What colliders, props and obstacles say of themselves: `shape` (sphere), and `size` as Collider::size, one
+/// number for all three.
+Shape shape_of(const Reader& in);
+Vec3<double> size_of(const Reader& in, const Vec3<double>& otherwise);
+
+}  // namespace sinew::scene

@@ -1,0 +1,62 @@
+// What a scene puts into a world, and what it asks of it in every step. `sinew simulate`, videos and hard
+// cases all play their scenes by it.
+#pragma once
+
+#include <vector>
+
+#include "scene/player.h"
+#include "scene/scene.h"
+
+namespace sinew::scene {
+
+/// An impulse (N·s) of a push on a world point of a joint, spread over one step.
+struct Impulse {
+  int character = 0, joint = 0;
+  Vec3<double> point = Vec3<double>::Zero(), impulse = Vec3<double>::Zero();
+};
+
+/// Scene and world must outlive it.
+template <class T>
+class Play {
+ public:
+  Play(const Scene& scene, World<T>& world) : s_(scene), world_(world) {}
+
+  /// Fills the empty world and sets it to the state of time 0.
+  convert::Error set_up();
+  /// Before the step from `from` to `to`, s: targets, strengths, root drives, things that are thrown.
+  convert::Error prepare(double from, double to);
+  /// The share of every push that falls into that step; whoever steps the world applies them.
+  std::vector<Impulse> pushes(double from, double to);
+
+  /// The state in which a character started.
+  const std::vector<JointJet<T>>& start(int character) const { return starts_[character]; }
+  bool launched(int prop) const { return launched_[static_cast<std::size_t>(prop)]; }
+
+ private:
+  /// What was last asked of a character: what changes in between is the host's.
+  struct Asked {
+    double strength = -1;
+    std::vector<double> groups;
+    RootDrive root = RootDrive::kKinematic;
+    bool still = false;  ///< its target does not change any more
+  };
+
+  convert::Error add_all();
+  convert::Error add_effects();
+  convert::Error drive(int character, double t);
+  void launch(double t);
+  Vec3<double> target_of(const SceneProp& prop, double t);
+  void aim(const SceneProp& prop, double t, Vec3<double>& from, Vec3<double>& velocity);
+
+  const Scene& s_;
+  World<T>& world_;
+  std::vector<Player<T>> players_;
+  std::vector<Asked> asked_;
+  std::vector<std::vector<JointJet<T>>> starts_;  ///< [character]
+  std::vector<bool> launched_;
+};
+
+extern template class Play<float>;
+extern template class Play<double>;
+
+}  // namespace sinew::scene
