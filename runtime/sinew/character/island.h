@@ -37,6 +37,7 @@ class IslandStepper {
   void limit_guess(T h);
   void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
+  void find_contacts(T h);
   void begin_part(T h, T fraction);
   bool strikes(T h) const;
   SolveReport attempt();
@@ -44,19 +45,12 @@ class IslandStepper {
   bool passive() const;
   double pose_energy() const;
   void begin_couplings(T h);
-  double elastic_of(int tree) const;
   void hold(CharacterState<T>& state);
   void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void choose_unknowns(CharacterState<T>& state);
-  bool release_overloaded(CharacterState<T>& state);
-  void first_guess(CharacterState<T>& state, T h, T share = T(1));
   void predict_all(Scheme scheme, T h);
-  std::uint64_t touching(int tree) const;
-  std::uint64_t bearing(int tree) const;
   bool touching_changed() const;
-  bool contacts_unchanged(const WorldSettings& world, T h, int tree) const;
   void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
 
   const WorldSettings* world_ = nullptr;
