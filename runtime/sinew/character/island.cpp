@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sinew/character/couplings.h"
 #include "sinew/character/cut.h"
@@ -220,45 +221,56 @@ bool IslandStepper<T>::strikes(T h) const {
   });
 }
 
+/// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
+template <class T>
+void IslandStepper<T>::begin_solve() {
+  const WorldSettings& world = *world_;
+  const T h = settings_.h;
+  for (CharacterState<T>* s : states_)
+    for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
+  if (!effects_.empty()) limit_guess(h);
+  second_ = world.accuracy.scheme == Scheme::kBdf2;
+  for (std::size_t n = 0; n < states_.size() && second_; ++n)
+    second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
+              touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
+                  states_[n]->contact_signature;
+  predict_all(second_ || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1,
+              h);
+}
+
+/// Of a part, unless it has been made for us.
+template <class T>
+SolveReport IslandStepper<T>::first_solve() {
+  if (!solve_begun_) begin_solve();
+  solve_begun_ = false;
+  if (!first_) return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+  return *std::exchange(first_, nullptr);
+}
+
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
 SolveReport IslandStepper<T>::attempt() {
   const WorldSettings& world = *world_;
   const T h = settings_.h;
-  SolveReport total;
-  bool second = false;
   mispredicted_ = false;
-  for (int round = 0; round < kReleaseRounds; ++round) {
-    // Which points can move depends on what was released.
-    if (round > 0) {
-      for (CharacterState<T>* s : states_)
-        forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-      find_contacts(h);
-    } else {
-      for (CharacterState<T>* s : states_)
-        for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
-      if (!effects_.empty()) limit_guess(h);
-      second = world.accuracy.scheme == Scheme::kBdf2;
-      for (std::size_t n = 0; n < states_.size() && second; ++n)
-        second = states_[n]->steps_unchanged >= kUnchangedSteps &&
-                 touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
-                     states_[n]->contact_signature;
-      predict_all(
-          second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
-    }
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
-    if (second && touching_changed()) {
+  SolveReport total = first_solve();
+  for (int round = 1;; ++round) {
+    if (second_ && touching_changed()) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
-      second = false;
+      second_ = false;
       mispredicted_ = true;
       predict_all(Scheme::kBdf1, h);
       total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
     for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
-    if (!released) break;
+    if (!released || round == kReleaseRounds) return total;
+    // Which points can move depends on what was released.
+    for (CharacterState<T>* s : states_)
+      forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
+    find_contacts(h);
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
   }
-  return total;
 }
 
 /// One part of the step, from `begin` to `end` (fractions of the frame): halved where it is long for an
@@ -271,7 +283,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     advance_part(begin, middle, splits);
     advance_part(middle, end, splits);
   };
-  begin_part(h, end);
+  if (!part_begun_) begin_part(h, end);
+  part_begun_ = false;
   const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
   if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
   const SolveReport solved = attempt();
@@ -461,30 +474,63 @@ void IslandStepper<T>::start(T end, int splits) {
 }
 
 template <class T>
-int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
-                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-                           std::span<LaggedForce<T>> lagged_out) {
-  world_ = &world;
-  surroundings_ = surroundings;
+void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                             std::span<Coupling<T>* const> couplings,
+                             std::span<const LaggedForce<T>> lagged) {
   states_ = states;
   indices_ = indices;
   couplings_ = couplings;
-  frame_ = h;
   choose_lagged(lagged);
   trees_.clear();
   for (CharacterState<T>* s : effects_.empty() ? std::span<CharacterState<T>* const>() : states)
     trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
                       s->steps_unchanged, s->contact_signature});
-  settings_.gravity = world.gravity.template cast<T>();
-  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
-  settings_.limit_damping = T(world.accuracy.limit_damping);
   total_ = {};
   all_converged_ = true;
   splits_ = parts_ = damped_ = held_ = 0;
+  part_begun_ = solve_begun_ = false;
+  first_ = nullptr;
+}
+
+template <class T>
+bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& surroundings, T h,
+                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                             std::span<Coupling<T>* const> couplings,
+                             std::span<const LaggedForce<T>> lagged) {
+  world_ = &world;
+  surroundings_ = surroundings;
+  frame_ = h;
+  reset(states, indices, couplings, lagged);
+  settings_.gravity = world.gravity.template cast<T>();
+  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
   begin_couplings(h);
+  const bool alone = states.size() == 1 && couplings.empty();
+  if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
+  begin_part(h, T(1));
+  part_begun_ = true;
+  if (!contacts_.empty()) return false;
+  begin_solve();
+  return solve_begun_ = true;
+}
+
+template <class T>
+void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged) {
+  reset(begun.states, begun.indices, {}, lagged);
+  settings_ = begun.settings;
+  second_ = begun.second;
+  problems_.assign(1, &states_[0]->problem);
+  contacts_ = {};
+  part_begun_ = solve_begun_ = true;
+}
+
+template <class T>
+int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first) {
+  const WorldSettings& world = *world_;
+  const T h = frame_;
+  first_ = first;
   const int parts = parts_of(h);
   const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
@@ -508,6 +554,15 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());
   std::copy_n(lagged_.begin(), count, lagged_out.begin());
   return static_cast<int>(count);
+}
+
+template <class T>
+int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
+                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                           std::span<LaggedForce<T>> lagged_out) {
+  (void)begin(world, surroundings, h, states, indices, couplings, lagged);
+  return end(lagged_out);
 }
 
 template class IslandStepper<float>;

@@ -10,8 +10,8 @@
 #define EIGEN_MAX_STATIC_ALIGN_BYTES 16
 #endif
 
-#include "sinew/residual/motion_axes.h"
 #include "sinew/residual/residual_pass.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 
@@ -40,7 +40,7 @@ void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, c
     k.center[i] = k.origin[i] + arm;
     m.omega[i] = r * body.omega;
     m.velocity[i] = m.origin_velocity[i] + m.omega[i].cross(arm);
-    motion_axes(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
+    motion_axes<T>(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
     force[i] = r * body.force;
     moment[i] = r * body.moment + k.origin[i].cross(force[i]);
   }

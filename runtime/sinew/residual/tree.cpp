@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "sinew/residual/motion_axes.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 
@@ -24,7 +24,7 @@ Mat3<double> held_by_parent(const Joint& joint) {
   if (joint.type == JointType::kUniversal) axes.col(0) = joint.axis;
   if (joint.type == JointType::kPlanar) {
     Vec3<double> a, b;
-    planar_axes(joint.axis, a, b);
+    planar_axes<double>(joint.axis, a, b);
     axes << a, b, joint.axis;
   }
   return axes;
@@ -77,73 +77,18 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
 template <class T>
 void forward_kinematics(const Tree<T>& tree, std::span<const Transform<T>> local,
                         const Vec3<T>& common_origin, Kinematics<T>& out) {
-  for (int i = 0; i < tree.bodies; ++i) {
-    const int p = tree.parent[i];
-    const Mat3<T> relative = local[i].rotation.toRotationMatrix();
-    if (p < 0) {
-      out.rotation[i] = relative;
-      out.origin[i] = local[i].translation - common_origin;
-    } else {
-      out.rotation[i].noalias() = out.rotation[p] * relative;
-      out.origin[i] = out.origin[p] + out.rotation[p] * local[i].translation;
-    }
-    out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i];
-    motion_axes(tree, i, local[i], out);
-  }
+  place_bodies<T>(tree, local, common_origin, out);
 }
 
 template <class T>
 Transform<T> displaced(const Tree<T>& tree, int i, const Transform<T>& local, const T* d) {
-  Transform<T> moved = local;
-  switch (tree.type[i]) {
-    case JointType::kFixed:
-      break;
-    case JointType::kRevolute:
-      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[0]);
-      break;
-    case JointType::kPrismatic:
-      moved.translation += local.rotation * (tree.axis[i] * d[0]);
-      break;
-    case JointType::kUniversal: {
-      const Quat<T> relative = tree.rest[i].rotation.conjugate() * local.rotation;
-      const Quat<T> last = rotation_exp<T>(tree.axis2[i] * twist_angle<T>(relative, tree.axis2[i]));
-      moved.rotation = local.rotation * last.conjugate() * rotation_exp<T>(tree.axis[i] * d[0]) * last *
-                       rotation_exp<T>(tree.axis2[i] * d[1]);
-      break;
-    }
-    case JointType::kBall:
-      moved.rotation = local.rotation * rotation_exp<T>({d[0], d[1], d[2]});
-      break;
-    case JointType::kPlanar: {
-      Vec3<T> a, b;
-      planar_axes(tree.axis[i], a, b);
-      moved.translation += tree.rest[i].rotation * (a * d[0] + b * d[1]);
-      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[2]);
-      break;
-    }
-    case JointType::kFree:
-      moved.translation += Vec3<T>(d[0], d[1], d[2]);
-      moved.rotation = rotation_exp<T>({d[3], d[4], d[5]}) * local.rotation;
-      break;
-    case JointType::kTranslation:
-      moved.translation += Vec3<T>(d[0], d[1], d[2]);
-      return moved;
-  }
-  moved.rotation.normalize();
-  return moved;
+  return moved_by<T>(tree, i, local, d);
 }
 
 template <class T>
 void project_wrenches(const Tree<T>& tree, const Kinematics<T>& k, std::span<Vec3<T>> force,
                       std::span<Vec3<T>> moment, std::span<T> projection) {
-  for (int i = tree.bodies - 1; i >= 0; --i) {
-    for (int d = tree.first_dof[i]; d < tree.first_dof[i + 1]; ++d)
-      projection[d] = k.w[d].dot(moment[i]) + k.v[d].dot(force[i]);
-    if (const int p = tree.parent[i]; p >= 0) {
-      force[p] += force[i];
-      moment[p] += moment[i];
-    }
-  }
+  sum_and_project<T>(tree, k, force, moment, projection);
 }
 
 SINEW_RESIDUAL_INSTANCES(template, float)
