@@ -59,7 +59,9 @@ class Runner {
       edges_.push_back(drawn_edges(body));
       for (const auto& [a, b] : edges_.back()) {
         const double length = (body.nodes[a].position - body.nodes[b].position).norm();
-        const auto radius = static_cast<float>(std::max(0.3 * body.radius, 1e-3));
+        // Strands as thick as they collide; in a net that would be a wall.
+        const bool strand = edges_.back().size() < body.nodes.size();
+        const auto radius = static_cast<float>(std::max((strand ? 1 : 0.3) * body.radius, 2e-3));
         recording_.props.push_back({body.name, Shape::kCapsule, {radius, radius, float(length / 2)}, 0});
       }
     }

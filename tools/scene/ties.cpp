@@ -1,6 +1,7 @@
 #include "scene/ties.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "scene/effect_registry.h"
@@ -153,10 +154,17 @@ std::vector<std::array<int, 2>> drawn_edges(const ParticleBody& body) {
   std::set<std::array<int, 2>> edges;
   for (const Stencil<double>& e : body.stencils)
     if (e.count == 2) edges.insert({e.node[0], e.node[1]});
+  std::map<std::array<int, 3>, int> faces;  // those on the surface belong to one tetrahedron
   for (const Tetrahedron<double>& e : body.tetrahedra)
-    for (int i = 0; i < 4; ++i)
-      for (int j = i + 1; j < 4; ++j)
-        edges.insert({std::min(e.node[i], e.node[j]), std::max(e.node[i], e.node[j])});
+    for (int apart = 0; apart < 4; ++apart) {
+      std::array<int, 3> face{};
+      for (int i = 0, n = 0; i < 4; ++i)
+        if (i != apart) face[n++] = e.node[i];
+      std::sort(face.begin(), face.end());
+      ++faces[face];
+    }
+  for (const auto& [face, count] : faces)
+    if (count == 1) edges.insert({{face[0], face[1]}, {face[1], face[2]}, {face[0], face[2]}});
   return {edges.begin(), edges.end()};
 }
 

@@ -14,7 +14,7 @@ LoopSettings read_loop(const json& entry, const std::string& where, const Scene&
 /// One entry of `particles`: a strand, cloth or soft tissue.
 ParticleBody read_particles(const json& entry, const std::string& where, const Scene& scene);
 
-/// The pairs of nodes between which a particle body is drawn, as thin capsules.
+/// The pairs of nodes between which a particle body is drawn, as thin capsules: of tissue, its surface.
 std::vector<std::array<int, 2>> drawn_edges(const ParticleBody& body);
 
 }  // namespace sinew::scene

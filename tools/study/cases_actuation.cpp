@@ -1,4 +1,5 @@
-// Rows 49–51: bodies that are moved by the animation, and characters that are put elsewhere.
+// Rows 49–51 and 54: bodies that are moved by the animation, characters that are put elsewhere, limbs that
+// are solved for in one step of four.
 #include <algorithm>
 #include <cmath>
 
@@ -131,6 +132,64 @@ Verdict animation_cut(const Trial& t) {
   return v;
 }
 
+/// Stands, with weakened hands and feet, and is struck at an elbow or a knee every third of a second.
+template <class T>
+struct Struck {
+  Stage<T> stage{WorldSettings{}};
+  Skeleton body = humanoid();
+  std::vector<int> limbs;
+  int strike = 0;
+
+  explicit Struck(bool bake) {
+    stage.add(body, {});
+    for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) {
+      limbs.push_back(body.find(name));
+      stage.character(0).set_strength(limbs.back(), T(0.3));
+    }
+    CharacterDetail detail;
+    detail.bake = bake;
+    stage.character(0).set_detail(detail);
+  }
+  void step(double h, bool strikes) {
+    const char* const struck[] = {"forearm_r", "shin_l", "forearm_l", "shin_r"};
+    const int joint = body.find(struck[strike % 4]);
+    const Vec3<double> at = stage.character(0).model()[joint].translation.template cast<double>();
+    if (strikes) stage.push(0, joint, at, {strike++ % 2 == 0 ? 30.0 : -30.0, 12, 0});
+    stage.step(h);
+  }
+};
+
+template <class T>
+Verdict baked_limbs(const Trial& t) {
+  Struck<T> dynamic(false), baked(true);
+  double squares = 0, terms = 0, hottest_dynamic = 0, hottest_baked = 0;
+  int solved_dynamic = 0, solved_baked = 0;
+  const int steps = static_cast<int>(std::lround(2 / t.h)),
+            between = static_cast<int>(std::lround(1 / (3 * t.h)));
+  for (int n = 0; n < steps; ++n) {
+    dynamic.step(t.h, n % between == 0);
+    baked.step(t.h, n % between == 0);
+    const Character<T> one = dynamic.stage.character(0), two = baked.stage.character(0);
+    for (std::size_t i = 0; i < one.model().size(); ++i) {
+      squares += std::pow(double(one.model()[i].rotation.angularDistance(two.model()[i].rotation)), 2);
+      ++terms;
+    }
+    hottest_dynamic = std::max(hottest_dynamic, dynamic.stage.kinetic());
+    hottest_baked = std::max(hottest_baked, baked.stage.kinetic());
+    for (const int limb : dynamic.limbs) {
+      solved_dynamic += one.unknown()[one.first_dof(limb)];
+      solved_baked += two.unknown()[two.first_dof(limb)];
+    }
+  }
+  Verdict v(baked.stage.measured());
+  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
+  v.at_most("pose off that of the always dynamic one, rms (deg)", std::sqrt(squares / terms) * 180 / kPi, 3);
+  v.at_most("most kinetic energy, of the always dynamic one's", hottest_baked / hottest_dynamic, 1.01);
+  v.at_most("steps in which limbs are solved for, of the always dynamic one's",
+            double(solved_baked) / solved_dynamic, 0.9);
+  return v;
+}
+
 }  // namespace
 
 std::vector<HardCase> actuation_cases() {
@@ -170,6 +229,13 @@ std::vector<HardCase> actuation_cases() {
        {1.0 / 60},
        animation_cut<float>,
        animation_cut<double>},
+      {"baked_limbs",
+       "54",
+       "seed talk, bake",
+       "below 3 deg rms off always dynamic, no more energy",
+       {1.0 / 60},
+       baked_limbs<float>,
+       baked_limbs<double>},
   };
 }
 

@@ -343,14 +343,6 @@ std::vector<HardCase> muscle_cases() {
        {1.0 / 30},
        ragdoll_hit_in_the_same_frame<float>,
        ragdoll_hit_in_the_same_frame<double>},
-      {"baked_limbs",
-       "54",
-       "seed talk, bake",
-       "below 3 deg off always dynamic",
-       {},
-       nullptr,
-       nullptr,
-       "not supported: baking"},
   };
 }
 

@@ -13,7 +13,7 @@ struct Sceneless {
 };
 
 constexpr Sceneless kSceneless[] = {
-    {"baked_limbs", "not supported"},
+    {"baked_limbs", "two worlds side by side, with and without baking"},
     {"denormal_speeds", "300 equal balls, of speeds that no file would hold"},
     {"soak_hour", "an hour of pushes, teleports and strengths that are drawn as it goes"},
     {"random_trees", "20000 trees, each made from its seed"},

@@ -40,7 +40,7 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
   if (state_->levels.asleep && !state_->limp() &&
       !std::equal(jets.begin(), jets.end(), state_->target.begin(), same_pose<T>))
     state_->levels.wake = true;
-  std::copy(jets.begin(), jets.end(), state_->target.begin());
+  std::copy(jets.begin(), jets.end(), state_->new_target().begin());
   return {};
 }
 
@@ -137,7 +137,7 @@ Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T
   if (state_->impulses.size() == state_->impulses.capacity())
     return Status::error(Code::kOutOfRange, "more than 64 impulses in one step", joint);
   const int body = state_->body_of(joint);
-  state_->impulses.push_back({body, state_->model[body].inverse() * point, impulse});
+  state_->impulses.push_back({body, state_->model()[body].inverse() * point, impulse});
   return {};
 }
 
@@ -153,7 +153,7 @@ std::span<const Transform<T>> Character<T>::local() const {
 
 template <class T>
 std::span<const Transform<T>> Character<T>::model() const {
-  return state_->model;
+  return state_->model();
 }
 
 template <class T>

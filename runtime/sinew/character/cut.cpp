@@ -45,14 +45,13 @@ template <class T>
 bool carry_over(CharacterState<T>& s, T h) {
   if (!s.root_is_kinematic() || !s.floats) return false;
   const Transform<T> before = a_step_ago(s.target[0], h);
-  JointJet<T>& last = s.target_before[0];
-  if (!leaps(before, last)) return false;
+  if (!leaps(before, s.last_target()[0])) return false;
   s.keep_record();
   turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
   s.local[0] = before;
-  restart(before, s.target[0], last);
-  s.update_model();
+  restart(before, s.target[0], s.own_last_target()[0]);
+  s.pose_changed();
   s.energy_ceiling = std::numeric_limits<double>::infinity();
   return true;
 }
@@ -61,10 +60,9 @@ template <class T>
 void meet_cuts(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
-    JointJet<T>& last = s.target_before[i];
     const Transform<T> before = a_step_ago(now, h);
-    if (!leaps(before, last)) continue;
-    restart(before, now, last);
+    if (!leaps(before, s.last_target()[i])) continue;
+    restart(before, now, s.own_last_target()[i]);
     Deviation<T>& d = s.deviation[i];
     if (d.on_animation) continue;
     const Transform<T> wanted{now.rotation, now.translation};

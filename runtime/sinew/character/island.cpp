@@ -124,7 +124,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
                            : 0;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
-  s.update_model();
+  s.pose_changed();
 
   CharacterReport& r = s.report;
   r = {};
@@ -154,7 +154,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const JointJet<T>&now = s.target[i], &before = s.target_before[i];
+    const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
     const Transform<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction)
                                                 : Transform<T>{now.rotation, now.translation};
     s.wanted[i] = s.in_solve(i, wanted, settings_.common_origin);
@@ -384,7 +384,7 @@ void IslandStepper<T>::begin_couplings(T h) {
       if (node.tree < 0) {
         node.point = (node.place - origin).template cast<T>();
       } else {
-        const Vec3<T> world = states_[node.tree]->model[node.body] * node.local;
+        const Vec3<T> world = states_[node.tree]->model()[node.body] * node.local;
         node.point = (world.template cast<double>() - origin).template cast<T>();
       }
     }

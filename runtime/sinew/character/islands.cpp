@@ -96,7 +96,7 @@ void Islands<T>::divide_ties(const Couplings<T>& couplings) {
 /// Whether two that may meet are to be stepped together, by their colliders: nobody is woken, or solved for,
 /// because somebody walks by.
 template <class T>
-bool Islands<T>::meet(const CharacterState<T>& a, const CharacterState<T>& b, T h) {
+bool Islands<T>::meet(CharacterState<T>& a, CharacterState<T>& b, T h) {
   return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kReach));
 }
 

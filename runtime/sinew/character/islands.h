@@ -39,7 +39,7 @@ class Islands {
 
  private:
   static bool takes_part(const CharacterState<T>& s) { return !s.parked && !s.levels.asleep; }
-  static bool meet(const CharacterState<T>& a, const CharacterState<T>& b, T h);
+  static bool meet(CharacterState<T>& a, CharacterState<T>& b, T h);
   void wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states);
   void wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> states, const Couplings<T>& couplings);
   int root_of(int state);

@@ -34,9 +34,9 @@ std::size_t bytes_of(const CharacterState<T>& s) {
   const History<T>& h = s.history;
   const Motion<T>& m = s.motion;
   return sizeof s +
-         held(s.target, s.target_before, s.local, s.model, s.played_from, s.rate, s.rate_before, s.deviation,
-              s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.unknown, s.impulses, s.baked,
-              s.wanted, s.standing) +
+         held(s.target, s.target_before, s.local, s.model_pose, s.played_from, s.rate, s.rate_before,
+              s.deviation, s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.unknown,
+              s.impulses, s.baked, s.wanted, s.standing) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
               law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal) +
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum, p.prediction.start) +

@@ -50,13 +50,10 @@ bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
   std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    s.played_from[i] = s.local[i];
+  s.played_from.swap(s.local);
+  for (std::size_t i = 0; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
-  }
-  for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
-    s.local[i] = {s.target[i].rotation, s.target[i].translation};
-  s.update_model();
+  s.pose_changed();
   s.history.place = origin.template cast<double>();  // neighbours go by these two
   s.history.velocity[0] = s.motion.velocity[0];
   s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
@@ -88,7 +85,7 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
-  s.update_model();
+  s.pose_changed();
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.history.velocity[0] = (s.local[0].translation - p.start[0].translation) / h;  // neighbours go by it
   s.history.place = s.local[0].translation.template cast<double>();
@@ -104,7 +101,7 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
   if (!s.owed.motion) return;
   s.owed.history = s.owed.motion = false;
   // Speeds of the animation, and on top of them those of what is off it.
-  jets.assign(s.target_before.begin(), s.target_before.begin() + s.tree.bodies);
+  jets.assign(s.last_target().begin(), s.last_target().begin() + s.tree.bodies);
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& jet = jets[i];
     const Deviation<T>& d = s.deviation[i];
@@ -142,7 +139,7 @@ template <class T>
 bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
   if (!s.settings.ground_contact) return false;
   const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.model[0].translation.template cast<double>();
+  const Vec3<double> center = s.local[0].translation.template cast<double>();
   const auto near = [&](double distance) { return distance < double(reach); };
   return std::any_of(
              around.obstacles.begin(), around.obstacles.end(),

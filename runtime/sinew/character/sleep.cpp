@@ -16,7 +16,7 @@ bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
     const auto same = [](const JointJet<T>& a, const JointJet<T>& b) {
       return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
     };
-    if (!std::equal(s.target.begin(), s.target.end(), s.target_before.begin(), same)) return false;
+    if (!std::equal(s.target.begin(), s.target.end(), s.last_target().begin(), same)) return false;
   }
   for (int i = 0; i < s.tree.bodies; ++i)
     if (s.history.velocity[i].squaredNorm() > T(detail.sleep_speed * detail.sleep_speed) ||
@@ -33,12 +33,12 @@ bool is_woken(const CharacterState<T>& s) {
 }
 
 template <class T>
-bool colliders_near(const CharacterState<T>& a, const CharacterState<T>& b, T h, T margin) {
+bool colliders_near(CharacterState<T>& a, CharacterState<T>& b, T h, T margin) {
   const T speed = a.fastest() + b.fastest();
   for (std::size_t c = 0; c < a.colliders.size(); ++c) {
-    const Vec3<T> one = a.model[a.colliders[c].joint] * a.bound_center[c];
+    const Vec3<T> one = a.model()[a.colliders[c].joint] * a.bound_center[c];
     for (std::size_t d = 0; d < b.colliders.size(); ++d) {
-      const Vec3<T> two = b.model[b.colliders[d].joint] * b.bound_center[d];
+      const Vec3<T> two = b.model()[b.colliders[d].joint] * b.bound_center[d];
       const T reach = a.bound_radius[c] + b.bound_radius[d] + margin + 2 * h * speed;
       if ((one - two).squaredNorm() < reach * reach) return true;
     }

@@ -91,7 +91,7 @@ template <class T>
 void visit_flags(CharacterState<T>& s, ByteStream& stream) {
   constexpr std::array<T, 6> none{};
   for (int i = 0; i < s.tree.bodies; ++i) {
-    JointJet<T>& last = s.target_before[i];
+    JointJet<T>& last = s.own_last_target()[i];
     Deviation<T>& d = s.deviation[i];
     const bool elsewhere =
         last.rotation.coeffs() != s.local[i].rotation.coeffs() || last.translation != s.local[i].translation;
@@ -123,14 +123,15 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   visit_flags(s, stream);
   visit("last target's rotation", kElsewhere, [&](auto& coder, int i) {
     for (int n = 0; n < 3; ++n)
-      coder.value(s.target_before[i].rotation.coeffs()[n], s.local[i].rotation.coeffs()[n]);
+      coder.value(s.own_last_target()[i].rotation.coeffs()[n], s.local[i].rotation.coeffs()[n]);
   });
   visit("last target's rotation's last member", kElsewhere, [&](auto& coder, int i) {
-    Quat<T>& last = s.target_before[i].rotation;
+    Quat<T>& last = s.own_last_target()[i].rotation;
     coder.value(last.w(), last_of(last, s.local[i].rotation));
   });
-  visit("last target's translation", kElsewhere,
-        [&](auto& coder, int i) { coder.values(s.target_before[i].translation, s.local[i].translation); });
+  visit("last target's translation", kElsewhere, [&](auto& coder, int i) {
+    coder.values(s.own_last_target()[i].translation, s.local[i].translation);
+  });
   stream.value("span of the joint speeds", s.rate_step);
   visit("joint speed", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate[i], {}); });
   // The next step's guess looks further back only while nothing changes.
@@ -139,7 +140,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
     visit("joint speed before", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate_before[i], s.rate[i]); });
   }
   visit("deviation", kDeviates, [&](auto& coder, int i) {
-    const JointJet<T>& last = s.target_before[i];
+    const JointJet<T>& last = s.own_last_target()[i];
     dofs(coder, i, s.deviation[i].offset,
          joint_offset_value<T>(s.tree, i, {last.rotation, last.translation}, s.local[i]));
   });
@@ -147,7 +148,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
     // As if the target had stood still.
     std::array<T, 6> back = s.rate[i];
     for (T& r : back) r *= -s.rate_step;
-    const JointJet<T>& last = s.target_before[i];
+    const JointJet<T>& last = s.own_last_target()[i];
     std::array<T, 6> rate = joint_offset_value<T>(s.tree, i, {last.rotation, last.translation},
                                                   at_offset<T>(s.tree, i, s.local[i], back));
     for (int k = 0; k < 6; ++k)
@@ -198,11 +199,12 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   s.owed = {};
   s.impulses.clear();
   s.refresh_limits();
-  s.update_model();
+  s.pose_changed();
 }
 
 template <class T>
 void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
+  s.own_last_target();
   for (JointJet<T>& jet : s.target) {
     stream.rotation("target rotation", jet.rotation);
     stream.vector("target angular velocity", jet.omega);

@@ -83,8 +83,8 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       target(skeleton.joints.size()),
       target_before(skeleton.joints.size()),
       local(skeleton.joints.size()),
-      model(skeleton.joints.size()),
-      played_from(tree.bodies),
+      model_pose(skeleton.joints.size()),
+      played_from(skeleton.joints.size()),
       rate(tree.bodies),
       rate_before(tree.bodies),
       deviation(tree.bodies),
@@ -220,8 +220,8 @@ void CharacterState<T>::keep_record() {
   if (!owed.history || owed.motion) return;
   owed.history = false;
   // Once more: a check that failed since has left the motion of another target.
-  const Vec3<T>& origin = target_before[0].translation;
-  inertial_wrenches<T>(tree, target_before, Vec3<T>::Zero(), origin, problem.kinematics, motion,
+  const Vec3<T>& origin = last_target()[0].translation;
+  inertial_wrenches<T>(tree, last_target(), Vec3<T>::Zero(), origin, problem.kinematics, motion,
                        problem.force, problem.moment);
   advance_exactly<T>(tree, problem.kinematics, motion, owed.h, origin.template cast<double>(), history);
 }
@@ -244,22 +244,28 @@ void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
 }
 
 template <class T>
+void CharacterState<T>::pose_changed() {
+  model_owed = true;
+  if (is_particles) bound_particles();
+}
+
+template <class T>
 void CharacterState<T>::update_model() {
+  model_owed = false;
   for (std::size_t i = 0; i < local.size(); ++i) {
     const int parent = skeleton.joints[i].parent;
-    model[i] = parent < 0 ? local[i] : model[parent] * local[i];
-    model[i].rotation.normalize();
+    model_pose[i] = parent < 0 ? local[i] : model_pose[parent] * local[i];
+    model_pose[i].rotation.normalize();
   }
-  if (is_particles) bound_particles();
 }
 
 /// Particles go anywhere: their bounding ball is that of the box around them.
 template <class T>
 void CharacterState<T>::bound_particles() {
-  Vec3<T> least = model[1].translation, most = least;
-  for (std::size_t i = 2; i < model.size(); ++i) {
-    least = least.cwiseMin(model[i].translation);
-    most = most.cwiseMax(model[i].translation);
+  Vec3<T> least = model()[1].translation, most = least;
+  for (std::size_t i = 2; i < model_pose.size(); ++i) {
+    least = least.cwiseMin(model_pose[i].translation);
+    most = most.cwiseMax(model_pose[i].translation);
   }
   particles_middle = T(0.5) * (least + most);
   radius = T(0.5) * (most - least).norm() + (bound_radius.empty() ? T(0) : bound_radius[0]);
@@ -274,8 +280,8 @@ template <class T>
 void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   settle_totals();
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = {target[i].rotation, target[i].translation};
-  target_before = target;
-  update_model();
+  target_stands = true;
+  pose_changed();
   const Vec3<T>& origin = target[0].translation;
   inertial_wrenches<T>(tree, target, gravity, origin, problem.kinematics, motion, problem.force,
                        problem.moment);

@@ -103,10 +103,13 @@ struct CharacterState {
   bool carried = false;  ///< in this step, see carry_over()
   bool floats = false;   ///< hangs on one free root, whose translation is `history.place` rounded
 
-  std::vector<JointJet<T>> target,
-      target_before;                          ///< [joint] what the animation wants now, and wanted last step
-  std::vector<Transform<T>> local, model;     ///< [joint]
-  std::vector<Transform<T>> played_from;      ///< [body] `local` before the last played step
+  std::vector<JointJet<T>> target;         ///< [joint] what the animation wants at the end of the next step
+  std::vector<JointJet<T>> target_before;  ///< [joint] wanted last step; see last_target()
+  bool target_stands = false;              ///< nobody has set another since: `target_before` is out of date
+  std::vector<Transform<T>> local;         ///< [joint]
+  std::vector<Transform<T>> model_pose;    ///< [joint] see model()
+  bool model_owed = false;
+  std::vector<Transform<T>> played_from;      ///< [joint] `local` before the last played step
   Owed<T> owed;                               ///< by that step
   std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
   std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
@@ -162,8 +165,27 @@ struct CharacterState {
   /// The same and of the joint speeds, and the history where the step was checked: to the bit what keeping
   /// them in every step would have left.
   void keep_record();
-  /// Model transforms of all joints from the local ones.
-  void update_model();
+  /// Joint → world, of all joints: worked out when it is first asked for after the local ones changed.
+  const std::vector<Transform<T>>& model() {
+    if (model_owed) update_model();
+    return model_pose;
+  }
+  /// After `local` changed.
+  void pose_changed();
+  /// What the animation wanted last step.
+  const std::vector<JointJet<T>>& last_target() const { return target_stands ? target : target_before; }
+  /// The same, to be changed.
+  std::vector<JointJet<T>>& own_last_target() {
+    if (target_stands) target_before = target;
+    target_stands = false;
+    return target_before;
+  }
+  /// Room for another target, every joint of which has to be written.
+  std::vector<JointJet<T>>& new_target() {
+    if (target_stands) target.swap(target_before);
+    target_stands = false;
+    return target;
+  }
   /// Joint `i` at `pose` (world where parentless) as the solve has it: a floating root's place is relative to
   /// the common origin, so that nothing of it is lost.
   Transform<T> in_solve(int i, const Transform<T>& pose, const Vec3<double>& common_origin) const {
@@ -192,6 +214,7 @@ struct CharacterState {
   bool limp() const;
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
+  void update_model();
   void bound_particles();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };

@@ -300,7 +300,7 @@ int World<T>::prop_count() const {
 
 template <class T>
 Transform<T> World<T>::prop_pose(int index) const {
-  return impl_->states[impl_->props[index]]->model[0];
+  return impl_->states[impl_->props[index]]->model()[0];
 }
 
 template <class T>

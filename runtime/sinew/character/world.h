@@ -159,8 +159,8 @@ class Character {
   /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
   /// limit.
   std::span<const T> torque() const;
-  // Of a character that was only played, load(), limit() and the report's totals are worked out when they are
-  // first asked for after the step: not by two threads at once.
+  // model(), and of a character that was only played load(), limit() and the report's totals, are worked out
+  // when they are first asked for after the step: not by two threads at once.
   std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
                                      ///< three of an ellipsoidal limit
   std::span<const T> limit() const;  ///< of the direction in which it pulls now

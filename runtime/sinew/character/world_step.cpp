@@ -93,7 +93,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
     s->impulses.clear();
-    s->target_before = s->target;
+    s->target_stands = true;
     s->report.carried = s->carried;
   }
 }

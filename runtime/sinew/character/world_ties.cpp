@@ -48,7 +48,7 @@ Status World<T>::Impl::find(const Anchor& anchor, Place& out) const {
 template <class T>
 Transform<double> World<T>::Impl::frame_of(const Place& place) const {
   if (place.state < 0) return place.frame;
-  return states[place.state]->model[place.body].template cast<double>() * place.frame;
+  return states[place.state]->model()[place.body].template cast<double>() * place.frame;
 }
 
 /// N, of all that hangs together with a place.
@@ -125,7 +125,7 @@ int World<T>::add_particles(const ParticleBody& body, Status& status) {
   CharacterState<T>& s = *impl_->states.back();
   s.is_prop = s.is_particles = true;
   s.refresh_limits();
-  s.update_model();
+  s.pose_changed();
   set.state = static_cast<int>(impl_->states.size()) - 1;
   impl_->tie(make_elements<T>(body, set.state, set.place), status);
   if (!status) {
@@ -157,7 +157,7 @@ void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
 template <class T>
 Vec3<T> World<T>::particle(int index, int node) const {
   const ParticleSet& set = impl_->particles[index];
-  if (set.bodies[node] >= 0) return impl_->states[set.state]->model[set.bodies[node]].translation;
+  if (set.bodies[node] >= 0) return impl_->states[set.state]->model()[set.bodies[node]].translation;
   return Vec3<double>(impl_->frame_of(set.place) * set.body.nodes[node].position).template cast<T>();
 }
 

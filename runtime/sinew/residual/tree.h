@@ -112,11 +112,15 @@ void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, c
                                     Kinematics<T>&);                                               \
   prefix Transform<T> displaced<T>(const Tree<T>&, int, const Transform<T>&, const T*);            \
   prefix void project_wrenches<T>(const Tree<T>&, const Kinematics<T>&, std::span<Vec3<T>>,        \
-                                  std::span<Vec3<T>>, std::span<T>);                               \
+                                  std::span<Vec3<T>>, std::span<T>);
+SINEW_RESIDUAL_INSTANCES(extern template, float)
+SINEW_RESIDUAL_INSTANCES(extern template, double)
+
+#define SINEW_WRENCH_INSTANCES(prefix, T)                                                          \
   prefix void inertial_wrenches<T>(const Tree<T>&, std::span<const JointJet<T>>, const Vec3<T>&,   \
                                    const Vec3<T>&, Kinematics<T>&, Motion<T>&, std::span<Vec3<T>>, \
                                    std::span<Vec3<T>>);
-SINEW_RESIDUAL_INSTANCES(extern template, float)
-SINEW_RESIDUAL_INSTANCES(extern template, double)
+SINEW_WRENCH_INSTANCES(extern template, float)
+SINEW_WRENCH_INSTANCES(extern template, double)
 
 }  // namespace sinew
