@@ -91,6 +91,50 @@ void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool gr
   per_character(state, settings.capacity);
 }
 
+/// Limp humanoids in flight, one world: every one is solved in every step, in batches or one by one.
+void flight(benchmark::State& state, bool batches, bool limits) {
+  const int characters = int(state.range(0));
+  Skeleton rig = fixtures::humanoid();
+  for (Joint& joint : rig.joints) {
+    if (!limits) continue;
+    joint.swing_limit = joint.type == JointType::kBall ? 1 : -1;
+    joint.swing_axis = -Vec3<double>::UnitZ();
+    joint.twist_lower = -0.7;
+    joint.twist_upper = 0.7;
+  }
+  WorldSettings settings;
+  settings.ground = false;
+  settings.batches = batches;
+  World<float> world(settings);
+  Status status;
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  std::vector<std::vector<JointJet<float>>> starts;
+  for (int n = 0; n < characters; ++n) {
+    CharacterSettings limp;
+    limp.root = RootDrive::kFree;
+    limp.strength = 0;
+    if (world.add_character(rig, limp, status) < 0) return state.SkipWithError(status.reason);
+    std::vector<JointJet<float>>& jets = starts.emplace_back(rig.joints.size());
+    for (std::size_t i = 0; i < jets.size(); ++i) {
+      jets[i].rotation = rig.joints[i].rest.rotation.cast<float>();
+      jets[i].translation = rig.joints[i].rest.translation.cast<float>();
+      jets[i].omega = {normal(random), normal(random), normal(random)};
+    }
+    jets[0].translation.x() = 5 * float(n);
+  }
+  int frame = 0;
+  for (auto _ : state) {
+    if (frame++ % 60 == 0)
+      for (int n = 0; n < characters; ++n) {
+        (void)world.character(n).set_target(starts[n]);
+        world.character(n).reset();
+      }
+    benchmark::DoNotOptimize(world.step(float(kStep)));
+  }
+  per_character(state, characters);
+}
+
 /// A population on a grid, of which 5 % are hit at the chest every second. The whole frame on so many
 /// threads: time of each frame as the host sees it, after a second to fill the world.
 void population_frame(benchmark::State& state, double hits_per_second, int threads) {
@@ -156,6 +200,11 @@ BENCHMARK_CAPTURE(crowd_check, residual_support_pose_avx512_16, kAvx512, 16, tru
 BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx2_8, kAvx2, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(10000)->Arg(100000);
+
+BENCHMARK_CAPTURE(flight, alone, false, false)->Arg(64);
+BENCHMARK_CAPTURE(flight, batches, true, false)->Arg(8)->Arg(16)->Arg(64);
+BENCHMARK_CAPTURE(flight, limits_alone, false, true)->Arg(64);
+BENCHMARK_CAPTURE(flight, limits_batches, true, true)->Arg(64);
 
 BENCHMARK_CAPTURE(population_frame, hit_4_threads, 0.05, 4)->Arg(1000)->Iterations(600)->UseRealTime();
 BENCHMARK_CAPTURE(population_frame, hit_1_thread, 0.05, 1)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "character/scenes.h"
 #include "sinew/character/world.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
@@ -228,6 +229,30 @@ TYPED_TEST(Impact, AlignedTowerStands) {
   }
   for (int n = 0; n < 300; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
   EXPECT_NEAR(scene.height(4), 0.9, 0.01);
+}
+
+TEST(Impact, FiguresCaughtInEachOtherComeFreeAndFall) {
+  World<float> world(WorldSettings{});
+  const Skeleton skeleton = fixtures::humanoid();
+  CharacterSettings limp;
+  limp.root = RootDrive::kFree;
+  limp.strength = 0;
+  Status status;
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_EQ(world.add_character(skeleton, limp, status), n) << status.reason;
+    std::vector<JointJet<float>> jets = fixtures::idle<float>(skeleton, 0);
+    jets[0].translation += Vec3<float>(0.05f, 0.02f, 0) * float(n);
+    ASSERT_TRUE(world.character(n).set_target(jets).ok());
+    world.character(n).reset();
+  }
+  const float height = world.character(0).model()[0].translation.z();
+  int held = 0;
+  for (int n = 0; n < 120; ++n) {
+    ASSERT_TRUE(world.step(1 / 60.f).ok());
+    held += world.character(0).report().held > 0;
+  }
+  EXPECT_LE(held, 6);
+  for (int n = 0; n < 2; ++n) EXPECT_LT(world.character(n).model()[0].translation.z(), height - 0.3f);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // character layer.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,6 +46,19 @@ class Couplings {
   std::vector<int> working_;
   std::vector<BodyPair> apart_;
 };
+
+/// What the couplings of a solve store, J, that is booked to one of its trees: that of a coupling's first
+/// node that is on one.
+template <class T>
+double elastic_of(std::span<Coupling<T>* const> couplings, int tree) {
+  double sum = 0;
+  for (const Coupling<T>* c : couplings) {
+    const auto moving = std::find_if(c->nodes.begin(), c->nodes.end(),
+                                     [](const CouplingNode<T>& node) { return node.tree >= 0; });
+    if (moving != c->nodes.end() && moving->tree == tree) sum += c->energy;
+  }
+  return sum;
+}
 
 /// Calls `what` with the number of each node's tree, where it is on one.
 template <class T, class Function>

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "sinew/character/couplings.h"
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
+#include "sinew/character/touch_digest.h"
+#include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
 #include "sinew/effects/gravity.h"
 #include "sinew/optimizer/error_estimate.h"
@@ -14,31 +18,12 @@ namespace sinew {
 namespace {
 
 constexpr double kCertified = 0.9;    ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kTouch = 5e-5;       ///< m; shallower contacts bear half a percent of the weight: no impact
 constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
-constexpr int kSettling = 8;    ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
-constexpr int kUnchangedSteps =
-    2;  ///< before bdf2 may be used: after one, a dropped ball still lifts off again
-
-/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
-/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
-/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
-/// the scalar and the solver's tolerance (m, at a metre) resolve; a correction's square is what it leaves.
-template <class T>
-T kink_width(T h, T tolerance) {
-  const T resolved = std::max(8 * std::numeric_limits<T>::epsilon(), tolerance / 16);
-  return std::min(T(1e-3) * h, std::max(T(0.06) * h * h, resolved));
-}
-
-/// Order-independent digest of a set of contacts.
-std::uint64_t mixed(std::uint64_t id) {
-  id ^= id >> 31;
-  id *= 0x9e3779b97f4a7c15ull;
-  return id ^ (id >> 29);
-}
+constexpr int kPassing = 30;    ///< steps after a tree was held
+constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 
 /// Whose step may be divided; else it is halved once where it must be.
 template <class T>
@@ -86,113 +71,14 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing
-/// drives it.
-template <class T>
-void IslandStepper<T>::choose_unknowns(CharacterState<T>& s) {
-  const bool solves = s.levels.allowed >= Level::kPartial;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    const bool driven = s.joint_is_driven(i);
-    const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
-    const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
-                           : !driven || s.deviation[i].released;
-    const bool given = !solves || s.baked[i];
-    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free && !given;
-  }
-}
-
-/// Hands joints whose needed torque exceeds their muscles' limit to the solve. True if there were any.
-template <class T>
-bool IslandStepper<T>::release_overloaded(CharacterState<T>& s) {
-  if (s.levels.allowed < Level::kPartial) return false;
-  bool any = false;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    if (count == 0 || s.problem.free[first] || s.baked[i]) continue;
-    if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
-    T load = T(0);
-    for (int dof = first; dof < first + count; ++dof)
-      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.problem.gradient));
-    if (load <= T(1)) continue;
-    for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
-    any = true;
-  }
-  return any;
-}
-
-/// Driven joints start at their target, the others go on as they moved; where contacts stay as they are, with
-/// the change of their speed too (flight: 2.4 passes instead of 3.4); by a share of that where it would pass
-/// through something.
-template <class T>
-void IslandStepper<T>::first_guess(CharacterState<T>& s, T h, T share) {
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    TreeProblem<T>& p = s.problem;
-    const Transform<T>& wanted = s.wanted[i];
-    bool to_target = count == 0 || !p.free[first];
-    if (!to_target) {
-      T load = T(0);
-      for (int dof = first; dof < first + count; ++dof) load = std::max(load, s.load[dof]);
-      to_target = s.joint_is_driven(i) && load < T(0.99);
-    }
-    if (to_target) {
-      p.local[i] = p.target[i];
-      continue;
-    }
-    std::array<T, 6> moved{};
-    const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
-    for (int k = 0; k < count; ++k)
-      moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
-    p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, p.start[i]), moved);
-  }
-}
-
-/// Whether the contacts of a tree that touched after the last step are predicted (constant velocity and
-/// gravity) to be the same after this one.
-template <class T>
-bool IslandStepper<T>::contacts_unchanged(const WorldSettings& world, T h, int tree) const {
-  std::uint64_t signature = 0;
-  const auto speed = [&](int t, int body, const Vec3<T>& x) {
-    return Vec3<T>(states_[t]->point_velocity(body, x) + h * world.gravity.template cast<T>());
-  };
-  for (const Contact<T>& c : contacts_) {
-    if (c.tree_a != tree && c.tree_b != tree) continue;
-    T gap = c.gap + h * c.normal.dot(speed(c.tree_a, c.body_a, c.point));
-    if (c.tree_b >= 0) gap -= h * c.normal.dot(speed(c.tree_b, c.body_b, c.point));
-    if (gap < T(-kTouch)) signature ^= mixed(c.id);
-  }
-  return signature == states_[tree]->contact_signature;
-}
-
 /// Whether any tree's touching contacts or bearing limits now differ from those after the last step.
 template <class T>
 bool IslandStepper<T>::touching_changed() const {
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (touching(static_cast<int>(n)) != states_[n]->contact_signature ||
-        bearing(static_cast<int>(n)) != states_[n]->limit_signature)
+    if (touching<T>(contacts_, static_cast<int>(n)) != states_[n]->contact_signature ||
+        bearing<T>(*problems_[n]) != states_[n]->limit_signature)
       return true;
   return false;
-}
-
-/// Digest of a tree's contacts that touch at the present pose.
-template <class T>
-std::uint64_t IslandStepper<T>::touching(int tree) const {
-  std::uint64_t signature = 0;
-  for (const Contact<T>& c : contacts_)
-    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(-kTouch)) signature ^= mixed(c.id);
-  return signature;
-}
-
-/// Digest of a tree's joint limits that bear at the present pose.
-template <class T>
-std::uint64_t IslandStepper<T>::bearing(int tree) const {
-  std::uint64_t signature = 0;
-  for (const JointRow<T>& row : problems_[tree]->rows)
-    if (row.kind == RowKind::kOneSided && row.value > T(kTouch))
-      signature ^= mixed(64 * std::uint64_t(row.dof) + 8 * std::uint64_t(row.scalar) +
-                         2 * std::uint64_t(row.component) + (row.sign < T(0)));
-  return signature;
 }
 
 template <class T>
@@ -207,22 +93,7 @@ void IslandStepper<T>::predict_all(Scheme scheme, T h) {
 template <class T>
 void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
-  std::fill(s.torque.begin(), s.torque.end(), T(0));
-  for (int dof = 0; dof < s.tree.dofs; ++dof)
-    if (!p.free[dof]) s.torque[dof] = p.gradient[dof];
-  for (const JointRow<T>& row : p.rows) {
-    if (!row.muscle) continue;
-    const T slope = row.slope(row.value);
-    for (int a = 0; a < row.count; ++a) s.torque[row.dof + a] -= slope * row.gradient[a];
-  }
-  for (const EllipsoidRow<T>& row : p.ellipsoids) {
-    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
-    for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
-  }
-  for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    s.unknown[dof] = p.free[dof];
-    s.limit[dof] = p.law.limit(dof, s.torque[dof]);
-  }
+  read_torques(s);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
@@ -247,7 +118,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   s.rate_step_before = s.rate_step;
   s.rate_step = h;
   const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
-  const std::uint64_t signature = touching(tree), limits = bearing(tree);
+  const std::uint64_t signature = touching<T>(contacts_, tree), limits = bearing(p);
   const double error = world.accuracy.estimate_error && !(p.prediction.exact && signature == 0)
                            ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
                            : 0;
@@ -269,10 +140,11 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
-  r.elastic_energy += elastic_of(tree);
+  r.elastic_energy += elastic_of<T>(couplings_, tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
   s.settling = s.impulses.empty() ? std::max(s.settling - 1, 0) : kSettling;
+  if (!is_held_[tree] && s.passing > 0) --s.passing;
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world.gravity);
@@ -296,6 +168,18 @@ void IslandStepper<T>::limit_guess(T h) {
   for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+}
+
+/// What may touch within h, but for what trees that were held are caught in.
+template <class T>
+void IslandStepper<T>::find_contacts(T h) {
+  contacts_ = finder_.find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  const auto passes = [&](const Contact<T>& c) {
+    const bool caught = c.tree_b >= 0 && c.offset > T(0);
+    return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
+  };
+  const auto rest = std::remove_if(contacts_.begin(), contacts_.end(), passes);
+  contacts_ = contacts_.first(static_cast<std::size_t>(rest - contacts_.begin()));
 }
 
 /// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
@@ -324,7 +208,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
-  contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  find_contacts(h);
 }
 
 /// Whether a limp body is about to strike something within h.
@@ -337,44 +221,56 @@ bool IslandStepper<T>::strikes(T h) const {
   });
 }
 
+/// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
+template <class T>
+void IslandStepper<T>::begin_solve() {
+  const WorldSettings& world = *world_;
+  const T h = settings_.h;
+  for (CharacterState<T>* s : states_)
+    for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
+  if (!effects_.empty()) limit_guess(h);
+  second_ = world.accuracy.scheme == Scheme::kBdf2;
+  for (std::size_t n = 0; n < states_.size() && second_; ++n)
+    second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
+              touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
+                  states_[n]->contact_signature;
+  predict_all(second_ || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1,
+              h);
+}
+
+/// Of a part, unless it has been made for us.
+template <class T>
+SolveReport IslandStepper<T>::first_solve() {
+  if (!solve_begun_) begin_solve();
+  solve_begun_ = false;
+  if (!first_) return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+  return *std::exchange(first_, nullptr);
+}
+
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
 SolveReport IslandStepper<T>::attempt() {
   const WorldSettings& world = *world_;
   const T h = settings_.h;
-  SolveReport total;
-  bool second = false;
   mispredicted_ = false;
-  for (int round = 0; round < kReleaseRounds; ++round) {
-    // Which points can move depends on what was released.
-    if (round > 0) {
-      for (CharacterState<T>* s : states_)
-        forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-      contacts_ = finder_.find(world, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
-    } else {
-      for (CharacterState<T>* s : states_)
-        for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
-      if (!effects_.empty()) limit_guess(h);
-      second = world.accuracy.scheme == Scheme::kBdf2;
-      for (std::size_t n = 0; n < states_.size() && second; ++n)
-        second = states_[n]->steps_unchanged >= kUnchangedSteps &&
-                 contacts_unchanged(world, h, static_cast<int>(n));
-      predict_all(
-          second || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1, h);
-    }
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
-    if (second && touching_changed()) {
+  SolveReport total = first_solve();
+  for (int round = 1;; ++round) {
+    if (second_ && touching_changed()) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
-      second = false;
+      second_ = false;
       mispredicted_ = true;
       predict_all(Scheme::kBdf1, h);
       total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
     for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
-    if (!released) break;
+    if (!released || round == kReleaseRounds) return total;
+    // Which points can move depends on what was released.
+    for (CharacterState<T>* s : states_)
+      forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
+    find_contacts(h);
+    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
   }
-  return total;
 }
 
 /// One part of the step, from `begin` to `end` (fractions of the frame): halved where it is long for an
@@ -387,7 +283,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     advance_part(begin, middle, splits);
     advance_part(middle, end, splits);
   };
-  begin_part(h, end);
+  if (!part_begun_) begin_part(h, end);
+  part_begun_ = false;
   const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
   if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
   const SolveReport solved = attempt();
@@ -442,8 +339,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no loop
-/// that is being closed.
+/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no
+/// loop that is being closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
   const bool closing =
@@ -452,7 +349,8 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->settling == 0 && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+    return s->impulses.empty() && s->settling == 0 && s->limp() &&
+           std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 
@@ -494,20 +392,9 @@ void IslandStepper<T>::begin_couplings(T h) {
   }
 }
 
-/// What the couplings store, J, each booked to the tree of its first node that is on one.
-template <class T>
-double IslandStepper<T>::elastic_of(int tree) const {
-  double sum = 0;
-  for (const Coupling<T>* c : couplings_) {
-    const auto moving = std::find_if(c->nodes.begin(), c->nodes.end(),
-                                     [](const CouplingNode<T>& node) { return node.tree >= 0; });
-    if (moving != c->nodes.end() && moving->tree == tree) sum += c->energy;
-  }
-  return sum;
-}
-
 /// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
-/// the tree stays where it was, at rest.
+/// the tree stays where it was, at rest. If it is caught in another one, neither finds a side to part to: for
+/// half a second they pass.
 template <class T>
 void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
@@ -516,6 +403,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
+  s.passing = kPassing;
   predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
@@ -586,30 +474,63 @@ void IslandStepper<T>::start(T end, int splits) {
 }
 
 template <class T>
-int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
-                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-                           std::span<LaggedForce<T>> lagged_out) {
-  world_ = &world;
-  surroundings_ = surroundings;
+void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                             std::span<Coupling<T>* const> couplings,
+                             std::span<const LaggedForce<T>> lagged) {
   states_ = states;
   indices_ = indices;
   couplings_ = couplings;
-  frame_ = h;
   choose_lagged(lagged);
   trees_.clear();
   for (CharacterState<T>* s : effects_.empty() ? std::span<CharacterState<T>* const>() : states)
     trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
                       s->steps_unchanged, s->contact_signature});
-  settings_.gravity = world.gravity.template cast<T>();
-  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
-  settings_.limit_damping = T(world.accuracy.limit_damping);
   total_ = {};
   all_converged_ = true;
   splits_ = parts_ = damped_ = held_ = 0;
+  part_begun_ = solve_begun_ = false;
+  first_ = nullptr;
+}
+
+template <class T>
+bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& surroundings, T h,
+                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                             std::span<Coupling<T>* const> couplings,
+                             std::span<const LaggedForce<T>> lagged) {
+  world_ = &world;
+  surroundings_ = surroundings;
+  frame_ = h;
+  reset(states, indices, couplings, lagged);
+  settings_.gravity = world.gravity.template cast<T>();
+  settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
+  settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
   begin_couplings(h);
+  const bool alone = states.size() == 1 && couplings.empty();
+  if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
+  begin_part(h, T(1));
+  part_begun_ = true;
+  if (!contacts_.empty()) return false;
+  begin_solve();
+  return solve_begun_ = true;
+}
+
+template <class T>
+void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged) {
+  reset(begun.states, begun.indices, {}, lagged);
+  settings_ = begun.settings;
+  second_ = begun.second;
+  problems_.assign(1, &states_[0]->problem);
+  contacts_ = {};
+  part_begun_ = solve_begun_ = true;
+}
+
+template <class T>
+int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first) {
+  const WorldSettings& world = *world_;
+  const T h = frame_;
+  first_ = first;
   const int parts = parts_of(h);
   const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
@@ -633,6 +554,15 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());
   std::copy_n(lagged_.begin(), count, lagged_out.begin());
   return static_cast<int>(count);
+}
+
+template <class T>
+int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
+                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                           std::span<LaggedForce<T>> lagged_out) {
+  (void)begin(world, surroundings, h, states, indices, couplings, lagged);
+  return end(lagged_out);
 }
 
 template class IslandStepper<float>;

@@ -31,32 +31,51 @@ class IslandStepper {
            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
            std::span<LaggedForce<T>> lagged_out);
 
+  // The same in two halves, so that the first solves of several islands can be made at once.
+
+  /// What begin() leaves for end().
+  struct Begun {
+    std::span<CharacterState<T>* const> states;
+    std::span<const int> indices;
+    StepSettings<T> settings;
+    bool second = false;
+  };
+  /// Up to the first solve of a step in one part. True where that solve is of one tree that nothing is near
+  /// and nothing is tied to: put_aside() then, and others may be begun before take_up(). Else end().
+  bool begin(const WorldSettings& world, const Surroundings& surroundings, T h,
+             std::span<CharacterState<T>* const> states, std::span<const int> indices,
+             std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
+  Begun put_aside() const { return {states_, indices_, settings_, second_}; }
+  /// `begun` by the last world and time step that begin() was given.
+  void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
+  /// The rest. `first`: what the first solve reported, whose solution the tree's problem holds; null: there
+  /// was none yet.
+  int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr);
+
  private:
   int parts_of(T h) const;
   bool starts() const;
   void limit_guess(T h);
   void start(T end, int splits);
   void advance_part(T begin, T end, int splits_left);
+  void find_contacts(T h);
   void begin_part(T h, T fraction);
   bool strikes(T h) const;
+  void begin_solve();
+  SolveReport first_solve();
   SolveReport attempt();
+  void reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
+             std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
   void begin_couplings(T h);
-  double elastic_of(int tree) const;
   void hold(CharacterState<T>& state);
   void forget_contacts();
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void choose_unknowns(CharacterState<T>& state);
-  bool release_overloaded(CharacterState<T>& state);
-  void first_guess(CharacterState<T>& state, T h, T share = T(1));
   void predict_all(Scheme scheme, T h);
-  std::uint64_t touching(int tree) const;
-  std::uint64_t bearing(int tree) const;
   bool touching_changed() const;
-  bool contacts_unchanged(const WorldSettings& world, T h, int tree) const;
   void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
 
   const WorldSettings* world_ = nullptr;
@@ -69,7 +88,10 @@ class IslandStepper {
   std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
   SolveReport total_;
   bool all_converged_ = true;
-  bool mispredicted_ = false;  ///< contacts or limits changed under bdf2
+  bool second_ = false;                            ///< bdf2 is used
+  bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
+  const SolveReport* first_ = nullptr;             ///< see end()
+  bool mispredicted_ = false;                      ///< contacts or limits changed under bdf2
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part

@@ -187,6 +187,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("steps since a push", s.settling);
+  stream.value("steps of passing", s.passing);
   stream.value("energy ceiling", s.energy_ceiling);
   stream.value("stored energy", s.report.elastic_energy);
   visit_levels(s, stream);

@@ -317,6 +317,7 @@ void CharacterState<T>::forget_contacts() {
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
   settling = 0;
+  passing = 0;
   energy_ceiling = std::numeric_limits<double>::infinity();
 }
 

@@ -130,7 +130,8 @@ struct CharacterState {
   std::uint64_t contact_signature = 0;     ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;       ///< of the joint limits that bore
   int steps_unchanged = 0;
-  int settling = 0;  ///< steps in which bdf2's velocity has not quite taken in the last push yet
+  std::uint8_t passing = 0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::hold
+  int settling = 0;          ///< steps in which bdf2's velocity has not quite taken in the last push yet
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;

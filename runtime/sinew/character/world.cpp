@@ -8,15 +8,15 @@
 #include "sinew/character/memory.h"
 #include "sinew/character/playback.h"
 #include "sinew/character/prop.h"
-#include "sinew/character/sleep.h"
 #include "sinew/character/world_impl.h"
 
 namespace sinew {
 namespace {
 
 constexpr int kMostWorkers = 256;
-constexpr int kMostObstacles = 6;  ///< that one character touches at a time, for the room of its contacts
-constexpr int kSmallIsland = 8;    ///< characters that any worker has memory for; one worker has for all
+constexpr int kMostObstacles = 6;    ///< that one character touches at a time, for the room of its contacts
+constexpr int kMostBatchDofs = 128;  ///< of a rig whose characters are solved in batches
+constexpr int kSmallIsland = 8;      ///< characters that any worker has memory for; one worker has for all
 
 /// Room for so many, with some to spare where it must be moved.
 template <class V>
@@ -51,11 +51,16 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   s.problem.room = room_of_rig(*s.rig);
   for (const auto& effect : s.effects) s.problem.room.effect_rows += effect->most_rows();
   rooms.add(s.problem.room);
+  // The world has its rig, too: three of them are two characters.
+  const bool shared = s.rig.use_count() > 2 && s.tree.dofs <= kMostBatchDofs;
+  if (settings.batches && std::is_same_v<T, float> && shared && !s.is_prop && !s.is_particles)
+    batch_room = larger(batch_room, s.problem.room);
 }
 
 template <class T>
 void World<T>::Impl::count_all() {
   rooms = {};
+  batch_room = {};
   for (const auto& s : states) count_in(*s);
   couplings.count_in(states, rooms);
 }
@@ -78,6 +83,7 @@ WorldMemory World<T>::Impl::memory() const {
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving += workers[n]->stepper.bytes(n == 0 ? most : small);
+  bytes.solving += workers.size() * workers[0]->batch.bytes(batch_room);
   return bytes;
 }
 
@@ -92,6 +98,8 @@ void World<T>::Impl::reserve() {
     workers[n]->members.reserve(room.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
+    workers[n]->batch.reserve(batch_room);
+    workers[n]->waiting.reserve(BatchNewton::kMostLanes);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();
@@ -147,9 +155,11 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
   CharacterState<T>& added = *states.back();
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   const SolveRooms before = rooms;
+  const SolveRoom batch_before = batch_room;
   count_in(added);
   if (over_cap()) {
     rooms = before;
+    batch_room = batch_before;
     drop_last();
     return Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
   }
@@ -301,79 +311,6 @@ Vec3<T> World<T>::prop_velocity(int index) const {
 template <class T>
 const CharacterReport& World<T>::prop_report(int index) const {
   return impl_->states[impl_->props[index]]->report;
-}
-
-/// Plays an island where that will do. False, with nothing moved, where it has to be solved.
-template <class T>
-bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
-  bool follows = true;
-  for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
-  if (follows) {
-    for (CharacterState<T>* s : members) {
-      const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
-      s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
-      if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
-    }
-    return true;
-  }
-  CharacterState<T>& s = *members[0];
-  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || near_obstacle<T>(s, surroundings(), h))
-    return false;
-  const auto every = static_cast<std::uint32_t>(s.detail.check_every);
-  const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
-  if (checks && !play(s, settings, h)) return false;
-  if (!checks) follow(s, settings, h);
-  s.levels.did = checks ? Level::kChecked : Level::kPlayback;
-  return true;
-}
-
-template <class T>
-void World<T>::Impl::step_island(int island, Worker& worker) {
-  const Budget& budget = settings.detail.budget;
-  const double begin = budget.clock ? budget.clock(budget.clock_context) : 0;
-  worker.members.clear();
-  worker.ties.clear();
-  for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
-  const std::span<const int> indices = islands.members(island);
-  for (const int n : indices) worker.members.push_back(states[n].get());
-  for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
-  lagged_count[island] = 0;
-  if (!play_island(worker.members)) {
-    for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
-    lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members, indices,
-                                               worker.ties, lagged, lagged_of(island));
-    for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
-  }
-  double work = 0;
-  for (CharacterState<T>* s : worker.members) work += s->levels.work = work_of(*s, s->levels.did);
-  const double spent = budget.clock ? budget.clock(budget.clock_context) - begin : work;
-  put_to_sleep<T>(worker.members, indices, worker.ties, settings.detail, h);
-  for (CharacterState<T>* s : worker.members) {
-    s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
-    // Between two checks it is at the level that checks it.
-    const Level least = s->levels.asleep ? Level::kAsleep : std::min(s->levels.allowed, Level::kChecked);
-    settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
-    s->report.level = s->levels.level;
-    s->report.crowded = s->crowded;
-    s->impulses.clear();
-    s->target_before = s->target;
-    s->report.carried = s->carried;
-  }
-}
-
-/// What one worker does of a step: islands, as long as there are any left. Which ones is a matter of chance,
-/// and of no consequence: a worker's memory holds nothing from one island to the next.
-template <class T>
-void World<T>::Impl::work(void* context, int index) {
-  Impl& world = *static_cast<Impl*>(context);
-  Worker& worker = *world.workers[index];
-  const int heavy = static_cast<int>(world.heavy.size()), light = static_cast<int>(world.light.size());
-  if (index == 0)
-    for (const int island : world.large) world.step_island(island, worker);
-  for (int n; (n = world.next_heavy.fetch_add(1)) < heavy;) world.step_island(world.heavy[n], worker);
-  constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
-  for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
-    for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
 }
 
 /// Of the last step's contact forces, only those of sleepers still hold.

@@ -98,7 +98,9 @@ struct WorldSettings {
   double ground_restitution = 0;  ///< see Collider::restitution
   bool body_contact = true;       ///< characters and props meet each other
   bool ground_support = true;     ///< the floor bears what a driven root would (see effects/support.h)
-  int workers = 1;  ///< threads that a step may use, through its ParallelFor; each has its own memory
+  int workers = 1;      ///< threads that a step may use, through its ParallelFor; each has its own memory
+  bool batches = true;  ///< characters of one rig that nothing is near are solved several at a time, one per
+                        ///< SIMD lane: faster, the same bits (float only)
   std::size_t memory_cap = 0;  ///< bytes (see WorldMemory); who would exceed it is not added. 0: none
   int island_dofs = 4096;  ///< degrees of freedom that are solved together at most; beyond, neighbours pass
                            ///< through each other. Limits the memory

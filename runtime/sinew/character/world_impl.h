@@ -10,6 +10,7 @@
 #include "sinew/character/levels.h"
 #include "sinew/character/snapshot.h"
 #include "sinew/effects/particles.h"
+#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew {
 
@@ -23,9 +24,18 @@ struct ParticleSet {
 
 template <class T>
 struct World<T>::Impl {
+  /// An island whose first solve waits for others.
+  struct Waiting {
+    int island = 0;
+    CharacterState<T>* state = nullptr;
+    typename IslandStepper<T>::Begun begun;
+    double spent = 0;  ///< on it so far, by the budget's clock
+  };
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
+    BatchNewton batch;
+    std::vector<Waiting> waiting;  ///< of one rig
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
@@ -45,6 +55,7 @@ struct World<T>::Impl {
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
+  SolveRoom batch_room;  ///< of the largest rig that batches solve
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step
@@ -71,7 +82,12 @@ struct World<T>::Impl {
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
   bool play_island(std::span<CharacterState<T>* const> members);
+  bool batches(const CharacterState<T>& state) const;
   void step_island(int island, Worker& worker);
+  void close_island(int island, std::span<CharacterState<T>* const> members,
+                    std::span<Coupling<T>* const> ties, double spent);
+  void wait(int island, Worker& worker, double spent);
+  void solve_waiting(Worker& worker);
   std::span<LaggedForce<T>> lagged_of(int island) {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);

@@ -18,17 +18,11 @@
 #include <span>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/instruction_set.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
-
-enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512 };
-
-/// Whether this processor runs it.
-bool available(InstructionSet set);
-/// The widest that it runs.
-InstructionSet best_instruction_set();
 
 /// Results have the same bits for every instruction set, number of lanes and number of chunks.
 struct CrowdSettings {

@@ -2,44 +2,141 @@
 // twist range. One-sided springs of Accuracy::limit_stiffness, damped as contacts are.
 #pragma once
 
+#include <cmath>
+
 #include "sinew/effects/joint_step.h"
 
 namespace sinew {
 
+/// Rows of a scalar between two bounds, of which each may be there or not. `at_start` tells the scalar when
+/// the step began, and is asked only where the bound is near.
+template <class T, class Law, class Present, class AtStart, class Rows>
+void append_bounds(const JointStep<T, Law>& joint, const T& scalar, Number<T> lower, const Present& has_lower,
+                   Number<T> upper, const Present& has_upper, const AtStart& at_start, JointRow<T> row,
+                   Rows& rows) {
+  constexpr auto near = Number<T>(0.05);  // rad or m
+  row.kind = RowKind::kOneSided;
+  row.stiffness = joint.limit_stiffness;
+  const auto append = [&](Number<T> sign, Number<T> bound, const Present& present) {
+    if (!any(present)) return;
+    row.value = T(sign) * (scalar - T(bound));
+    const auto begun = [&] { return T(T(sign) * (at_start() - T(bound))); };
+    const T start = choose(row.value > T(-near), begun, [] { return T(0); });
+    row.damp(T(joint.limit_damping), T(joint.h), start);
+    rows.add_row(row, present);
+  };
+  append(1, upper, has_upper);
+  row.sign = -row.sign;
+  for (T& g : row.gradient) g = -g;
+  append(-1, lower, has_lower);
+}
+
 /// Ranges of single degrees of freedom.
-template <class T>
+template <class T, class Law = JointLaw<T>>
 class JointLimitRows {
  public:
-  static bool act(const JointStep<T>& joint) {
-    const JointLaw<T>& law = joint.law;
-    return law.swing_limit[joint.body] < T(0) && joint.tree.type[joint.body] != JointType::kFree &&
-           joint.any(
+  using Step = JointStep<T, Law>;
+
+  static bool act(const Step& joint) {
+    const Law& law = joint.law;
+    return law.swing_limit[joint.body] < 0 && joint.tree.type[joint.body] != JointType::kFree &&
+           joint.any_dof(
                [&](int dof) { return law.lower[dof] > -law.kUnlimited || law.upper[dof] < law.kUnlimited; });
   }
-  explicit JointLimitRows(const JointStep<T>& joint);
+  explicit JointLimitRows(const Step& joint)
+      : from_rest_(offset_of<T>(joint.tree, joint.body, rest_of(joint), joint.local)) {}
 
-  void append(const JointStep<T>& joint, int k, std::vector<JointRow<T>>& rows) const;
+  template <class Rows>
+  void append(const Step& joint, int k, Rows& rows) const {
+    const int dof = joint.first_dof() + k;
+    const Number<T> lower = joint.law.lower[dof], upper = joint.law.upper[dof], most = joint.law.kUnlimited;
+    if (!(lower > -most || upper < most)) return;
+    const auto always = T(0) <= T(0);
+    const auto at_start = [&] {
+      return offset_value_of<T>(joint.tree, joint.body, rest_of(joint), joint.start)[k];
+    };
+    append_bounds(joint, from_rest_.value[k], lower, lower > -most ? always : !always, upper,
+                  upper < most ? always : !always, at_start, joint.row(from_rest_, RowScalar::kFromRest, k),
+                  rows);
+  }
 
  private:
+  static Transform<T> rest_of(const Step& joint) { return joint.tree.rest[joint.body].template cast<T>(); }
+
   JointOffset<T> from_rest_;
 };
 
 /// Swing cone and twist range about the bone direction a at rest. With b the direction now, the swing angle
 /// changes by n·w, n = (a × b)/|a × b|, the twist by (a + b)·w/(1 + a·b); w in rest axes.
-template <class T>
-void append_cone(const JointStep<T>& joint, std::vector<JointRow<T>>& rows);
+template <class T, class Law, class Rows>
+void append_cone(const JointStep<T, Law>& joint, Rows& rows) {
+  using std::atan2;
+  const Law& law = joint.law;
+  const int i = joint.body;
+  const Quat<T> unrest = joint.tree.rest[i].rotation.conjugate().template cast<T>();
+  const Quat<T> relative = unrest * joint.local.rotation;
+  const Vec3<T> a = law.swing_axis[i].template cast<T>();
+  const Vec3<T> b = relative * a;
+  const Vec3<T> across = a.cross(b);
+  const T sine = across.norm(), cosine = a.dot(b);
+  const auto start = [&] { return Quat<T>(unrest * joint.start.rotation); };
+  JointRow<T> row;
+  row.dof = joint.first_dof();
+  row.count = 3;
+  const auto set = [&](const Vec3<T>& in_rest) {
+    const Vec3<T> in_child = relative.conjugate() * in_rest;
+    row.gradient = {in_child.x(), in_child.y(), in_child.z()};
+  };
+  // Rows well inside the range cannot become active within a step; leave them out.
+  constexpr auto near = Number<T>(0.5);
+  const Number<T> limit = law.swing_limit[i], most = law.kUnlimited;
+  const auto none = T(0) > T(0);
+  if (limit - near < Number<T>(3.14159265)) {
+    const auto bent = both(sine > T(1e-6), cosine < T(std::cos(std::max(limit - near, Number<T>(0)))));
+    if (any(bent)) {
+      row.scalar = RowScalar::kSwing;
+      set(across / sine);
+      const auto swing_at_start = [&] {
+        const Vec3<T> bone = start() * a;
+        return T(atan2(T(a.cross(bone).norm()), T(a.dot(bone))));
+      };
+      append_bounds(joint, T(atan2(sine, cosine)), Number<T>(0), none, limit, bent, swing_at_start, row,
+                    rows);
+    }
+  }
+  const T toward = T(1) + a.dot(b);
+  if (const auto open = toward > T(0.05); any(open)) {
+    const T twist = twist_angle<T>(relative, a);
+    row.scalar = RowScalar::kTwist;
+    set((a + b) / toward);
+    const Number<T> lower = law.twist_lower[i], upper = law.twist_upper[i];
+    const auto low = lower > -most ? both(open, twist < T(lower + near)) : none;
+    const auto high = upper < most ? both(open, twist > T(upper - near)) : none;
+    append_bounds(
+        joint, twist, lower, low, upper, high, [&] { return twist_angle<T>(start(), a); }, row, rows);
+  }
+}
 
 /// Second derivative of the swing angle and the twist of a ball joint by a small rotation of the child, child
 /// axes, weighted by the rows' slopes; `relative`: from the rest pose. With w in rest axes:
 /// swing'' = [cos·(|w|² − (n·w)²) − (a·w)(b·w)]/sin, twist'' = (w·(a + b))(w·(a × b))/(1 + a·b)².
 template <class T>
-Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& swing_axis, T swing_slope, T twist_slope);
+Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& a, T swing_slope, T twist_slope) {
+  const Vec3<T> b = relative * a;
+  const Vec3<T> across = a.cross(b);
+  const T sine = largest(T(across.norm()), T(1e-6)), cosine = a.dot(b);
+  const Vec3<T> n = across / sine;
+  const T toward = largest(T(T(1) + cosine), T(0.05));
+  const Mat3<T> swing = (cosine * (Mat3<T>::Identity() - n * n.transpose()) -
+                         T(0.5) * (a * b.transpose() + b * a.transpose())) /
+                        sine;
+  const Vec3<T> sum = a + b;
+  const Mat3<T> twist = T(0.5) * (sum * across.transpose() + across * sum.transpose()) / (toward * toward);
+  const Mat3<T> turn = relative.toRotationMatrix();
+  return turn.transpose() * (swing_slope * swing + twist_slope * twist) * turn;
+}
 
-#define SINEW_JOINT_LIMIT_INSTANCES(prefix, T)                                \
-  prefix class JointLimitRows<T>;                                             \
-  prefix void append_cone<T>(const JointStep<T>&, std::vector<JointRow<T>>&); \
-  prefix Mat3<T> cone_curvature<T>(const Quat<T>&, const Vec3<T>&, T, T);
-SINEW_JOINT_LIMIT_INSTANCES(extern template, float)
-SINEW_JOINT_LIMIT_INSTANCES(extern template, double)
+extern template class JointLimitRows<float>;
+extern template class JointLimitRows<double>;
 
 }  // namespace sinew

@@ -1,28 +1,31 @@
 // One joint within a step, as the effects see it that are energies of a joint's own freedom: muscle.h,
 // joint_damping.h, joint_limit.h. Each looks at the joint once and appends a row per degree of freedom that
-// it acts on; together they go from one degree of freedom to the next.
+// it acts on; together they go from one degree of freedom to the next. Rows go to what has TreeProblem's
+// add_row(row, present).
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "sinew/muscle/ellipsoid_row.h"
-#include "sinew/muscle/joint_coordinates.h"
+#include "sinew/muscle/joint_coordinates_pass.h"
 #include "sinew/muscle/joint_law.h"
 #include "sinew/muscle/joint_rows.h"
 
 namespace sinew {
 
-template <class T>
+/// T may be a pack of characters of one rig (pack.h), with a law that has a JointLaw's members.
+template <class T, class Law = JointLaw<T>>
 struct JointStep {
-  const Tree<T>& tree;
-  const JointLaw<T>& law;
+  const Tree<Number<T>>& tree;
+  const Law& law;
   int body = 0;
   const Transform<T>&local, &target, &start;  ///< now, where muscles pull, when the step began
-  T h = T(0);                                 ///< s
-  T kink_width = T(0);                        ///< rad: muscles and dry friction are rounded over it
-  T limit_stiffness = T(0);                   ///< N·m/rad
-  T limit_damping = T(0);                     ///< s
+  Number<T> h = 0;                            ///< s
+  Number<T> kink_width = 0;                   ///< rad: muscles and dry friction are rounded over it
+  Number<T> limit_stiffness = 0;              ///< N·m/rad
+  Number<T> limit_damping = 0;                ///< s
 
   int first_dof() const { return tree.first_dof[body]; }
   int dofs() const { return tree.dof_count(body); }
@@ -32,9 +35,9 @@ struct JointStep {
   }
   /// Whether `is` holds for any of its degrees of freedom.
   template <class Predicate>
-  bool any(Predicate is) const {
+  bool any_dof(Predicate is) const {
     for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof)
-      if (is(dof)) return true;
+      if (any(is(dof))) return true;
     return false;
   }
   /// A row of the kth offset, with its value and gradient.

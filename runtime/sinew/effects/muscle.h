@@ -6,17 +6,31 @@
 
 namespace sinew {
 
-template <class T>
+template <class T, class Law = JointLaw<T>>
 class MuscleRows {
  public:
-  static bool act(const JointStep<T>& joint) {
-    return joint.any([&](int dof) { return joint.law.has_muscle(dof); });
-  }
-  explicit MuscleRows(const JointStep<T>& joint);
+  using Step = JointStep<T, Law>;
 
-  void append(const JointStep<T>& joint, int k, std::vector<JointRow<T>>& rows) const;
+  static bool act(const Step& joint) {
+    return joint.any_dof([&](int dof) { return joint.law.has_muscle(dof); });
+  }
+  explicit MuscleRows(const Step& joint)
+      : from_target_(offset_of<T>(joint.tree, joint.body, joint.target, joint.local)) {}
+
+  template <class Rows>
+  void append(const Step& joint, int k, Rows& rows) const {
+    const int dof = joint.first_dof() + k;
+    const auto pulls = joint.law.has_muscle(dof);
+    if (!any(pulls)) return;
+    JointRow<T> row = joint.row(from_target_, RowScalar::kFromTarget, k);
+    row.minus = joint.law.torque_minus[dof];
+    row.plus = joint.law.torque_plus[dof];
+    row.width = joint.kink_width;
+    row.muscle = true;
+    rows.add_row(row, pulls);
+  }
   /// Instead of rows, where the joint's limits are an ellipsoid.
-  void append(const JointStep<T>& joint, std::vector<EllipsoidRow<T>>& ellipsoids) const;
+  void append(const Step& joint, std::vector<EllipsoidRow<T>>& ellipsoids) const;
 
  private:
   JointOffset<T> from_target_;

@@ -8,8 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
-#include "sinew/skeleton/transform.h"
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 
@@ -32,8 +33,8 @@ template <class T>
 struct JointRow {
   RowKind kind = RowKind::kKink;
   RowScalar scalar = RowScalar::kFromTarget;
-  int component = 0;  ///< of the offset: which of a ball's or free joint's three rotations, if any
-  T sign = T(1);      ///< −1: the row's scalar is a lower bound minus the joint's
+  int component = 0;   ///< of the offset: which of a ball's or free joint's three rotations, if any
+  Number<T> sign = 1;  ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
   int dof = 0;                   ///< first degree of freedom that `gradient` refers to, within its tree
   int count = 1;                 ///< how many
@@ -48,52 +49,69 @@ struct JointRow {
   /// when the step of h seconds began.
   void damp(T damping_time, T h, T start) {
     stretch = T(1) + damping_time / h;
-    lag = damping_time / h * std::max(start, T(0));
+    lag = damping_time / h * largest(start, T(0));
   }
   /// What a one-sided row stores at s; its energy(s) is the potential of the step, damping included.
   T stored_energy(T s) const { return s > T(0) ? T(0.5) * stiffness * s * s : T(0); }
 
-  T energy(T s) const {
+  T energy(const T& s) const {
+    using std::abs;
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return T(0.5) * stiffness * s * s;
       case RowKind::kOneSided:
-        return beyond(s) > T(0) ? T(0.5) * stiffness * beyond(s) * beyond(s) / stretch : T(0);
+        return select(beyond(s) > zero, T(T(0.5) * stiffness * beyond(s) * beyond(s) / stretch), zero);
       case RowKind::kKink:
         break;
     }
-    const T slope = s > T(0) ? minus : plus;
-    const T a = std::abs(s);
-    return a < width ? slope * a * a / (2 * width) : slope * (a - width / 2);
+    const T limit = select(s > zero, minus, plus);
+    const T a = abs(s);
+    return choose(
+        a < width, [&] { return T(limit * a * a / (2 * width)); },
+        [&] { return T(limit * (a - width / 2)); });
   }
-  T slope(T s) const {
+  T slope(const T& s) const {
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return stiffness * s;
       case RowKind::kOneSided:
-        return beyond(s) > T(0) ? stiffness * beyond(s) : T(0);
+        return select(beyond(s) > zero, T(stiffness * beyond(s)), zero);
       case RowKind::kKink:
         break;
     }
-    const T limit = s > T(0) ? minus : plus;
-    if (s >= width) return limit;
-    if (s <= -width) return -limit;
-    return limit * s / width;
+    const T limit = select(s > zero, minus, plus);
+    const auto saturated = [&] { return select(s >= width, limit, T(-limit)); };
+    return choose(either(s >= width, s <= -width), saturated, [&] { return T(limit * s / width); });
   }
-  T curvature(T s) const {
+  T curvature(const T& s) const {
+    using std::abs;
+    const T zero = T(0);
     switch (kind) {
       case RowKind::kSpring:
         return stiffness;
       case RowKind::kOneSided:
-        return beyond(s) > T(0) ? stiffness * stretch : T(0);
+        return select(beyond(s) > zero, T(stiffness * stretch), zero);
       case RowKind::kKink:
         break;
     }
-    return std::abs(s) < width ? (s > T(0) ? minus : plus) / width : T(0);
+    return choose(
+        abs(s) < width, [&] { return T(select(s > zero, minus, plus) / width); }, [&] { return zero; });
   }
 
  private:
   T beyond(T s) const { return stretch * s - lag; }
 };
+
+/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
+/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
+/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
+/// the scalar and the solver's tolerance (m, at a metre) resolve; a correction's square is what it leaves.
+template <class T>
+T kink_width(T h, T tolerance) {
+  const T resolved = std::max(8 * std::numeric_limits<T>::epsilon(), tolerance / 16);
+  return std::min(T(1e-3) * h, std::max(T(0.06) * h * h, resolved));
+}
 
 }  // namespace sinew

@@ -5,14 +5,12 @@
 #include <limits>
 
 #include "sinew/optimizer/joint_terms.h"
+#include "sinew/optimizer/newton_constants.h"
 
 namespace sinew {
 namespace {
 
-constexpr double kShrink = 0.1;  ///< of the first step: tighter costs factorisations, looser outer passes
-constexpr int kMostSteps = 8;
-constexpr double kNear = 0.1;          ///< m; contacts further away are left out
-constexpr double kRotationArm = 0.15;  ///< m; turns a rotation into a displacement for the tolerance
+constexpr double kNear = 0.1;  ///< m; contacts further away are left out
 constexpr int kMostProducts = 80;
 constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
 
@@ -279,7 +277,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     v->assign(n, T(0));
   inner_gradient_ = smooth_gradient_;
   add_row_gradient(inner_gradient_);
-  for (int iteration = 0; iteration < kMostSteps; ++iteration) {
+  for (int iteration = 0; iteration < kMostInnerSteps; ++iteration) {
     if (!newton_step()) return report;
     const T length = displacement(step_);
     if (!std::isfinite(length)) return report;

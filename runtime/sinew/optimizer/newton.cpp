@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/optimizer/newton_constants.h"
+
 namespace sinew {
-namespace {
-
-/// m; after a shorter full step the pass's own matrix leads on.
-constexpr double kStillValid = 0.01;
-constexpr double kChordRate = 0.5;    ///< of the step before: chords that shrink less do not pay
-constexpr double kCautious = 0.1;     ///< of the tolerance, for a chord to be the last
-constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
-
-}  // namespace
-
 template <class T>
 void NewtonSolver<T>::reserve(const SolveRoom& room) {
   inner_.reserve(room);

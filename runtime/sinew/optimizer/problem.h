@@ -50,6 +50,13 @@ struct TreeProblem {
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
   /// Set-up: puts an effect, attached to this tree, into the plan if it has instances.
   void plan(Effect<T>& effect);
+  void clear_rows() {
+    rows.clear();
+    ellipsoids.clear();
+  }
+  void add_row(const JointRow<T>& row, bool present) {
+    if (present) rows.push_back(row);
+  }
 };
 
 /// Values that all trees of a solve share.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "sinew/residual/residual_pass.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 
@@ -18,20 +19,13 @@ Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
   return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
 }
 
-/// The two directions that a planar joint slides along.
-template <class T>
-void planar_axes(const Vec3<T>& normal, Vec3<T>& a, Vec3<T>& b) {
-  a = normal.unitOrthogonal();
-  b = normal.cross(a);
-}
-
 /// Columns: axes of a joint that do not move with its child, rest axes.
 Mat3<double> held_by_parent(const Joint& joint) {
   Mat3<double> axes = Mat3<double>::Zero();
   if (joint.type == JointType::kUniversal) axes.col(0) = joint.axis;
   if (joint.type == JointType::kPlanar) {
     Vec3<double> a, b;
-    planar_axes(joint.axis, a, b);
+    planar_axes<double>(joint.axis, a, b);
     axes << a, b, joint.axis;
   }
   return axes;
@@ -81,140 +75,21 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
             [&](int a, int b) { return depth[a] != depth[b] ? depth[a] < depth[b] : a < b; });
 }
 
-namespace {
-
-/// Motion axes of one joint at its present local transform.
-template <class T>
-void motion_axes(const Tree<T>& tree, int i, const Transform<T>& local, Kinematics<T>& k) {
-  const int first = tree.first_dof[i];
-  const Vec3<T>& o = k.origin[i];
-  const int p = tree.parent[i];
-  const auto turn = [&](int dof, const Vec3<T>& w) {
-    k.w[dof] = w;
-    k.v[dof] = o.cross(w);
-  };
-  const auto slide = [&](int dof, const Vec3<T>& v) {
-    k.w[dof].setZero();
-    k.v[dof] = v;
-  };
-  switch (tree.type[i]) {
-    case JointType::kFixed:
-      break;
-    case JointType::kRevolute:
-      turn(first, k.rotation[i] * tree.axis[i]);
-      break;
-    case JointType::kPrismatic:
-      slide(first, k.rotation[i] * tree.axis[i]);
-      break;
-    case JointType::kUniversal: {
-      // local = rest·exp(axis·q0)·exp(axis2·q1): the first axis turns with the parent side.
-      const Vec3<T> second = k.rotation[i] * tree.axis2[i];
-      const T q1 = twist_angle<T>(tree.rest[i].rotation.conjugate() * local.rotation, tree.axis2[i]);
-      turn(first, k.rotation[i] * (rotation_exp<T>(-q1 * tree.axis2[i]) * tree.axis[i]));
-      turn(first + 1, second);
-      break;
-    }
-    case JointType::kBall:
-      for (int a = 0; a < 3; ++a) turn(first + a, k.rotation[i].col(a));
-      break;
-    case JointType::kPlanar: {
-      const Mat3<T> frame =
-          (p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p]) * tree.rest[i].rotation.toRotationMatrix();
-      Vec3<T> a, b;
-      planar_axes(tree.axis[i], a, b);
-      slide(first, frame * a);
-      slide(first + 1, frame * b);
-      turn(first + 2, frame * tree.axis[i]);
-      break;
-    }
-    case JointType::kFree: {
-      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
-      for (int a = 0; a < 3; ++a) {
-        slide(first + a, frame.col(a));
-        turn(first + 3 + a, frame.col(a));
-      }
-      break;
-    }
-    case JointType::kTranslation: {
-      const Mat3<T> frame = p < 0 ? Mat3<T>(Mat3<T>::Identity()) : k.rotation[p];
-      for (int a = 0; a < 3; ++a) slide(first + a, frame.col(a));
-      break;
-    }
-  }
-}
-
-}  // namespace
-
 template <class T>
 void forward_kinematics(const Tree<T>& tree, std::span<const Transform<T>> local,
                         const Vec3<T>& common_origin, Kinematics<T>& out) {
-  for (int i = 0; i < tree.bodies; ++i) {
-    const int p = tree.parent[i];
-    const Mat3<T> relative = local[i].rotation.toRotationMatrix();
-    if (p < 0) {
-      out.rotation[i] = relative;
-      out.origin[i] = local[i].translation - common_origin;
-    } else {
-      out.rotation[i].noalias() = out.rotation[p] * relative;
-      out.origin[i] = out.origin[p] + out.rotation[p] * local[i].translation;
-    }
-    out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i];
-    motion_axes(tree, i, local[i], out);
-  }
+  place_bodies<T>(tree, local, common_origin, out);
 }
 
 template <class T>
 Transform<T> displaced(const Tree<T>& tree, int i, const Transform<T>& local, const T* d) {
-  Transform<T> moved = local;
-  switch (tree.type[i]) {
-    case JointType::kFixed:
-      break;
-    case JointType::kRevolute:
-      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[0]);
-      break;
-    case JointType::kPrismatic:
-      moved.translation += local.rotation * (tree.axis[i] * d[0]);
-      break;
-    case JointType::kUniversal: {
-      const Quat<T> relative = tree.rest[i].rotation.conjugate() * local.rotation;
-      const Quat<T> last = rotation_exp<T>(tree.axis2[i] * twist_angle<T>(relative, tree.axis2[i]));
-      moved.rotation = local.rotation * last.conjugate() * rotation_exp<T>(tree.axis[i] * d[0]) * last *
-                       rotation_exp<T>(tree.axis2[i] * d[1]);
-      break;
-    }
-    case JointType::kBall:
-      moved.rotation = local.rotation * rotation_exp<T>({d[0], d[1], d[2]});
-      break;
-    case JointType::kPlanar: {
-      Vec3<T> a, b;
-      planar_axes(tree.axis[i], a, b);
-      moved.translation += tree.rest[i].rotation * (a * d[0] + b * d[1]);
-      moved.rotation = local.rotation * rotation_exp<T>(tree.axis[i] * d[2]);
-      break;
-    }
-    case JointType::kFree:
-      moved.translation += Vec3<T>(d[0], d[1], d[2]);
-      moved.rotation = rotation_exp<T>({d[3], d[4], d[5]}) * local.rotation;
-      break;
-    case JointType::kTranslation:
-      moved.translation += Vec3<T>(d[0], d[1], d[2]);
-      return moved;
-  }
-  moved.rotation.normalize();
-  return moved;
+  return moved_by<T>(tree, i, local, d);
 }
 
 template <class T>
 void project_wrenches(const Tree<T>& tree, const Kinematics<T>& k, std::span<Vec3<T>> force,
                       std::span<Vec3<T>> moment, std::span<T> projection) {
-  for (int i = tree.bodies - 1; i >= 0; --i) {
-    for (int d = tree.first_dof[i]; d < tree.first_dof[i + 1]; ++d)
-      projection[d] = k.w[d].dot(moment[i]) + k.v[d].dot(force[i]);
-    if (const int p = tree.parent[i]; p >= 0) {
-      force[p] += force[i];
-      moment[p] += moment[i];
-    }
-  }
+  sum_and_project<T>(tree, k, force, moment, projection);
 }
 
 template <class T>
@@ -242,7 +117,7 @@ void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, c
     k.center[i] = k.origin[i] + arm;
     m.omega[i] = r * body.omega;
     m.velocity[i] = m.origin_velocity[i] + m.omega[i].cross(arm);
-    motion_axes(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
+    motion_axes<T>(tree, i, Transform<T>{jet.rotation, jet.translation}, k);
     force[i] = r * body.force;
     moment[i] = r * body.moment + k.origin[i].cross(force[i]);
   }

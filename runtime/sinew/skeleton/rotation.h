@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "sinew/skeleton/scalar.h"
 #include "sinew/skeleton/transform.h"
 
 namespace sinew {
@@ -23,13 +24,15 @@ Mat3<T> skew(const Vec3<T>& a) {
 /// every machine.
 template <class T>
 Quat<T> rotation_exp(const Vec3<T>& d) {
+  using std::cos, std::sin, std::sqrt;
+  using Two = Eigen::Matrix<T, 2, 1>;
   const T angle2 = d.squaredNorm();
-  T real, scale;  // cos(angle/2), sin(angle/2)/angle
-  if (angle2 < T(1)) {
+  const auto series = [&] {
     const T u = angle2 / 4;
-    if constexpr (sizeof(T) == 4) {
-      real = 1 + u * (T(-1.0 / 2) + u * (T(1.0 / 24) + u * (T(-1.0 / 720) + u * T(1.0 / 40320))));
-      scale = T(0.5) + u * (T(-1.0 / 12) + u * (T(1.0 / 240) + u * (T(-1.0 / 10080) + u * T(1.0 / 725760))));
+    if constexpr (sizeof(Number<T>) == 4) {
+      return Two(
+          1 + u * (T(-1.0 / 2) + u * (T(1.0 / 24) + u * (T(-1.0 / 720) + u * T(1.0 / 40320)))),
+          T(0.5) + u * (T(-1.0 / 12) + u * (T(1.0 / 240) + u * (T(-1.0 / 10080) + u * T(1.0 / 725760)))));
     } else {
       constexpr double kCosine[] = {1 / 479001600.0, -1 / 3628800.0, 1 / 40320.0, -1 / 720.0,
                                     1 / 24.0,        -1 / 2.0,       1.0};
@@ -40,31 +43,38 @@ Quat<T> rotation_exp(const Vec3<T>& d) {
         cosine = cosine * u + T(kCosine[n]);
         sine = sine * u + T(kSine[n]);
       }
-      real = cosine;
-      scale = sine / 2;
+      return Two(cosine, sine / 2);
     }
-  } else {
-    const T angle = std::sqrt(angle2);
-    real = std::cos(angle / 2);
-    scale = std::sin(angle / 2) / angle;
-  }
-  Quat<T> q(real, scale * d.x(), scale * d.y(), scale * d.z());
-  q.normalize();
+  };
+  const auto closed = [&] {
+    const T angle = sqrt(angle2);
+    return Two(cos(angle / 2), sin(angle / 2) / angle);
+  };
+  const Two c = choose(angle2 < T(1), series, closed);  // cos(angle/2), sin(angle/2)/angle
+  Quat<T> q(c[0], c[1] * d.x(), c[1] * d.y(), c[1] * d.z());
+  normalize(q);
   return q;
 }
 
 /// Rotation vector of q, the shorter way round: |result| ≤ π.
 template <class T>
 Vec3<T> rotation_log(const Quat<T>& q) {
-  const Vec3<T> v = q.w() < 0 ? Vec3<T>(-q.vec()) : Vec3<T>(q.vec());
+  using std::abs, std::atan2;
+  const Vec3<T> v = select(q.w() < T(0), Vec3<T>(-q.vec()), Vec3<T>(q.vec()));
   const T sine = v.norm();
-  const T cosine = std::abs(q.w());
-  if (sine < T(1e-6)) return v * (T(2) / std::max(cosine, T(0.5)));
-  if (sizeof(T) == 4 && sine < T(0.2)) {  // the series of 2·asin(sine)/sine, to rounding
+  const T cosine = abs(q.w());
+  const auto series = [&] {  // of 2·asin(sine)/sine, to rounding
     const T u = sine * sine;
-    return v * (2 + u * (T(1.0 / 3) + u * (T(3.0 / 20) + u * (T(5.0 / 56) + u * T(35.0 / 576)))));
-  }
-  return v * (T(2) * std::atan2(sine, cosine) / sine);
+    return T(2 + u * (T(1.0 / 3) + u * (T(3.0 / 20) + u * (T(5.0 / 56) + u * T(35.0 / 576)))));
+  };
+  const auto closed = [&] { return T(T(2) * atan2(sine, cosine) / sine); };
+  const auto tiny = [&] { return T(T(2) / largest(cosine, T(0.5))); };
+  return v * choose(sine < T(1e-6), tiny, [&] {
+           if constexpr (sizeof(Number<T>) == 4)
+             return choose(sine < T(0.2), series, closed);
+           else
+             return closed();
+         });
 }
 
 /// Right Jacobian: exp(d + δ) ≈ exp(d)·exp(Jr·δ).
@@ -87,14 +97,14 @@ Mat3<T> right_jacobian(const Vec3<T>& d) {
 /// Inverse of the right Jacobian: log(exp(d)·exp(δ)) ≈ d + Jr⁻¹·δ. Valid for |d| < 2π.
 template <class T>
 Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
+  using std::cos, std::sin, std::sqrt;
   const T a2 = d.squaredNorm();
-  T c;  // 1/a² − (1 + cos a)/(2 a sin a)
-  if (a2 < T(1e-3)) {
-    c = T(1) / 12 + a2 / 720;
-  } else {
-    const T a = std::sqrt(a2);
-    c = T(1) / a2 - std::cos(a / 2) / (T(2) * a * std::sin(a / 2));
-  }
+  const auto series = [&] { return T(T(1) / 12 + a2 / 720); };
+  const auto closed = [&] {
+    const T a = sqrt(a2);
+    return T(T(1) / a2 - cos(a / 2) / (T(2) * a * sin(a / 2)));
+  };
+  const T c = choose(a2 < T(1e-3), series, closed);  // 1/a² − (1 + cos a)/(2 a sin a)
   const Mat3<T> s = skew(d);
   return Mat3<T>::Identity() + T(0.5) * s + c * (s * s);
 }
@@ -103,16 +113,17 @@ Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
 /// from its own tangent. From dθ/dt = Jr⁻¹(θ)·ω, once more by t.
 template <class T>
 Mat3<T> log_curvature(const Vec3<T>& d, const Vec3<T>& lambda) {
+  using std::cos, std::sin, std::sqrt;
+  using Two = Eigen::Matrix<T, 2, 1>;
   const T a2 = d.squaredNorm();
-  T c, slope;  // c of right_jacobian_inverse, and c'(a)/a
-  if (a2 < T(1e-2)) {
-    c = T(1) / 12 + a2 / 720;
-    slope = T(1) / 360 + a2 / 7560;
-  } else {
-    const T a = std::sqrt(a2), sine = std::sin(a / 2), cotangent = std::cos(a / 2) / sine;
-    c = T(1) / a2 - cotangent / (T(2) * a);
-    slope = (-T(2) / (a2 * a) + cotangent / (T(2) * a2) + T(1) / (T(4) * a * sine * sine)) / a;
-  }
+  const auto series = [&] { return Two(T(1) / 12 + a2 / 720, T(1) / 360 + a2 / 7560); };
+  const auto closed = [&] {
+    const T a = sqrt(a2), sine = sin(a / 2), cotangent = cos(a / 2) / sine;
+    return Two(T(1) / a2 - cotangent / (T(2) * a),
+               (-T(2) / (a2 * a) + cotangent / (T(2) * a2) + T(1) / (T(4) * a * sine * sine)) / a);
+  };
+  const Two both_factors = choose(a2 < T(1e-2), series, closed);
+  const T c = both_factors[0], slope = both_factors[1];  // c of right_jacobian_inverse, and c'(a)/a
   const Mat3<T> s = skew(d), l = skew(lambda);
   const Vec3<T> squared = s * (s * lambda);
   const Mat3<T> bilinear =
@@ -124,10 +135,11 @@ Mat3<T> log_curvature(const Vec3<T>& d, const Vec3<T>& lambda) {
 /// Angle of the part of q that turns about the unit vector `axis` (swing–twist decomposition), in (−π, π].
 template <class T>
 T twist_angle(const Quat<T>& q, const Vec3<T>& axis) {
+  using std::atan2;
   const T along = q.vec().dot(axis);
-  const T angle = T(2) * std::atan2(along, q.w());
-  constexpr T pi = T(3.14159265358979323846);
-  return angle > pi ? angle - 2 * pi : (angle <= -pi ? angle + 2 * pi : angle);
+  const T angle = T(2) * atan2(along, q.w());
+  constexpr Number<T> pi = Number<T>(3.14159265358979323846);
+  return select(angle > T(pi), T(angle - T(2 * pi)), select(angle <= T(-pi), T(angle + T(2 * pi)), angle));
 }
 
 }  // namespace sinew

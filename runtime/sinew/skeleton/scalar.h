@@ -2,6 +2,10 @@
 // through the same source: decisions on values are selections, never branches, where lanes may differ.
 #pragma once
 
+#include <type_traits>
+
+#include "sinew/skeleton/vector.h"
+
 namespace sinew {
 
 /// The number that a scalar is made of: T itself, or what the lanes of a pack hold. Constants that all lanes
@@ -21,9 +25,29 @@ T select(bool mask, const T& yes, const T& no) {
 inline bool both(bool a, bool b) {
   return a && b;
 }
+inline bool either(bool a, bool b) {
+  return a || b;
+}
 /// Whether the mask of any lane is set.
 inline bool any(bool mask) {
   return mask;
+}
+template <class Mask, class T, int R, int C>
+requires(!std::is_same_v<Mask, bool>) Eigen::Matrix<T, R, C> select(const Mask& mask,
+                                                                    const Eigen::Matrix<T, R, C>& yes,
+                                                                    const Eigen::Matrix<T, R, C>& no) {
+  Eigen::Matrix<T, R, C> out;
+  for (int i = 0; i < R * C; ++i) out(i) = select(mask, yes(i), no(i));
+  return out;
+}
+
+/// yes() where the mask is set, else no(). What no lane needs is not evaluated: for a scalar this is a
+/// branch.
+template <class Mask, class Yes, class No>
+[[gnu::always_inline]] inline auto choose(const Mask& mask, const Yes& yes, const No& no) {
+  if (!any(!mask)) return yes();
+  if (!any(mask)) return no();
+  return select(mask, yes(), no());
 }
 
 /// As std::max and std::min, lane by lane.
@@ -34,6 +58,32 @@ T largest(const T& a, const T& b) {
 template <class T>
 T smallest(const T& a, const T& b) {
   return select(b < a, b, a);
+}
+
+/// To double precision: energies are summed in it.
+inline double widened(float x) {
+  return double(x);
+}
+inline double widened(double x) {
+  return x;
+}
+
+/// Where it is neither infinite nor NaN.
+template <class T>
+auto finite(const T& x) {
+  return x - x == T(0);
+}
+
+/// tr(x p xᵀ).
+template <class T>
+requires std::is_arithmetic_v<T> T weighted_square(const Mat3<T>& x, const Mat3<T>& p) {
+  return (x * p).cwiseProduct(x).sum();
+}
+
+/// Eigen's, which asks with a branch whether the length is zero.
+template <class T>
+void normalize(Quat<T>& q) {
+  q.normalize();
 }
 
 }  // namespace sinew

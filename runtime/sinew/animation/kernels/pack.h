@@ -8,6 +8,7 @@
 #include <immintrin.h>
 #endif
 
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -24,7 +25,11 @@ struct Mask {
   using Bits [[gnu::vector_size(N * sizeof(T))]] = Lane;
   Bits v;
 
+  static Mask all(bool set) { return {Bits{} - Lane(set)}; }
   friend Mask both(const Mask& a, const Mask& b) { return {a.v & b.v}; }
+  friend Mask either(const Mask& a, const Mask& b) { return {a.v | b.v}; }
+  friend Mask operator!(const Mask& a) { return {~a.v}; }
+  bool lane(int i) const { return v[i] != 0; }
   friend bool any(const Mask& a) {
     if constexpr (sizeof(Bits) > 2 * sizeof(std::int64_t)) {
       return [&]<int... I>(std::integer_sequence<int, I...>) {
@@ -84,6 +89,8 @@ struct Pack {
   friend Mask<T, N> operator<=(const Pack& a, const Pack& b) { return {a.v <= b.v}; }
   friend Mask<T, N> operator>=(const Pack& a, const Pack& b) { return {a.v >= b.v}; }
   friend Mask<T, N> operator==(const Pack& a, const Pack& b) { return {a.v == b.v}; }
+  friend Mask<T, N> operator!=(const Pack& a, const Pack& b) { return {a.v != b.v}; }
+  friend Pack abs(const Pack& a) { return Pack(a.v < T(0) ? -a.v : a.v); }
   friend Pack select(const Mask<T, N>& mask, const Pack& yes, const Pack& no) {
     return Pack(mask.v ? yes.v : no.v);
   }
@@ -103,7 +110,36 @@ struct Pack {
     }
     return x;
   }
+  // The library's, lane by lane: the same bits as a scalar's.
+  friend Pack sin(const Pack& a) {
+    return each_lane(a, [](T x) { return std::sin(x); });
+  }
+  friend Pack cos(const Pack& a) {
+    return each_lane(a, [](T x) { return std::cos(x); });
+  }
+  friend Pack atan2(const Pack& y, const Pack& x) {
+    Pack angle;
+    for (int i = 0; i < N; ++i) angle.v[i] = std::atan2(y.v[i], x.v[i]);
+    return angle;
+  }
+  template <class Function>
+  static Pack each_lane(const Pack& a, Function f) {
+    Pack x;
+    for (int i = 0; i < N; ++i) x.v[i] = f(a.v[i]);
+    return x;
+  }
 };
+
+/// See scalar.h.
+template <int N>
+Pack<double, N> widened(const Pack<float, N>& x) {
+  return Pack<double, N>(__builtin_convertvector(x.v, typename Pack<double, N>::Vector));
+}
+/// What a comparison in double precision says, for lanes of floats.
+template <int N>
+Mask<float, N> narrowed(const Mask<double, N>& mask) {
+  return {__builtin_convertvector(mask.v, typename Mask<float, N>::Bits)};
+}
 
 }  // namespace
 

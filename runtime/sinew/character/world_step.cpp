@@ -1,0 +1,162 @@
+// What a world does with one island after the other, on any thread.
+#include <algorithm>
+#include <array>
+
+#include "sinew/character/playback.h"
+#include "sinew/character/sleep.h"
+#include "sinew/character/world_impl.h"
+
+namespace sinew {
+namespace {
+
+/// Of the degrees of freedom that are unknowns: a hit arm is solved faster by itself than among others, of
+/// which every lane would take part in all unknowns (strength 0.1, root played: 0.96 times as fast in
+/// batches).
+constexpr double kBatchedShare = 0.75;
+constexpr std::size_t kFewestLanes = 4;  ///< of a batch: fewer are solved faster one by one
+
+double now(const Budget& budget) {
+  return budget.clock ? budget.clock(budget.clock_context) : 0;
+}
+
+}  // namespace
+
+/// Plays an island where that will do. False, with nothing moved, where it has to be solved.
+template <class T>
+bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
+  bool follows = true;
+  for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
+  if (follows) {
+    for (CharacterState<T>* s : members) {
+      const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
+      s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
+      if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
+    }
+    return true;
+  }
+  CharacterState<T>& s = *members[0];
+  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || near_obstacle<T>(s, surroundings(), h))
+    return false;
+  const auto every = static_cast<std::uint32_t>(s.detail.check_every);
+  const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
+  if (checks && !play(s, settings, h)) return false;
+  if (!checks) follow(s, settings, h);
+  s.levels.did = checks ? Level::kChecked : Level::kPlayback;
+  return true;
+}
+
+/// Whether the first solve of a character that begin() found alone is better made in a batch.
+template <class T>
+bool World<T>::Impl::batches(const CharacterState<T>& s) const {
+  if constexpr (std::is_same_v<T, float>) {
+    const auto unknowns = std::count(s.problem.free.begin(), s.problem.free.end(), 1);
+    return double(unknowns) >= kBatchedShare * s.tree.dofs && s.problem.room.fits(batch_room) &&
+           BatchNewton::takes(s.problem, settings.accuracy);
+  }
+  return false;
+}
+
+template <class T>
+void World<T>::Impl::step_island(int island, Worker& worker) {
+  const double begin = now(settings.detail.budget);
+  worker.members.clear();
+  worker.ties.clear();
+  for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
+  const std::span<const int> indices = islands.members(island);
+  for (const int n : indices) worker.members.push_back(states[n].get());
+  for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
+  lagged_count[island] = 0;
+  if (!play_island(worker.members)) {
+    for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
+    if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
+        batches(*worker.members[0]))
+      return wait(island, worker, now(settings.detail.budget) - begin);
+    lagged_count[island] = worker.stepper.end(lagged_of(island));
+    for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
+  }
+  close_island(island, worker.members, worker.ties, now(settings.detail.budget) - begin);
+}
+
+/// What a step leaves behind. `spent`: on the island, by the budget's clock.
+template <class T>
+void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const> members,
+                                  std::span<Coupling<T>* const> ties, double spent) {
+  double work = 0;
+  for (CharacterState<T>* s : members) work += s->levels.work = work_of(*s, s->levels.did);
+  if (!settings.detail.budget.clock) spent = work;
+  put_to_sleep<T>(members, islands.members(island), ties, settings.detail, h);
+  for (CharacterState<T>* s : members) {
+    s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
+    // Between two checks it is at the level that checks it.
+    const Level least = s->levels.asleep ? Level::kAsleep : std::min(s->levels.allowed, Level::kChecked);
+    settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
+    s->report.level = s->levels.level;
+    s->report.crowded = s->crowded;
+    s->impulses.clear();
+    s->target_before = s->target;
+    s->report.carried = s->carried;
+  }
+}
+
+/// Puts an island that has been begun aside, until there are others of its rig to fill a batch with.
+template <class T>
+void World<T>::Impl::wait(int island, Worker& worker, double spent) {
+  const typename IslandStepper<T>::Begun begun = worker.stepper.put_aside();
+  CharacterState<T>* state = worker.members[0];
+  if (!worker.waiting.empty() && worker.waiting[0].state->rig != state->rig) solve_waiting(worker);
+  Waiting& last = worker.waiting.emplace_back(Waiting{island, state, begun, spent});
+  last.begun.states = std::span(&last.state, 1);
+  if (static_cast<int>(worker.waiting.size()) == worker.batch.lanes()) solve_waiting(worker);
+}
+
+/// Solves what waits in one batch, and goes on with every island from there.
+template <class T>
+void World<T>::Impl::solve_waiting(Worker& worker) {
+  const std::size_t count = worker.waiting.size();
+  if (count == 0) return;
+  double begin = now(settings.detail.budget);
+  std::array<SolveReport, BatchNewton::kMostLanes> reports;
+  if constexpr (std::is_same_v<T, float>)
+    if (count >= kFewestLanes) {
+      std::array<TreeProblem<float>*, BatchNewton::kMostLanes> problems;
+      for (std::size_t n = 0; n < count; ++n) problems[n] = &worker.waiting[n].state->problem;
+      worker.batch.solve(worker.waiting[0].begun.settings, settings.accuracy,
+                         std::span(problems.data(), count), reports);
+    }
+  const double share = (now(settings.detail.budget) - begin) / double(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    begin = now(settings.detail.budget);
+    const Waiting& w = worker.waiting[n];
+    worker.stepper.take_up(w.begun, lagged);
+    lagged_count[w.island] =
+        worker.stepper.end(lagged_of(w.island), reports[n].converged ? &reports[n] : nullptr);
+    w.state->levels.did = level_of(*w.state);
+    close_island(w.island, w.begun.states, {}, w.spent + share + now(settings.detail.budget) - begin);
+  }
+  worker.waiting.clear();
+}
+
+/// What one worker does of a step: islands, as long as there are any left. Which ones is a matter of chance,
+/// and of no consequence: a worker's memory holds nothing from one island to the next.
+template <class T>
+void World<T>::Impl::work(void* context, int index) {
+  Impl& world = *static_cast<Impl*>(context);
+  Worker& worker = *world.workers[index];
+  const int heavy = static_cast<int>(world.heavy.size()), light = static_cast<int>(world.light.size());
+  if (index == 0)
+    for (const int island : world.large) world.step_island(island, worker);
+  for (int n; (n = world.next_heavy.fetch_add(1)) < heavy;) world.step_island(world.heavy[n], worker);
+  constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
+  for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
+    for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
+  world.solve_waiting(worker);
+}
+
+#define SINEW_STEP_INSTANCES(T)                            \
+  template void World<T>::Impl::step_island(int, Worker&); \
+  template void World<T>::Impl::solve_waiting(Worker&);    \
+  template void World<T>::Impl::work(void*, int);
+SINEW_STEP_INSTANCES(float)
+SINEW_STEP_INSTANCES(double)
+
+}  // namespace sinew

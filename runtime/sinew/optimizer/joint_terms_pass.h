@@ -1,0 +1,110 @@
+// The rows of joint_terms.h on any scalar: float, double or a pack of characters of one rig (pack.h).
+//
+// `p` is a TreeProblem<T> or what has its members. Rows of a pack are in the same order for all its lanes;
+// add_row(row, present) leaves one out where it is not present.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+
+#include "sinew/effects/joint_damping.h"
+#include "sinew/effects/joint_limit.h"
+#include "sinew/effects/muscle.h"
+#include "sinew/optimizer/problem.h"
+
+namespace sinew {
+
+/// See measure_joint_rows.
+template <class T, class Problem>
+void measure_rows(const StepSettings<Number<T>>& settings, Problem& p) {
+  using Law = std::remove_cvref_t<decltype(p.law)>;
+  const Tree<Number<T>>& tree = *p.tree;
+  p.clear_rows();
+  for (int i = 0; i < tree.bodies; ++i) {
+    if (tree.dof_count(i) == 0 || !p.free[tree.first_dof[i]]) continue;
+    const JointStep<T, Law> joint{tree,
+                                  p.law,
+                                  i,
+                                  p.local[i],
+                                  p.target[i],
+                                  p.start[i],
+                                  settings.h,
+                                  settings.kink_width,
+                                  settings.limit_stiffness,
+                                  settings.limit_damping};
+    std::optional<MuscleRows<T, Law>> muscles;
+    std::optional<JointDampingRows<T, Law>> damping;
+    std::optional<JointLimitRows<T, Law>> limits;
+    if (MuscleRows<T, Law>::act(joint)) muscles.emplace(joint);
+    if (JointDampingRows<T, Law>::act(joint)) damping.emplace(joint);
+    if (JointLimitRows<T, Law>::act(joint)) limits.emplace(joint);
+    if constexpr (std::is_arithmetic_v<T>)
+      if (muscles && p.law.ellipsoidal[i]) {
+        muscles->append(joint, p.ellipsoids);
+        muscles.reset();
+      }
+    for (int k = 0; (muscles || damping || limits) && k < joint.dofs(); ++k) {
+      if (muscles) muscles->append(joint, k, p);
+      if (damping) damping->append(joint, k, p);
+      if (limits) limits->append(joint, k, p);
+    }
+    if (p.law.swing_limit[i] >= 0) append_cone(joint, p);
+  }
+}
+
+/// See measure_joint_curvature.
+template <class T, class Problem>
+void measure_curvature(Problem& p) {
+  const Tree<Number<T>>& tree = *p.tree;
+  std::size_t r = 0, e = 0;
+  for (int i = 0; i < tree.bodies; ++i) {
+    Mat3<T>& curvature = p.joint_curvature[i];
+    curvature.setZero();
+    const bool ball = tree.type[i] == JointType::kBall;
+    const int rotational = ball ? tree.first_dof[i] : tree.first_dof[i] + 3;
+    Vec3<T> offset[3] = {Vec3<T>::Zero(), Vec3<T>::Zero(), Vec3<T>::Zero()};  // from target, start, rest
+    T swing = T(0), twist = T(0);
+    for (; r < p.rows.size() && p.rows[r].dof < tree.first_dof[i + 1]; ++r) {
+      const JointRow<T>& row = p.rows[r];
+      if (row.count != 3 || row.dof != rotational) continue;
+      const T slope = row.sign * row.slope(row.value);
+      if (row.scalar == RowScalar::kSwing)
+        swing += slope;
+      else if (row.scalar == RowScalar::kTwist)
+        twist += slope;
+      else
+        offset[static_cast<int>(row.scalar)][row.component] += slope;
+    }
+    if constexpr (std::is_arithmetic_v<T>)
+      if (e < p.ellipsoids.size() && p.ellipsoids[e].dof == rotational && ball) {
+        offset[0] += p.ellipsoids[e].slope(p.ellipsoids[e].value);
+        ++e;
+      }
+    const Mat3<T> nothing = Mat3<T>::Zero();
+    const Transform<T> rest = tree.rest[i].template cast<T>();
+    const Transform<T>* reference[3] = {&p.target[i], &p.start[i], &rest};
+    bool curved = false;
+    for (int f = 0; f < 3; ++f) {
+      const auto bears = offset[f].squaredNorm() > T(0);
+      if (!any(bears)) continue;
+      const Mat3<T> bent = log_curvature<T>(
+          rotation_log<T>(reference[f]->rotation.conjugate() * p.local[i].rotation), offset[f]);
+      curvature += select(bears, bent, nothing);
+      curved = true;
+    }
+    if (const auto bears = either(swing != T(0), twist != T(0)); any(bears)) {
+      curvature += select(bears,
+                          cone_curvature<T>(rest.rotation.conjugate() * p.local[i].rotation,
+                                            p.law.swing_axis[i].template cast<T>(), swing, twist),
+                          nothing);
+      curved = true;
+    }
+    if (!ball && curved) {
+      // A free joint's chart turns on the left, exp(d)·R = R·exp(Rᵀd).
+      const Mat3<T> turn = p.local[i].rotation.toRotationMatrix();
+      curvature = (turn * curvature * turn.transpose()).eval();
+    }
+  }
+}
+
+}  // namespace sinew

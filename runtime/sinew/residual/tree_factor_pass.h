@@ -1,0 +1,81 @@
+// What TreeMatrix does, on any scalar: float, double or a pack of matrices of one pattern (pack.h).
+//
+// `values`: the entries as the pattern lays them out. Rows of packs need no padding.
+#pragma once
+
+#include <span>
+#include <type_traits>
+
+#include "sinew/residual/tree_factor.h"
+#include "sinew/skeleton/scalar.h"
+
+namespace sinew {
+
+/// y = H·x.
+template <class T>
+void multiply_by_tree(const TreePattern& p, const T* values, std::span<const T> x, std::span<T> y) {
+  for (int k = 0; k < p.size; ++k) y[k] = T(0);
+  for (int k = 0; k < p.size; ++k) {
+    const T* row = values + p.row[k];
+    T sum = row[p.depth[k]] * x[k];
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l]) {
+      sum += row[p.depth[l]] * x[l];
+      y[l] += row[p.depth[l]] * x[k];
+    }
+    y[k] += sum;
+  }
+}
+
+/// target −= factor·path over the blocks that hold entries 0 … last.
+template <class T>
+inline void subtract_path(T* __restrict target, const T* __restrict path, T factor, int last) {
+  constexpr int kBlock = std::is_arithmetic_v<T> ? TreePattern::kBlock : 1;
+  for (int block = 0; block <= last; block += kBlock)
+    for (int i = block; i < block + kBlock; ++i) target[i] -= factor * path[i];
+}
+
+/// Replaces H by its factor; `diagonal` [unknown] is room. Set where H is positive definite: see
+/// TreeMatrix::factorise.
+template <class T>
+auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
+  using std::sqrt;
+  constexpr auto kRounding = Number<T>(sizeof(Number<T>) == 4 ? 1e-5 : 1e-12);  // of the diagonal
+  for (int k = 0; k < p.size; ++k) diagonal[k] = values[p.row[k] + p.depth[k]];
+  auto definite = T(1) > T(0);
+  for (int k = p.size - 1; k >= 0; --k) {
+    T* path = values + p.row[k];
+    const int depth = p.depth[k];
+    const T least = kRounding * diagonal[k];
+    const T pivot = largest(path[depth], least);
+    definite = both(definite, both(path[depth] > -least, pivot > T(0)));  // not so where they are NaN
+    if (!any(definite)) return definite;
+    const T root = sqrt(pivot);
+    const T inverse = T(1) / root;
+    path[depth] = root;
+    for (int i = 0; i < depth; ++i) path[i] *= inverse;
+    int position = depth - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position)
+      subtract_path(values + p.row[l], path, path[position], position);
+  }
+  return definite;
+}
+
+/// Solves LᵀL·x = b in place, with the factor that factorise_tree left.
+template <class T>
+void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
+  for (int k = p.size - 1; k >= 0; --k) {  // Lᵀ y = b
+    const T* path = values + p.row[k];
+    b[k] /= path[p.depth[k]];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) b[l] -= path[position] * b[k];
+  }
+  for (int k = 0; k < p.size; ++k) {  // L x = y
+    const T* path = values + p.row[k];
+    T sum = b[k];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * b[l];
+    b[k] = sum / path[p.depth[k]];
+  }
+}
+
+}  // namespace sinew
