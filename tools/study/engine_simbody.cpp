@@ -85,8 +85,9 @@ class SimbodyEngine : public Engine {
     }
     SimbodyScene out;
     for (const Figure& f : scene.figures) {
-      if (f.driven) refusal_ = "it has no motor with a force limit";
       out.figures.push_back(figure_of(f));
+      if (f.driven && scene.ground && !f.skeleton.colliders.empty())
+        refusal_ = "feet that muscles press to its compliant floor take it steps of microseconds";
     }
     if (!refusal_.empty()) return;
     out.gravity = scene.gravity;

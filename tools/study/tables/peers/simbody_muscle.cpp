@@ -33,10 +33,6 @@ void write(const Quat<double>& turn, const Vec3<double>& move, SimTK::Real* to) 
   for (int k = 0; k < 3; ++k) to[4 + k] = move[k];
 }
 
-double within(double torque, const SimbodyBody& body, int k) {
-  return std::clamp(torque, -body.torque_minus[k], body.torque_plus[k]);
-}
-
 }  // namespace
 
 SimTK::Vec3 simtk(const Vec3<double>& v) {
@@ -119,33 +115,86 @@ SimTK::Vector_<SimTK::SpatialVec> SimbodyMuscles::outside(const State& state) co
   return out;
 }
 
-void SimbodyMuscles::calcForce(const State& state, SimTK::Vector_<SimTK::SpatialVec>& on_bodies,
-                               SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector& on_mobilities) const {
-  on_bodies += driven_.pushes;
-  SimTK::Vector torques;
-  if (std::none_of(driven_.scene->figures.begin(), driven_.scene->figures.end(),
-                   [](const SimbodyFigure& f) { return f.driven; }))
-    return;
-  driven_.matter->calcResidualForceIgnoringConstraints(state, SimTK::Vector(), outside(state), wanted(state),
-                                                       torques);
+SimbodyMuscles::Dofs SimbodyMuscles::dofs(const State& state) const {
+  Dofs out;
+  out.directions.setZero(driven_.matter->getNumMobilities(), driven_.matter->getNumMobilities());
+  Eigen::Index count = 0;
   for (std::size_t f = 0; f < driven_.bodies.size(); ++f) {
     const std::vector<SimbodyBody>& figure = driven_.scene->figures[f].bodies;
     for (std::size_t i = 1; driven_.scene->figures[f].driven && i < figure.size(); ++i) {
+      if (figure[i].type == JointType::kFixed) continue;
       const MobilizedBody& body = driven_.bodies[f][i];
-      if (figure[i].type == JointType::kRevolute) {
-        const double torque = within(body.getOneFromUPartition(state, 0, torques), figure[i], 0);
-        body.applyOneMobilityForce(state, 0, torque, on_mobilities);
-      } else if (figure[i].type == JointType::kBall) {
-        const SimTK::Rotation& placed = body.getMobilizerTransform(state).R();
-        SimTK::Vec3 torque;
-        for (int k = 0; k < 3; ++k) torque[k] = body.getOneFromUPartition(state, k, torques);
-        torque = ~placed * torque;  // limits are of child axes
-        for (int k = 0; k < 3; ++k) torque[k] = within(torque[k], figure[i], k);
-        torque = placed * torque;
-        for (int k = 0; k < 3; ++k) body.applyOneMobilityForce(state, k, torque[k], on_mobilities);
+      const int first = body.getFirstUIndex(state), size = body.getNumU(state);
+      for (int k = 0; k < size; ++k, ++count) {
+        if (size == 1)
+          out.directions(first, count) = 1;
+        else
+          out.directions.block<3, 1>(first, count) = eigen(body.getMobilizerTransform(state).R().col(k));
+        out.lower.push_back(-figure[i].torque_minus[k]);
+        out.upper.push_back(figure[i].torque_plus[k]);
       }
     }
   }
+  out.directions.conservativeResize(Eigen::NoChange, count);
+  return out;
+}
+
+/// Either a joint goes as wanted or its muscle pulls as hard as it can and it lags: active sets, by pivoting.
+Eigen::VectorXd SimbodyMuscles::limited(const State& state, const Dofs& dofs,
+                                        const Eigen::VectorXd& torques) const {
+  constexpr int kMostPasses = 50;
+  constexpr double kSlack = 1e-9;  // N·m
+  const Eigen::Index count = torques.size();
+  std::vector<int> bound(count, 0);  // −1, 1: at its lower, upper limit
+  Eigen::VectorXd out = torques, lag = Eigen::VectorXd::Zero(count);
+  Eigen::MatrixXd inertia;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    std::vector<Eigen::Index> weak;
+    bool changed = false;
+    for (Eigen::Index n = 0; n < count; ++n) {
+      const int before = bound[n];
+      if (before == 0)
+        bound[n] = (out[n] > dofs.upper[n] + kSlack) - (out[n] < dofs.lower[n] - kSlack);
+      else if (before * lag[n] > 0)  // it would be ahead
+        bound[n] = 0;
+      changed |= bound[n] != before;
+      if (bound[n] != 0) weak.push_back(n);
+    }
+    if (!changed) break;
+    if (inertia.size() == 0) {
+      SimTK::Matrix m;
+      driven_.matter->calcM(state, m);
+      Eigen::MatrixXd all(m.nrow(), m.ncol());
+      for (int r = 0; r < m.nrow(); ++r)
+        for (int c = 0; c < m.ncol(); ++c) all(r, c) = m(r, c);
+      inertia = dofs.directions.transpose() * all * dofs.directions;
+    }
+    Eigen::VectorXd missing(weak.size());
+    for (std::size_t n = 0; n < weak.size(); ++n)
+      missing[n] = (bound[weak[n]] > 0 ? dofs.upper[weak[n]] : dofs.lower[weak[n]]) - torques[weak[n]];
+    lag.setZero();
+    const Eigen::VectorXd behind = Eigen::MatrixXd(inertia(weak, weak)).llt().solve(missing);
+    for (std::size_t n = 0; n < weak.size(); ++n) lag[weak[n]] = behind[n];
+    out = torques + inertia * lag;
+  }
+  for (Eigen::Index n = 0; n < count; ++n) out[n] = std::clamp(out[n], dofs.lower[n], dofs.upper[n]);
+  return out;
+}
+
+void SimbodyMuscles::calcForce(const State& state, SimTK::Vector_<SimTK::SpatialVec>& on_bodies,
+                               SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector& on_mobilities) const {
+  on_bodies += driven_.pushes;
+  if (std::none_of(driven_.scene->figures.begin(), driven_.scene->figures.end(),
+                   [](const SimbodyFigure& f) { return f.driven; }))
+    return;
+  SimTK::Vector needed;
+  driven_.matter->calcResidualForceIgnoringConstraints(state, SimTK::Vector(), outside(state), wanted(state),
+                                                       needed);
+  const Eigen::Map<const Eigen::VectorXd> all(&needed[0], needed.size());
+  const Dofs muscles = dofs(state);
+  const Eigen::VectorXd torques = limited(state, muscles, muscles.directions.transpose() * all);
+  const Eigen::VectorXd pull = muscles.directions * torques;
+  for (int u = 0; u < needed.size(); ++u) on_mobilities[u] += pull[u];
 }
 
 void SimbodyRoot::calcPrescribedPosition(const State& s, int, SimTK::Real* q) const {

@@ -1,8 +1,10 @@
-// Muscles of a driven figure in Simbody, which has no motor with a force limit of its own: the torques that
-// its own inverse dynamics ask for, cut off at the muscles' limits. The root moves as told (Motion).
+// Muscles of a driven figure in Simbody, which has no motor with a force limit of its own: torques from its
+// own inverse dynamics and mass matrix, within the muscles' limits. The root moves as told (Motion).
 #pragma once
 
 #include <Simbody.h>
+
+#include <Eigen/Cholesky>
 
 #include "study/tables/peers/simbody_world.h"
 
@@ -30,8 +32,9 @@ struct SimbodyDriven {
   SimTK::Vector_<SimTK::SpatialVec> pushes;  ///< [mobilised body] N·m and N at its origin, world
 };
 
-/// Pushes, and muscles that bring each joint back to its target critically damped: the accelerations of that
-/// way by inverse dynamics under gravity, pushes and contacts, each torque within its limits.
+/// Pushes, and muscles that bring each joint back to its target critically damped, under gravity, pushes and
+/// contacts: where the torque for that is beyond its limit, the limit, and the other joints bear what
+/// follows.
 class SimbodyMuscles : public SimTK::Force::Custom::Implementation {
  public:
   explicit SimbodyMuscles(const SimbodyDriven& driven) : driven_(driven) {}
@@ -41,6 +44,13 @@ class SimbodyMuscles : public SimTK::Force::Custom::Implementation {
                  SimTK::Vector_<SimTK::Vec3>& on_particles, SimTK::Vector& on_mobilities) const override;
 
  private:
+  /// Degrees of freedom that muscles pull at: limits in N·m and [mobility × dof] directions, child axes.
+  struct Dofs {
+    std::vector<double> lower, upper;
+    Eigen::MatrixXd directions;
+  };
+  Dofs dofs(const SimTK::State& state) const;
+  Eigen::VectorXd limited(const SimTK::State& state, const Dofs& dofs, const Eigen::VectorXd& torques) const;
   SimTK::Vector wanted(const SimTK::State& state) const;
   SimTK::Vector_<SimTK::SpatialVec> outside(const SimTK::State& state) const;
 
