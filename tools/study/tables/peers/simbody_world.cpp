@@ -60,7 +60,8 @@ class World : public SimbodyWorld {
     }
     if (scene.ground) add_ground();
     for (std::size_t f = 0; f < scene_.figures.size(); ++f) add(static_cast<int>(f));
-    SimTK::Force::Custom(forces_, new SimbodyMuscles(driven_));  // the subsystem takes ownership
+    const SimTK::Force::Custom muscles(forces_,
+                                       new SimbodyMuscles(driven_));  // the subsystem takes ownership
     start();
   }
 
@@ -181,7 +182,7 @@ class World : public SimbodyWorld {
           b.parent < 0 ? static_cast<MobilizedBody&>(matter_.updGround()) : bodies[b.parent];
       bodies.push_back(hang(parent, b, body));
     }
-    if (figure.driven) SimTK::Motion::Custom(bodies[0], new SimbodyRoot(driven_, f));
+    if (figure.driven) const SimTK::Motion::Custom root(bodies[0], new SimbodyRoot(driven_, f));
   }
 
   static MobilizedBody hang(MobilizedBody& parent, const SimbodyBody& b, const SimTK::Body& body) {
