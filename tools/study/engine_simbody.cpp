@@ -144,9 +144,9 @@ std::vector<EngineOption> simbody_options() {
 
 std::vector<EngineOption> simbody_controlled_options() {
   return {
-      {"Simbody", "semi-explicit Euler 2, steps chosen", make<SimbodyIntegrator::kSemiExplicitEuler2, true>},
-      {"Simbody", "CPodes, steps chosen", make<SimbodyIntegrator::kCPodes, true>},
-      {"Simbody", "Runge-Kutta-Merson, steps chosen", make<SimbodyIntegrator::kRungeKuttaMerson, true>}};
+      {"Simbody", "semi-explicit Euler 2 (steps chosen)", make<SimbodyIntegrator::kSemiExplicitEuler2, true>},
+      {"Simbody", "CPodes (steps chosen)", make<SimbodyIntegrator::kCPodes, true>},
+      {"Simbody", "Runge-Kutta-Merson (steps chosen)", make<SimbodyIntegrator::kRungeKuttaMerson, true>}};
 }
 
 }  // namespace sinew::study
