@@ -50,9 +50,7 @@ class Sweep {
       slopes(result);
       estimates(result);
     }
-#ifdef SINEW_PEERS
-    if (scene_.options.empty()) add_simbody(result);
-#endif
+    if (scene_.options.empty()) add_controlled(result);
     compare_references(result);
     done_();
     mark_pareto(result.points);
@@ -65,9 +63,7 @@ class Sweep {
     for (const EngineOption& peer : peer_options()) all.push_back(peer);
     return all;
   }
-  static int parts(const AccuracyScene& scene) {
-    return static_cast<int>(options_of(scene).size()) + 1;
-  }
+  static int parts(const AccuracyScene& scene) { return static_cast<int>(options_of(scene).size()) + 1; }
 
  private:
   std::string key(const std::string& what) const {
@@ -79,8 +75,9 @@ class Sweep {
     const auto found = references_.find(engine);
     if (found != references_.end()) return found->second;
     EngineOption best = sinew_options()[3];
-    for (const EngineOption& peer : peer_options())
-      if (peer.engine == engine) best = peer;
+    for (const auto& peers : {peer_options(), controlled_options()})
+      for (const EngineOption& peer : peers)
+        if (peer.engine == engine) best = peer;
     return references_[engine] = converged(scene_, best, quick_);
   }
 
@@ -115,7 +112,8 @@ class Sweep {
                          (!quick_ || option.label() == "Sinew bdf2 float");
     if (counted && can_count_instructions()) p.instructions = instructions_of(scene_, option, p.h);
     std::vector<double> times;
-    for (int n = 0; n < runs_; ++n) times.push_back(travel(scene_, option, p.h, p.accuracy, false).seconds);
+    const int runs = p.varied == "accuracy" ? std::min(runs_, 3) : runs_;  // some take a second each
+    for (int n = 0; n < runs; ++n) times.push_back(travel(scene_, option, p.h, p.accuracy, false).seconds);
     std::sort(times.begin(), times.end());
     const double frames = scene_.seconds / kFrame;
     p.us = 1e6 * times[times.size() / 2] / frames;
@@ -165,17 +163,18 @@ class Sweep {
     for (const nlohmann::json& f : *store_.find(name)) result.estimates.push_back({f[0], f[1], f[2]});
   }
 
-#ifdef SINEW_PEERS
-  void add_simbody(AccuracyResult& result) {
-    const std::string name = key("Simbody");
-    if (!store_.find(name)) {
-      nlohmann::json points = nlohmann::json::array();
-      for (const AccuracyPoint& p : simbody_points(scene_, runs_)) points.push_back(point_json(p));
-      store_.keep(name, points);
-    }
-    for (const nlohmann::json& p : *store_.find(name)) result.points.push_back(point_from(p));
+  /// Peers that choose their steps, over accuracies; their AccuracyPoint::h is 0.
+  void add_controlled(AccuracyResult& result) {
+    const std::vector<double> all = {1e-2, 1e-3, 1e-4, 1e-6}, few = {1e-2, 1e-4};
+    for (const EngineOption& option : controlled_options())
+      for (const double tolerance : quick_ ? few : all) {
+        Accuracy accuracy;
+        accuracy.tolerance = tolerance;
+        AccuracyPoint& p = result.points.emplace_back(point(option, "accuracy", kFrame, accuracy));
+        p.varied = "step";
+        p.h = 0;
+      }
   }
-#endif
 
   void compare_references(AccuracyResult& result) {
     const std::string name = key("references");

@@ -32,8 +32,4 @@ double apart(const AccuracyScene& scene, const Track& a, const Track& b);
 /// Largest root mean square angle of all joints (the root's is none) over the poses, degrees.
 double degrees_apart(const AccuracyScene& scene, const Track& a, const Track& b);
 
-/// Simbody over its accuracies (AccuracyPoint::h is 0: it chooses its steps), errors from its own run at
-/// 1e-12; with SINEW_PEERS alone.
-std::vector<AccuracyPoint> simbody_points(const AccuracyScene& scene, int runs);
-
 }  // namespace sinew::study

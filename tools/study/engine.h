@@ -66,10 +66,15 @@ std::vector<EngineOption> sinew_options();
 std::vector<EngineOption> policy_options();
 /// Peers that this build was linked with.
 std::vector<EngineOption> peer_options();
+/// Those of them that choose their steps: `Accuracy::tolerance` is the accuracy asked of them (relative), h
+/// only how often targets and poses change hands. Simbody's alone, its last the most accurate.
+std::vector<EngineOption> controlled_options();
 std::vector<EngineOption> mujoco_options();
 std::vector<EngineOption> bullet_options();
 std::vector<EngineOption> dart_options();
 std::vector<EngineOption> ode_options();
+std::vector<EngineOption> simbody_options();
+std::vector<EngineOption> simbody_controlled_options();
 
 /// The rest pose at rest, in double.
 Figure resting(const Skeleton& skeleton);

@@ -137,10 +137,19 @@ std::vector<EngineOption> sinew_options() {
 std::vector<EngineOption> peer_options() {
   std::vector<EngineOption> all;
 #ifdef SINEW_PEERS
-  for (const auto& of : {mujoco_options(), bullet_options(), dart_options(), ode_options()})
+  for (const auto& of :
+       {mujoco_options(), bullet_options(), dart_options(), ode_options(), simbody_options()})
     all.insert(all.end(), of.begin(), of.end());
 #endif
   return all;
+}
+
+std::vector<EngineOption> controlled_options() {
+#ifdef SINEW_PEERS
+  return simbody_controlled_options();
+#else
+  return {};
+#endif
 }
 
 }  // namespace sinew::study
