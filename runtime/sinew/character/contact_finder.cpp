@@ -9,7 +9,7 @@ namespace {
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
 constexpr int kFirstHost = 0x4000;      ///< of contact identities
-constexpr double kMostPiled = 8;       ///< of the heaviest body: what a contact may bear of a pile
+constexpr double kMostPiled = 8;        ///< of the heaviest body: what a contact may bear of a pile
 constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something
 constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met

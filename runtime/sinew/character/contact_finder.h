@@ -87,7 +87,7 @@ class ContactFinder {
   std::span<const BodyPair> apart_;
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), bears_ = T(0);  ///< s; kg
-  T damping_time_ = T(0);          ///< of contacts, s
+  T damping_time_ = T(0);      ///< of contacts, s
   std::vector<Contact<T>> contacts_;
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
   std::vector<Bound> bounds_;        ///< all colliders of all states
