@@ -67,6 +67,27 @@ TEST(AccuracyStudy, PriceIsTheCheapestWithinTheErrorPerEngine) {
   EXPECT_EQ(price_of(points, "Peer", 2e-3), 1);
 }
 
+TEST(AccuracyStudy, TellsWhichPeersAreAheadOfOurs) {
+  const auto point = [](const char* engine, const char* option, double us, double error) {
+    AccuracyPoint p;
+    p.engine = engine;
+    p.option = option;
+    p.varied = "step";
+    p.h = 1.0 / 60;
+    p.survived = true;
+    p.us = us;
+    p.error = error;
+    return p;
+  };
+  EXPECT_TRUE(ahead_of_ours({point("Peer", "Euler", 1, 1)}).empty()) << "nothing to compare with";
+  const auto found = ahead_of_ours({point("Peer", "Euler", 2, 1e-3), point("Sinew", "bdf2 float", 3, 1e-2),
+                                    point("Peer", "RK4", 1, 5e-3), point("Dear", "Euler", 4, 1e-3),
+                                    point("Far", "Euler", 1, 1)});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].engine, "Sinew");
+  EXPECT_EQ(found[1].option, "RK4") << "the cheapest of the peer that is ahead";
+}
+
 TEST(AccuracyStudy, SchemesHaveTheirOrderOnATumblingBody) {
   const std::vector<AccuracyResult> results = run_accuracy({true, "tumbling"}, {});
   ASSERT_EQ(results.size(), 1u);

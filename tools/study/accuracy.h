@@ -15,6 +15,7 @@ namespace sinew::study {
 /// differ.
 struct AccuracyScene {
   std::string name, title, reading;  ///< `reading`: what the diagram says to whoever looks at it
+  std::string to_catch_up;           ///< what it would take us where a peer is ahead
   double seconds = 1;                ///< of the trajectory that is compared
   EngineScene scene;
   bool contacts = false;
@@ -105,6 +106,10 @@ void mark_pareto(std::vector<AccuracyPoint>& points);
 /// &AccuracyPoint::degrees), or a negative number.
 double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double bound,
                 double AccuracyPoint::*error = &AccuracyPoint::error);
+
+/// Peers' points that are no dearer and no further off than our bdf2 in float at 1/60 s: each peer's
+/// cheapest. The first is our own; empty where it was not measured.
+std::vector<AccuracyPoint> ahead_of_ours(const std::vector<AccuracyPoint>& points);
 
 /// Processor and compiler, for whoever compares.
 std::string machine();
