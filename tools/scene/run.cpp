@@ -102,8 +102,8 @@ class Runner {
       made.load.assign(skeleton.joints.size(), 0);
       made.torque = made.limit = made.load;
       for (int i = 0; i < skeleton.body_count; ++i) {
-        if (skeleton.joints[i].type == JointType::kFree) continue;
         const int dofs = dof_count(skeleton.joints[i].type);
+        if (skeleton.joints[i].type == JointType::kFree || dofs == 0) continue;
         int most = c.first_dof(i);  // the axis that is closest to its limit speaks for the joint
         for (int k = 1; k < dofs; ++k)
           if (c.load()[c.first_dof(i) + k] > c.load()[most]) most = c.first_dof(i) + k;
