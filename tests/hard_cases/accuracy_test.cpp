@@ -166,7 +166,10 @@ TEST(AccuracyStudy, ReportDrawsAllItsChartsInABrowserWithoutErrors) {
   std::ofstream(file) << "<html><body><script>document.body.append('it runs')</script></body></html>";
   if (browse(file, "1200,900").document.find("it runs</body>") == std::string::npos)
     GTEST_SKIP() << "no Chromium here that opens a page of one line";
-  std::ofstream(file) << accuracy_html({full_result(), full_result()}, {});
+  const std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M0 0L9 9'/></svg>";
+  std::ofstream(file) << accuracy_html({full_result(), full_result()}, {},
+                                       {{"A map", "How to read it.", svg}});
   for (const char* size : {"1200,900", "380,800"}) {  // a desk and a phone
     const Browsed page = browse(file, size);
     const std::string head = page.document.substr(0, 300) + "\n" + page.log;
@@ -174,6 +177,7 @@ TEST(AccuracyStudy, ReportDrawsAllItsChartsInABrowserWithoutErrors) {
     EXPECT_NE(head.find("data-charts=\"4\""), std::string::npos) << head;  // two per scene
     EXPECT_NE(head.find("data-drawn=\"4\""), std::string::npos) << head;
     EXPECT_NE(page.document.find("bdf2 double 1.98 (theory 2)"), std::string::npos);
+    EXPECT_NE(page.document.find("<img alt=\"A map\""), std::string::npos);
   }
   std::filesystem::remove(file);
 }

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "cli/files.h"
 #include "study/accuracy.h"
@@ -37,9 +39,8 @@ void print_accuracy(const study::AccuracyResult& result) {
     }
 }
 
-}  // namespace
-
-convert::Error StabilityCommand::draw_maps() const {
+/// Both failure maps as CSV, SVG and PNG into a directory.
+convert::Error draw_maps(const std::string& directory, bool quick) {
   const auto draw = [&](const study::FailureMap& map, const std::string& name) {
     const std::string file = directory + "/" + name;
     if (convert::Error error = write_atomically(file + ".csv", study::map_csv(map))) return error;
@@ -51,6 +52,24 @@ convert::Error StabilityCommand::draw_maps() const {
     return error;
   return draw(study::map_of_masses(quick, progress_bar("mass ratios")), "failure_map_mass");
 }
+
+/// The maps of a directory, for the report.
+std::vector<study::ReportPicture> drawn_maps(const std::string& directory) {
+  const auto read = [&](const char* name) {
+    std::ifstream in(directory + "/" + name);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  return {{"How long a step free motion bears",
+           "A second of flight of the figure of 37 degrees of freedom, by its joints' speed. Rows are steps; "
+           "a cell is "
+           "the worst of its runs.",
+           read("failure_map_speed.svg")},
+          {"How long a step a heavy tip bears",
+           "A chain of five links let go, by the mass of the last over the first.",
+           read("failure_map_mass.svg")}};
+}
+
+}  // namespace
 
 convert::Error StabilityCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
@@ -68,7 +87,7 @@ convert::Error StabilityCommand::run() const {
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))
     return error;
   if (only.empty() && !json_output)
-    if (convert::Error error = draw_maps()) return error;
+    if (convert::Error error = draw_maps(directory, quick)) return error;
   if (json_output)
     std::puts(summary.dump().c_str());
   else
@@ -96,10 +115,14 @@ convert::Error AccuracyCommand::run() const {
   if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
   const std::string base = directory + "/accuracy";
   nlohmann::json dial;
-  if (only.empty())
+  std::vector<study::ReportPicture> maps;
+  if (only.empty()) {
     if (convert::Error error = write_presets(dial)) return error;
+    if (convert::Error error = draw_maps(directory, quick)) return error;
+    maps = drawn_maps(directory);
+  }
   if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(results))) return error;
-  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results, dial)))
+  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results, dial, maps)))
     return error;
   for (const study::AccuracyResult& result : results)
     for (const char* ending : {".svg", ".png"})

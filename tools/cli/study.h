@@ -14,7 +14,6 @@ struct StabilityCommand {
   convert::Error run() const;
 
  private:
-  convert::Error draw_maps() const;
 };
 
 struct AccuracyCommand {

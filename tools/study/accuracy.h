@@ -118,8 +118,14 @@ AccuracyPoint point_from(const nlohmann::json& json);
 std::string accuracy_csv(const std::vector<AccuracyResult>& results);
 /// `dial`: see dial_json; may be null.
 nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const nlohmann::json& dial);
+
+/// A drawn picture that the page shows: heading, help to read it, SVG.
+struct ReportPicture {
+  std::string title, reading, svg;
+};
 /// One self-contained page.
-std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial);
+std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial,
+                          const std::vector<ReportPicture>& pictures = {});
 /// One scene's work-precision diagram in a light theme, .png or .svg.
 convert::Error draw_accuracy(const AccuracyResult& result, const std::string& file);
 

@@ -160,8 +160,13 @@ nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const n
   return {{"machine", machine()}, {"scenes", scenes}, {"dial", dial}};
 }
 
-std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial) {
-  std::string page = web::kReport, data = accuracy_json(results, dial).dump();
+std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial,
+                          const std::vector<ReportPicture>& pictures) {
+  nlohmann::json study = accuracy_json(results, dial);
+  study["pictures"] = nlohmann::json::array();
+  for (const ReportPicture& p : pictures)
+    study["pictures"].push_back({{"title", p.title}, {"reading", p.reading}, {"svg", p.svg}});
+  std::string page = web::kReport, data = study.dump();
   for (std::size_t at; (at = data.find("</")) != std::string::npos;) data.replace(at, 2, "<\\/");
   replace(page, "@UPLOT_CSS@", web::kChartStyle);
   replace(page, "@UPLOT_JS@", web::kChartScript);
