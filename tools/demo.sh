@@ -20,7 +20,7 @@ fi
 sinew=build/sinew
 
 # Nothing changed since the last run: nothing to do.
-stamp=$(sha256sum "$sinew" assets/character/* assets/scenes/* ${source_file:+"$source_file"} | sha256sum | cut -d' ' -f1)
+stamp=$(sha256sum "$sinew" assets/character/* assets/scenes/*.json ${source_file:+"$source_file"} | sha256sum | cut -d' ' -f1)
 if [ -f out/demo.mp4 ] && [ -f out/demo.csv ] && [ -f out/demo.png ] && [ "$(cat out/.stamp 2>/dev/null)" = "$stamp" ]; then
   echo "out/demo.mp4, out/demo.csv and out/demo.png are up to date"
   exit 0
