@@ -7,9 +7,8 @@
 namespace sinew {
 namespace {
 
-/// rad (0.1°) and m: a returning joint this close is on the animation again
-/// A joint is on its animation again within these at 1/60 s; in shorter steps within less, so that what is
-/// left out is an acceleration that muscles do not notice.
+/// rad (0.1°) and m. A joint is on its animation again within these at 1/60 s; in shorter steps within less,
+/// so that what is left out is an acceleration that muscles do not notice.
 constexpr double kSnapAngle = 2e-3;
 constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding

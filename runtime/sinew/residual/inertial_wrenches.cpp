@@ -1,15 +1,3 @@
-// Without Eigen's packets: two doubles read as one where they were just written one by one make the processor
-// wait, 0.26 µs of 0.84 in a pass over 14 bodies. Whatever they are part of lies in memory as it does
-// elsewhere.
-#define EIGEN_DONT_VECTORIZE
-#if defined(__AVX512F__)
-#define EIGEN_MAX_STATIC_ALIGN_BYTES 64
-#elif defined(__AVX__)
-#define EIGEN_MAX_STATIC_ALIGN_BYTES 32
-#else
-#define EIGEN_MAX_STATIC_ALIGN_BYTES 16
-#endif
-
 #include "sinew/residual/residual_pass.h"
 #include "sinew/residual/tree_pass.h"
 
