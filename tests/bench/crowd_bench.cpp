@@ -111,9 +111,9 @@ void crowd_kernel(benchmark::State& state, bool sampling) {
   const std::vector<std::uint8_t> all(16, 1);
   const auto instant = std::make_unique<crowd_kernels::Instant>();
   std::vector<Line> rows(crowd_kernels::row_bytes(joints) / sizeof(Line));
-  std::vector<Line> scratch((crowd_kernels::sample_scratch_bytes(joints) +
-                             crowd_kernels::check_scratch_bytes(joints, joints, 0)) /
-                            sizeof(Line));
+  std::vector<Line> scratch(
+      (crowd_kernels::sample_scratch_bytes(joints) + crowd_kernels::check_scratch_bytes(joints, joints, 0)) /
+      sizeof(Line));
   std::vector<Line> torque(crowd_rig.tree.dofs), limits(crowd_rig.tree.dofs), peak(1), velocity(3);
   const crowd_kernels::JetRows out{rows[0].numbers, joints, joints, joints, scratch.data()};
   crowd_kernels::Batch batch;

@@ -40,6 +40,7 @@ struct KnotPlace {
   int first = 0;
   double u = 0;
 
+  KnotPlace() = default;
   KnotPlace(const Clip& clip, const Clip::Group& group, double time) {
     const double knots = time / group.knot_interval;
     const int spans = clip.loops ? group.control_count : group.control_count - group.degree;

@@ -21,6 +21,7 @@ struct TrackGroup {
   int tracks = 0;
   int degree = 3;  ///< or 5
   int lane = 0;
+  std::uint32_t lanes = 0;  ///< bits of all that play this clip, in the first of them; 0 in the others
   bool rotation = true;
 };
 
@@ -33,7 +34,7 @@ struct Instant {
   float scale[kGroups];       ///< playback rate / knot interval, 1/s
   /// [lane] the lane whose clip it shows: itself, or another where it does not take part.
   int shows[kMaxLanes];
-  const kernels::PoseLayout<float>* constants[kMaxLanes];  ///< [lane shown] → [joint]
+  const kernels::PoseLayout<float>* constants[kMaxLanes];  ///< [lane] → [joint]
   float shift[3][kMaxLanes];                               ///< added to the root's translation (m), and
   float drift[3][kMaxLanes];                               ///< to its velocity (m/s); −0 changes no bit
   float turn[4][kMaxLanes];                                ///< clip → world, x y z w

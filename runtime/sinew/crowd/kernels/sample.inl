@@ -96,8 +96,8 @@ void add_up_group(const TrackGroup& group, int g, int bodies, int end, const Sam
   constexpr int kBlock = P::kLanes / 4;
   TrackSum* out = (group.rotation ? room.turns : room.shifts) + std::size_t(group.lane) * room.joints;
   std::uint32_t* moving = group.rotation ? room.turning : room.shifting;
-  for (int k = 0; k < group.tracks; ++k)
-    if (group.joints[k] < end) moving[group.joints[k]] |= 1u << group.lane;
+  for (int k = 0; k < group.tracks && group.lanes != 0; ++k)
+    if (group.joints[k] < end) moving[group.joints[k]] |= group.lanes;
   const auto block = [&]<class Q>(Q, int first) {
     const auto row = [&](int t) { return Q::load(group.rows[t] + 4 * first); };
     int lowest = end;
@@ -134,47 +134,64 @@ template <class P>
 struct Shown {
   const Instant& instant;
   const SampleRoom& room;
-  int first;  ///< lane
+  int first;               ///< lane
+  std::uint32_t bits = 0;  ///< lanes whose clips are shown
+  bool one_clip = true;    ///< the same constants for all
 
+  Shown(const Instant& at, const SampleRoom& in, int first_lane) : instant(at), room(in), first(first_lane) {
+    for (int i = 0; i < P::kLanes; ++i) {
+      bits |= 1u << lane(i);
+      one_clip &= at.constants[first + i] == at.constants[first];
+    }
+  }
   int lane(int i) const { return instant.shows[first + i]; }
   const TrackSum& sum(const TrackSum* sums, int i, int joint) const {
     return sums[std::size_t(lane(i)) * room.joints + joint];
   }
-  const kernels::PoseLayout<float>& constant(int i, int joint) const {
-    return instant.constants[lane(i)][joint];
+  /// Four numbers of what the clips say of a joint without a track.
+  template <class Part>
+  [[gnu::always_inline]] void constants(int joint, Part part, P (&out)[4]) const {
+    if (one_clip)
+      for (int c = 0; c < 4; ++c) out[c] = P(part(instant.constants[first][joint])[c]);
+    else
+      gather([&](int i) { return part(instant.constants[first + i][joint]); }, out);
   }
-  /// Lanes whose bit is set.
-  Mask<float, P::kLanes> lanes(std::uint32_t bits) const {
-    float set[P::kLanes];
-    for (int i = 0; i < P::kLanes; ++i) set[i] = (bits >> lane(i)) & 1 ? 1.f : 0.f;
-    return P::load(set) == P(1);
+  /// Lanes whose clip's bit is set. Only where they differ: narrow stores and a wide load stall.
+  Mask<float, P::kLanes> lanes(std::uint32_t set) const {
+    float numbers[P::kLanes];
+    for (int i = 0; i < P::kLanes; ++i) numbers[i] = float((set >> lane(i)) & 1);
+    return P::load(numbers) == P(1);
   }
 };
 
 /// Rotation of a joint and, of a body, how it moves. What has no track is as the clip's constants say.
 template <class P>
-void turn(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
-  const auto moving = shown.lanes(shown.room.turning[joint]);
-  P q[4] = {P(0), P(0), P(0), P(0)}, omega[3] = {P(0), P(0), P(0)}, alpha[3] = {P(0), P(0), P(0)};
-  if (any(moving)) {
-    P p[4], dp[4], ddp[4];
+[[gnu::always_inline]] inline void turn(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
+  const auto still = [](const kernels::PoseLayout<float>& pose) { return pose.rotation; };
+  const std::uint32_t moving = shown.room.turning[joint] & shown.bits;
+  P q[4], omega[3], alpha[3];
+  if (moving == 0) {
+    shown.constants(joint, still, q);
+    for (int c = 0; c < 3; ++c) omega[c] = alpha[c] = P(0);
+  } else {
     const TrackSum* sums = shown.room.turns;
+    P p[4], dp[4], ddp[4];
+    for (int c = 0; c < 4; ++c) dp[c] = ddp[c] = P(0);
     gather([&](int i) { return shown.sum(sums, i, joint).value; }, p);
     if (body) {
       gather([&](int i) { return shown.sum(sums, i, joint).rate; }, dp);
       gather([&](int i) { return shown.sum(sums, i, joint).acceleration; }, ddp);
-    } else {
-      for (int c = 0; c < 4; ++c) dp[c] = ddp[c] = P(0);
     }
     project(p, dp, ddp, q, omega, alpha);
   }
-  if (any(!moving)) {
-    P still[4];
-    gather([&](int i) { return shown.constant(i, joint).rotation; }, still);
-    for (int c = 0; c < 4; ++c) q[c] = select(moving, q[c], still[c]);
+  if (moving != 0 && moving != shown.bits) {
+    const auto moves = shown.lanes(moving);
+    P constant[4];
+    shown.constants(joint, still, constant);
+    for (int c = 0; c < 4; ++c) q[c] = select(moves, q[c], constant[c]);
     for (int c = 0; c < 3; ++c) {
-      omega[c] = select(moving, omega[c], P(0));
-      alpha[c] = select(moving, alpha[c], P(0));
+      omega[c] = select(moves, omega[c], P(0));
+      alpha[c] = select(moves, alpha[c], P(0));
     }
   }
   jet.rotation = Quat<P>(q[3], q[0], q[1], q[2]);
@@ -184,11 +201,14 @@ void turn(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
 
 /// The same of its translation.
 template <class P>
-void shift(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
-  const auto moving = shown.lanes(shown.room.shifting[joint]);
+[[gnu::always_inline]] inline void shift(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
+  const auto still = [](const kernels::PoseLayout<float>& pose) { return pose.translation; };
+  const std::uint32_t moving = shown.room.shifting[joint] & shown.bits;
   P x[4], dx[4], ddx[4];
-  for (int c = 0; c < 4; ++c) x[c] = dx[c] = ddx[c] = P(0);
-  if (any(moving)) {
+  for (int c = 0; c < 4; ++c) dx[c] = ddx[c] = P(0);
+  if (moving == 0) {
+    shown.constants(joint, still, x);
+  } else {
     const TrackSum* sums = shown.room.shifts;
     gather([&](int i) { return shown.sum(sums, i, joint).value; }, x);
     if (body) {
@@ -196,13 +216,14 @@ void shift(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
       gather([&](int i) { return shown.sum(sums, i, joint).acceleration; }, ddx);
     }
   }
-  if (any(!moving)) {
-    P still[4];
-    gather([&](int i) { return shown.constant(i, joint).translation; }, still);
+  if (moving != 0 && moving != shown.bits) {
+    const auto moves = shown.lanes(moving);
+    P constant[4];
+    shown.constants(joint, still, constant);
     for (int c = 0; c < 3; ++c) {
-      x[c] = select(moving, x[c], still[c]);
-      dx[c] = select(moving, dx[c], P(0));
-      ddx[c] = select(moving, ddx[c], P(0));
+      x[c] = select(moves, x[c], constant[c]);
+      dx[c] = select(moves, dx[c], P(0));
+      ddx[c] = select(moves, ddx[c], P(0));
     }
   }
   jet.translation = Vec3<P>(x[0], x[1], x[2]);
@@ -240,7 +261,7 @@ void sample_batch(const Instant& instant, const JetRows& out) {
     else
       add_up_group<P, 4>(instant.group[g], g, out.bodies, out.posed, room);
   for (int first = 0; first < kBatch; first += kLanes) {
-    const Shown<P> shown{instant, room, first};
+    const Shown<P> shown(instant, room, first);
     for (int joint = 0; joint < out.posed; ++joint) {
       const bool body = joint < out.bodies;
       JointJet<P> jet;
