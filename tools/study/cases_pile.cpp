@@ -162,7 +162,8 @@ Verdict crowd_of_200(const Trial& t) {
       lowest = std::min(lowest, double(joint.translation.z()));
   Verdict v(stage.measured());
   v.general();
-  v.at_least("lowest joint (m)", lowest, 0);
+  // A joint may lie at its body's surface, which sinks in.
+  v.at_least("lowest joint (m)", lowest, -v.measured().penetration);
   return v;
 }
 

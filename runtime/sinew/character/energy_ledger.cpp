@@ -22,16 +22,21 @@ double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
 }
 
-/// Of positions and momenta: no gain.
+/// What rounded positions and momenta make of its energy, J: no gain. In T, wherever it is, for its place is
+/// kept in double precision, and energies are summed in that.
 template <class T>
-double rounding(double energy, double kinetic) {
-  return 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(energy) + kinetic);
+double rounding(const CharacterState<T>& s, const Vec3<double>& gravity) {
+  const double weight = s.total_mass * gravity.norm() * double(s.radius);
+  return 4 * double(std::numeric_limits<T>::epsilon()) *
+             (s.report.kinetic_energy + s.report.elastic_energy + weight) +
+         16 * std::numeric_limits<double>::epsilon() * std::abs(total(s.report));
 }
 
-/// Scales a tree's motion relative to a rigid one.
+/// Scales a tree's motion relative to a rigid one, and turns it faster.
 template <class T>
-void scale(CharacterState<T>& s, const RigidMotion& rigid, T factor) {
-  scale_relative<T>(s.tree, rigid, factor, s.history);
+void change(CharacterState<T>& s, const RigidMotion& rigid, T factor,
+            const Vec3<double>& turn = Vec3<double>::Zero()) {
+  change_motion<T>(s.tree, rigid, factor, turn, s.history);
   for (std::array<T, 6>& rate : s.rate)
     for (T& r : rate) r *= factor;
 }
@@ -42,7 +47,7 @@ template <class T>
 void slow(CharacterState<T>& s, double factor, bool about_center) {
   RigidMotion kept;
   if (about_center) kept.velocity = s.report.momentum / s.total_mass;
-  scale(s, kept, T(factor));
+  change(s, kept, T(factor));
   if (factor > kSmall || s.report.contacts == 0) return;
   s.history.step_before = T(0);
   s.steps_unchanged = 0;
@@ -57,18 +62,19 @@ bool is_rigid(const CharacterState<T>& s) {
 template <class T>
 bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
            bool strict, bool never_rises) {
-  double now = 0, kinetic = 0, internal = 0, ceiling = 0;
+  double now = 0, kinetic = 0, internal = 0, ceiling = 0, rounded = 0;
   for (const CharacterState<T>* s : states) {
     const CharacterReport& r = s->report;
     now += total(r);
     kinetic += r.kinetic_energy;
+    rounded += rounding(*s, gravity);
     internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
     ceiling += s->energy_ceiling;
   }
   if (strict || !std::isfinite(ceiling)) ceiling = before;
   if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
   const double gained = now - ceiling;
-  const bool above = gained > rounding<T>(now, kinetic) && kinetic > 0;
+  const bool above = gained > rounded && kinetic > 0;
   if (above) {
     const bool about_center = gained < 0.9 * internal;
     const double factor = std::sqrt(std::max(0.0, 1 - gained / (about_center ? internal : kinetic)));
@@ -97,31 +103,42 @@ bool lossless(const CharacterState<T>& s) {
          });
 }
 
-/// Gives a lossless tree in flight the energy that it had before, and takes from any other what it gained, as
-/// far as the motion of its limbs against each other can bear the change.
+}  // namespace
+
+/// Gives a tree that nothing but gravity acts on the angular momentum that it had; one that is lossless too
+/// the energy that it had, and takes from any other what it gained, as far as the motion of its limbs against
+/// each other can bear the change.
 template <class T>
-void keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity, double before) {
+void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity,
+                                     const Before& before) {
   if (is_rigid(s) || s.tree.type[0] != JointType::kFree) return;
   const CharacterReport& r = s.report;
-  const double now = total(r);
-  const double missing =
-      before - rounding<T>(now, r.kinetic_energy) - now;  // which must not add up to a gain
-  if (missing > 0 && !lossless(s)) return;
   Totals sums;
   sums.kinetic_energy = r.kinetic_energy;
   sums.momentum = r.momentum;
   sums.angular_momentum = r.angular_momentum;
   const RigidMotion rigid = rigid_motion<T>(s.tree, s.history, sums);
-  const double about_center = r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s.total_mass;
+  Vec3<double> turn = Vec3<double>::Zero();
+  if (s.left_to_gravity) turn = rigid.spin_of(before.angular_momentum - r.angular_momentum);
+  const double turned = turn.dot(r.angular_momentum + 0.5 * rigid.inertia * turn);  // J, that it gives
+  const double now = total(r) + turned, rounded = rounding(s, gravity);
+  const bool keeps = lossless(s);
+  // Kept at a mark of its own, which sinks by more than roundings may lift what is measured against it: these
+  // add up neither to a gain nor to a loss.
+  if (keeps) {
+    if (!(std::abs(s.energy_ceiling - before.energy) < rounded / 2)) s.energy_ceiling = before.energy;
+    s.energy_ceiling -= rounded / 8;
+  }
+  const double missing = (keeps ? s.energy_ceiling : before.energy - rounded) - now;
+  const double about_center = r.kinetic_energy + turned - 0.5 * r.momentum.squaredNorm() / s.total_mass;
   const double loose = (rigid.relative_energy / about_center - kTooRigid) / (kLooseEnough - kTooRigid);
-  if (!(loose > 0)) return;
-  const double wanted = std::min(loose, 1.0) * missing / rigid.relative_energy;
-  const double share = std::clamp(wanted, -kMostTaken, kMostGiven);
-  scale(s, rigid, T(std::sqrt(1 + share)));
+  double share = 0;
+  if (loose > 0 && (keeps || missing < 0))
+    share = std::clamp(std::min(loose, 1.0) * missing / rigid.relative_energy, -kMostTaken, kMostGiven);
+  if (share == 0 && turn.isZero(0)) return;
+  change(s, rigid, T(std::sqrt(1 + share)), turn);
   s.report_totals(gravity);
 }
-
-}  // namespace
 
 template <class T>
 double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
@@ -137,7 +154,12 @@ template <class T>
 double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
   before_.clear();
   double sum = 0;
-  for (CharacterState<T>* s : states) sum += before_.emplace_back(energy<T>({&s, 1}, gravity));
+  for (const CharacterState<T>* s : states) {
+    const Totals t = totals<T>(s->tree, s->history, gravity);
+    const double energy = t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
+    before_.push_back({energy, t.angular_momentum});
+    sum += energy;
+  }
   return sum;
 }
 
@@ -146,13 +168,17 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const V
                              bool strict, bool tied) const {
   const bool touching = std::any_of(states.begin(), states.end(),
                                     [](const CharacterState<T>* s) { return s->report.contacts > 0; });
-  if (touching || tied || strict)
-    return limit<T>(states, gravity, std::accumulate(before_.begin(), before_.end(), 0.0), strict, touching);
+  if (touching || tied || strict) {
+    const double before = std::accumulate(before_.begin(), before_.end(), 0.0,
+                                          [](double sum, const Before& b) { return sum + b.energy; });
+    return limit<T>(states, gravity, before, strict, touching);
+  }
   bool damped = false;
   for (std::size_t n = 0; n < states.size(); ++n) {
     keep_in_flight(*states[n], gravity, before_[n]);
     // The flight of what is rigid is exact: it never rises.
-    damped = limit<T>(states.subspan(n, 1), gravity, before_[n], false, is_rigid(*states[n])) || damped;
+    damped =
+        limit<T>(states.subspan(n, 1), gravity, before_[n].energy, false, is_rigid(*states[n])) || damped;
   }
   return damped;
 }

@@ -27,7 +27,7 @@ constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a t
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
 template <class T>
-bool is_left_to_gravity(const CharacterState<T>& s) {
+bool flies(const CharacterState<T>& s) {
   const TreeProblem<T>& p = s.problem;
   return s.floats && p.free[0] && p.effects.empty() && p.pushes.empty() &&
          std::none_of(p.rows.begin(), p.rows.end(), [](const JointRow<T>& row) { return row.dof < 6; });
@@ -133,13 +133,13 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   const bool touched = std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
-  const bool flies = !touched && !is_held_[tree] && couplings_.empty() && is_left_to_gravity(s);
+  s.left_to_gravity = !touched && !is_held_[tree] && couplings_.empty() && flies(s);
   Vec3<double> momentum;
-  if (flies)
+  if (s.left_to_gravity)
     momentum = carried_momentum<T>(s.tree, s.history, p.prediction, h) +
                double(p.prediction.momentum_step) * s.total_mass * world.gravity;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
-  if (flies) set_momentum<T>(s.tree, momentum, s.history);
+  if (s.left_to_gravity) set_momentum<T>(s.tree, momentum, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.pose_changed();
 

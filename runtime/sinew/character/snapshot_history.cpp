@@ -95,7 +95,8 @@ void visit_velocities(CharacterState<T>& s, bool known, ByteStream& stream) {
       const Vec3<T>& guess = s.guessed.center[i];
       const Vec3<T>& before = known ? h.center_before[i] : guess;
       const Vec3<T> velocity = (k1 * (h.center[i] - before) - k2 * (before - guess)) / step;
-      coder.values(h.velocity[i], Vec3<T>(velocity + h.scaled.faster(h.center[i], velocity)));
+      const Vec3<T> pushed = velocity + h.changed.push;
+      coder.values(h.velocity[i], Vec3<T>(pushed + h.changed.faster(h.center[i], pushed)));
     }
   }
   {
@@ -104,7 +105,7 @@ void visit_velocities(CharacterState<T>& s, bool known, ByteStream& stream) {
       const Mat3<T>& guess = s.guessed.rotation[i];
       const Mat3<T>& before = known ? h.rotation_before[i] : guess;
       const Mat3<T> rate = (k1 * (h.rotation[i] - before) - k2 * (before - guess)) / step;
-      coder.values(h.rotation_rate[i], Mat3<T>(rate + h.scaled.faster(h.rotation[i], rate)));
+      coder.values(h.rotation_rate[i], Mat3<T>(rate + h.changed.faster(h.rotation[i], rate)));
     }
   }
   ResidualCoder<T> coder("angular momentum", stream);
@@ -126,15 +127,16 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
   stream.value("scheme", scheme);
   if (stream.reading()) h.scheme = static_cast<Scheme>(std::min(scheme, std::uint8_t{2}));
-  if (stream.part("scaled by the ledger", h.scaled.factor != T(1))) {
-    stream.value("what it was scaled by", h.scaled.factor);
-    for (Vec3<T>* v : {&h.scaled.center, &h.scaled.velocity, &h.scaled.spin})
-      stream.array("what it was scaled about", v->data(), 3);
+  if (stream.part("changed after the solve", !h.changed.none())) {
+    MotionChange<T>& c = h.changed;
+    stream.value("what it was scaled by", c.factor);
+    for (Vec3<T>* v : {&c.push, &c.center, &c.velocity, &c.spin, &c.turn})
+      stream.array("how it was changed", v->data(), 3);
   } else {
-    h.scaled = {};
+    h.changed = {};
   }
   visit_places(s, stream);
-  step_back<T>(s, s.rate, s.rate_step / h.scaled.factor, s.wanted, s.guessed);
+  step_back<T>(s, s.rate, s.rate_step / h.changed.factor, s.wanted, s.guessed);
   const bool known = stream.part("contacts have been the same", s.steps_unchanged > 0);
   if (known) {
     visit_pose_before(s, stream);
@@ -146,7 +148,7 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
     ResidualCoder<T> coder("velocity before", stream);
     const T step = s.rate_step_before > T(0) ? s.rate_step_before : T(1);
     for (int i = 0; i < s.tree.bodies; ++i) {
-      const Vec3<T> faster = h.scaled.faster(h.center[i], h.velocity[i]) / h.scaled.factor;
+      const Vec3<T> faster = h.changed.scaled(h.center[i], h.velocity[i]) / h.changed.factor;
       coder.values(h.velocity_before[i], Vec3<T>((h.center_before[i] - s.guessed.center[i]) / step + faster));
     }
   }

@@ -101,7 +101,8 @@ struct CharacterState {
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
   bool carried = false;  ///< in this step, see carry_over()
-  bool floats = false;   ///< hangs on one free root, whose translation is `history.place` rounded
+  bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
+  bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target;         ///< [joint] what the animation wants at the end of the next step
   std::vector<JointJet<T>> target_before;  ///< [joint] wanted last step; see last_target()

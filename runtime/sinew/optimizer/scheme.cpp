@@ -249,7 +249,7 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
   }
   history.scheme = prediction.scheme;
   history.step_before = h;
-  history.scaled = {};
+  history.changed = {};
 }
 
 namespace {
@@ -275,8 +275,8 @@ Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, co
 template <class T>
 void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history) {
   const double mass = std::accumulate(tree.mass.begin(), tree.mass.end(), 0.0);
-  const Vec3<T> faster = ((momentum - linear_momentum<T>(tree, history.velocity)) / mass).template cast<T>();
-  for (Vec3<T>& velocity : history.velocity) velocity += faster;
+  history.changed.push = ((momentum - linear_momentum<T>(tree, history.velocity)) / mass).template cast<T>();
+  for (Vec3<T>& velocity : history.velocity) velocity += history.changed.push;
 }
 
 template <class T>
@@ -297,17 +297,17 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
   }
   history.scheme = Scheme::kBdf2;
   history.step_before = h;
-  history.scaled = {};
+  history.changed = {};
 }
 
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity) {
   Totals sum;
   double mass = 0;
-  Vec3<double> first = Vec3<double>::Zero(), about_origin = Vec3<double>::Zero();
+  Vec3<double> first = Vec3<double>::Zero(), about_place = Vec3<double>::Zero();
   for (int i = 0; i < tree.bodies; ++i) {
     const double m = double(tree.mass[i]);
-    const Vec3<double> center = history.place + history.center[i].template cast<double>();
+    const Vec3<double> center = history.center[i].template cast<double>();
     const Vec3<double> velocity = history.velocity[i].template cast<double>();
     const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
     const Mat3<T>& rate = history.rotation_rate[i];
@@ -315,13 +315,13 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
                           ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
                           : spin.dot(tree.inverse_inertia[i] * spin);
     sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
-    sum.potential_energy += gravity_energy<double>(m, gravity, center);
+    sum.potential_energy += gravity_energy<double>(m, gravity, history.place + center);
     sum.momentum += m * velocity;
-    about_origin += m * center.cross(velocity) + history.momentum[i].template cast<double>();
+    about_place += m * center.cross(velocity) + history.momentum[i].template cast<double>();
     mass += m;
     first += m * center;
   }
-  if (mass > 0) sum.angular_momentum = about_origin - first.cross(sum.momentum) / mass;
+  if (mass > 0) sum.angular_momentum = about_place - first.cross(sum.momentum) / mass;
   return sum;
 }
 
@@ -335,27 +335,35 @@ RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const T
   }
   rigid.center /= mass;
   rigid.velocity = totals.momentum / mass;
-  const Mat3<double> locked =
-      locked_inertia<T>(tree, history, rigid.center.template cast<T>()).template cast<double>();
-  rigid.spin = locked.ldlt().solve(totals.angular_momentum);
+  rigid.inertia = locked_inertia<T>(tree, history, rigid.center.template cast<T>()).template cast<double>();
+  rigid.spin = rigid.inertia.ldlt().solve(totals.angular_momentum);
   rigid.relative_energy = totals.kinetic_energy - 0.5 * totals.momentum.squaredNorm() / mass -
                           0.5 * totals.angular_momentum.dot(rigid.spin);
   return rigid;
 }
 
+Vec3<double> RigidMotion::spin_of(const Vec3<double>& momentum) const {
+  const double thin = 1e-7 * inertia.trace();
+  return (inertia + thin * Mat3<double>::Identity()).ldlt().solve(momentum);
+}
+
 template <class T>
-void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, History<T>& history) {
-  history.scaled = {rigid.center.template cast<T>(), rigid.velocity.template cast<T>(),
-                    rigid.spin.template cast<T>(), factor};
+void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, const Vec3<double>& turn,
+                   History<T>& history) {
+  MotionChange<T>& change = history.changed;
+  change.center = rigid.center.template cast<T>();
+  change.velocity = rigid.velocity.template cast<T>();
+  change.spin = rigid.spin.template cast<T>();
+  change.turn = turn.template cast<T>();
+  change.factor = factor;
   for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> faster = history.scaled.faster(history.center[i], history.velocity[i]);
-    const Vec3<T> carried = world_inertia(tree, history, i) * history.scaled.spin;
-    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - carried);
-    history.velocity[i] += faster;
-    history.velocity_before[i] += faster;
-    history.momentum[i] += stronger;
+    const Mat3<T> inertia = world_inertia(tree, history, i);
+    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - inertia * change.spin);
+    history.velocity_before[i] += change.scaled(history.center[i], history.velocity[i]);
+    history.velocity[i] += change.faster(history.center[i], history.velocity[i]);
+    history.momentum[i] += stronger + inertia * change.turn;
     history.momentum_before[i] += stronger;
-    history.rotation_rate[i] += history.scaled.faster(history.rotation[i], history.rotation_rate[i]);
+    history.rotation_rate[i] += change.faster(history.rotation[i], history.rotation_rate[i]);
   }
 }
 

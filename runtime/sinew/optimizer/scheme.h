@@ -20,21 +20,26 @@
 
 namespace sinew {
 
-/// How the motion of a step was scaled after it was solved (scale_relative): what is relative to a rigid
-/// motion, by `factor`. Kept for snapshots, which go by it.
+/// How the motion of a step was changed after it was solved: `push` added to all velocities (set_momentum);
+/// then what was relative to a rigid motion scaled by `factor`, and all turned faster by `turn`
+/// (change_motion). Kept for snapshots, which go by it.
 template <class T>
-struct RelativeScaling {
+struct MotionChange {
+  Vec3<T> push = Vec3<T>::Zero();                                ///< m/s
   Vec3<T> center = Vec3<T>::Zero(), velocity = Vec3<T>::Zero();  ///< m, m/s
-  Vec3<T> spin = Vec3<T>::Zero();                                ///< rad/s
+  Vec3<T> spin = Vec3<T>::Zero(), turn = Vec3<T>::Zero();        ///< rad/s
   T factor = T(1);
 
-  /// What the velocity of a point at x gains.
-  Vec3<T> faster(const Vec3<T>& x, const Vec3<T>& v) const {
+  bool none() const { return factor == T(1) && push.isZero(T(0)) && turn.isZero(T(0)); }
+  /// What the velocity of a point at x gains from scaling.
+  Vec3<T> scaled(const Vec3<T>& x, const Vec3<T>& v) const {
     return (factor - 1) * (v - (velocity + spin.cross(x - center)));
   }
+  /// The same with the turn.
+  Vec3<T> faster(const Vec3<T>& x, const Vec3<T>& v) const { return scaled(x, v) + turn.cross(x - center); }
   /// What the rate of a rotation gains.
   Mat3<T> faster(const Mat3<T>& rotation, const Mat3<T>& rate) const {
-    return (factor - 1) * (rate - skew<T>(spin) * rotation);
+    return (factor - 1) * (rate - skew<T>(spin) * rotation) + skew<T>(turn) * rotation;
   }
 };
 
@@ -49,7 +54,7 @@ struct History {
   std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
   std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
   Scheme scheme = Scheme::kBdf2;                   ///< that led here
-  RelativeScaling<T> scaled;                       ///< of the last step; factor 1: not
+  MotionChange<T> changed;                         ///< by the last step, after it was solved
   T step_before = T(0);                            ///< s between before and now; 0: no earlier state
 
   explicit History(int bodies);
@@ -70,16 +75,22 @@ struct RigidMotion {
   Vec3<double> velocity = Vec3<double>::Zero();  ///< of the centre of mass, m/s
   Vec3<double> spin = Vec3<double>::Zero();      ///< rad/s
   double relative_energy = 0;                    ///< kinetic energy of the motion relative to it, J
+  Mat3<double> inertia = Mat3<double>::Zero();   ///< of all, joints locked, about the centre, kg·m²
+
+  /// Spin (rad/s) that a change of the angular momentum makes; a rod's about itself changes nothing.
+  Vec3<double> spin_of(const Vec3<double>& momentum) const;
 };
 
 /// Of a history that bdf2 led to.
 template <class T>
 RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const Totals& totals);
 
-/// Scales the motion relative to the rigid one; momenta stay. What was before changes with it, so that the
-/// backward differences of the next steps see a change of speed and no jolt.
+/// Scales the motion relative to the rigid one, which keeps the momenta, and turns all faster by `turn`
+/// (rad/s). What was before is scaled with it, so that the backward differences of the next steps see a
+/// change of speed and no jolt; a turn mends an angular momentum that was right before.
 template <class T>
-void scale_relative(const Tree<T>& tree, const RigidMotion& rigid, T factor, History<T>& history);
+void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, const Vec3<double>& turn,
+                   History<T>& history);
 
 /// Targets of inertia for one step, relative to the common origin.
 template <class T>
@@ -145,7 +156,7 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                             \
   prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
   prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
-  prefix void scale_relative<T>(const Tree<T>&, const RigidMotion&, T, History<T>&);                         \
+  prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);     \
   prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T,                  \
                                  const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)
