@@ -346,25 +346,6 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// Tells the couplings' nodes which tree of the solve they are on, and lets what is open close by a step.
-template <class T>
-void IslandStepper<T>::begin_couplings(T h) {
-  for (Coupling<T>* c : couplings_) {
-    for (CouplingNode<T>& node : c->nodes) {
-      const auto found = std::find(indices_.begin(), indices_.end(), node.state);
-      node.tree = found == indices_.end() ? -1 : static_cast<int>(found - indices_.begin());
-      const Vec3<double>& origin = states_[0]->history.place;
-      if (node.tree < 0) {
-        node.point = (node.place - origin).template cast<T>();
-      } else {
-        const Vec3<T> world = states_[node.tree]->model()[node.body] * node.local;
-        node.point = (world.template cast<double>() - origin).template cast<T>();
-      }
-    }
-    lead_out(h, *c);
-  }
-}
-
 /// How often to divide a step so that no body turns further than the accuracy allows in one part.
 template <class T>
 int IslandStepper<T>::parts_of(T h) const {
@@ -441,7 +422,7 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
-  begin_couplings(h);
+  begin_couplings<T>(couplings_, states_, indices_, h);
   const bool alone = states.size() == 1 && couplings.empty();
   if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
   begin_part(h, T(1));

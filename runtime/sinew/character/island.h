@@ -71,7 +71,6 @@ class IslandStepper {
   double pose_energy() const;
   bool unreachable(double budget) const;
   SolveReport solve_from_start();
-  void begin_couplings(T h);
   void hold(CharacterState<T>& state);
   void forget_contacts();
   void hold_lost(bool no_pose);

@@ -125,10 +125,14 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
   }
 }
 
-#define SINEW_LADDER_INSTANCES(T)                            \
-  template bool IslandStepper<T>::passive() const;           \
-  template bool IslandStepper<T>::unreachable(double) const; \
-  template SolveReport IslandStepper<T>::solve_from_start(); \
+#define SINEW_LADDER_INSTANCES(T)                                          \
+  template bool IslandStepper<T>::passive() const;                         \
+  template double IslandStepper<T>::pose_energy() const;                   \
+  template bool IslandStepper<T>::unreachable(double) const;               \
+  template SolveReport IslandStepper<T>::solve_from_start();               \
+  template void IslandStepper<T>::hold(CharacterState<T>&);                \
+  template void IslandStepper<T>::forget_contacts();                       \
+  template bool IslandStepper<T>::settled(const CharacterState<T>&) const; \
   template void IslandStepper<T>::hold_lost(bool);
 SINEW_LADDER_INSTANCES(float)
 SINEW_LADDER_INSTANCES(double)
