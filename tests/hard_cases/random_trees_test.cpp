@@ -25,12 +25,17 @@ constexpr int kUsualCount = 40;
 constexpr int kUsualCount = 1000;
 #endif
 
+template <class T>
+void expect_no_fault(std::uint64_t seed) {
+  Measurement measured;
+  EXPECT_EQ(fault_of_tree<T>(seed, measured), "") << "seed " << seed;
+}
+
 /// Half `half` (0 or 1) of the seeds.
 template <class T>
 void expect_no_faults(int half) {
   if (const int seed = number("SINEW_SEED", 0)) {
-    Measurement measured;
-    EXPECT_EQ(fault_of_tree<T>(static_cast<std::uint64_t>(seed), measured), "");
+    expect_no_fault<T>(static_cast<std::uint64_t>(seed));
     return;
   }
   const int count = std::max(1, number("SINEW_RANDOM_TREES", kUsualCount) / 2);
@@ -55,6 +60,11 @@ TEST(RandomTrees, StayFiniteClosedAndWithoutFreeEnergyInFloat) {
 
 TEST(RandomTrees, StayFiniteClosedAndWithoutFreeEnergyInDouble) {
   expect_no_faults<double>(1);
+}
+
+TEST(RandomTrees, ThatOnceGainedEnergyDoNotGainAny) {
+  for (const std::uint64_t seed : {268u, 6317u, 14031u}) expect_no_fault<double>(seed);
+  expect_no_fault<float>(9005);
 }
 
 TEST(RandomTrees, AreValidAndTheSameForTheSameSeed) {
