@@ -25,6 +25,8 @@ constexpr int kUsualCount = 40;
 constexpr int kUsualCount = 1000;
 #endif
 
+constexpr int kEnough = 400;  ///< trees for the rarest of what is expected: one in 50 restarts
+
 template <class T>
 void expect_no_fault(std::uint64_t seed) {
   Measurement measured;
@@ -52,6 +54,9 @@ void expect_no_faults(int half) {
   EXPECT_FALSE(known) << "passes now: take it off the list in tools/study/known_failures.cpp";
   EXPECT_TRUE(report.faults.empty()) << report.faults.size() << " of " << count
                                      << " trees; SINEW_SEED=N runs one" << first;
+  if (count >= kEnough) {
+    EXPECT_GT(report.measured.restarts, 0) << "no tree has met the rung that keeps it out of deep minima";
+  }
 }
 
 TEST(RandomTrees, StayFiniteClosedAndWithoutFreeEnergyInFloat) {
