@@ -144,6 +144,7 @@ nlohmann::json stability_json(const std::vector<StabilityResult>& results) {
                         {"passes_max", m.most_passes},
                         {"factorisations_mean", m.mean_factorisations()},
                         {"unconverged", m.unconverged},
+                        {"restarts", m.restarts},
                         {"solved", m.solved},
                         {"microseconds", per_step(m.microseconds, m)}});
     }

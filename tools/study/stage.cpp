@@ -20,6 +20,7 @@ int Measurement::passes_percentile(double share) const {
 void Measurement::count(const CharacterReport& r) {
   ++solved;
   unconverged += !r.converged;
+  restarts += r.restarts;
   passes += r.outer_passes;
   chords += r.chords;
   factorisations += r.factorisations;
@@ -39,6 +40,7 @@ void Measurement::merge(const Measurement& o) {
   joint_gap = std::max(joint_gap, o.joint_gap);
   penetration = std::max(penetration, o.penetration);
   unconverged += o.unconverged;
+  restarts += o.restarts;
   solved += o.solved;
   passes += o.passes;
   chords += o.chords;

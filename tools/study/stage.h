@@ -25,6 +25,7 @@ struct Measurement {
   double penetration = 0;  ///< deepest contact
   int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
+  int restarts = 0;  ///< see CharacterReport
   long passes = 0, chords = 0, factorisations = 0;
   int most_passes = 0, most_factorisations = 0;  ///< of one solve: a step in parts on purpose is so many
   std::array<int, 256> pass_histogram{};         ///< solved steps by passes of a solve (the last: or more)

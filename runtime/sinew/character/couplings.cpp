@@ -64,7 +64,30 @@ void Couplings<T>::begin_step(States states) {
   }
 }
 
+template <class T>
+void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<CharacterState<T>* const> states,
+                     std::span<const int> indices, T h) {
+  for (Coupling<T>* c : couplings) {
+    for (CouplingNode<T>& node : c->nodes) {
+      const auto found = std::find(indices.begin(), indices.end(), node.state);
+      node.tree = found == indices.end() ? -1 : static_cast<int>(found - indices.begin());
+      const Vec3<double>& origin = states[0]->history.place;
+      if (node.tree < 0) {
+        node.point = (node.place - origin).template cast<T>();
+      } else {
+        const Vec3<T> world = states[node.tree]->model()[node.body] * node.local;
+        node.point = (world.template cast<double>() - origin).template cast<T>();
+      }
+    }
+    lead_out(h, *c);
+  }
+}
+
 template class Couplings<float>;
 template class Couplings<double>;
+template void begin_couplings<float>(std::span<Coupling<float>* const>,
+                                     std::span<CharacterState<float>* const>, std::span<const int>, float);
+template void begin_couplings<double>(std::span<Coupling<double>* const>,
+                                      std::span<CharacterState<double>* const>, std::span<const int>, double);
 
 }  // namespace sinew

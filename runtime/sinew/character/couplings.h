@@ -47,6 +47,12 @@ class Couplings {
   std::vector<BodyPair> apart_;
 };
 
+/// Before a step of h seconds of these trees, whose numbers are `indices`: tells the couplings' nodes which
+/// tree of the solve they are on, and lets what is open close by a step.
+template <class T>
+void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<CharacterState<T>* const> states,
+                     std::span<const int> indices, T h);
+
 /// What the couplings of a solve store, J, that is booked to one of its trees: that of a coupling's first
 /// node that is on one.
 template <class T>
@@ -77,5 +83,11 @@ int first_tree(const Coupling<T>& coupling) {
 
 extern template class Couplings<float>;
 extern template class Couplings<double>;
+extern template void begin_couplings<float>(std::span<Coupling<float>* const>,
+                                            std::span<CharacterState<float>* const>, std::span<const int>,
+                                            float);
+extern template void begin_couplings<double>(std::span<Coupling<double>* const>,
+                                             std::span<CharacterState<double>* const>, std::span<const int>,
+                                             double);
 
 }  // namespace sinew

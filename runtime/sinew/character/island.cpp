@@ -11,7 +11,6 @@
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
-#include "sinew/effects/gravity.h"
 #include "sinew/optimizer/error_estimate.h"
 
 namespace sinew {
@@ -22,7 +21,6 @@ constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the 
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
-constexpr int kPassing = 30;    ///< steps after a tree was held
 constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
@@ -304,8 +302,15 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   part_begun_ = false;
   const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
   if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
-  const SolveReport solved = attempt();
+  SolveReport solved = attempt();
   total_.add(solved);
+  const bool closed = passive();
+  double budget = closed ? ledger_.open(states_, world_->gravity) : 0;
+  if (closed && (solved.converged || splits_left == 0) && unreachable(budget)) {
+    solved = solve_from_start();
+    total_.add(solved);
+    ++restarts_;
+  }
   if (!solved.converged && splits_left > 0) {
     ++splits_;
     return halve(splits_left - 1);
@@ -315,24 +320,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool may_bounce = std::any_of(effects_.begin(), effects_.end(), [&](const auto& effect) {
     return effect->may_change_speeds(contacts_);
   });
-  const bool closed = passive();
-  const bool booked = may_bounce || closed || !solved.converged;  // else nobody asks what there was
-  const double budget = booked ? ledger_.open(states_, world_->gravity) : 0;
-  const bool no_pose = !solved.converged && closed && pose_energy() > budget + 1e-3 * std::abs(budget);
-  const int held_before = held_;
-  is_held_.assign(states_.size(), 0);
-  for (std::size_t n = 0; n < states_.size(); ++n)
-    if (no_pose || !settled(*states_[n])) {
-      hold(*states_[n]);
-      is_held_[n] = 1;
-    }
-  if (held_ > held_before) {
-    forget_contacts();
-    for (Coupling<T>* c : couplings_) {
-      place_nodes<T>(problems_, settings_.common_origin, *c);
-      measure_elements(*c);
-    }
-  }
+  if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
+    budget = ledger_.open(states_, world_->gravity);
+  hold_lost(!solved.converged && closed && unreachable(budget));
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
@@ -354,97 +344,6 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
-}
-
-/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no
-/// loop that is being closed.
-template <class T>
-bool IslandStepper<T>::passive() const {
-  const bool closing =
-      std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) { return c->closes(); });
-  if (closing) return false;
-  const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
-  return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
-    const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->settling == 0 && s->limp() &&
-           std::all_of(effects.begin(), effects.end(), closed);
-  });
-}
-
-/// What the trees store at the present poses: gravity, contacts and joint limits, J.
-template <class T>
-double IslandStepper<T>::pose_energy() const {
-  double sum = 0;
-  for (const CharacterState<T>* s : states_) {
-    const Vec3<double> gravity = world_->gravity;
-    for (int i = 0; i < s->tree.bodies; ++i) {
-      const Vec3<double> center =
-          settings_.common_origin + s->problem.kinematics.center[i].template cast<double>();
-      sum += gravity_energy<double>(s->tree.mass[i], gravity, center);
-    }
-    for (const JointRow<T>& row : s->problem.rows)
-      if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
-  }
-  for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
-  for (const Coupling<T>* c : couplings_) sum += c->energy;
-  return sum;
-}
-
-/// Tells the couplings' nodes which tree of the solve they are on, and lets what is open close by a step.
-template <class T>
-void IslandStepper<T>::begin_couplings(T h) {
-  for (Coupling<T>* c : couplings_) {
-    for (CouplingNode<T>& node : c->nodes) {
-      const auto found = std::find(indices_.begin(), indices_.end(), node.state);
-      node.tree = found == indices_.end() ? -1 : static_cast<int>(found - indices_.begin());
-      const Vec3<double>& origin = states_[0]->history.place;
-      if (node.tree < 0) {
-        node.point = (node.place - origin).template cast<T>();
-      } else {
-        const Vec3<T> world = states_[node.tree]->model()[node.body] * node.local;
-        node.point = (world.template cast<double>() - origin).template cast<T>();
-      }
-    }
-    lead_out(h, *c);
-  }
-}
-
-/// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
-/// the tree stays where it was, at rest. If it is caught in another one, neither finds a side to part to: for
-/// half a second they pass.
-template <class T>
-void IslandStepper<T>::hold(CharacterState<T>& s) {
-  s.problem.local = s.problem.start;
-  forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
-  s.problem.rows.clear();
-  s.problem.ellipsoids.clear();
-  std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
-  s.history.stop();
-  s.passing = kPassing;
-  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
-  std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
-  all_converged_ = false;
-  ++held_;
-}
-
-/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
-/// what cannot move, without end.
-template <class T>
-void IslandStepper<T>::forget_contacts() {
-  for (Contact<T>& c : contacts_) {
-    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
-    if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
-    c.offset -= std::min(c.gap, T(0));
-    c.gap = std::max(c.gap, T(0));
-  }
-}
-
-template <class T>
-bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
-  T sum = T(0);
-  for (const Vec3<T>& c : s.problem.kinematics.center) sum += c.sum();
-  for (const Mat3<T>& r : s.problem.kinematics.rotation) sum += r.sum();
-  return std::isfinite(sum);
 }
 
 /// How often to divide a step so that no body turns further than the accuracy allows in one part.
@@ -504,7 +403,7 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
                       s->steps_unchanged, s->contact_signature});
   total_ = {};
   all_converged_ = true;
-  splits_ = parts_ = damped_ = held_ = 0;
+  splits_ = parts_ = damped_ = held_ = restarts_ = 0;
   part_begun_ = solve_begun_ = false;
   first_ = nullptr;
 }
@@ -523,7 +422,7 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
-  begin_couplings(h);
+  begin_couplings<T>(couplings_, states_, indices_, h);
   const bool alone = states.size() == 1 && couplings.empty();
   if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
   begin_part(h, T(1));
@@ -566,6 +465,7 @@ int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveRepor
     r.substeps = parts_;
     r.splits = splits_;
     r.damped = damped_;
+    r.restarts = restarts_;
     r.held = held_;
   }
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());

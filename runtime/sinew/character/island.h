@@ -69,9 +69,11 @@ class IslandStepper {
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
-  void begin_couplings(T h);
+  bool unreachable(double budget) const;
+  SolveReport solve_from_start();
   void hold(CharacterState<T>& state);
   void forget_contacts();
+  void hold_lost(bool no_pose);
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
   void predict_all(Scheme scheme, T h);
@@ -92,7 +94,7 @@ class IslandStepper {
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
   const SolveReport* first_ = nullptr;             ///< see end()
   bool mispredicted_ = false;                      ///< contacts or limits changed under bdf2
-  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0;
+  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;

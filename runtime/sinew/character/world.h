@@ -59,6 +59,7 @@ struct CharacterReport {
   int contacts = 0;      ///< active contact points
   int substeps = 0;      ///< parts that the step was solved in; 0 = played
   int splits = 0;        ///< of these, halvings because a solve did not converge
+  int restarts = 0;      ///< of the parts, solved again from where they began: the first result was too deep
   int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
   int held = 0;          ///< trees that were stopped where they stood: no pose could be found
   bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs

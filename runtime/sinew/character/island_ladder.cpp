@@ -1,0 +1,140 @@
+// The ladder of IslandStepper, from where a part of a step is not split any further.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/character/island.h"
+#include "sinew/character/unknowns.h"
+#include "sinew/effects/gravity.h"
+
+namespace sinew {
+namespace {
+
+constexpr int kPassing = 30;  ///< steps after a tree was held
+
+}  // namespace
+
+/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no
+/// loop that is being closed.
+template <class T>
+bool IslandStepper<T>::passive() const {
+  const bool closing =
+      std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) { return c->closes(); });
+  if (closing) return false;
+  const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
+  return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
+    const auto& effects = s->problem.effects;
+    return s->impulses.empty() && s->settling == 0 && s->limp() &&
+           std::all_of(effects.begin(), effects.end(), closed);
+  });
+}
+
+/// What the trees store at the present poses: gravity, contacts and joint limits, J.
+template <class T>
+double IslandStepper<T>::pose_energy() const {
+  double sum = 0;
+  for (const CharacterState<T>* s : states_) {
+    const Vec3<double> gravity = world_->gravity;
+    for (int i = 0; i < s->tree.bodies; ++i) {
+      const Vec3<double> center =
+          settings_.common_origin + s->problem.kinematics.center[i].template cast<double>();
+      sum += gravity_energy<double>(s->tree.mass[i], gravity, center);
+    }
+    for (const JointRow<T>& row : s->problem.rows)
+      if (row.kind == RowKind::kOneSided) sum += double(row.stored_energy(row.value));
+  }
+  for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
+  for (const Coupling<T>* c : couplings_) sum += c->energy;
+  return sum;
+}
+
+/// Whether only energy from nowhere could reach the present poses: they store more than the `budget` that the
+/// trees had (J), by more than what stands still stores in its contacts, which is far above rounding.
+template <class T>
+bool IslandStepper<T>::unreachable(double budget) const {
+  double mass = 0;
+  for (const CharacterState<T>* s : states_) mass += s->total_mass;
+  const double standing = mass * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
+  return pose_energy() > budget + standing;
+}
+
+/// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in
+/// there. From the pose at the start, bdf1's energy is all that the trees have, and each step lowers it: what
+/// the result stores is no more.
+template <class T>
+SolveReport IslandStepper<T>::solve_from_start() {
+  mispredicted_ = mispredicted_ || second_;
+  second_ = false;
+  for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));
+  predict_all(Scheme::kBdf1, settings_.h);
+  return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+}
+
+/// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
+/// the tree stays where it was, at rest. If it is caught in another one, neither finds a side to part to: for
+/// half a second they pass.
+template <class T>
+void IslandStepper<T>::hold(CharacterState<T>& s) {
+  s.problem.local = s.problem.start;
+  forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
+  s.problem.rows.clear();
+  s.problem.ellipsoids.clear();
+  std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
+  s.history.stop();
+  s.passing = kPassing;
+  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
+  std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
+  all_converged_ = false;
+  ++held_;
+}
+
+/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
+/// what cannot move, without end.
+template <class T>
+void IslandStepper<T>::forget_contacts() {
+  for (Contact<T>& c : contacts_) {
+    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
+    c.offset -= std::min(c.gap, T(0));
+    c.gap = std::max(c.gap, T(0));
+  }
+}
+
+template <class T>
+bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
+  T sum = T(0);
+  for (const Vec3<T>& c : s.problem.kinematics.center) sum += c.sum();
+  for (const Mat3<T>& r : s.problem.kinematics.rotation) sum += r.sum();
+  return std::isfinite(sum);
+}
+
+/// Holds the trees whose solve left no finite pose; all of them where there is `no_pose` at all.
+template <class T>
+void IslandStepper<T>::hold_lost(bool no_pose) {
+  const int held_before = held_;
+  is_held_.assign(states_.size(), 0);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (no_pose || !settled(*states_[n])) {
+      hold(*states_[n]);
+      is_held_[n] = 1;
+    }
+  if (held_ == held_before) return;
+  forget_contacts();
+  for (Coupling<T>* c : couplings_) {
+    place_nodes<T>(problems_, settings_.common_origin, *c);
+    measure_elements(*c);
+  }
+}
+
+#define SINEW_LADDER_INSTANCES(T)                                          \
+  template bool IslandStepper<T>::passive() const;                         \
+  template double IslandStepper<T>::pose_energy() const;                   \
+  template bool IslandStepper<T>::unreachable(double) const;               \
+  template SolveReport IslandStepper<T>::solve_from_start();               \
+  template void IslandStepper<T>::hold(CharacterState<T>&);                \
+  template void IslandStepper<T>::forget_contacts();                       \
+  template bool IslandStepper<T>::settled(const CharacterState<T>&) const; \
+  template void IslandStepper<T>::hold_lost(bool);
+SINEW_LADDER_INSTANCES(float)
+SINEW_LADDER_INSTANCES(double)
+
+}  // namespace sinew
