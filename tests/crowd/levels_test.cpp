@@ -287,8 +287,7 @@ TEST(Detail, BakedHandsAreDynamicLessOftenAndTheRestOfTheBodyHardlyKnows) {
   EXPECT_GT(dynamic_baked, 0);
   EXPECT_LT(dynamic_baked, dynamic_free);
   EXPECT_LE(dynamic_baked, 15 + 3) << "a quarter of the steps, and those in which it was struck";
-  EXPECT_LT(std::sqrt(sum / terms), 3 * kDegree)
-      << "criterion of the catalogue's case 54; measured 0.6, the whipped hand itself 20 and more";
+  EXPECT_LT(std::sqrt(sum / terms), 3 * kDegree) << "criterion of the catalogue's case 54";
 }
 
 /// A grid of characters that idle, of which one in ten is pushed every second.

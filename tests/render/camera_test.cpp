@@ -57,6 +57,29 @@ TEST(Camera, FollowsAWalkerWithoutJumps) {
     EXPECT_LT((views[n].target - views[n - 1].target).norm(), 2 * 1.4f / 30);
 }
 
+TEST(Camera, FollowsSeveralThatFlyThroughTheSceneTogether) {
+  scene::Recording rec = swinging(bare_humanoid(), 2);
+  rec.characters.push_back(rec.characters[0]);
+  for (scene::Frame& frame : rec.frames) {
+    frame.characters.push_back(frame.characters[0]);
+    for (std::size_t c = 0; c < 2; ++c)
+      for (Transform<float>& joint : frame.characters[c].model)
+        joint.translation += Vec3<float>(5.f * float(frame.time), float(c), 0);  // m/s, m
+  }
+  const std::vector<View> views = plan_camera(rec, 1.6f);
+  EXPECT_GT(views.back().target.x() - views.front().target.x(), 8);  // of 10 m: ends are smoothed
+  EXPECT_NEAR((views.back().eye - views.back().target).norm(), (views[0].eye - views[0].target).norm(), 0.5f)
+      << "no further off than two figures beside each other ask for";
+}
+
+TEST(Camera, FloorOfASceneWithoutGroundIsBelowEverything) {
+  scene::Recording rec = swinging(bare_humanoid(), 1);
+  const float standing = lowest_point(rec, rec.frames.size());
+  for (Transform<float>& joint : rec.frames.back().characters[0].model) joint.translation.z() -= 3;
+  EXPECT_LT(lowest_point(rec, rec.frames.size()), standing - 2);
+  EXPECT_FLOAT_EQ(lowest_point(rec, 1), lowest_point(swinging(bare_humanoid(), 1), 1));
+}
+
 TEST(Camera, ScalesLightAndGridWithTheFigure) {
   scene::Recording rec = swinging(bare_humanoid(), 0.1);
   const float adult = plan_camera(rec, 1.6f)[0].unit;

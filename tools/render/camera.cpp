@@ -126,7 +126,7 @@ std::vector<View> plan_camera(const scene::Recording& rec, float aspect) {
   const bool following = rec.camera.follow_character >= 0 &&
                          rec.camera.follow_character < static_cast<int>(rec.characters.size());
   if (rec.camera.frame_automatically) {
-    if (!following) {  // one view of everything
+    if (!following && rec.characters.size() < 2) {  // one view of everything
       Box all;
       for (const Box& box : boxes) {
         all.add(box.low);
@@ -169,10 +169,11 @@ std::vector<View> plan_turntable(const scene::Recording& rec, float aspect, int 
   return views;
 }
 
-float lowest_point(const scene::Recording& rec) {
+float lowest_point(const scene::Recording& rec, std::size_t frames) {
   Box box;
-  for (std::size_t c = 0; c < rec.characters.size(); ++c)
-    add_character(*rec.characters[c], rec.frames.front().characters[c], box);
+  for (std::size_t n = 0; n < frames; ++n)
+    for (std::size_t c = 0; c < rec.characters.size(); ++c)
+      add_character(*rec.characters[c], rec.frames[n].characters[c], box);
   return box.low.z();
 }
 

@@ -193,9 +193,10 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   if (!sink) return error;
   const std::vector<View> views = plan_camera(rec, painter->aspect());
   const std::vector<std::size_t> picked = pick_frames(rec, o, sink->single());
+  const float ground = rec.ground ? *rec.ground : lowest_point(rec, rec.frames.size());
   Image image;
   for (std::size_t n = 0; n < picked.size(); ++n) {
-    painter->paint(rec, rec.frames[picked[n]], views[picked[n]], 0, image);
+    painter->paint(rec, rec.frames[picked[n]], views[picked[n]], ground, image);
     if (o.overlay) draw_overlay(rec, picked[n], o.theme == "dark", image);
     if (error = sink->add(image); error) return error;
     if (progress) progress(static_cast<int>(n) + 1, static_cast<int>(picked.size()));
@@ -221,7 +222,7 @@ Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, 
   const scene::Recording rec = record_asset(asset, played, o, total);
   const std::vector<View> views =
       plan_turntable(rec, painter->aspect(), turning ? o.frames_per_revolution : 0);
-  const float ground = lowest_point(rec);
+  const float ground = lowest_point(rec, 1);
   Image image;
   for (std::size_t n = 0; n < views.size(); ++n) {
     painter->paint(rec, rec.frames[n], views[n], ground, image);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,9 @@ struct Recording {
   std::vector<Prop> props;
   std::vector<Frame> frames;
   Camera camera;
-  std::vector<Collider> obstacles;  ///< static boxes, spheres, capsules in world space (joint unused)
-  int plotted_joint = -1;           ///< torque curve in the overlay; -1: the most loaded over the recording
+  std::optional<float> ground = 0.f;  ///< m, height of the floor; none: drawn below everything
+  std::vector<Collider> obstacles;    ///< static boxes, spheres, capsules in world space (joint unused)
+  int plotted_joint = -1;             ///< torque curve in the overlay; -1: the most loaded over the recording
 };
 
 }  // namespace sinew::scene

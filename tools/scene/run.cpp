@@ -48,6 +48,10 @@ class Runner {
     recording_.frame_rate = s_.frame_rate;
     recording_.camera = s_.camera;
     recording_.obstacles = s_.obstacles;
+    if (s_.world.ground)
+      recording_.ground = static_cast<float>(s_.world.ground_height);
+    else
+      recording_.ground.reset();
     for (const SceneCharacter& c : s_.characters) {
       recording_.characters.push_back(c.asset);
       recording_.names.push_back(c.name);

@@ -140,12 +140,10 @@ struct Struck {
   std::vector<int> limbs;
   int strike = 0;
 
-  explicit Struck(bool bake) {
+  Struck(bool bake, double strength_of_hands) {
     stage.add(body, {});
-    for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) {
-      limbs.push_back(body.find(name));
-      stage.character(0).set_strength(limbs.back(), T(0.3));
-    }
+    for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) limbs.push_back(body.find(name));
+    for (int n = 0; n < 4; ++n) stage.character(0).set_strength(limbs[n], T(n < 2 ? strength_of_hands : 0.3));
     CharacterDetail detail;
     detail.bake = bake;
     stage.character(0).set_detail(detail);
@@ -157,13 +155,28 @@ struct Struck {
     if (strikes) stage.push(0, joint, at, {strike++ % 2 == 0 ? 30.0 : -30.0, 12, 0});
     stage.step(h);
   }
+  int solved() {
+    int sum = 0;
+    for (const int limb : limbs) sum += stage.character(0).unknown()[stage.character(0).first_dof(limb)];
+    return sum;
+  }
 };
 
+/// What baking changes.
+struct Baking {
+  double off = 0;      ///< deg, rms of all joints off the always dynamic ones
+  double energy = 0;   ///< most kinetic energy, of the always dynamic one's
+  double solved = 0;   ///< steps in which limbs were solved for, of the always dynamic one's
+  double unbaked = 0;  ///< share of the limbs that were to be baked that had to be solved for
+  Measurement measured;
+};
+
+/// Two seconds of it, with baking beside without.
 template <class T>
-Verdict baked_limbs(const Trial& t) {
-  Struck<T> dynamic(false), baked(true);
+Baking bake_beside(const Trial& t, double strength_of_hands) {
+  Struck<T> dynamic(false, strength_of_hands), baked(true, strength_of_hands);
   double squares = 0, terms = 0, hottest_dynamic = 0, hottest_baked = 0;
-  int solved_dynamic = 0, solved_baked = 0;
+  int solved_dynamic = 0, solved_baked = 0, left_out = 0, unbaked = 0;
   const int steps = static_cast<int>(std::lround(2 / t.h)),
             between = static_cast<int>(std::lround(1 / (3 * t.h)));
   for (int n = 0; n < steps; ++n) {
@@ -176,17 +189,33 @@ Verdict baked_limbs(const Trial& t) {
     }
     hottest_dynamic = std::max(hottest_dynamic, dynamic.stage.kinetic());
     hottest_baked = std::max(hottest_baked, baked.stage.kinetic());
-    for (const int limb : dynamic.limbs) {
-      solved_dynamic += one.unknown()[one.first_dof(limb)];
-      solved_baked += two.unknown()[two.first_dof(limb)];
-    }
+    solved_dynamic += dynamic.solved();
+    solved_baked += baked.solved();
+    left_out += two.report().baked;
+    unbaked += two.report().unbaked;
   }
-  Verdict v(baked.stage.measured());
-  v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
-  v.at_most("pose off that of the always dynamic one, rms (deg)", std::sqrt(squares / terms) * 180 / kPi, 3);
-  v.at_most("most kinetic energy, of the always dynamic one's", hottest_baked / hottest_dynamic, 1.01);
-  v.at_most("steps in which limbs are solved for, of the always dynamic one's",
-            double(solved_baked) / solved_dynamic, 0.9);
+  return {std::sqrt(squares / terms) * 180 / kPi, hottest_baked / hottest_dynamic,
+          double(solved_baked) / solved_dynamic, double(unbaked) / (unbaked + left_out),
+          baked.stage.measured()};
+}
+
+template <class T>
+Verdict baked_limbs(const Trial& t) {
+  // Weak hands are off their muscles for a few steps after each blow, limp ones all the time.
+  const Baking weak = bake_beside<T>(t, 0.3), limp = bake_beside<T>(t, 0);
+  Measurement measured = weak.measured;
+  measured.merge(limp.measured);
+  Verdict v(measured);
+  v.require(weak.measured.refused.empty() && limp.measured.refused.empty() && measured.finite,
+            "refused or not finite");
+  for (const Baking& b : {weak, limp}) {
+    v.at_most("pose off that of the always dynamic one, rms (deg)", b.off, 3);
+    v.at_most("most kinetic energy, of the always dynamic one's", b.energy, 1.01);
+  }
+  v.at_most("steps in which weak limbs are solved for, of the always dynamic one's", weak.solved, 0.9);
+  // A quarter by the duty cycle, 6 steps of 120 with a blow, and what follows blows.
+  v.at_most("steps in which limp limbs are solved for, of the always dynamic one's", limp.solved, 0.4);
+  v.at_most("share of limp limbs to be baked that had to be solved for", limp.unbaked, 0.15);
   return v;
 }
 
@@ -232,7 +261,7 @@ std::vector<HardCase> actuation_cases() {
       {"baked_limbs",
        "54",
        "seed talk, bake",
-       "below 3 deg rms off always dynamic, no more energy",
+       "below 3 deg rms off always dynamic, no more energy; limp limbs left out of 60 % of the solves",
        {1.0 / 60},
        baked_limbs<float>,
        baked_limbs<double>},

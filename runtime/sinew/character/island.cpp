@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "sinew/character/baking.h"
 #include "sinew/character/couplings.h"
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
@@ -113,8 +114,8 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
-    const bool free = s.tree.dof_count(i) > 0 && p.free[first];
-    if (!s.baked[i])
+    const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
+    if (!s.baked[i] || s.joint_is_driven(i))
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
     s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
@@ -145,6 +146,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r = {};
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
+  r.baked = static_cast<int>(std::count(s.baked.begin(), s.baked.end(), 1));
   r.estimated_error = error_before + error;
   r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
   for (const Contact<T>& c : contacts_) {
@@ -216,7 +218,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
       s->problem.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time), h);
-    choose_baked<T>(*s, world.detail, h);
+    choose_baked<T>(*s, world.detail.bake_every, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
@@ -251,6 +253,8 @@ void IslandStepper<T>::begin_solve() {
                   states_[n]->contact_signature;
   predict_all(second_ || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1,
               h);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
 }
 
 /// Of a part, unless it has been made for us.
@@ -270,7 +274,7 @@ SolveReport IslandStepper<T>::attempt() {
   mispredicted_ = false;
   SolveReport total = first_solve();
   for (int round = 1;; ++round) {
-    if (second_ && touching_changed()) {
+    if (second_ && (touching_changed() || lifted())) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
       second_ = false;
       mispredicted_ = true;
@@ -278,7 +282,10 @@ SolveReport IslandStepper<T>::attempt() {
       total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
     bool released = false;
-    for (CharacterState<T>* s : states_) released = release_overloaded(*s) || released;
+    for (CharacterState<T>* s : states_) {
+      released = release_overloaded(*s) || released;
+      released = release_baked(*s, settings_) || released;
+    }
     if (!released || round == kReleaseRounds) return total;
     // Which points can move depends on what was released.
     for (CharacterState<T>* s : states_)
@@ -403,6 +410,7 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
                       s->steps_unchanged, s->contact_signature});
   total_ = {};
   all_converged_ = true;
+  for (CharacterState<T>* s : states) s->unbaked = 0;
   splits_ = parts_ = damped_ = held_ = restarts_ = 0;
   part_begun_ = solve_begun_ = false;
   first_ = nullptr;
@@ -467,6 +475,7 @@ int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveRepor
     r.damped = damped_;
     r.restarts = restarts_;
     r.held = held_;
+    r.unbaked = s->unbaked;
   }
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());
   std::copy_n(lagged_.begin(), count, lagged_out.begin());

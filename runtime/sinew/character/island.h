@@ -78,6 +78,7 @@ class IslandStepper {
   void choose_wanted(CharacterState<T>& state, T fraction);
   void predict_all(Scheme scheme, T h);
   bool touching_changed() const;
+  bool lifted() const;
   void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
 
   const WorldSettings* world_ = nullptr;

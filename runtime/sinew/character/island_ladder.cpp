@@ -1,6 +1,7 @@
 // The ladder of IslandStepper, from where a part of a step is not split any further.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/character/island.h"
 #include "sinew/character/unknowns.h"
@@ -45,6 +46,16 @@ double IslandStepper<T>::pose_energy() const {
   for (const Contact<T>& c : contacts_) sum += double(stored_energy(c));
   for (const Coupling<T>* c : couplings_) sum += c->energy;
   return sum;
+}
+
+/// Whether bdf2 has led passive trees in contact to poses that store more than they had, motion included: its
+/// prediction carries on what an impact has just stopped. bdf1 never does, and no loss of speed would undo
+/// it.
+template <class T>
+bool IslandStepper<T>::lifted() const {
+  if (contacts_.empty() || !passive()) return false;
+  const double had = energy<T>(states_, world_->gravity), stored = pose_energy();
+  return stored > had + 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
 }
 
 /// Whether only energy from nowhere could reach the present poses: they store more than the `budget` that the
@@ -128,6 +139,7 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
 #define SINEW_LADDER_INSTANCES(T)                                          \
   template bool IslandStepper<T>::passive() const;                         \
   template double IslandStepper<T>::pose_energy() const;                   \
+  template bool IslandStepper<T>::lifted() const;                          \
   template bool IslandStepper<T>::unreachable(double) const;               \
   template SolveReport IslandStepper<T>::solve_from_start();               \
   template void IslandStepper<T>::hold(CharacterState<T>&);                \

@@ -34,8 +34,9 @@ struct CharacterDetail {
   /// Steps from one check of the muscles to the next, for those far away, while nothing pushes or touches
   /// them; in between they are played.
   int check_every = 1;
-  /// Hands, feet and toes are dynamic in one of LevelOfDetail::bake_every steps; in the others they are on
-  /// their way back to the animation or, where limp, go on as they moved, and slow down.
+  /// Hands, feet and toes are dynamic in one of LevelOfDetail::bake_every steps, and where a blow or a touch
+  /// calls for it (CharacterReport::unbaked); in the others they move by themselves, as their own muscles and
+  /// inertia have it, and the rest of the body is solved for as if they were animated (baking.h).
   bool bake = false;
 };
 
@@ -60,8 +61,7 @@ struct LevelOfDetail {
   double sleep_after = 0;
   double sleep_speed = 0.01;  ///< m/s of every body's centre; below, it rests
   double sleep_spin = 0.05;   ///< rad/s
-  int bake_every = 4;         ///< the talk: wrists and ankles are dynamic a quarter of the time,
-  double bake_damping = 5;    ///< k, 1/s, and q'' = −k·q' the rest
+  int bake_every = 4;         ///< the talk: wrists and ankles are dynamic a quarter of the time
   Budget budget;
 };
 

@@ -41,34 +41,12 @@ Level allowed_level(const CharacterState<T>& s) {
 }
 
 template <class T>
-bool bakes_now(const CharacterState<T>& s, int bake_every) {
-  if (bake_every <= 1 || s.is_prop) return false;
-  const bool bakes = s.detail.bake || std::min(s.detail.most, s.levels.cap) <= Level::kPartial;
-  return bakes && s.levels.steps % static_cast<std::uint32_t>(bake_every) != 0;
-}
-
-template <class T>
 Level level_of(const CharacterState<T>& s) {
   const CharacterReport& r = s.report;
   if (r.unknown_dofs == 0) return Level::kChecked;
   if (r.substeps > 1) return Level::kSubsteps;
   const int root = s.root_is_kinematic() && s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   return r.unknown_dofs + root < r.dofs ? Level::kPartial : Level::kFull;
-}
-
-template <class T>
-void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
-  const T damping = T(detail.bake_damping);
-  const T reach = damping > T(0) ? (1 - std::exp(-damping * h)) / damping : h;
-  const bool bakes = bakes_now(s, detail.bake_every);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const bool driven = s.joint_is_driven(i);
-    s.baked[i] = bakes && s.rig->bakes[i] && (s.deviation[i].released || !driven);
-    if (!s.baked[i] || driven) continue;
-    std::array<T, 6> moved{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * reach;
-    s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
-  }
 }
 
 template <class T>

@@ -13,15 +13,6 @@ namespace sinew {
 template <class T>
 Level allowed_level(const CharacterState<T>& state);
 
-/// Whether its hands and feet go on by themselves in this step.
-template <class T>
-bool bakes_now(const CharacterState<T>& state, int bake_every);
-
-/// Which joints a part of h seconds does not solve for. Where something drives them they are on their target;
-/// limp ones go on by themselves, with q'' = −k·q'. After choose_targets().
-template <class T>
-void choose_baked(CharacterState<T>& state, const LevelOfDetail& detail, T h);
-
 /// What an island's step has done with one of its members.
 template <class T>
 Level level_of(const CharacterState<T>& state);
@@ -63,13 +54,11 @@ class BudgetController {
   std::vector<int> order_;  ///< characters, the least significant first
 };
 
-#define SINEW_LEVEL_INSTANCES(prefix, T)                                    \
-  prefix Level allowed_level<T>(const CharacterState<T>&);                  \
-  prefix bool bakes_now<T>(const CharacterState<T>&, int);                  \
-  prefix void choose_baked<T>(CharacterState<T>&, const LevelOfDetail&, T); \
-  prefix Level level_of<T>(const CharacterState<T>&);                       \
-  prefix void settle_level<T>(CharacterState<T>&, Level, T, double);        \
-  prefix double work_of<T>(const CharacterState<T>&, Level);                \
+#define SINEW_LEVEL_INSTANCES(prefix, T)                             \
+  prefix Level allowed_level<T>(const CharacterState<T>&);           \
+  prefix Level level_of<T>(const CharacterState<T>&);                \
+  prefix void settle_level<T>(CharacterState<T>&, Level, T, double); \
+  prefix double work_of<T>(const CharacterState<T>&, Level);         \
   prefix class BudgetController<T>;
 SINEW_LEVEL_INSTANCES(extern template, float)
 SINEW_LEVEL_INSTANCES(extern template, double)

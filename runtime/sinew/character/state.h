@@ -130,6 +130,7 @@ struct CharacterState {
   Motion<T> motion;
   std::vector<StandingPoint<T>> standing;  ///< room for share_support
   std::vector<std::uint8_t> baked;         ///< [body] goes on by itself in this step
+  int unbaked = 0;                         ///< of these, in this step: had to be solved for after all
   std::vector<Transform<T>> wanted;        ///< [body] what the animation wants at the end of the present part
   std::uint64_t contact_signature = 0;     ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;       ///< of the joint limits that bore

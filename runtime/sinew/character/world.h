@@ -51,6 +51,8 @@ struct CharacterReport {
   Level level = Level::kChecked;  ///< see LevelOfDetail::dwell: what it needed lately, not only in this step
   int dofs = 0;                   ///< degrees of freedom of the character
   int unknown_dofs = 0;           ///< of these, handed to the optimizer; 0 = pure playback
+  int baked = 0;                  ///< joints that CharacterDetail::bake left out of the (last) solve
+  int unbaked = 0;  ///< that it had to solve for all the same: at a limit, or about to go far wrong
   int outer_passes = 0;
   int factorisations = 0;
   int chords = 0;        ///< steps of simplified Newton, with the matrix of the pass before

@@ -28,6 +28,15 @@ Vec3<T> momentum_couple(const StepSettings<T>& settings, const TreeProblem<T>& p
   return (inertia * turn / settings.h - p.prediction.momentum[i]) / settings.h;
 }
 
+/// What inertia asks for about a body's centre of mass; not the momentum scheme's.
+template <class T, class Problem>
+Vec3<T> inertial_couple(const Problem& p, int i) {
+  const Mat3<T> second = p.tree->second_moment[i].template cast<T>();
+  const Mat3<T> a =
+      (p.prediction.weight * p.kinematics.rotation[i]) * second * p.prediction.rotation[i].transpose();
+  return {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
+}
+
 /// Inertia's and gravity's part of begin_evaluation: energy (J, in double precision), wrenches.
 template <class T, class Problem>
 auto inertial_energy(const StepSettings<Number<T>>& settings, Problem& p) {
@@ -48,9 +57,8 @@ auto inertial_energy(const StepSettings<Number<T>>& settings, Problem& p) {
     if (p.prediction.scheme == Scheme::kMomentum) {
       if constexpr (std::is_arithmetic_v<T>) p.couple[i] = momentum_couple(settings, p, i);
     } else {
-      const Mat3<T> a = (weight * r) * second * p.prediction.rotation[i].transpose();
       energy += widened(T(T(0.5) * weight * weighted_square<T>(turned, second)));
-      p.couple[i] = {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
+      p.couple[i] = inertial_couple<T>(p, i);
     }
     p.force[i] = p.body_force[i];
     p.moment[i] = c.cross(p.force[i]) + p.couple[i];

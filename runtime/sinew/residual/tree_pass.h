@@ -99,23 +99,28 @@ void motion_axes(const Tree<Number<T>>& tree, int i, const Transform<T>& local, 
   }
 }
 
+/// One body at its joint's local transform, its parent being in its place.
+template <class T, class K>
+void place_body(const Tree<Number<T>>& tree, int i, const Transform<T>& local, const Vec3<T>& common_origin,
+                K& out) {
+  const int p = tree.parent[i];
+  const Mat3<T> relative = local.rotation.toRotationMatrix();
+  if (p < 0) {
+    out.rotation[i] = relative;
+    out.origin[i] = local.translation - common_origin;
+  } else {
+    out.rotation[i].noalias() = out.rotation[p] * relative;
+    out.origin[i] = out.origin[p] + out.rotation[p] * local.translation;
+  }
+  out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i].template cast<T>();
+  motion_axes<T>(tree, i, local, out);
+}
+
 /// See forward_kinematics.
 template <class T, class K>
 void place_bodies(const Tree<Number<T>>& tree, std::span<const Transform<T>> local,
                   const Vec3<T>& common_origin, K& out) {
-  for (int i = 0; i < tree.bodies; ++i) {
-    const int p = tree.parent[i];
-    const Mat3<T> relative = local[i].rotation.toRotationMatrix();
-    if (p < 0) {
-      out.rotation[i] = relative;
-      out.origin[i] = local[i].translation - common_origin;
-    } else {
-      out.rotation[i].noalias() = out.rotation[p] * relative;
-      out.origin[i] = out.origin[p] + out.rotation[p] * local[i].translation;
-    }
-    out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i].template cast<T>();
-    motion_axes<T>(tree, i, local[i], out);
-  }
+  for (int i = 0; i < tree.bodies; ++i) place_body<T>(tree, i, local[i], common_origin, out);
 }
 
 /// See displaced.
