@@ -182,6 +182,46 @@ void flight(benchmark::State& state, bool batches, bool limits) {
   per_character(state, characters);
 }
 
+/// Characters on their clips whose right arm hangs limp, one world: all have the same few unknowns. `twice`:
+/// every second one's left arm instead.
+void limp_arm(benchmark::State& state, bool batches, bool twice) {
+  const int characters = int(state.range(0));
+  const Skeleton rig = fixtures::humanoid();
+  const Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
+  WorldSettings settings;
+  settings.batches = batches;
+  World<float> world(settings);
+  Status status;
+  std::vector<JointJet<float>> jets(rig.joints.size());
+  const auto aim = [&](double time) {
+    for (int n = 0; n < characters; ++n) {
+      (void)SamplingJob<float>{&clip, time + 0.1 * n, 1, jets}.Run();
+      jets[0].translation.x() += 5 * float(n);
+      (void)world.character(n).set_target(jets);
+    }
+  };
+  for (int n = 0; n < characters; ++n) {
+    if (world.add_character(rig, {}, status) < 0) return state.SkipWithError(status.reason);
+    const std::string side = twice && n % 2 == 1 ? "_l" : "_r";
+    for (const std::string part : {"upperarm", "forearm", "hand"})
+      if (!world.character(n).set_strength(rig.find((part + side).c_str()), 0.0f))
+        return state.SkipWithError("no such joint");
+  }
+  aim(0);
+  for (int n = 0; n < characters; ++n) world.character(n).reset();
+  double time = 0;
+  long unknowns = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    aim(time += kStep);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(world.step(float(kStep)));
+    for (int n = 0; n < characters; ++n) unknowns += world.character(n).report().unknown_dofs;
+  }
+  state.counters["unknowns"] = double(unknowns) / double(characters) / double(state.iterations());
+  per_character(state, characters);
+}
+
 /// A population on a grid, of which 5 % are hit at the chest every second. The whole frame on so many
 /// threads: time of each frame as the host sees it, after a second to fill the world.
 void population_frame(benchmark::State& state, double hits_per_second, int threads) {
@@ -254,6 +294,11 @@ BENCHMARK_CAPTURE(flight, alone, false, false)->Arg(64);
 BENCHMARK_CAPTURE(flight, batches, true, false)->Arg(8)->Arg(16)->Arg(64);
 BENCHMARK_CAPTURE(flight, limits_alone, false, true)->Arg(64);
 BENCHMARK_CAPTURE(flight, limits_batches, true, true)->Arg(64);
+
+BENCHMARK_CAPTURE(limp_arm, alone, false, false)->Arg(64);
+BENCHMARK_CAPTURE(limp_arm, batches, true, false)->Arg(64);
+BENCHMARK_CAPTURE(limp_arm, two_sets_alone, false, true)->Arg(64);
+BENCHMARK_CAPTURE(limp_arm, two_sets_batches, true, true)->Arg(64);
 
 BENCHMARK_CAPTURE(population_frame, hit_4_threads, 0.05, 4)->Arg(1000)->Iterations(600)->UseRealTime();
 BENCHMARK_CAPTURE(population_frame, hit_1_thread, 0.05, 1)

@@ -155,6 +155,59 @@ TEST(Batches, RigsAreNotMixed) {
   }
 }
 
+/// Bodies on their animation of which some limbs hang limp: `groups` different choices of limbs among them.
+struct Hanging {
+  Skeleton rig = fixtures::humanoid();
+  World<float> world;
+  int count, frame = 0;
+
+  Hanging(bool batches, int characters, int groups, int workers = 1)
+      : world(Thrown::settings(batches, workers)), count(characters) {
+    Status status;
+    for (int n = 0; n < count; ++n) {
+      EXPECT_EQ(world.add_character(rig, {}, status), n) << status.reason;
+      std::mt19937 random(unsigned(n % groups) + 1);
+      for (int joint = 1; joint < rig.body_count; ++joint)
+        if (random() % 8 == 0 || joint == 1 + n % groups % 13) {
+          EXPECT_TRUE(world.character(n).set_strength(joint, 0).ok());
+        }
+    }
+    aim();
+    for (int n = 0; n < count; ++n) world.character(n).reset();
+  }
+  void aim() {
+    for (int n = 0; n < count; ++n) {
+      std::vector<JointJet<float>> jets = fixtures::idle<float>(rig, 0.1 * n + frame * double(kStep));
+      jets[0].translation.x() += 5 * float(n);
+      ASSERT_TRUE(world.character(n).set_target(jets).ok());
+    }
+  }
+  void step(const ParallelFor& parallel_for = {}) {
+    ++frame;
+    aim();
+    ASSERT_TRUE(world.step(kStep, parallel_for).ok());
+  }
+};
+
+TEST(Batches, LimpLimbsOfPlayedBodiesMoveToTheBitAsAlone) {
+  for (const int groups : {1, 3, 80}) {  // all alike; enough of each for a batch; more than may wait
+    Hanging batched(true, 80, groups), alone(false, 80, groups), three(true, 80, groups, 3);
+    int threads = 3, partly = 0;
+    for (int n = 0; n < 15; ++n) {
+      batched.step();
+      alone.step();
+      three.step({fixtures::run_on_threads, &threads});
+      expect_same(batched.world, alone.world, n);
+      expect_same(batched.world, three.world, n);
+    }
+    for (int n = 0; n < 80; ++n) {
+      const int unknowns = batched.world.character(n).report().unknown_dofs;
+      partly += unknowns > 0 && unknowns < 0.75 * 37;
+    }
+    EXPECT_GT(partly, 70) << groups << " groups: few are so free that batches mix them";
+  }
+}
+
 TEST(Batches, NothingIsAllocated) {
   Thrown thrown(true, with_limits(fixtures::humanoid()), 20, 0);
   for (int n = 0; n < 5; ++n) ASSERT_TRUE(thrown.world.step(kStep).ok());

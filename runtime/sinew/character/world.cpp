@@ -99,7 +99,7 @@ void World<T>::Impl::reserve() {
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
     workers[n]->batch.reserve(batch_room);
-    workers[n]->waiting.reserve(BatchNewton::kMostLanes);
+    workers[n]->waiting.reserve(Impl::kMostWaiting);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();

@@ -29,13 +29,19 @@ struct World<T>::Impl {
     int island = 0;
     CharacterState<T>* state = nullptr;
     typename IslandStepper<T>::Begun begun;
-    double spent = 0;  ///< on it so far, by the budget's clock
+    double spent = 0;            ///< on it so far, by the budget's clock
+    std::uint64_t unknowns = 0;  ///< which they are
+
+    bool alike(const Waiting& other) const {
+      return state->rig == other.state->rig && unknowns == other.unknowns;
+    }
   };
+  static constexpr std::size_t kMostWaiting = 4 * BatchNewton::kMostLanes;  ///< per worker
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
     BatchNewton batch;
-    std::vector<Waiting> waiting;  ///< of one rig
+    std::vector<Waiting> waiting;
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
@@ -87,7 +93,7 @@ struct World<T>::Impl {
   void close_island(int island, std::span<CharacterState<T>* const> members,
                     std::span<Coupling<T>* const> ties, double spent);
   void wait(int island, Worker& worker, double spent);
-  void solve_waiting(Worker& worker);
+  void solve_alike(Worker& worker, const Waiting& one);
   std::span<LaggedForce<T>> lagged_of(int island) {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);

@@ -9,14 +9,24 @@
 namespace sinew {
 namespace {
 
-/// Of the degrees of freedom that are unknowns: a hit arm is solved faster by itself than among others, of
-/// which every lane would take part in all unknowns (strength 0.1, root played: 0.96 times as fast in
-/// batches).
-constexpr double kBatchedShare = 0.75;
+/// Of the degrees of freedom that are unknowns. From this share on characters of one rig share batches,
+/// though every lane takes part in all unknowns; below, only those with the very same: a hit arm is solved
+/// faster by itself than among others (strength 0.1, root played: 0.96 times as fast in batches).
+constexpr double kWideShare = 0.75;
 constexpr std::size_t kFewestLanes = 4;  ///< of a batch: fewer are solved faster one by one
 
 double now(const Budget& budget) {
   return budget.clock ? budget.clock(budget.clock_context) : 0;
+}
+
+/// The same for the same unknowns of a rig, and for all wide sets.
+std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
+  const auto unknowns = std::count(free.begin(), free.end(), 1);
+  if (double(unknowns) >= kWideShare * double(free.size())) return 0;
+  std::uint64_t hash =
+      14695981039346656037u;  // FNV-1a: sets that it takes for the same are only solved slower
+  for (const std::uint8_t dof : free) hash = (hash ^ dof) * 1099511628211u;
+  return hash;
 }
 
 }  // namespace
@@ -45,14 +55,11 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
   return true;
 }
 
-/// Whether the first solve of a character that begin() found alone is better made in a batch.
+/// Whether the first solve of a character that begin() found alone can be made in a batch.
 template <class T>
 bool World<T>::Impl::batches(const CharacterState<T>& s) const {
-  if constexpr (std::is_same_v<T, float>) {
-    const auto unknowns = std::count(s.problem.free.begin(), s.problem.free.end(), 1);
-    return double(unknowns) >= kBatchedShare * s.tree.dofs && s.problem.room.fits(batch_room) &&
-           BatchNewton::takes(s.problem, settings.accuracy);
-  }
+  if constexpr (std::is_same_v<T, float>)
+    return s.problem.room.fits(batch_room) && BatchNewton::takes(s.problem, settings.accuracy);
   return false;
 }
 
@@ -98,42 +105,53 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
   }
 }
 
-/// Puts an island that has been begun aside, until there are others of its rig to fill a batch with.
+/// Puts an island that has been begun aside, until there are others alike to fill a batch with.
 template <class T>
 void World<T>::Impl::wait(int island, Worker& worker, double spent) {
   const typename IslandStepper<T>::Begun begun = worker.stepper.put_aside();
   CharacterState<T>* state = worker.members[0];
-  if (!worker.waiting.empty() && worker.waiting[0].state->rig != state->rig) solve_waiting(worker);
-  Waiting& last = worker.waiting.emplace_back(Waiting{island, state, begun, spent});
-  last.begun.states = std::span(&last.state, 1);
-  if (static_cast<int>(worker.waiting.size()) == worker.batch.lanes()) solve_waiting(worker);
+  Waiting& last =
+      worker.waiting.emplace_back(Waiting{island, state, begun, spent, set_of_unknowns(state->problem.free)});
+  const auto alike = std::count_if(worker.waiting.begin(), worker.waiting.end(),
+                                   [&](const Waiting& other) { return other.alike(last); });
+  if (alike == worker.batch.lanes())
+    solve_alike(worker, last);
+  else if (worker.waiting.size() == kMostWaiting)
+    solve_alike(worker, worker.waiting[0]);
 }
 
-/// Solves what waits in one batch, and goes on with every island from there.
+/// Solves what waits and is like `one` in a batch, and goes on with every island from there.
 template <class T>
-void World<T>::Impl::solve_waiting(Worker& worker) {
-  const std::size_t count = worker.waiting.size();
-  if (count == 0) return;
+void World<T>::Impl::solve_alike(Worker& worker, const Waiting& one) {
+  std::array<Waiting, BatchNewton::kMostLanes> batch;
+  std::size_t count = 0;
+  const auto taken = [&, first = one](const Waiting& other) {
+    if (!other.alike(first)) return false;
+    batch[count++] = other;
+    return true;
+  };
+  worker.waiting.erase(std::remove_if(worker.waiting.begin(), worker.waiting.end(), taken),
+                       worker.waiting.end());
   double begin = now(settings.detail.budget);
   std::array<SolveReport, BatchNewton::kMostLanes> reports;
   if constexpr (std::is_same_v<T, float>)
     if (count >= kFewestLanes) {
       std::array<TreeProblem<float>*, BatchNewton::kMostLanes> problems;
-      for (std::size_t n = 0; n < count; ++n) problems[n] = &worker.waiting[n].state->problem;
-      worker.batch.solve(worker.waiting[0].begun.settings, settings.accuracy,
-                         std::span(problems.data(), count), reports);
+      for (std::size_t n = 0; n < count; ++n) problems[n] = &batch[n].state->problem;
+      worker.batch.solve(batch[0].begun.settings, settings.accuracy, std::span(problems.data(), count),
+                         reports);
     }
   const double share = (now(settings.detail.budget) - begin) / double(count);
   for (std::size_t n = 0; n < count; ++n) {
     begin = now(settings.detail.budget);
-    const Waiting& w = worker.waiting[n];
+    Waiting& w = batch[n];
+    w.begun.states = std::span(&w.state, 1);
     worker.stepper.take_up(w.begun, lagged);
     lagged_count[w.island] =
         worker.stepper.end(lagged_of(w.island), reports[n].converged ? &reports[n] : nullptr);
     w.state->levels.did = level_of(*w.state);
     close_island(w.island, w.begun.states, {}, w.spent + share + now(settings.detail.budget) - begin);
   }
-  worker.waiting.clear();
 }
 
 /// What one worker does of a step: islands, as long as there are any left. Which ones is a matter of chance,
@@ -149,12 +167,11 @@ void World<T>::Impl::work(void* context, int index) {
   constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
   for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
     for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
-  world.solve_waiting(worker);
+  while (!worker.waiting.empty()) world.solve_alike(worker, worker.waiting[0]);
 }
 
 #define SINEW_STEP_INSTANCES(T)                            \
   template void World<T>::Impl::step_island(int, Worker&); \
-  template void World<T>::Impl::solve_waiting(Worker&);    \
   template void World<T>::Impl::work(void*, int);
 SINEW_STEP_INSTANCES(float)
 SINEW_STEP_INSTANCES(double)

@@ -69,16 +69,18 @@ void NewtonSolver<T>::try_step(T t) {
 }
 
 /// A step is accepted when it lowers the energy, judged by the directional derivative where differences of
-/// energies drown in rounding (near the solution in float: always), or where there is no energy.
+/// energies drown in rounding (near the solution in float: always), or where there is no energy. Of a
+/// `slight` step the derivative is rounding too.
 template <class T>
-bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy) const {
+bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy, bool slight) const {
   if (!std::isfinite(new_energy)) return false;
   const auto calmer = [&] {
     return std::abs(inner_.slope_now(inner_.correction())) <= T(0.9) * std::abs(slope);
   };
   if (trees_[0]->prediction.scheme == Scheme::kMomentum) return calmer();
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
-  return new_energy <= energy + 1e-4 * double(t * slope) || (new_energy <= energy + noise && calmer());
+  return new_energy <= energy + 1e-4 * double(t * slope) ||
+         (new_energy <= energy + noise && (slight || calmer()));
 }
 
 /// Second-order correction after a full step that failed: gaps and slips are re-measured where it led, the
@@ -135,14 +137,15 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
     remember_charts();
     try_step(T(1));
     const double new_energy = evaluate();
-    if (!accepted(T(1), slope, energy, new_energy)) {
+    const bool last = next < kCautious * tolerance;
+    if (!accepted(T(1), slope, energy, new_energy, last)) {
       try_step(T(0));
       energy = evaluate();
       return false;
     }
     ++report_.chords;
     energy = new_energy;
-    if (next < kCautious * tolerance) return true;
+    if (last) return true;
     length = next;
   }
 }

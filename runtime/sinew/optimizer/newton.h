@@ -64,7 +64,7 @@ class NewtonSolver {
   void remember_charts();
   void try_step(T t);
   bool converge_by_chords(double tolerance, double length, double& energy);
-  bool accepted(T t, T slope, double energy, double new_energy) const;
+  bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
   bool correct_step(T tolerance, double energy, double& new_energy);
   Outcome line_search(T tolerance, double& energy);
 

@@ -83,9 +83,9 @@ class PackNewton {
   }
 
   /// NewtonSolver::accepted for whole steps.
-  Live accepted(const P& slope, const Wide& energy, const Wide& new_energy) const {
+  Live accepted(const P& slope, const Wide& energy, const Wide& new_energy, const Live& slight) const {
     const P now = inner_.slope_now(inner_.correction());
-    const Live calmer = abs(now) <= P(0.9f) * abs(slope);
+    const Live calmer = either(slight, abs(now) <= P(0.9f) * abs(slope));
     const Wide noise = 2e-5 * (Wide(1) + abs(energy));
     const Live lower = narrowed(new_energy <= energy + 1e-4 * widened(slope));
     const Live level = both(narrowed(new_energy <= energy + noise), calmer);
@@ -107,7 +107,7 @@ class PackNewton {
     const P slope = inner_.slope(inner_.correction());
     try_step(active);
     const Wide energy = evaluate(active);
-    active = both(active, accepted(slope, energy_, energy));
+    active = both(active, accepted(slope, energy_, energy, Live::all(false)));
     energy_ = energy;
     const Live near = both(both(active, !small), narrowed(length < Wide(kStillValid)));
     return either(both(active, small), chords(near, length, active));
@@ -126,13 +126,13 @@ class PackNewton {
       const P slope = inner_.slope_now(inner_.correction());
       try_step(lanes);
       const Wide energy = evaluate(lanes);
-      const Live taken = accepted(slope, energy_, energy);
+      const Live last = narrowed(next < Wide(kCautious * tolerance_));
+      const Live taken = accepted(slope, energy_, energy, last);
       active = both(active, either(!lanes, taken));
       lanes = both(lanes, taken);
       count<P>(lanes, reports_, &SolveReport::chords);
       energy_ = energy;
-      const Live last = both(lanes, narrowed(next < Wide(kCautious * tolerance_)));
-      converged = either(converged, last);
+      converged = either(converged, both(lanes, last));
       lanes = both(lanes, !last);
       length = next;
     }
