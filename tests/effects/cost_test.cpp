@@ -31,10 +31,32 @@ std::string symbols(const std::string& program) {
 TEST(EffectCost, SymbolsOfAnUndeclaredEffectAreAbsent) {
   const std::string full = symbols(kFull.program), bare = symbols(kBare.program);
   ASSERT_NE(bare.find("sinew::World<float>::step"), std::string::npos) << "nm listed nothing";
-  for (const char* effect :
-       {"sinew::Wind<", "sinew::Buoyancy<", "sinew::JointSpring<", "sinew::ForceField<",
-        "sinew::Restitution<", "sinew::ContinuousDetection<", "sinew::make_strand", "sinew::make_cloth",
-        "sinew::make_soft_tissue", "sinew::make_loop", "::add_loop", "::add_particles"}) {
+  for (const char* effect : {"sinew::Wind<",
+                             "sinew::Buoyancy<",
+                             "sinew::JointSpring<",
+                             "sinew::ForceField<",
+                             "sinew::Restitution<",
+                             "sinew::ContinuousDetection<",
+                             "sinew::make_strand",
+                             "sinew::make_cloth",
+                             "sinew::make_soft_tissue",
+                             "sinew::make_loop",
+                             "::add_loop",
+                             "::add_particles",
+                             "sinew::MuscleRows<float",
+                             "::EllipsoidRows<",
+                             "sinew::JointLimitRows<float",
+                             "sinew::ConeRows<float",
+                             "sinew::append_cone<float",
+                             "sinew::JointDampingRows<float",
+                             "sinew::Impulses<",
+                             "::kPushes<",
+                             "sinew::Support<",
+                             "::kSupport<",
+                             "sinew::share_support<",
+                             "::CouplingRows<",
+                             "sinew::measure_elements<",
+                             "sinew::tetrahedron_curvature<"}) {
     EXPECT_NE(full.find(effect), std::string::npos) << effect;
     EXPECT_EQ(bare.find(effect), std::string::npos) << effect;
   }

@@ -50,7 +50,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
-      ContactFinder<T>::bytes(room) + NewtonSolver<T>::bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+      ContactFinder<T>::bytes(room) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
 }
@@ -113,6 +113,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
   }
+  s.settle_deviations();
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step_before = s.rate_step;
@@ -311,10 +312,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     }
   if (held_ > held_before) {
     forget_contacts();
-    for (Coupling<T>* c : couplings_) {
-      place_nodes<T>(problems_, settings_.common_origin, *c);
-      measure_elements(*c);
-    }
+    for (Coupling<T>* c : couplings_)
+      (void)settings_.plan->couplings->measure(problems_, settings_.common_origin, *c);
   }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
@@ -388,7 +387,7 @@ void IslandStepper<T>::begin_couplings(T h) {
         node.point = (world.template cast<double>() - origin).template cast<T>();
       }
     }
-    lead_out(h, *c);
+    settings_.plan->couplings->lead_out(h, *c);
   }
 }
 

@@ -19,7 +19,11 @@ class IslandStepper {
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
   std::size_t bytes(const SolveRoom& room) const;
-  /// Set-up, before reserve().
+  /// Set-up, before reserve(): the world's plan, again where it has changed.
+  void declare(const StepPlan<T>& plan) {
+    settings_.plan = &plan;
+    solver_.declare(plan);
+  }
   void declare(std::unique_ptr<IslandEffect<T>> effect) { effects_.push_back(std::move(effect)); }
   void drop_last_effect() { effects_.pop_back(); }
 

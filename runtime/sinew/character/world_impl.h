@@ -34,14 +34,15 @@ struct World<T>::Impl {
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
-    BatchNewton batch;
-    std::vector<Waiting> waiting;  ///< of one rig
+    std::unique_ptr<BatchSolver> batch;  ///< null: not declared
+    std::vector<Waiting> waiting;        ///< of one rig
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
   };
 
   WorldSettings settings;
+  StepPlan<T> plan;  ///< what is declared
   std::vector<std::shared_ptr<const Rig<T>>> rigs;
   std::vector<std::unique_ptr<CharacterState<T>>>
       states;                          ///< characters and props in the order they were added
@@ -68,6 +69,7 @@ struct World<T>::Impl {
   WorldReport report;
   std::atomic<int> next_heavy{0}, next_light{0};
 
+  void declare(DeclareTerm<T> term);
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
   SolveRoom room_of_rig(const Rig<T>& rig) const;
   void count_in(CharacterState<T>& state);
@@ -82,7 +84,7 @@ struct World<T>::Impl {
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
   bool play_island(std::span<CharacterState<T>* const> members);
-  bool batches(const CharacterState<T>& state) const;
+  bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,
                     std::span<Coupling<T>* const> ties, double spent);

@@ -29,7 +29,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
   if (follows) {
     for (CharacterState<T>* s : members) {
       const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
-      s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
+      s->levels.did = checks && play(*s, settings, plan, h) ? Level::kChecked : Level::kPlayback;
       if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
     }
     return true;
@@ -39,7 +39,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
     return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
-  if (checks && !play(s, settings, h)) return false;
+  if (checks && !play(s, settings, plan, h)) return false;
   if (!checks) follow(s, settings, h);
   s.levels.did = checks ? Level::kChecked : Level::kPlayback;
   return true;
@@ -47,11 +47,12 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
 
 /// Whether the first solve of a character that begin() found alone is better made in a batch.
 template <class T>
-bool World<T>::Impl::batches(const CharacterState<T>& s) const {
+bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) const {
   if constexpr (std::is_same_v<T, float>) {
+    if (!worker.batch) return false;
     const auto unknowns = std::count(s.problem.free.begin(), s.problem.free.end(), 1);
     return double(unknowns) >= kBatchedShare * s.tree.dofs && s.problem.room.fits(batch_room) &&
-           BatchNewton::takes(s.problem, settings.accuracy);
+           worker.batch->takes(s.problem, settings.accuracy);
   }
   return false;
 }
@@ -69,7 +70,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
     if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
-        batches(*worker.members[0]))
+        batches(*worker.members[0], worker))
       return wait(island, worker, now(settings.detail.budget) - begin);
     lagged_count[island] = worker.stepper.end(lagged_of(island));
     for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
@@ -106,7 +107,7 @@ void World<T>::Impl::wait(int island, Worker& worker, double spent) {
   if (!worker.waiting.empty() && worker.waiting[0].state->rig != state->rig) solve_waiting(worker);
   Waiting& last = worker.waiting.emplace_back(Waiting{island, state, begun, spent});
   last.begun.states = std::span(&last.state, 1);
-  if (static_cast<int>(worker.waiting.size()) == worker.batch.lanes()) solve_waiting(worker);
+  if (static_cast<int>(worker.waiting.size()) == worker.batch->lanes()) solve_waiting(worker);
 }
 
 /// Solves what waits in one batch, and goes on with every island from there.
@@ -115,13 +116,13 @@ void World<T>::Impl::solve_waiting(Worker& worker) {
   const std::size_t count = worker.waiting.size();
   if (count == 0) return;
   double begin = now(settings.detail.budget);
-  std::array<SolveReport, BatchNewton::kMostLanes> reports;
+  std::array<SolveReport, BatchSolver::kMostLanes> reports;
   if constexpr (std::is_same_v<T, float>)
     if (count >= kFewestLanes) {
-      std::array<TreeProblem<float>*, BatchNewton::kMostLanes> problems;
+      std::array<TreeProblem<float>*, BatchSolver::kMostLanes> problems;
       for (std::size_t n = 0; n < count; ++n) problems[n] = &worker.waiting[n].state->problem;
-      worker.batch.solve(worker.waiting[0].begun.settings, settings.accuracy,
-                         std::span(problems.data(), count), reports);
+      worker.batch->solve(worker.waiting[0].begun.settings, settings.accuracy,
+                          std::span(problems.data(), count), reports);
     }
   const double share = (now(settings.detail.budget) - begin) / double(count);
   for (std::size_t n = 0; n < count; ++n) {

@@ -34,9 +34,8 @@ double NewtonSolver<T>::evaluate() {
     }
   }
   for (Coupling<T>* c : couplings_) {
-    place_nodes<T>(trees_, settings_->common_origin, *c);
-    energy += measure_elements(*c);
-    add_wrenches<T>(*c, trees_);
+    energy += settings_->plan->couplings->measure(trees_, settings_->common_origin, *c);
+    settings_->plan->couplings->add_wrenches(*c, trees_);
   }
   for (TreeProblem<T>* p : trees_) finish_gradient(*p);
   return energy;
