@@ -41,7 +41,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   ledger_.reserve(room.trees);
   trees_.reserve(room.trees);
   for (const auto& effect : effects_) effect->reserve(room);
-  finder_.reserve(room);
+  if (finder_) finder_->reserve(room);
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
@@ -50,7 +50,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
-      ContactFinder<T>::bytes(room) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+      (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
 }
@@ -174,7 +174,9 @@ void IslandStepper<T>::limit_guess(T h) {
 /// What may touch within h, but for what trees that were held are caught in.
 template <class T>
 void IslandStepper<T>::find_contacts(T h) {
-  contacts_ = finder_.find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  contacts_ = {};
+  if (!finder_) return;
+  contacts_ = finder_->find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
   const auto passes = [&](const Contact<T>& c) {
     const bool caught = c.tree_b >= 0 && c.offset > T(0);
     return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
@@ -414,7 +416,8 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
 template <class T>
 void IslandStepper<T>::forget_contacts() {
   for (Contact<T>& c : contacts_) {
-    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    settings_.plan->contacts->measure(problems_[c.tree_a]->kinematics,
+                                      c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
     if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
     c.offset -= std::min(c.gap, T(0));
     c.gap = std::max(c.gap, T(0));

@@ -138,21 +138,6 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
   s.history.step_before = T(0);
 }
 
-template <class T>
-bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
-  if (!s.settings.ground_contact) return false;
-  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.local[0].translation.template cast<double>();
-  const auto near = [&](double distance) { return distance < double(reach); };
-  return std::any_of(
-             around.obstacles.begin(), around.obstacles.end(),
-             [&](const Collider& o) {
-               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
-             }) ||
-         std::any_of(around.hosts.begin(), around.hosts.end(),
-                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
-}
-
 SINEW_PLAYBACK_INSTANCES(template, float)
 SINEW_PLAYBACK_INSTANCES(template, double)
 

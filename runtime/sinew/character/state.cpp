@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/contact_finder.h"
+
 namespace sinew {
 namespace {
 
@@ -26,7 +28,7 @@ Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
       on_body.joint = skeleton.joints[on_body.joint].parent;
     }
     first_point.push_back(static_cast<int>(points.size()));
-    append_contact_points<T>(on_body, points, static_cast<int>(n));
+    if (plan.contacts) plan.contacts->append_points(on_body, points, static_cast<int>(n));
     colliders.push_back(on_body);
     const Vec3<double>& size = on_body.size;
     const double round = size.x() + (on_body.shape == Shape::kCapsule ? size.z() : 0);
@@ -34,13 +36,13 @@ Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
-  share_stiffness<T>(points);
+  if (plan.contacts) plan.contacts->share_stiffness(points);
   if (plan.support) support = plan.support->points(tree, points);
   std::vector<Transform<T>> local;
   for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
   Kinematics<T> rest(tree);
   forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
-  choose_self_pairs(rest);
+  if (plan.contacts) choose_self_pairs(rest, *plan.contacts);
   choose_baked();
   for (const ContactPoint<T>& p : points) {
     const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
@@ -116,7 +118,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
 
 /// Colliders of one body, of neighbours, and those that overlap at rest never touch: joints hold them.
 template <class T>
-void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
+void Rig<T>::choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& contacts) {
   const int count = static_cast<int>(colliders.size());
   may_touch.assign(std::size_t(count) * count, 0);
   const auto moving = [&](int body) {  // the body itself, or what it is fixed to
@@ -141,7 +143,7 @@ void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
         c.shape = colliders[b].shape;
         c.size = colliders[b].size.template cast<T>();
         c.shape_pose = colliders[b].local.template cast<T>();
-        measure<T>(rest, &rest, c);
+        contacts.measure(rest, &rest, c);
         apart = c.gap > T(clearance);
       }
       may_touch[std::size_t(a) * count + b] = apart;

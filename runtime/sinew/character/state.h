@@ -72,7 +72,7 @@ struct Rig {
   Rig(const Skeleton& skeleton, const StepPlan<T>& plan);
 
  private:
-  void choose_self_pairs(const Kinematics<T>& rest);
+  void choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& contacts);
   void choose_baked();
 };
 

@@ -17,6 +17,8 @@ constexpr int kMostWorkers = 256;
 constexpr int kMostObstacles = 6;    ///< that one character touches at a time, for the room of its contacts
 constexpr int kMostBatchDofs = 128;  ///< of a rig whose characters are solved in batches
 constexpr const char* kNoMuscles = "the world declares no Muscles: strength must be 0 or infinite";
+constexpr const char* kNoContacts =
+    "the world declares no Contacts: no obstacles, and WorldSettings::ground must be false";
 constexpr int kSmallIsland = 8;  ///< characters that any worker has memory for; one worker has for all
 
 /// Room for so many, with some to spare where it must be moved.
@@ -150,6 +152,7 @@ template <class T>
 Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& character) {
   if (states.size() >= kMostTrees)
     return Status::error(Code::kOutOfRange, "a world has room for 65534 characters and props");
+  if (settings.ground && !plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   auto same =
       std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
   if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton, plan));
@@ -271,6 +274,7 @@ Status World<T>::add_obstacle(const Collider& obstacle) {
   if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
+  if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->obstacles.push_back(obstacle);
   impl_->meet_surroundings();
   return {};
@@ -284,6 +288,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
   const SignedDistance<double> probe = shape.distance(Vec3<double>::Zero());
   if (!std::isfinite(probe.distance) || std::abs(probe.normal.norm() - 1) > 1e-6)
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
+  if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->hosts.push_back({&shape, friction, restitution});
   impl_->meet_surroundings();
   return {};
@@ -339,7 +344,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
   for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
   couplings.begin_step(states);
-  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact);
+  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact && plan.contacts);
   large.clear();
   heavy.clear();
   light.clear();

@@ -1,4 +1,5 @@
 // A world with the standard effects. Kept apart: only programs that make such a world link them.
+#include "sinew/character/contacts.h"
 #include "sinew/character/world.h"
 #include "sinew/effects/impulse.h"
 #include "sinew/effects/joint_damping.h"
@@ -15,6 +16,7 @@ World<T>::World(const WorldSettings& settings) : World(settings, DeclareNothing{
   (void)declare<JointLimits>();
   (void)declare<JointDamping>();
   (void)declare<Impulses>();
+  (void)declare<Contacts>();
   (void)declare<Support>();
   (void)declare<Batches>();
 }

@@ -35,8 +35,10 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
     return true;
   }
   CharacterState<T>& s = *members[0];
-  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || near_obstacle<T>(s, surroundings(), h))
-    return false;
+  const auto in_the_way = [&](const CharacterState<T>& of) {
+    return plan.contacts && plan.contacts->near_obstacle(of, surroundings(), h);
+  };
+  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
   if (checks && !play(s, settings, plan, h)) return false;

@@ -13,7 +13,11 @@ namespace sinew {
 
 class BatchSolver;
 template <class T>
+class ContactModel;
+template <class T>
 class EllipsoidModel;
+template <class T>
+struct ContactTerm;
 template <class T>
 struct PushTerm;
 template <class T>
@@ -25,6 +29,8 @@ template <class T>
 struct StepPlan {
   JointTerms<T> joints;
   std::unique_ptr<EllipsoidModel<T>> (*ellipsoid_rows)() = nullptr;  ///< of muscles
+  std::unique_ptr<ContactModel<T>> (*contact_rows)() = nullptr;
+  const ContactTerm<T>* contacts = nullptr;
   const PushTerm<T>* impulses = nullptr;
   const SupportTerm<T>* support = nullptr;
   const CouplingTerm<T>* couplings = nullptr;                ///< of loops and particles

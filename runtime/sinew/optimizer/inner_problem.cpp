@@ -25,6 +25,7 @@ T dot(std::span<const T> a, std::span<const T> b) {
 
 template <class T>
 void InnerProblem<T>::declare(const StepPlan<T>& plan) {
+  if (plan.contact_rows) contact_rows_ = plan.contact_rows();
   if (plan.couplings && !couplings_) couplings_ = plan.couplings->make_rows();
   if (plan.ellipsoid_rows && !ellipsoids_) ellipsoids_ = plan.ellipsoid_rows();
 }
@@ -38,7 +39,7 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   unknowns_.reserve(dofs);
   axes_.reserve(dofs, room.path_entries);
   for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, room.path_entries);
-  contact_rows_.reserve(room.contacts, room.contact_entries);
+  contact_rows_->reserve(room.contacts, room.contact_entries);
   if (couplings_) couplings_->reserve(room);
   joint_rows_.reserve(dofs * 8 + room.effect_rows);
   path_.resize(TreePattern::padded(dofs));
@@ -56,7 +57,7 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   unknowns_.clear();
   int entries = 0;
   for (const TreeProblem<T>* p : trees_) entries += p->room.contact_entries;
-  contact_rows_.limit(std::min(entries, most_entries_));
+  contact_rows_->limit(std::min(entries, most_entries_));
   for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
 }
 
@@ -67,7 +68,7 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
   axes_.clear();
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
-  contact_rows_.collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
+  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
   if (ellipsoids_) ellipsoids_->collect(trees_, unknowns_);
   joint_rows_.clear();
   for (TreeProblem<T>* p : trees_)
@@ -92,17 +93,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
   for (TreeProblem<T>* p : trees_) {
     begin_composite(*settings_, *p);
     if (geometric) {
-      for (const Contact<T>& c : contacts) {
-        const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
-        if (trees_[c.tree_a] == p) {
-          p->composite[c.body_a].add_force(c.point, normal);
-          p->composite[c.body_a].add_force(c.material_point, tangent);
-        }
-        if (c.tree_b >= 0 && trees_[c.tree_b] == p) {
-          p->composite[c.body_b].add_force(c.point, -normal);
-          p->composite[c.body_b].add_force(c.material_point_b, -tangent);
-        }
-      }
+      contact_rows_->add_forces(trees_, contacts, settings_->stick, *p);
       for (const Coupling<T>* c : couplings)
         for (const CouplingNode<T>& node : c->nodes)
           if (node.tree >= 0 && trees_[node.tree] == p)
@@ -116,7 +107,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
                        smooth_);
     if (geometric) add_joint_geometry(*p);
   }
-  if (geometric) contact_rows_.add_bending(smooth_);
+  if (geometric) contact_rows_->add_bending(smooth_);
   if (!tied()) return;
   local_.values() = smooth_.values();
   couplings_->add_curvature(local_);
@@ -138,7 +129,7 @@ void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
 
 template <class T>
 void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
-  contact_rows_.add_gradient(gradient);
+  contact_rows_->add_gradient(gradient);
   if (ellipsoids_) ellipsoids_->add_gradient(gradient);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
@@ -149,7 +140,7 @@ void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
 
 template <class T>
 T InnerProblem<T>::row_slope(T t) const {
-  T slope = contact_rows_.slope(t);
+  T slope = contact_rows_->slope(t);
   if (ellipsoids_) slope += ellipsoids_->slope(t);
   for (const JointRows& rows : joint_rows_)
     slope += rows.row.slope(rows.value + t * rows.d_value) * rows.d_value;
@@ -191,14 +182,14 @@ T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
 template <class T>
 void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) const {
   smooth_.multiply(x, y);
-  if (geometric_ && contact_rows_.coupled()) contact_rows_.multiply_bending(x, y);
+  if (geometric_ && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
 template <class T>
 void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const {
   multiply_smooth(x, y);
-  contact_rows_.multiply(x, y);
+  contact_rows_->multiply(x, y);
   if (ellipsoids_) ellipsoids_->multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
@@ -214,7 +205,7 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
 template <class T>
 bool InnerProblem<T>::newton_step() {
   factor_.values() = tied() ? local_.values() : smooth_.values();
-  contact_rows_.add_curvature(factor_);
+  contact_rows_->add_curvature(factor_);
   if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
@@ -291,7 +282,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     if (iteration == 0) report.first_length = double(length);
     const bool last =
         (iteration > 0 && double(length) < kShrink * report.first_length) || length < T(0.1) * tolerance;
-    contact_rows_.look_along(step_);
+    contact_rows_->look_along(step_);
     if (ellipsoids_) ellipsoids_->look_along(step_);
     for (JointRows& rows : joint_rows_) {
       const JointRow<T>& row = rows.row;
@@ -305,14 +296,14 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
     // Without rows the model is quadratic and the step exact.
-    const bool rowless = contact_rows_.empty() && joint_rows_.empty() && !rounded();
+    const bool rowless = contact_rows_->empty() && joint_rows_.empty() && !rounded();
     const T t = rowless ? T(1) : exact_line_search(quadratic, linear);
     for (int k = 0; k < n; ++k) {
       correction_[k] += t * step_[k];
       correction_product_[k] += t * product_[k];
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
-    contact_rows_.move(t);
+    contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
     if (last || rowless) break;
@@ -325,8 +316,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
 
 template <class T>
 void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
-  contact_rows_.look_along(correction_);
-  contact_rows_.correct(contacts);
+  contact_rows_->look_along(correction_);
+  contact_rows_->correct(contacts);
   if (ellipsoids_) ellipsoids_->rewind();
   for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
 }
@@ -336,7 +327,7 @@ double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (ellipsoids_ && !ellipsoids_->measure(trees_)) return kNone;
   // As the last factor holds them, which what leaves the tree never is.
-  bool same = contact_rows_.measure(contacts) && !rounded() && !(couplings_ && couplings_->coupled());
+  bool same = contact_rows_->measure(contacts) && !rounded() && !(couplings_ && couplings_->coupled());
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;

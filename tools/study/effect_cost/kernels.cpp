@@ -98,6 +98,7 @@ struct OnePass : Work, private Solving {
 
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
     once.max_iterations = 1;
+    solver.declare(plan);
     problem.room = room_of(tree, kRods, 2 * kRods, 0);
     SolveRoom room = problem.room;
     if (name == "character_contact") {
@@ -110,7 +111,7 @@ struct OnePass : Work, private Solving {
     for (int i = 0; i < instances; ++i) {
       fresh.push_back(contact(name, i));
       const Kinematics<float>& other = below ? below->problem.kinematics : problem.kinematics;
-      begin_step<float>(problem.kinematics, fresh.back().tree_b < 0 ? nullptr : &other, fresh.back());
+      begin_contact(problem.kinematics, fresh.back().tree_b < 0 ? nullptr : &other, fresh.back());
     }
   }
   static Contact<float> contact(const std::string& name, int rod) {

@@ -1,5 +1,6 @@
 #include "study/effect_cost/modules.h"
 
+#include "sinew/character/contacts.h"
 #include "sinew/effects/buoyancy.h"
 #include "sinew/effects/cloth.h"
 #include "sinew/effects/continuous_detection.h"
@@ -52,14 +53,22 @@ bool declare_module(const std::string& name, World<float>& world) {
   if (name == "continuous_detection") return bool(world.declare<ContinuousDetection>());
   if (name == "muscles") return bool(world.declare<Muscles>());
   if (name == "impulses") return bool(world.declare<Impulses>());
-  if (name == "support") return bool(world.declare<Support>());
+  if (name == "contacts") return bool(world.declare<Contacts>());
+  if (name == "support") return world.declare<Contacts>() && world.declare<Support>();
   return false;
 }
 
 void declare_term(const std::string& name, StepPlan<float>& plan) {
   if (name == "muscles") Muscles<float>::declare(plan);
+  const bool touches =
+      name == "ground" || name == "obstacle" || name == "self_collision" || name == "character_contact";
+  if (touches) Contacts<float>::declare(plan);
   if (name == "joint_limits") JointLimits<float>::declare(plan);
   if (name == "joint_damping" || name == "dry_friction") JointDamping<float>::declare(plan);
+}
+
+void begin_contact(const Kinematics<float>& a, const Kinematics<float>* b, Contact<float>& contact) {
+  begin_step<float>(a, b, contact);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/character/world.h"
+#include "sinew/effects/contact.h"
 
 namespace sinew::study {
 
@@ -16,6 +17,9 @@ std::unique_ptr<Effect<float>> make_module(const std::string& name, const std::v
 bool declare_module(const std::string& name, World<float>& world);
 /// Declares a term of the solver, where the program has one of that name.
 void declare_term(const std::string& name, StepPlan<float>& plan);
+
+/// See begin_step of contact.h.
+void begin_contact(const Kinematics<float>& a, const Kinematics<float>* b, Contact<float>& contact);
 
 /// So many loops between the world's first character and the world; particles of a strand, rows of a strip of
 /// cloth, cells of a bar of soft tissue.

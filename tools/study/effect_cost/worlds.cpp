@@ -80,7 +80,10 @@ struct Solved : Work {
   std::size_t without = 0;
 
   Solved(const std::string& what, int instances) : world(settings(what), DeclareNothing{}), effect(what) {
-    if (effect == "loops") add_limp_wheel();
+    if (effect == "loops")
+      add_limp_wheel();
+    else if (effect != "none" && !declare_module("contacts", world))
+      unknown(effect);
     without = world.memory().characters;
     if (effect == "prop" || effect == "resting_prop" || effect == "prop_contact") {
       for (int i = 0; i < instances; ++i) add_props(i);
