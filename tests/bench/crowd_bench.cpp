@@ -13,7 +13,9 @@
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/crowd/instant.h"
 #include "sinew/crowd/population.h"
+#include "sinew/crowd/rig.h"
 
 namespace sinew {
 namespace {
@@ -89,6 +91,51 @@ void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool gr
   }
   for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
   per_character(state, settings.capacity);
+}
+
+/// The two kernels of a batch of 16 by themselves: their clips to jets, or the residual of these (torques and
+/// comparison; no support, no poses).
+void crowd_kernel(benchmark::State& state, bool sampling) {
+  if (!available(InstructionSet::kAvx512)) return state.SkipWithError("this processor lacks AVX-512");
+  const Skeleton rig = fixtures::humanoid();
+  const int joints = int(rig.joints.size());
+  const Clip clip = fixtures::random_clip({.joints = joints});
+  CrowdSettings settings;
+  settings.ground = false;
+  const CrowdRig crowd_rig(rig, settings);
+  struct alignas(64) Line {
+    float numbers[16];
+  };
+  std::vector<CrowdTrack> tracks;
+  for (int i = 0; i < 16; ++i) tracks.push_back({&clip, 0.01 * i, 1, {}});
+  const std::vector<std::uint8_t> all(16, 1);
+  const auto instant = std::make_unique<crowd_kernels::Instant>();
+  std::vector<Line> rows(crowd_kernels::row_bytes(joints) / sizeof(Line));
+  std::vector<Line> scratch(
+      (crowd_kernels::sample_scratch_bytes(joints) + crowd_kernels::check_scratch_bytes(joints, joints, 0)) /
+      sizeof(Line));
+  std::vector<Line> torque(crowd_rig.tree.dofs), limits(crowd_rig.tree.dofs), peak(1), velocity(3);
+  const crowd_kernels::JetRows out{rows[0].numbers, joints, joints, joints, scratch.data()};
+  crowd_kernels::Batch batch;
+  batch.rows = rows[0].numbers;
+  batch.inverse_plus = batch.inverse_minus = limits[0].numbers;
+  batch.torque = torque[0].numbers;
+  batch.peak = peak[0].numbers;
+  batch.velocity = velocity[0].numbers;
+  batch.scratch = scratch.data();
+  const auto sample = [&] {
+    set_instant(tracks, all, *instant);
+    crowd_kernels::avx512::sample16(*instant, out);
+  };
+  sample();
+  for (auto _ : state) {
+    if (sampling)
+      sample();
+    else
+      crowd_kernels::avx512::check16(crowd_rig.view, batch);
+    benchmark::ClobberMemory();
+  }
+  per_character(state, 16);
 }
 
 /// Limp humanoids in flight, one world: every one is solved in every step, in batches or one by one.
@@ -197,6 +244,8 @@ BENCHMARK_CAPTURE(crowd_check, residual_avx512_8, kAvx512, 8, false, false)->Arg
 BENCHMARK_CAPTURE(crowd_check, residual_avx512_16, kAvx512, 16, false, false)->Arg(16)->Arg(64)->Arg(1024);
 BENCHMARK_CAPTURE(crowd_check, residual_support_avx512_16, kAvx512, 16, true, false)->Arg(64);
 BENCHMARK_CAPTURE(crowd_check, residual_support_pose_avx512_16, kAvx512, 16, true, true)->Arg(64);
+BENCHMARK_CAPTURE(crowd_kernel, sample_avx512_16, true);
+BENCHMARK_CAPTURE(crowd_kernel, residual_avx512_16, false);
 BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx2_8, kAvx2, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(10000)->Arg(100000);

@@ -13,6 +13,8 @@
 #include "fixtures/counting_new.h"
 #include "fixtures/threads.h"
 #include "residual/random_tree.h"
+#include "sinew/animation/crossfade.h"
+#include "sinew/animation/sampling_job.h"
 #include "sinew/effects/support.h"
 
 namespace sinew {
@@ -206,6 +208,126 @@ TEST(Crowd, EveryInstructionSetBatchWidthAndNumberOfThreadsGivesTheSameBits) {
         EXPECT_TRUE(Result(*crowd, settings.capacity).same_bits(wanted))
             << "set " << int(set) << ", " << lanes << " lanes, " << threads << " threads";
       }
+}
+
+/// Clips of which no two have the same tracks, knots, degree, length or way to end.
+std::vector<Clip> unlike_clips(const Skeleton& rig) {
+  const int joints = int(rig.joints.size());
+  std::vector<Clip> clips = {fixtures::swaying_clip(rig, 1)};
+  clips.push_back(fixtures::swaying_clip(rig, 2));
+  clips.back().root_step = {0.7f, 0.1f, 0};
+  clips.push_back(fixtures::random_clip(
+      {.joints = joints, .duration = 3, .knot_interval = 0.25f, .degree = 3, .loops = false, .moving = 3}));
+  clips.push_back(clips.back());  // only joints 2 … 7 move
+  Clip::Group& group = clips.back().groups[0];
+  const std::vector<float> controls = group.controls;
+  const std::size_t tracks = group.tracks.size();
+  group.tracks.assign(group.tracks.begin() + 2, group.tracks.begin() + 8);
+  group.controls.clear();
+  for (int k = 0; k < group.control_count; ++k) {
+    const float* row = controls.data() + (std::size_t(k) * tracks + 2) * 4;
+    group.controls.insert(group.controls.end(), row, row + 24);
+  }
+  clips.push_back(clips[3]);  // nothing moves
+  clips.back().groups.clear();
+  for (Clip& clip : clips) EXPECT_TRUE(validate(clip).ok());
+  return clips;
+}
+
+/// As Result, with jets.
+std::vector<float> everything(Crowd& crowd, int count) {
+  std::vector<float> numbers = Result(crowd, count).numbers;
+  for (int i = 0; i < count; ++i)
+    for (const JointJet<float>& jet : crowd.jets(i))
+      for (const auto& v : {jet.omega, jet.alpha, jet.velocity, jet.acceleration})
+        numbers.insert(numbers.end(), v.begin(), v.end());
+  return numbers;
+}
+
+TEST(Crowd, ClipsSampledTogetherHaveTheBitsOfClipsSampledOneByOne) {
+  const Skeleton rig = rig_with_fingers();
+  const std::vector<Clip> clips = unlike_clips(rig);
+  Clip many = clips[0];  // more groups than a batch holds
+  for (int n = 0; n < 8; ++n) many.groups.push_back(many.groups[1]);
+  CrowdSettings settings;
+  settings.capacity = 53;
+  for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512})
+    for (const int lanes : {8, 16}) {
+      if (!available(set)) continue;
+      settings.instruction_set = set;
+      settings.lanes = lanes;
+      const auto together = crowd_of(rig, settings), by_host = crowd_of(rig, settings);
+      std::vector<CrowdTrack> tracks;
+      for (int i = 0; i < settings.capacity; ++i) {
+        CrowdTrack track;  // clips of one batch differ, then those of one batch are the same
+        track.clip = i < 32 ? &clips[i % 5] : i < 48 ? &clips[1] : &many;
+        track.time = 0.31 * i - 2;
+        track.rate = 0.8 + 0.05 * (i % 9);
+        track.place = {rotation_exp<float>({0, 0.02f * float(i % 5), 0.7f * float(i)}),
+                       {3.f * float(i % 10), 2.f * float(i), 0.01f * float(i % 7)}};
+        tracks.push_back(track);
+        ASSERT_TRUE(together->play(i, track).ok());
+        ASSERT_TRUE(by_host->play(i, {}).ok());
+      }
+      for (int n = 0; n < 3; ++n) {
+        for (int i = 0; i < settings.capacity; ++i) {
+          CrowdTrack& track = tracks[i];
+          track.time += track.rate * kStep;
+          const std::span jets = by_host->jets(i);
+          ASSERT_TRUE((SamplingJob<float>{track.clip, track.time, track.rate, jets}.Run().ok()));
+          place_root(track.place, jets[0]);
+        }
+        ASSERT_TRUE(together->step(kStep).ok());
+        ASSERT_TRUE(by_host->step(kStep).ok());
+        const std::vector<float> a = everything(*together, settings.capacity),
+                                 b = everything(*by_host, settings.capacity);
+        ASSERT_EQ(a.size(), b.size());
+        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0)
+            << "set " << int(set) << ", " << lanes << " lanes, step " << n;
+        for (int i = 0; i < settings.capacity; ++i)
+          EXPECT_EQ(together->root_velocity(i), together->jets(i)[0].velocity);
+      }
+    }
+}
+
+TEST(Crowd, WhoStandsOnTheGroundChangesNoBitOfWhoDoesNot) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 16;
+  const auto after_a_step = [&](int only) {
+    auto crowd = scene.crowd(settings);
+    for (int i = 0; i < settings.capacity; ++i) {
+      CrowdTrack track = scene.track(i);
+      track.place.translation.z() = 0.02f * float(i % 5 - 2);  // feet and ground: through it … above it
+      EXPECT_TRUE(crowd->play(i, track).ok());
+      EXPECT_TRUE(crowd->set_active(i, only < 0 || i == only).ok());
+    }
+    EXPECT_TRUE(crowd->step(kStep).ok());
+    return crowd;
+  };
+  const auto all = after_a_step(-1);
+  for (int i = 0; i < settings.capacity; ++i) {
+    const auto alone = after_a_step(i);
+    for (int dof = 0; dof < all->dof_count(); ++dof)
+      EXPECT_EQ(alone->torque(i, dof), all->torque(i, dof)) << "character " << i << " dof " << dof;
+  }
+}
+
+TEST(Crowd, AHostThatTakesOverFromAClipFindsItsPose) {
+  const Scene scene;
+  CrowdSettings settings;
+  settings.capacity = 3;
+  const auto crowd = scene.crowd(settings), other = scene.crowd(settings);
+  ASSERT_TRUE(crowd->step(kStep).ok());
+  ASSERT_TRUE(other->step(kStep).ok());
+  ASSERT_TRUE(crowd->play(1, {}).ok());
+  for (std::size_t j = 0; j < scene.rig.joints.size(); ++j) {
+    EXPECT_EQ(crowd->jets(1)[j].rotation.coeffs(), other->jets(1)[j].rotation.coeffs());
+    EXPECT_EQ(crowd->jets(1)[j].acceleration, other->jets(1)[j].acceleration);
+  }
+  const Result before(*other, 2);
+  ASSERT_TRUE(crowd->step(0).ok());
+  EXPECT_TRUE(Result(*crowd, 2).same_bits(before));
 }
 
 TEST(Crowd, ModelPosesChainTheJetsRideAlongJointsIncluded) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "character/scenes.h"
+#include "sinew/character/contacts.h"
 #include "sinew/effects/impulse.h"
 #include "sinew/effects/joint_damping.h"
 #include "sinew/effects/joint_limit.h"
@@ -72,6 +73,7 @@ TEST(Declare, AllOfThemAreTheStandardWorldToTheBit) {
     EXPECT_TRUE(chosen.declare<JointLimits>().ok());
     EXPECT_TRUE(chosen.declare<JointDamping>().ok());
     EXPECT_TRUE(chosen.declare<Impulses>().ok());
+    EXPECT_TRUE(chosen.declare<Contacts>().ok());
     EXPECT_TRUE(chosen.declare<Support>().ok());
     for (World<float>* world : {&standard, &chosen}) {
       add(*world, hindered(), strength, 8);  // the standard one solves them in batches
@@ -166,6 +168,26 @@ TEST(Declare, PushIsRefusedWhereNoImpulsesAreDeclared) {
   const Status status = world.character(0).apply_impulse(0, {0, 0, 1}, {1, 0, 0});
   EXPECT_FALSE(status.ok());
   EXPECT_NE(std::strstr(status.reason, "Impulses"), nullptr) << status.reason;
+}
+
+TEST(Declare, FloorAndObstaclesAreRefusedWhereNoContactsAreDeclared) {
+  World<float> floor(WorldSettings{}, DeclareNothing{}), world(airborne(), DeclareNothing{});
+  CharacterSettings limp;
+  limp.strength = 0;
+  Status status;
+  EXPECT_EQ(floor.add_character(fixtures::humanoid(), limp, status), -1);
+  EXPECT_NE(std::strstr(status.reason, "Contacts"), nullptr) << status.reason;
+  EXPECT_FALSE(world.add_obstacle(Collider{}).ok());
+  // Nor do two of them meet.
+  add(world, fixtures::humanoid(), 0, 2);
+  auto jets = fixtures::idle<float>(fixtures::humanoid(), 0);
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_TRUE(world.character(n).set_target(jets).ok());
+    world.character(n).reset();
+  }
+  run(world, 5);
+  EXPECT_EQ(world.character(0).report().contacts, 0);
+  EXPECT_EQ(world.character(0).report().unknown_dofs, world.character(0).report().dofs);
 }
 
 TEST(Declare, TermsComeBeforeTheFirstCharacter) {

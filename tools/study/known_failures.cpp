@@ -14,7 +14,6 @@ struct KnownFailure {
 };
 
 constexpr KnownFailure kKnownFailures[] = {
-    {"free_flight_1_rad_s", "float loses 0.3 % of its momentum in 480 steps of 1/240 s"},
     {"root_turned_by_pi", "float: 3 mrad; the limbs of a figure that turns as if rigid bear its swing"},
     {"limp_fall_counts", "more factorisations than the prototype"},
     {"baked_limbs", "hands and feet that a blow whips go their own way: 7 deg rms of all bodies"},

@@ -3,16 +3,26 @@
 
 #include <array>
 
+#include "sinew/skeleton/scalar.h"
+
 namespace sinew {
+namespace detail {
+
+template <class T>
+struct BsplineMonomials;
+
+}  // namespace detail
 
 /// Weights of the `degree` + 1 control points of a span at its local parameter u in [0, 1]; entries beyond
-/// are zero. Derivatives are per knot interval: divide by the interval once and twice.
+/// are zero. Derivatives are per knot interval: divide by the interval once and twice. T may be a pack.
 template <class T>
 struct BsplineBasis {
   static constexpr int kMaxDegree = 5;
   std::array<T, kMaxDegree + 1> value{}, first{}, second{};
 
   static BsplineBasis at(int degree, T u);
+  /// The same with the caller's monomials of that degree.
+  static BsplineBasis of(const detail::BsplineMonomials<Number<T>>& monomials, int degree, T u);
 };
 
 namespace detail {
@@ -47,18 +57,22 @@ inline constexpr BsplineMonomials<T> kBsplineMonomials[] = {BsplineMonomials<T>(
 
 }  // namespace detail
 
-/// Horner's rule on all control points at once, with both derivatives.
 template <class T>
 BsplineBasis<T> BsplineBasis<T>::at(int degree, T u) {
-  using Monomials = detail::BsplineMonomials<T>;
-  const Monomials& monomials = detail::kBsplineMonomials<T>[degree];
+  return of(detail::kBsplineMonomials<T>[degree], degree, u);
+}
+
+/// Horner's rule on all control points at once, with both derivatives.
+template <class T>
+BsplineBasis<T> BsplineBasis<T>::of(const detail::BsplineMonomials<Number<T>>& monomials, int degree, T u) {
+  using Monomials = detail::BsplineMonomials<Number<T>>;
   T value[Monomials::kControls] = {}, first[Monomials::kControls] = {},
     half_second[Monomials::kControls] = {};
   for (int k = degree; k >= 0; --k)
     for (int j = 0; j < Monomials::kControls; ++j) {
       half_second[j] = half_second[j] * u + first[j];
       first[j] = first[j] * u + value[j];
-      value[j] = value[j] * u + monomials.coefficient[k][j];
+      value[j] = value[j] * u + T(monomials.coefficient[k][j]);
     }
   BsplineBasis basis;
   for (int j = 0; j <= kMaxDegree; ++j) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "sinew/animation/blending_job.h"
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 
@@ -37,7 +38,8 @@ extern template void crossfade<double>(std::span<const JointJet<double>>, std::s
 template <class T>
 void place_root(const Transform<T>& place, JointJet<T>& root) {
   root.translation = place * root.translation;
-  root.rotation = (place.rotation * root.rotation).normalized();
+  root.rotation = place.rotation * root.rotation;
+  normalize(root.rotation);
   root.velocity = place.rotation * root.velocity;
   root.acceleration = place.rotation * root.acceleration;
 }

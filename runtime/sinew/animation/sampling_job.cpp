@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/animation/bspline.h"
+#include "sinew/animation/clip_place.h"
 #include "sinew/animation/kernels/layout.h"
 
 namespace sinew {
@@ -13,32 +14,17 @@ using kernels::SplineSpan;
 
 static_assert(sizeof(Clip::Track) == sizeof(int), "kernels read tracks as joint indices");
 
-/// Time within the clip and how many whole loops came before it.
-struct Place {
-  double time = 0, loops = 0;
-};
-
-Place wrapped(const Clip& clip, double time) {
-  if (clip.duration <= 0) return {};
-  if (!clip.loops) return {std::clamp(time, 0.0, double(clip.duration)), 0};
-  const double loops = std::floor(time / clip.duration);
-  return {std::clamp(time - loops * clip.duration, 0.0, double(clip.duration)), loops};
-}
-
 /// Control points within reach of `time` and their weights, derivatives scaled by the playback rate.
 template <class T>
 SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, double time, double rate,
                       std::size_t joints) {
-  const double knots = time / group.knot_interval;
-  const int spans = clip.loops ? group.control_count : group.control_count - group.degree;
-  const int first = std::clamp(static_cast<int>(knots), 0, spans - 1);
-  const BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(std::clamp(knots - first, 0.0, 1.0)));
+  const KnotPlace place(clip, group, time);
+  const BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(place.u));
   const T scale = T(rate / group.knot_interval);
-  const std::size_t stride = (group.rotation ? 4 : 3) * group.tracks.size();
   SplineSpan<T> span;
   span.terms = group.degree + 1;
+  control_rows(group, place.first, span.rows);
   for (int t = 0; t < span.terms; ++t) {
-    span.rows[t] = group.controls.data() + stride * ((first + t) % group.control_count);
     span.value[t] = w.value[t];
     span.first[t] = scale * w.first[t];
     span.second[t] = scale * scale * w.second[t];
@@ -81,20 +67,17 @@ Status SamplingJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   const std::span<JointJet<T>> moving = jets.first(std::min(jets.size(), std::size_t(clip->joint_count)));
   const std::span<Transform<T>> still = poses.first(std::min(poses.size(), std::size_t(clip->joint_count)));
-  const Place place = wrapped(*clip, time);
-  const bool held = !clip->loops && (time < 0 || time > clip->duration);  // a clamped pose stands still
-  const double speed = held ? 0.0 : rate;
+  const ClipPlace place(*clip, time, rate);
   if (!moving.empty())
-    sample<T>(*clip, place.time, speed, std::span(kernels::layout(moving.data()), moving.size()));
+    sample<T>(*clip, place.time, place.speed, std::span(kernels::layout(moving.data()), moving.size()));
   if (!still.empty())
-    sample<T>(*clip, place.time, speed, std::span(kernels::layout(still.data()), still.size()));
+    sample<T>(*clip, place.time, place.speed, std::span(kernels::layout(still.data()), still.size()));
   if (clip->loops && clip->duration > 0) {
-    const Vec3<double> step = clip->root_step.template cast<double>();
-    const Vec3<T> shift = (step * (place.loops + place.time / clip->duration)).template cast<T>();
+    const Vec3<T> shift = place.shift(*clip).template cast<T>();
     if (!still.empty()) still[0].translation += shift;
     if (!moving.empty()) {
       moving[0].translation += shift;
-      moving[0].velocity += (step * (speed / clip->duration)).template cast<T>();
+      moving[0].velocity += place.drift(*clip).template cast<T>();
     }
   }
   return {};

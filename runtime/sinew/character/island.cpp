@@ -25,6 +25,14 @@ constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 constexpr int kPassing = 30;    ///< steps after a tree was held
 constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 
+/// Whether no force from outside acts on it but gravity, contacts and couplings.
+template <class T>
+bool is_left_to_gravity(const CharacterState<T>& s) {
+  const TreeProblem<T>& p = s.problem;
+  return s.floats && p.free[0] && p.effects.empty() && p.pushes.empty() &&
+         std::none_of(p.rows.begin(), p.rows.end(), [](const JointRow<T>& row) { return row.dof < 6; });
+}
+
 /// Whose step may be divided; else it is halved once where it must be.
 template <class T>
 bool gets_substeps(const CharacterState<T>* s) {
@@ -123,7 +131,16 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   const double error = world.accuracy.estimate_error && !(p.prediction.exact && signature == 0)
                            ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
                            : 0;
+  const bool touched = std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+    return (c.tree_a == tree || c.tree_b == tree) && c.acts();
+  });
+  const bool flies = !touched && !is_held_[tree] && couplings_.empty() && is_left_to_gravity(s);
+  Vec3<double> momentum;
+  if (flies)
+    momentum = carried_momentum<T>(s.tree, s.history, p.prediction, h) +
+               double(p.prediction.momentum_step) * s.total_mass * world.gravity;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
+  if (flies) set_momentum<T>(s.tree, momentum, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
   s.pose_changed();
 

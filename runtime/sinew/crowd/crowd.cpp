@@ -8,6 +8,7 @@
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/kernels/layout.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/crowd/instant.h"
 #include "sinew/crowd/rig.h"
 
 namespace sinew {
@@ -18,17 +19,23 @@ struct alignas(64) Line {
   float numbers[16];
 };
 
-using Check = void (*)(const crowd_kernels::Rig&, const crowd_kernels::Batch&);
+struct Kernels {
+  void (*sample)(const crowd_kernels::Instant&, const crowd_kernels::JetRows&);
+  void (*check)(const crowd_kernels::Rig&, const crowd_kernels::Batch&);
+};
 
-Check kernel(InstructionSet set, int lanes) {
+Kernels kernels_of(InstructionSet set, int lanes) {
+  using namespace crowd_kernels;
+  const bool eight = lanes == 8;
 #ifdef __x86_64__
   if (set == InstructionSet::kAvx512)
-    return lanes == 8 ? crowd_kernels::avx512::check8 : crowd_kernels::avx512::check16;
+    return eight ? Kernels{avx512::sample8, avx512::check8} : Kernels{avx512::sample16, avx512::check16};
   if (set == InstructionSet::kAvx2)
-    return lanes == 8 ? crowd_kernels::avx2::check8 : crowd_kernels::avx2::check16;
+    return eight ? Kernels{avx2::sample8, avx2::check8} : Kernels{avx2::sample16, avx2::check16};
 #endif
   (void)set;
-  return lanes == 8 ? crowd_kernels::baseline::check8 : crowd_kernels::baseline::check16;
+  return eight ? Kernels{baseline::sample8, baseline::check8}
+               : Kernels{baseline::sample16, baseline::check16};
 }
 
 /// 1 / limit; a muscle that has nothing is overloaded by anything.
@@ -41,22 +48,27 @@ float inverse(float limit) {
 struct Crowd::Impl {
   /// What one part of the frame works in.
   struct Chunk {
-    Line* scratch;
+    Line *scratch, *rows;
+    crowd_kernels::Instant* instant;
     Transform<float>* unwanted;  ///< takes the poses of lanes that do not take part
   };
 
   Skeleton skeleton;
   CrowdSettings settings;
   CrowdRig rig;
-  Check check;
+  Kernels kernels;
   int lanes, batches, joints, lines;  ///< lines: of one array [dof][lane]
   std::vector<CrowdTrack> tracks;     ///< [character]
   std::vector<std::uint8_t> active;
+  std::vector<std::uint8_t> stale;                        ///< [character] jets are not those of its track
   std::vector<JointJet<float>> jets;                      ///< [character][joint]
   std::vector<Transform<float>> models;                   ///< [character][joint]
   std::vector<Line> inverse_plus, inverse_minus, torque;  ///< [batch][dof][lane]
   std::vector<Line> peak;                                 ///< [batch][lane]
-  std::vector<Line> scratch;                              ///< [chunk]
+  std::vector<Line> velocity;                             ///< [batch][3][lane] of the roots
+  std::vector<Line> scratch;                              ///< [chunk] room for the kernels
+  std::vector<Line> rows;                                 ///< [chunk] jets of a batch
+  std::vector<crowd_kernels::Instant> instant;            ///< [chunk]
   std::vector<Transform<float>> unwanted;                 ///< [chunk][joint]
   std::vector<int> overloaded;
   double step = 0;
@@ -64,17 +76,21 @@ struct Crowd::Impl {
   Impl(const Skeleton& s, const CrowdSettings& c)
       : skeleton(s), settings(c), rig(skeleton, settings), joints(int(s.joints.size())) {
     lanes = c.lanes != 0 ? c.lanes : (c.instruction_set == InstructionSet::kAvx512 ? 16 : 8);
-    check = kernel(c.instruction_set, lanes);
+    kernels = kernels_of(c.instruction_set, lanes);
     batches = (c.capacity + lanes - 1) / lanes;
     lines = (rig.tree.dofs * lanes + 15) / 16;
     const std::size_t padded = std::size_t(batches) * lanes;
     tracks.resize(padded);
     active.resize(padded);
+    stale.resize(padded);
     jets.resize(padded * joints);
     models.resize(padded * joints);
     for (auto* array : {&inverse_plus, &inverse_minus, &torque}) array->resize(std::size_t(batches) * lines);
     peak.resize(batches);
+    velocity.resize(std::size_t(batches) * velocity_lines());
     scratch.resize(c.chunks * scratch_lines());
+    rows.resize(c.chunks * row_lines());
+    instant.resize(c.chunks);
     unwanted.resize(std::size_t(c.chunks) * joints);
     overloaded.reserve(c.capacity);
     for (std::size_t i = 0; i < padded; ++i) {
@@ -84,8 +100,13 @@ struct Crowd::Impl {
   }
 
   std::size_t scratch_lines() const {
-    return crowd_kernels::scratch_bytes(rig.tree.bodies, int(rig.support.points.size())) / sizeof(Line);
+    const std::size_t bytes =
+        std::max(crowd_kernels::sample_scratch_bytes(joints),
+                 crowd_kernels::check_scratch_bytes(rig.tree.bodies, joints, int(rig.support.points.size())));
+    return (bytes + sizeof(Line) - 1) / sizeof(Line);
   }
+  std::size_t row_lines() const { return crowd_kernels::row_bytes(joints) / sizeof(Line); }
+  int velocity_lines() const { return (3 * lanes + 15) / 16; }
   JointJet<float>* jets_of(int character) { return jets.data() + std::size_t(character) * joints; }
   Transform<float>* model_of(int character) { return models.data() + std::size_t(character) * joints; }
   std::size_t dof_place(int character, int dof) const {
@@ -113,48 +134,62 @@ struct Crowd::Impl {
     }
   }
 
+  /// Jets of a character from its track, where it is now.
   void sample(int character) {
-    CrowdTrack& track = tracks[character];
-    if (!track.clip) return;
-    track.time += track.rate * step;
+    const CrowdTrack& track = tracks[character];
     const std::span out(jets_of(character), joints);
     (void)SamplingJob<float>{track.clip, track.time, track.rate, out}.Run();
     place_root(track.place, out[0]);
+    stale[character] = 0;
   }
-  void ride_along(int character) {
-    const JointJet<float>* local = jets_of(character);
-    Transform<float>* model = model_of(character);
-    for (int j = skeleton.body_count; j < joints; ++j)
-      model[j] = model[skeleton.joints[j].parent] * Transform<float>{local[j].rotation, local[j].translation};
+  /// Moves the tracks of a batch on and finds where its jets are.
+  void sample_batch(int first, const Chunk& chunk, crowd_kernels::Batch& batch) {
+    bool together = true;
+    for (int i = first; i < first + lanes; ++i) {
+      if (!active[i]) continue;
+      if (tracks[i].clip) tracks[i].time += tracks[i].rate * step;
+      stale[i] = tracks[i].clip != nullptr;
+      together &= sampled_in_batches(tracks[i]);
+    }
+    if (together) {
+      set_instant({tracks.data() + first, std::size_t(lanes)}, {active.data() + first, std::size_t(lanes)},
+                  *chunk.instant);
+      crowd_kernels::JetRows out;
+      out.rows = chunk.rows->numbers;
+      out.joints = joints;
+      out.bodies = rig.tree.bodies;
+      out.posed = settings.model_poses ? joints : out.bodies;
+      out.scratch = chunk.scratch;
+      kernels.sample(*chunk.instant, out);
+      batch.rows = out.rows;
+    } else {
+      for (int i = first; i < first + lanes; ++i)
+        if (active[i] && stale[i]) sample(i);
+      batch.jets = kernels::layout(jets_of(first));
+    }
   }
   void run_batch(int b, const Chunk& chunk) {
     const int first = b * lanes;
-    const auto takes_part = [&](int lane) { return active[first + lane] != 0; };
-    bool any = false;
-    for (int lane = 0; lane < lanes; ++lane)
-      if (takes_part(lane)) {
-        sample(first + lane);
-        any = true;
-      }
-    if (!any) return;
+    if (std::find(active.begin() + first, active.begin() + first + lanes, 1) ==
+        active.begin() + first + lanes)
+      return;
     crowd_kernels::Batch batch;
+    sample_batch(first, chunk, batch);
     for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
-      batch.model[lane] = kernels::layout(takes_part(lane) ? model_of(first + lane) : chunk.unwanted);
-    batch.jets = kernels::layout(jets_of(first));
-    batch.joints = joints;
+      batch.model[lane] = kernels::layout(active[first + lane] ? model_of(first + lane) : chunk.unwanted);
     batch.inverse_plus = inverse_plus[std::size_t(b) * lines].numbers;
     batch.inverse_minus = inverse_minus[std::size_t(b) * lines].numbers;
     batch.torque = torque[std::size_t(b) * lines].numbers;
     batch.peak = peak[b].numbers;
+    batch.velocity = velocity[std::size_t(b) * velocity_lines()].numbers;
     batch.scratch = chunk.scratch;
-    check(rig.view, batch);
-    for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
-      if (takes_part(lane)) ride_along(first + lane);
+    kernels.check(rig.view, batch);
   }
   static void run_chunk(void* context, int index) {
     Impl& self = *static_cast<Impl*>(context);
     const auto begin_of = [&](int c) { return int(std::int64_t(self.batches) * c / self.settings.chunks); };
     const Chunk chunk{self.scratch.data() + index * self.scratch_lines(),
+                      self.rows.data() + index * self.row_lines(), &self.instant[index],
                       self.unwanted.data() + std::size_t(index) * self.joints};
     for (int b = begin_of(index); b < begin_of(index + 1); ++b) self.run_batch(b, chunk);
   }
@@ -202,6 +237,7 @@ Status Crowd::play(int character, const CrowdTrack& track) {
   }
   if (!track.place.rotation.coeffs().allFinite() || !track.place.translation.allFinite())
     return Status::error(Code::kNotFinite, "place is not finite", character);
+  if (!track.clip && impl_->stale[character]) impl_->sample(character);  // the host goes on from there
   impl_->tracks[character] = track;
   impl_->active[character] = 1;
   return {};
@@ -247,7 +283,16 @@ int Crowd::dof_count() const {
   return impl_->rig.tree.dofs;
 }
 std::span<JointJet<float>> Crowd::jets(int character) {
+  if (impl_->stale[character]) impl_->sample(character);
   return {impl_->jets_of(character), std::size_t(impl_->joints)};
+}
+Vec3<float> Crowd::root_velocity(int character) const {
+  std::vector<Line>& velocity = impl_->velocity;
+  const std::size_t at = std::size_t(character / impl_->lanes) * impl_->velocity_lines() * 16;
+  Vec3<float> out;
+  for (int a = 0; a < 3; ++a)
+    out[a] = Impl::number(velocity, at + std::size_t(a * impl_->lanes + character % impl_->lanes));
+  return out;
 }
 std::span<const Transform<float>> Crowd::model(int character) const {
   return {impl_->model_of(character), std::size_t(impl_->joints)};

@@ -38,7 +38,7 @@ struct CrowdSettings {
 
 /// What a character plays.
 struct CrowdTrack {
-  const Clip* clip = nullptr;  ///< valid; null: the host writes `jets` itself before every step
+  const Clip* clip = nullptr;  ///< valid while it plays; null: the host writes `jets` before every step
   double time = 0;             ///< s, of the clip; a step moves it on by rate · h
   double rate = 1;
   Transform<float> place = {};  ///< clip → world
@@ -72,7 +72,9 @@ class Crowd {
   /// N·m (N for translations), degrees of freedom as JointType orders them; the root's is what must hold it.
   float torque(int character, int dof) const;
   int dof_count() const;
-  std::span<JointJet<float>> jets(int character);                ///< [joint] local, the root's in the world
+  /// [joint] local, the root's in the world. Those of a clip are made when asked for: a step keeps none.
+  std::span<JointJet<float>> jets(int character);
+  Vec3<float> root_velocity(int character) const;                ///< m/s, world
   std::span<const Transform<float>> model(int character) const;  ///< [joint] joint → world
   const CrowdTrack& track(int character) const;
 

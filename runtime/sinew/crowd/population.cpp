@@ -115,9 +115,9 @@ void Population::Impl::call_neighbours(double h) {
   for (int n = 0; n < capacity; ++n) {
     if (!active[n] || place_of[n] >= 0) continue;
     bool near = false;
-    const JointJet<float>& root = crowd->jets(n)[0];
-    const double moves = h * double(root.velocity.norm());
-    grid.overlapping(root.translation.cast<double>(), double(radius) + moves, [&](int) { near = true; });
+    const double moves = h * double(crowd->root_velocity(n).norm());
+    const Vec3<double> root = crowd->model(n)[0].translation.cast<double>();
+    grid.overlapping(root, double(radius) + moves, [&](int) { near = true; });
     if (near) (void)enter(n, h);
   }
 }

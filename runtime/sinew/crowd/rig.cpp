@@ -31,7 +31,10 @@ CrowdRig::CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings)
       torque_minus.push_back(float(share * minus));
     }
   }
+  for (const Joint& joint : skeleton.joints) parent.push_back(joint.parent);
   view.tree = &tree;
+  view.parent = parent.data();
+  view.joints = int(parent.size());
   if (settings.ground) view.support = &support;
   view.first_checked_dof = tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
   for (int a = 0; a < 3; ++a) view.gravity[a] = float(settings.gravity[a]);

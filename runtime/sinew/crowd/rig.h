@@ -12,6 +12,7 @@ struct CrowdRig {
   Tree<float> tree;
   SupportPoints<float> support;
   std::vector<float> torque_plus, torque_minus;  ///< [dof] muscle limits at strength 1, N·m
+  std::vector<int> parent;                       ///< [joint]
   crowd_kernels::Rig view;                       ///< of the above
 
   CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings);

@@ -117,6 +117,8 @@ struct Contact {
   }
   /// gap + τ·gap', m: what the normal force is a function of. Above the gap where the contact opens.
   T damped_gap() const { return stretch * gap + lag; }
+  /// Whether it bears or rubs.
+  bool acts() const { return damped_gap() < T(0) || friction * lagged_normal_force > T(0); }
   /// Half the thickness of what is met, m.
   T half_thickness() const;
 

@@ -86,8 +86,7 @@ void ContactRows<T>::evaluate(Trees trees, std::span<Contact<T>> contacts, T sti
     TreeProblem<T>& a = *trees[c.tree_a];
     TreeProblem<T>* b = c.tree_b < 0 ? nullptr : trees[c.tree_b];
     sinew::measure(a.kinematics, b ? &b->kinematics : nullptr, c);
-    const bool bears = c.damped_gap()<T(0), grips = c.friction * c.lagged_normal_force> T(0);
-    if (!bears && !grips) continue;
+    if (!c.acts()) continue;
     energy += double(contact_energy(c, stick));
     const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, stick);
     a.force[c.body_a] += normal + tangent;

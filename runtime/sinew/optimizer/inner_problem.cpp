@@ -154,6 +154,7 @@ T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
   const auto derivative = [&](T t) { return linear + t * quadratic + row_slope(t); };
   const T d0 = derivative(T(0));
   T low = T(0), d_low = d0, high = T(1), d_high = derivative(T(1));
+  if (std::abs(d_high) <= T(0.02) * -d0) return high;
   for (int grow = 0; d_high < T(0) && grow < 3; ++grow) {
     if (-d_high < T(0.05) * -d0) return high;
     low = high;
@@ -295,9 +296,12 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       quadratic += step_[k] * product_[k];
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
-    // Without rows the model is quadratic and the step exact.
-    const bool rowless = contact_rows_->empty() && joint_rows_.empty() && !rounded();
-    const T t = rowless ? T(1) : exact_line_search(quadratic, linear);
+    // Where no row bears on the way, the model is quadratic and the step exact.
+    const bool straight =
+        contact_rows_->empty() && !rounded() &&
+        std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
+    report.straight = straight && iteration == 0;
+    const T t = straight ? T(1) : exact_line_search(quadratic, linear);
     for (int k = 0; k < n; ++k) {
       correction_[k] += t * step_[k];
       correction_product_[k] += t * product_[k];
@@ -306,7 +310,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
-    if (last || rowless) break;
+    if (last || straight) break;
     add_row_gradient(inner_gradient_);
     if (!coupled() && remaining_length() < kShrink * report.first_length) break;
   }

@@ -22,6 +22,7 @@ namespace sinew {
 struct InnerReport {
   bool solved = false;      ///< false: H₀ was indefinite where the rows did not help
   double first_length = 0;  ///< m, of the first Newton step
+  bool straight = false;    ///< that was all: no row bore on its way
 };
 
 template <class T>
@@ -82,6 +83,11 @@ class InnerProblem {
     int unknown = 0;  ///< of the row's first degree of freedom
     T value = T(0), d_value = T(0);
     T in_factor = T(0);  ///< curvature that the last factor holds
+
+    /// At the inner solution so far, or a whole step on.
+    bool bears() const {
+      return in_factor > T(0) || row.slope(value) != T(0) || row.slope(value + d_value) != T(0);
+    }
   };
 
   void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,

@@ -59,10 +59,12 @@ void NewtonSolver<T>::try_step(T t) {
 template <class T>
 bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy) const {
   if (!std::isfinite(new_energy)) return false;
-  const bool calmer = std::abs(inner_.slope_now(inner_.correction())) <= T(0.9) * std::abs(slope);
-  if (trees_[0]->prediction.scheme == Scheme::kMomentum) return calmer;
+  const auto calmer = [&] {
+    return std::abs(inner_.slope_now(inner_.correction())) <= T(0.9) * std::abs(slope);
+  };
+  if (trees_[0]->prediction.scheme == Scheme::kMomentum) return calmer();
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
-  return new_energy <= energy + 1e-4 * double(t * slope) || (new_energy <= energy + noise && calmer);
+  return new_energy <= energy + 1e-4 * double(t * slope) || (new_energy <= energy + noise && calmer());
 }
 
 /// Second-order correction after a full step that failed: gaps and slips are re-measured where it led, the
@@ -159,7 +161,9 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));
     if (longest > T(1))
       for (T& d : inner_.correction()) d /= longest;
-    const double length = double(inner_.displacement(inner_.correction()));
+    const double length = inner.straight && !(longest > T(1))
+                              ? inner.first_length
+                              : double(inner_.displacement(inner_.correction()));
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
     const Outcome outcome = line_search(T(tolerance), energy);

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "sinew/effects/gravity.h"
 
@@ -49,7 +50,8 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
     return true;
   }
   Mat3<T> inverse = Mat3<T>::Zero();
-  T last = std::numeric_limits<T>::infinity();
+  constexpr T kLeft = sizeof(T) == 4 ? T(1e-7) : T(1e-11);  // rad
+  T last = std::numeric_limits<T>::infinity(), last_length = T(1);
   for (int iteration = 0; iteration < 20; ++iteration) {
     const Vec3<T> carried = rotation_exp<T>(-x) * l;
     const Vec3<T> error = inertia * (k1 * x - k2 * before) / h - carried;
@@ -60,9 +62,12 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
     last = size;
     Vec3<T> step = inverse * error;
     if (!step.allFinite()) return false;
-    if (const T length = step.norm(); length > T(0.7)) step *= T(0.7) / length;
+    const T length = step.norm();
+    if (length > T(0.7)) step *= T(0.7) / length;
     x -= step;
-    if (step.norm() < T(1e-6)) return x.norm() < T(2);
+    // The first step leaves less than its square, the others shrink at their rate or faster.
+    if (length * length < kLeft * last_length) return x.norm() < T(2);
+    last_length = length;
   }
   return false;
 }
@@ -245,6 +250,33 @@ void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Predict
   history.scheme = prediction.scheme;
   history.step_before = h;
   history.scaled = {};
+}
+
+namespace {
+
+template <class T>
+Vec3<double> linear_momentum(const Tree<T>& tree, std::span<const Vec3<T>> velocity) {
+  Vec3<double> sum = Vec3<double>::Zero();
+  for (int i = 0; i < tree.bodies; ++i) sum += double(tree.mass[i]) * velocity[i].template cast<double>();
+  return sum;
+}
+
+}  // namespace
+
+template <class T>
+Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, const Prediction<T>& prediction,
+                              T h) {
+  const Vec3<double> now = linear_momentum<T>(tree, history.velocity);
+  if (prediction.scheme != Scheme::kBdf2) return now;
+  const double w = double(h) / double(history.step_before);
+  return now + w * w / (1 + 2 * w) * (now - linear_momentum<T>(tree, history.velocity_before));
+}
+
+template <class T>
+void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history) {
+  const double mass = std::accumulate(tree.mass.begin(), tree.mass.end(), 0.0);
+  const Vec3<T> faster = ((momentum - linear_momentum<T>(tree, history.velocity)) / mass).template cast<T>();
+  for (Vec3<T>& velocity : history.velocity) velocity += faster;
 }
 
 template <class T>

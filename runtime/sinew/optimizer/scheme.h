@@ -113,6 +113,16 @@ template <class T>
 void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
              std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin, History<T>& history);
 
+/// What the scheme makes of the linear momentum in a step in which no force acts, kg·m/s; before advance().
+template <class T>
+Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, const Prediction<T>& prediction,
+                              T h);
+
+/// Gives a tree the linear momentum (kg·m/s) that it must have after advance(), by the same change of all
+/// velocities: differences of rounded places, and what a solve leaves unbalanced, would add up in it.
+template <class T>
+void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history);
+
 /// Moves the history on to a pose whose velocities are known exactly (playback).
 template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
@@ -131,6 +141,8 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   prefix void predict_free_flight<T>(const Tree<T>&, const History<T>&, T, Prediction<T>&);                  \
   prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                         \
                          std::span<const Vec3<T>>, T, const Vec3<double>&, History<T>&);                     \
+  prefix Vec3<double> carried_momentum<T>(const Tree<T>&, const History<T>&, const Prediction<T>&, T);       \
+  prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                             \
   prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
   prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
   prefix void scale_relative<T>(const Tree<T>&, const RigidMotion&, T, History<T>&);                         \

@@ -54,9 +54,9 @@ class TreeMatrix {
 
   /// y = H·x.
   void multiply(std::span<const T> x, std::span<T> y) const;
-  /// Replaces H by its factor L. False (and a half-finished factor) when H is not positive definite. A pivot
-  /// that elimination has left nothing of but rounding (a massless link's spin between two ball joints moves
-  /// nothing) becomes a small share of the diagonal that it was.
+  /// Replaces H by its factor L, on the diagonal the inverse of L's. False (and a half-finished factor) when
+  /// H is not positive definite. A pivot that elimination has left nothing of but rounding (a massless link's
+  /// spin between two ball joints moves nothing) becomes a small share of the diagonal that it was.
   bool factorise();
   /// Solves LᵀL·x = b in place; call after factorise().
   void solve(std::span<T> b) const;

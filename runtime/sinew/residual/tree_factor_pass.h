@@ -34,8 +34,8 @@ inline void subtract_path(T* __restrict target, const T* __restrict path, T fact
     for (int i = block; i < block + kBlock; ++i) target[i] -= factor * path[i];
 }
 
-/// Replaces H by its factor; `diagonal` [unknown] is room. Set where H is positive definite: see
-/// TreeMatrix::factorise.
+/// Replaces H by its factor, whose diagonal is stored as its inverse; `diagonal` [unknown] is room. Set where
+/// H is positive definite: see TreeMatrix::factorise.
 template <class T>
 auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
   using std::sqrt;
@@ -49,9 +49,8 @@ auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
     const T pivot = largest(path[depth], least);
     definite = both(definite, both(path[depth] > -least, pivot > T(0)));  // not so where they are NaN
     if (!any(definite)) return definite;
-    const T root = sqrt(pivot);
-    const T inverse = T(1) / root;
-    path[depth] = root;
+    const T inverse = T(1) / sqrt(pivot);
+    path[depth] = inverse;
     for (int i = 0; i < depth; ++i) path[i] *= inverse;
     int position = depth - 1;
     for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position)
@@ -65,7 +64,7 @@ template <class T>
 void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
   for (int k = p.size - 1; k >= 0; --k) {  // Lᵀ y = b
     const T* path = values + p.row[k];
-    b[k] /= path[p.depth[k]];
+    b[k] *= path[p.depth[k]];
     int position = p.depth[k] - 1;
     for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) b[l] -= path[position] * b[k];
   }
@@ -74,7 +73,7 @@ void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
     T sum = b[k];
     int position = p.depth[k] - 1;
     for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * b[l];
-    b[k] = sum / path[p.depth[k]];
+    b[k] = sum * path[p.depth[k]];
   }
 }
 

@@ -52,7 +52,7 @@ Quat<T> rotation_exp(const Vec3<T>& d) {
   };
   const Two c = choose(angle2 < T(1), series, closed);  // cos(angle/2), sin(angle/2)/angle
   Quat<T> q(c[0], c[1] * d.x(), c[1] * d.y(), c[1] * d.z());
-  normalize(q);
+  renormalize(q);
   return q;
 }
 
@@ -63,15 +63,18 @@ Vec3<T> rotation_log(const Quat<T>& q) {
   const Vec3<T> v = select(q.w() < T(0), Vec3<T>(-q.vec()), Vec3<T>(q.vec()));
   const T sine = v.norm();
   const T cosine = abs(q.w());
-  const auto series = [&] {  // of 2·asin(sine)/sine, to rounding
+  const auto series = [&] {  // 2·asin(sine)/sine to 3e-8 up to a turn of 60 degrees: Cephes, asinf
     const T u = sine * sine;
-    return T(2 + u * (T(1.0 / 3) + u * (T(3.0 / 20) + u * (T(5.0 / 56) + u * T(35.0 / 576)))));
+    return T(
+        2 + u * (T(2 * 0.16666752422) + u * (T(2 * 0.074953002686) +
+                                             u * (T(2 * 0.045470025998) +
+                                                  u * (T(2 * 0.024181311049) + u * T(2 * 0.042163199048))))));
   };
   const auto closed = [&] { return T(T(2) * atan2(sine, cosine) / sine); };
   const auto tiny = [&] { return T(T(2) / largest(cosine, T(0.5))); };
   return v * choose(sine < T(1e-6), tiny, [&] {
            if constexpr (sizeof(Number<T>) == 4)
-             return choose(sine < T(0.2), series, closed);
+             return choose(sine < T(0.5), series, closed);
            else
              return closed();
          });

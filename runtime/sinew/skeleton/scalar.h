@@ -2,6 +2,7 @@
 // through the same source: decisions on values are selections, never branches, where lanes may differ.
 #pragma once
 
+#include <cmath>
 #include <type_traits>
 
 #include "sinew/skeleton/vector.h"
@@ -80,10 +81,22 @@ requires std::is_arithmetic_v<T> T weighted_square(const Mat3<T>& x, const Mat3<
   return (x * p).cwiseProduct(x).sum();
 }
 
-/// Eigen's, which asks with a branch whether the length is zero.
+template <class T>
+T square(const Quat<T>& q) {
+  return (q.x() * q.x() + q.z() * q.z()) + (q.y() * q.y() + q.w() * q.w());
+}
+
 template <class T>
 void normalize(Quat<T>& q) {
-  q.normalize();
+  using std::sqrt;
+  q.coeffs() *= T(1) / sqrt(square(q));
+}
+
+/// The same for what is one but for rounding: a step of Newton's method for 1/|q| from 1. Where it is done
+/// again and again, lengths stay a little short.
+template <class T>
+void renormalize(Quat<T>& q) {
+  q.coeffs() *= T(1.5) - T(0.5) * square(q);
 }
 
 }  // namespace sinew

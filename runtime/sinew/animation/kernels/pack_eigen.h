@@ -37,15 +37,6 @@ struct quat_product<Architecture::Target, A, B, sinew::Pack<T, N>> {
 namespace sinew {
 namespace {
 
-/// See scalar.h; sums in the order in which Eigen adds four floats on x86.
-template <class T, int N>
-void normalize(Quat<Pack<T, N>>& q) {
-  using P = Pack<T, N>;
-  const P square = (q.x() * q.x() + q.z() * q.z()) + (q.y() * q.y() + q.w() * q.w());
-  const P length = sqrt(square);
-  for (int i = 0; i < 4; ++i) q.coeffs()[i] = select(square > P(0), P(q.coeffs()[i] / length), q.coeffs()[i]);
-}
-
 /// See scalar.h; sums in the order in which Eigen adds nine floats on x86.
 template <class P>
 requires(!std::is_arithmetic_v<P>) P weighted_square(const Mat3<P>& x, const Mat3<P>& p) {

@@ -2,3 +2,4 @@
 #define SINEW_KERNELS avx2
 #define SINEW_FLOAT_LANES 8
 #include "sinew/crowd/kernels/batch.inl"
+#include "sinew/crowd/kernels/sample.inl"

@@ -2,3 +2,4 @@
 #define SINEW_KERNELS avx512
 #define SINEW_FLOAT_LANES 16
 #include "sinew/crowd/kernels/batch.inl"
+#include "sinew/crowd/kernels/sample.inl"

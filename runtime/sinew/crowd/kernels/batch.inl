@@ -6,6 +6,7 @@
 #include "sinew/crowd/kernels/batch.h"
 #include "sinew/muscle/muscle_side.h"
 #include "sinew/residual/residual_pass.h"
+#include "sinew/skeleton/transform.h"
 
 namespace sinew::crowd_kernels {
 namespace {
@@ -17,27 +18,27 @@ static_assert(sizeof(Transform<float>) == sizeof(kernels::PoseLayout<float>),
 template <class P>
 struct Scratch {
   std::span<BodyMotion<P>> body;
-  std::span<Quat<P>> orientation;        ///< body → world
-  std::span<Mat3<P>> rotation;           ///< the same
-  std::span<Vec3<P>> origin;             ///< from the root's, world axes
+  std::span<Mat3<P>> rotation;           ///< body → world
   std::span<Vec3<P>> force, moment;      ///< about the root's origin, world axes
+  std::span<Quat<P>> orientation;        ///< [joint] → world
+  std::span<Vec3<P>> origin;             ///< [joint] from the root's, world axes
   std::span<StandingPoint<P>> standing;  ///< [point]
 
-  Scratch(void* memory, int bodies, int points) {
+  Scratch(void* memory, int bodies, int joints, int points) {
     const auto take = [&]<class U>(std::span<U>& out, int count) {
       out = {static_cast<U*>(memory), std::size_t(count)};
       memory = out.data() + count;
     };
     take(body, bodies);
-    take(orientation, bodies);
     take(rotation, bodies);
-    take(origin, bodies);
     take(force, bodies);
     take(moment, bodies);
+    take(orientation, joints);
+    take(origin, joints);
     take(standing, points);
   }
-  static_assert(sizeof(BodyMotion<P>) + sizeof(Quat<P>) + sizeof(Mat3<P>) + 3 * sizeof(Vec3<P>) ==
-                    kBodyPacks * sizeof(P) &&
+  static_assert(sizeof(BodyMotion<P>) + sizeof(Mat3<P>) + 2 * sizeof(Vec3<P>) == kBodyPacks * sizeof(P) &&
+                sizeof(Quat<P>) + sizeof(Vec3<P>) == kJointPacks * sizeof(P) &&
                 sizeof(StandingPoint<P>) == kPointPacks * sizeof(P));
 };
 
@@ -47,14 +48,14 @@ struct Lanes {
   int stride = 0;  ///< lanes of the batch
 };
 
-/// Jets of one body over the lanes, a few numbers at a time in the order of JetLayout: all at once would not
-/// leave registers to compute in.
+/// Jets of one joint over the lanes, a few numbers at a time in the order of JetLayout: all at once would not
+/// leave registers to compute in. From lanes one after the other:
 template <class P>
 class Jets {
  public:
-  Jets(const Batch& batch, int first_lane, int i)
-      : stride_(std::ptrdiff_t(batch.joints) * kNumbers),
-        from_(batch.jets->rotation + first_lane * stride_ + i * kNumbers) {}
+  Jets(const Rig& rig, const Batch& batch, const Lanes& lanes, int joint)
+      : stride_(std::ptrdiff_t(rig.joints) * kJetNumbers),
+        from_(batch.jets->rotation + lanes.first * stride_ + joint * kJetNumbers) {}
   /// Four numbers from number `first` on.
   void load(int first, P (&out)[4]) const {
     for (int r = 0; r < 4; ++r)
@@ -67,17 +68,34 @@ class Jets {
   }
 
  private:
-  static constexpr int kNumbers = sizeof(kernels::JetLayout<float>) / sizeof(float);
+  std::ptrdiff_t stride_;
+  const float* from_;
+};
+static_assert(sizeof(kernels::JetLayout<float>) == kJetNumbers * sizeof(float));
+
+/// … or as sample.inl writes them.
+template <class P>
+class Rows {
+ public:
+  Rows(const Rig&, const Batch& batch, const Lanes& lanes, int joint)
+      : stride_(lanes.stride), from_(batch.rows + joint * kJetNumbers * stride_ + lanes.first) {}
+  void load(int first, P (&out)[4]) const {
+    for (int c = 0; c < 4; ++c) out[c] = P::load(from_ + (first + c) * stride_);
+  }
+  void load(int first, P (&low)[4], P (&high)[4]) const {
+    load(first, low);
+    load(first + 4, high);
+  }
+
+ private:
   std::ptrdiff_t stride_;
   const float* from_;
 };
 
 /// move_body, reading the jet as it goes.
-template <class P>
-[[gnu::always_inline]] inline void move(const Rig& rig, const Batch& batch, int first_lane, int i,
-                                        const Vec3<P>& gravity, const BodyMotion<P>* parent,
-                                        BodyMotion<P>& body, Quat<P>* rotation) {
-  const Jets<P> jets(batch, first_lane, i);
+template <class P, class Source>
+[[gnu::always_inline]] inline void move(const Rig& rig, const Source& jets, int i, const Vec3<P>& gravity,
+                                        const BodyMotion<P>* parent, BodyMotion<P>& body, Quat<P>* rotation) {
   P a[4], b[4], c[4];
   JointJet<P> jet;
   jets.load(0, a, b);
@@ -120,9 +138,14 @@ void stand(const Rig& rig, const P& ground, const Scratch<P>& s) {
   }
   share_support<P>(*rig.support, s.rotation, s.origin, ground, settings, s.standing, s.force, s.moment);
   for (std::size_t i = 0; i < s.body.size(); ++i) {
-    if (!may_stand<P>(*rig.support, int(i), s.origin[i], ground, float(settings.reach))) continue;
-    s.body[i].force = s.rotation[i].transpose() * s.force[i];
-    s.body[i].moment = s.rotation[i].transpose() * (s.moment[i] - s.origin[i].cross(s.force[i]));
+    const float reach = float(settings.reach);
+    if (!may_stand<P>(*rig.support, int(i), s.origin[i], ground, reach)) continue;
+    // To the world and back rounds: who has no point within reach keeps what it had.
+    const auto near = s.origin[i].z() - ground < P(rig.support->bound[i] + reach);
+    const Vec3<P> force = s.rotation[i].transpose() * s.force[i],
+                  moment = s.rotation[i].transpose() * (s.moment[i] - s.origin[i].cross(s.force[i]));
+    s.body[i].force = select(near, force, s.body[i].force);
+    s.body[i].moment = select(near, moment, s.body[i].moment);
   }
 }
 
@@ -142,10 +165,26 @@ void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   store<0, P::kLanes>(select(sum - sum == zero, peak, sum), batch.peak + lanes.first);
 }
 
+/// Joints that ride along take their place in the world from their parents'.
+template <class P, class Source>
+void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, const Scratch<P>& s) {
+  for (int i = int(s.body.size()); i < rig.joints; ++i) {
+    const Source jets(rig, batch, lanes, i);
+    P q[4], unused[4], x[4], y[4];
+    jets.load(0, q, unused);
+    jets.load(8, x, y);
+    const int p = rig.parent[i];
+    const Transform<P> world = Transform<P>{s.orientation[p], s.origin[p]} *
+                               Transform<P>{Quat<P>(q[3], q[0], q[1], q[2]), {x[2], x[3], y[0]}};
+    s.orientation[i] = world.rotation;
+    s.origin[i] = world.translation;
+  }
+}
+
 template <class P>
-void write_model(const Batch& batch, int first_lane, const Vec3<P>& root, const Scratch<P>& s) {
-  for (std::size_t i = 0; i < s.body.size(); ++i) {
-    const Vec3<P> at = root + s.origin[i];
+void write_model(const Rig& rig, const Batch& batch, int first_lane, const Scratch<P>& s) {
+  for (int i = 0; i < rig.joints; ++i) {
+    const Vec3<P>& at = s.origin[i];
     const auto& turn = s.orientation[i];
     P q[4] = {turn.x(), turn.y(), turn.z(), turn.w()};
     P x[4] = {at.x(), at.y(), at.z(), P(0)};
@@ -160,16 +199,17 @@ void write_model(const Batch& batch, int first_lane, const Vec3<P>& root, const 
   }
 }
 
-template <class P>
+template <class P, class Source>
 void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Tree<float>& tree = *rig.tree;
-  const Scratch<P> scratch(batch.scratch, tree.bodies, rig.support ? int(rig.support->points.size()) : 0);
+  const Scratch<P> scratch(batch.scratch, tree.bodies, rig.joints,
+                           rig.support ? int(rig.support->points.size()) : 0);
   const bool placed = rig.support || batch.model[0];
   const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));
   for (const int i : tree.by_depth) {
     const int p = tree.parent[i];
-    move<P>(rig, batch, lanes.first, i, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i],
-            placed ? &scratch.orientation[i] : nullptr);
+    move<P>(rig, Source(rig, batch, lanes, i), i, gravity, p < 0 ? nullptr : &scratch.body[p],
+            scratch.body[i], placed ? &scratch.orientation[i] : nullptr);
     if (placed) place(tree, i, scratch);
   }
   const Vec3<P> root = scratch.body[0].arm;
@@ -182,15 +222,26 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
     if (const int p = tree.parent[i]; p >= 0) pass_wrench(scratch.body[i], scratch.body[p]);
   }
   compare<P>(rig, batch, lanes);
-  if (batch.model[0]) write_model(batch, lanes.first, root, scratch);
+  P velocity[4];
+  Source(rig, batch, lanes, 0).load(12, velocity);
+  for (int a = 0; a < 3; ++a)
+    store<0, P::kLanes>(velocity[1 + a], batch.velocity + a * lanes.stride + lanes.first);
+  if (!batch.model[0]) return;
+  for (int i = 0; i < tree.bodies; ++i) scratch.origin[i] = root + scratch.origin[i];
+  ride_along<P, Source>(rig, batch, lanes, scratch);
+  write_model(rig, batch, lanes.first, scratch);
 }
 
 /// A batch in as many passes as registers of `kRegister` lanes need.
 template <int kRegister, int kBatch>
 void check_batch(const Rig& rig, const Batch& batch) {
   constexpr int kLanes = kRegister < kBatch ? kRegister : kBatch;
+  using P = Pack<float, kLanes>;
   for (int first = 0; first < kBatch; first += kLanes)
-    check<Pack<float, kLanes>>(rig, batch, {first, kBatch});
+    if (batch.rows)
+      check<P, Rows<P>>(rig, batch, {first, kBatch});
+    else
+      check<P, Jets<P>>(rig, batch, {first, kBatch});
 }
 
 }  // namespace

@@ -84,11 +84,9 @@ class PackInner {
     add_joint_geometry();
     if (!p.alike) leave_out();
     std::swap(p.rows, p.model_rows);
-    rowless_ = all(true);
     for (PackRow<P>& row : p.model_rows) {
       row.at = row.value;
       row.unknown = unknowns_->of_dof[row.dof];
-      rowless_ = both(rowless_, !row.present);
     }
     gather_gradient(base_gradient_);
     for (P& g : smooth_gradient_) g = P(0);
@@ -113,8 +111,8 @@ class PackInner {
       if (iteration == 0) first_length_ = widened(length);
       Live last = length < P(0.1f) * P(tolerance);
       if (iteration > 0) last = either(last, narrowed(widened(length) < kShrink * first_length_));
-      take_step(running);
-      running = both(running, both(!last, !rowless_));
+      const Live straight = take_step(running);
+      running = both(running, both(!last, !straight));
       if (!any(running)) break;
       add_row_gradient(inner_gradient_);
       running = both(running, !narrowed(remaining_length() < kShrink * first_length_));
@@ -229,7 +227,9 @@ class PackInner {
     const auto derivative = [&](const P& t) { return linear + t * quadratic + row_slope(t); };
     const P d0 = derivative(zero);
     P low = zero, d_low = d0, high = P(1), d_high = derivative(P(1)), found = zero;
-    Live open = lanes, growing = lanes;
+    const Live whole = both(lanes, abs(d_high) <= P(0.02f) * -d0);
+    found = select(whole, high, found);
+    Live open = both(lanes, !whole), growing = open;
     for (int grow = 0; grow < 3; ++grow) {
       growing = both(growing, d_high < zero);
       const Live enough = both(growing, -d_high < P(0.05f) * -d0);
@@ -287,10 +287,13 @@ class PackInner {
     return widened(displacement(residual_));
   }
 
-  void take_step(const Live& lanes) {
+  /// Answers where no row bears on the way: there the model is quadratic and the step exact.
+  Live take_step(const Live& lanes) {
+    Live straight = all(true);
     for (PackRow<P>& row : problem_->model_rows) {
       row.along = P(0);
       for (int a = 0; a < row.count; ++a) row.along += row.gradient[a] * step_[row.unknown + a];
+      straight = both(straight, either(!row.present, !bears(row)));
     }
     multiply_by_tree<P>(*smooth_.pattern, smooth_.values.data(), step_, product_);
     P quadratic = P(0), linear = P(0);
@@ -299,7 +302,7 @@ class PackInner {
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
     P t = P(1);
-    if (const Live search = both(lanes, !rowless_); any(search))
+    if (const Live search = both(lanes, !straight); any(search))
       t = select(search, exact_line_search(search, quadratic, linear), t);
     for (int k = 0; k < size(); ++k) {
       correction_[k] = select(lanes, P(correction_[k] + t * step_[k]), correction_[k]);
@@ -308,6 +311,13 @@ class PackInner {
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
     for (PackRow<P>& row : problem_->model_rows) row.at = select(lanes, P(row.at + t * row.along), row.at);
+    return straight;
+  }
+
+  /// At the inner solution so far, or a whole step on.
+  static Live bears(const PackRow<P>& row) {
+    const P now = row.slope(row.at), then = row.slope(row.at + row.along);
+    return either(row.in_factor > P(0), either(now != P(0), then != P(0)));
   }
 
   /// Lanes whose rows at the present pose are those of the model, which takes over their values; `same` stays
@@ -340,7 +350,6 @@ class PackInner {
       correction_product_, residual_, diagonal_;
   std::span<Vec3<P>> turn_, slide_;
   decltype(widened(P())) first_length_;
-  Live rowless_;
 };
 
 }  // namespace
