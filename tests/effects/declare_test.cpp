@@ -90,8 +90,8 @@ TEST(Declare, BatchesObeyWhatIsDeclared) {
     World<float> alone(airborne(), DeclareNothing{}), batched(airborne(), DeclareNothing{});
     EXPECT_TRUE(batched.declare<Batches>().ok());
     for (World<float>* world : {&alone, &batched}) {
-      if (limits) EXPECT_TRUE(world->declare<JointLimits>().ok());
-      if (!limits) EXPECT_TRUE(world->declare<JointDamping>().ok());
+      const Status declared = limits ? world->declare<JointLimits>() : world->declare<JointDamping>();
+      EXPECT_TRUE(declared.ok());
       add(*world, hindered(), 0, 16);
       run(*world, 30);
     }

@@ -15,6 +15,7 @@
 #include "sinew/effects/strand.h"
 #include "sinew/effects/support.h"
 #include "sinew/effects/wind.h"
+#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew::study {
 
@@ -53,6 +54,7 @@ bool declare_module(const std::string& name, World<float>& world) {
   if (name == "continuous_detection") return bool(world.declare<ContinuousDetection>());
   if (name == "muscles") return bool(world.declare<Muscles>());
   if (name == "impulses") return bool(world.declare<Impulses>());
+  if (name == "batches") return bool(world.declare<Batches>());
   if (name == "contacts") return bool(world.declare<Contacts>());
   if (name == "support") return world.declare<Contacts>() && world.declare<Support>();
   return false;
