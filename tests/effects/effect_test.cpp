@@ -70,7 +70,6 @@ struct Scene {
                         settings.gravity, settings.h});
     problem.prediction.weight = 0;  // no inertia, no gravity: only the effect
     settings.gravity = V::Zero();
-    for (double& f : problem.law.dry_friction) f = 0;
   }
   static Skeleton clothed(unsigned seed) {
     Skeleton s = fixtures::random_skeleton(seed);

@@ -12,6 +12,11 @@ bool declare_module(const std::string& /*name*/, World<float>& /*world*/) {
   return false;
 }
 
+void begin_contact(const Kinematics<float>& /*a*/, const Kinematics<float>* /*b*/,
+                   Contact<float>& /*contact*/) {}
+
+void declare_term(const std::string& /*name*/, StepPlan<float>& /*plan*/) {}
+
 Status add_ties(const std::string& /*name*/, int /*count*/, World<float>& /*world*/) {
   return Status::error(Code::kInvalidArgument, "no effects");
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <memory>
 
+#include "fixtures/standard_plan.h"
 #include "residual/random_tree.h"
 
 namespace sinew {
@@ -28,6 +29,7 @@ struct Characters {
   Characters(unsigned seed, int count, double spread, double freed, bool with_rows)
       : skeleton(dressed(seed, with_rows)), fine(skeleton), tree(skeleton) {
     Random random(seed + 100);
+    settings.plan = &standard_plan<float>();
     settings.gravity = {0.3f, -0.2f, -9.81f};
     settings.kink_width = 1e-3f / 60;
     for (int n = 0; n < count; ++n) {
@@ -54,6 +56,7 @@ struct Characters {
         p.prediction.rotation[i] = k.rotation[i];
       }
     }
+    solver.declare(*settings.plan);
     solver.reserve(problems[0]->room);
   }
   std::vector<Transform<float>> near(const std::vector<Transform<double>>& pose, double spread,

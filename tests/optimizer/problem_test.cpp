@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fixtures/standard_plan.h"
 #include "residual/random_tree.h"
 #include "sinew/optimizer/joint_terms.h"
 
@@ -24,6 +25,7 @@ struct Scene {
   /// Poses around `spread` rad from each other; `with_rows`: muscles, friction, damping, limits and cones.
   Scene(unsigned seed, double spread, bool with_rows)
       : skeleton(dressed(seed, with_rows)), tree(skeleton), problem(tree, skeleton), random(seed + 500) {
+    settings.plan = &standard_plan<double>();
     settings.gravity = {0.3, -0.2, -9.81};
     problem.common_origin = {2, -1, 0.5};
     settings.kink_width = 0.2;  // wide, so that poses fall on both sides of the rounding
@@ -146,7 +148,7 @@ TEST_P(Problem, JointCurvatureIsTheSecondDerivativeOfTheRowsScalars) {
   const auto base = s.problem.local;
   const std::vector<JointRow<double>> rows = s.problem.rows;
   const std::vector<EllipsoidRow<double>> ellipsoids = s.problem.ellipsoids;
-  measure_joint_curvature(s.problem);
+  measure_joint_curvature(s.settings, s.problem);
   const std::vector<Mat3<double>> curvature = s.problem.joint_curvature;
   constexpr double step = 1e-5;
   double largest = 0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fixtures/standard_plan.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
@@ -35,7 +36,9 @@ struct FreeBody {
 
   FreeBody(const V& omega, const V& velocity, const V& gravity) {
     accuracy.tolerance = 1e-10;
+    settings.plan = &standard_plan<double>();
     settings.gravity = gravity;
+    solver.declare(*settings.plan);
     solver.reserve(problem.room);
     problem.free.assign(6, 1);
     Motion<double> motion(tree);

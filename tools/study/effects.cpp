@@ -39,6 +39,7 @@ constexpr Kind kKinds[] = {
     {"gravity", "checked", nullptr},
     {"support", "checked", "capsule on the floor"},
     {"impulses", "checked", "push"},
+    {"muscles", "checked", nullptr},  // all joints are compared where one has a limit
     {"muscles", "pass", "degree of freedom"},
     {"joint_limits", "pass", "limit that bears"},
     {"joint_damping", "pass", "degree of freedom"},

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sinew/effects/joint_limit.h"
+#include "sinew/effects/step_plan.h"
 #include "sinew/optimizer/problem_pass.h"
 
 namespace sinew {
@@ -24,6 +24,14 @@ template <class T>
 using Block = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 template <class T>
 using Column = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 6, 1>;
+
+/// Not Eigen's maxCoeff(), whose packets are wider than a column here.
+template <class T>
+T furthest(const Column<T>& way) {
+  T most = T(0);
+  for (int a = 0; a < way.size(); ++a) most = std::max(most, std::abs(way[a]));
+  return most;
+}
 
 template <class T>
 bool has_no_muscle(const TreeProblem<T>& p, int i) {
@@ -140,22 +148,17 @@ void move_by_itself(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
     place_hanging(p, i);
     const OwnEquations<T> own = own_equations(settings, p, i);
     const Column<T> way = way_to(own, pull_of(settings, p, i, own.torque));
-    const T most = way.cwiseAbs().maxCoeff();
+    const T most = furthest<T>(way);
     if (most > T(0)) p.local[i] = displaced<T>(*p.tree, i, p.local[i], way.data());
     if (most < T(kSettled)) break;
   }
   place_hanging(p, i);
 }
 
-/// Whether a limit of joint i bears at the present pose.
+/// Whether a limit of joint i bears at the present pose. A joint that is not solved for has no rows: there is
+/// room for its own.
 template <class T>
-bool bears_at_limit(const StepSettings<T>& settings, const TreeProblem<T>& p, int i) {
-  struct Bearing {
-    bool any = false;
-    void add_row(const JointRow<T>& row, bool present) {
-      any = any || (present && row.slope(row.value) > T(0));
-    }
-  } rows;
+bool bears_at_limit(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
   const JointStep<T> joint{*p.tree,
                            p.law,
                            i,
@@ -166,12 +169,17 @@ bool bears_at_limit(const StepSettings<T>& settings, const TreeProblem<T>& p, in
                            settings.kink_width,
                            settings.limit_stiffness,
                            settings.limit_damping};
-  if (JointLimitRows<T>::act(joint)) {
-    const JointLimitRows<T> limits(joint);
-    for (int k = 0; k < joint.dofs(); ++k) limits.append(joint, k, rows);
-  }
-  if (p.law.swing_limit[i] >= 0) append_cone(joint, rows);
-  return rows.any;
+  const JointTerms<T>& terms = settings.plan->joints;
+  const std::ptrdiff_t others = std::ssize(p.rows);
+  JointOffset<T> offset;
+  if (terms.limits && terms.limits->look(joint, offset, p))
+    for (int k = 0; k < joint.dofs(); ++k) terms.limits->append(joint, offset, k, p);
+  if (terms.cones && p.law.swing_limit[i] >= 0) terms.cones->append(joint, p);
+  const auto own = p.rows.begin() + others;
+  const bool bears =
+      std::any_of(own, p.rows.end(), [](const JointRow<T>& row) { return row.slope(row.value) > T(0); });
+  p.rows.erase(own, p.rows.end());
+  return bears;
 }
 
 /// Whether something holds what hangs on joint i of a tree of the solve.
@@ -221,7 +229,7 @@ bool release_baked(CharacterState<T>& s, const StepSettings<T>& settings) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     OwnEquations<T> own = own_equations(settings, p, i);
     std::copy_n(p.gradient.begin() + first, count, own.torque.data());
-    const T missed = way_to(own, pull_of(settings, p, i, own.torque)).cwiseAbs().maxCoeff();
+    const T missed = furthest<T>(way_to(own, pull_of(settings, p, i, own.torque)));
     if (missed < T(kMissed) && !bears_at_limit(settings, p, i)) continue;
     s.baked[i] = 0;
     ++s.unbaked;

@@ -133,6 +133,8 @@ Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T
     return Status::error(Code::kInvalidArgument, "no such joint", joint);
   if (!point.allFinite() || !impulse.allFinite())
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
+  if (state_->impulses.capacity() == 0)
+    return Status::error(Code::kInvalidArgument, "the world declares no Impulses", joint);
   if (impulse.norm() > T(1e5)) return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s", joint);
   if (state_->impulses.size() == state_->impulses.capacity())
     return Status::error(Code::kOutOfRange, "more than 64 impulses in one step", joint);

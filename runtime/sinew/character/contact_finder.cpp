@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/contacts.h"
+#include "sinew/optimizer/contact_rows.h"
+
 namespace sinew {
 namespace {
 
@@ -269,7 +272,43 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   return contacts_;
 }
 
+template <class T>
+bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
+  if (!s.settings.ground_contact) return false;
+  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
+  const Vec3<double> center = s.local[0].translation.template cast<double>();
+  const auto near = [&](double distance) { return distance < double(reach); };
+  return std::any_of(
+             around.obstacles.begin(), around.obstacles.end(),
+             [&](const Collider& o) {
+               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
+             }) ||
+         std::any_of(around.hosts.begin(), around.hosts.end(),
+                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
+}
+
+namespace {
+
+template <class T>
+std::unique_ptr<ContactSearch<T>> make_finder() {
+  return std::make_unique<ContactFinder<T>>();
+}
+
+template <class T>
+constexpr ContactTerm<T> kContacts{make_finder<T>, near_obstacle<T>, append_contact_points<T>,
+                                   share_stiffness<T>, measure<T>};
+
+}  // namespace
+
+template <class T>
+void Contacts<T>::declare(StepPlan<T>& plan) {
+  plan.contact_rows = make_contact_rows<T>;
+  plan.contacts = &kContacts<T>;
+}
+
 template class ContactFinder<float>;
 template class ContactFinder<double>;
+template struct Contacts<float>;
+template struct Contacts<double>;
 
 }  // namespace sinew

@@ -44,21 +44,34 @@ struct Surroundings {
 };
 
 template <class T>
-class ContactFinder {
+class ContactSearch {
  public:
-  void reserve(const SolveRoom& room);
+  virtual ~ContactSearch() = default;
+  virtual void reserve(const SolveRoom& room) = 0;
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return room.contacts * sizeof(Contact<T>) + room.colliders * sizeof(Bound);
-  }
+  virtual std::size_t bytes(const SolveRoom& room) const = 0;
 
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
   /// feet would. Allocates nothing; contacts beyond the room of the trees are dropped.
+  virtual std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
+                                     std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                                     std::span<const LaggedForce<T>> lagged,
+                                     const Vec3<double>& common_origin, T h) = 0;
+};
+
+template <class T>
+class ContactFinder final : public ContactSearch<T> {
+ public:
+  void reserve(const SolveRoom& room) override;
+  std::size_t bytes(const SolveRoom& room) const override {
+    return room.contacts * sizeof(Contact<T>) + room.colliders * sizeof(Bound);
+  }
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                             std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin, T h);
+                             std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin,
+                             T h) override;
 
  private:
   /// Bounding sphere of a collider now, and how far its body may come within the step.
@@ -92,6 +105,21 @@ class ContactFinder {
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
   std::vector<Bound> bounds_;        ///< all colliders of all states
   std::vector<int> first_bound_;     ///< [state]
+};
+
+/// Whether an obstacle may be in the way of the animation.
+template <class T>
+bool near_obstacle(const CharacterState<T>& state, const Surroundings& around, T h);
+
+/// What a world's step asks of contacts.
+template <class T>
+struct ContactTerm {
+  std::unique_ptr<ContactSearch<T>> (*make_finder)();
+  bool (*near_obstacle)(const CharacterState<T>& state, const Surroundings& around, T h);
+  // See contact.h.
+  void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index);
+  void (*share_stiffness)(std::vector<ContactPoint<T>>& points);
+  void (*measure)(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
 };
 
 extern template class ContactFinder<float>;

@@ -66,7 +66,7 @@ void Couplings<T>::begin_step(States states) {
 
 template <class T>
 void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<CharacterState<T>* const> states,
-                     std::span<const int> indices, T h) {
+                     std::span<const int> indices) {
   for (Coupling<T>* c : couplings) {
     for (CouplingNode<T>& node : c->nodes) {
       const auto found = std::find(indices.begin(), indices.end(), node.state);
@@ -79,15 +79,14 @@ void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<Characte
         node.point = (world.template cast<double>() - origin).template cast<T>();
       }
     }
-    lead_out(h, *c);
   }
 }
 
 template class Couplings<float>;
 template class Couplings<double>;
 template void begin_couplings<float>(std::span<Coupling<float>* const>,
-                                     std::span<CharacterState<float>* const>, std::span<const int>, float);
+                                     std::span<CharacterState<float>* const>, std::span<const int>);
 template void begin_couplings<double>(std::span<Coupling<double>* const>,
-                                      std::span<CharacterState<double>* const>, std::span<const int>, double);
+                                      std::span<CharacterState<double>* const>, std::span<const int>);
 
 }  // namespace sinew

@@ -51,7 +51,7 @@ class Couplings {
 /// tree of the solve they are on, and lets what is open close by a step.
 template <class T>
 void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<CharacterState<T>* const> states,
-                     std::span<const int> indices, T h);
+                     std::span<const int> indices);
 
 /// What the couplings of a solve store, J, that is booked to one of its trees: that of a coupling's first
 /// node that is on one.
@@ -84,10 +84,8 @@ int first_tree(const Coupling<T>& coupling) {
 extern template class Couplings<float>;
 extern template class Couplings<double>;
 extern template void begin_couplings<float>(std::span<Coupling<float>* const>,
-                                            std::span<CharacterState<float>* const>, std::span<const int>,
-                                            float);
+                                            std::span<CharacterState<float>* const>, std::span<const int>);
 extern template void begin_couplings<double>(std::span<Coupling<double>* const>,
-                                             std::span<CharacterState<double>* const>, std::span<const int>,
-                                             double);
+                                             std::span<CharacterState<double>* const>, std::span<const int>);
 
 }  // namespace sinew

@@ -48,7 +48,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   ledger_.reserve(room.trees);
   trees_.reserve(room.trees);
   for (const auto& effect : effects_) effect->reserve(room);
-  finder_.reserve(room);
+  if (finder_) finder_->reserve(room);
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
@@ -57,7 +57,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
-      ContactFinder<T>::bytes(room) + NewtonSolver<T>::bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+      (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
 }
@@ -120,6 +120,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
   }
+  s.settle_deviations();
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step_before = s.rate_step;
@@ -190,7 +191,9 @@ void IslandStepper<T>::limit_guess(T h) {
 /// What may touch within h, but for what trees that were held are caught in.
 template <class T>
 void IslandStepper<T>::find_contacts(T h) {
-  contacts_ = finder_.find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  contacts_ = {};
+  if (!finder_) return;
+  contacts_ = finder_->find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
   const auto passes = [&](const Contact<T>& c) {
     const bool caught = c.tree_b >= 0 && c.offset > T(0);
     return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
@@ -430,7 +433,8 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_)
     if (!s->is_prop) meet_cuts(*s, h);
-  begin_couplings<T>(couplings_, states_, indices_, h);
+  begin_couplings<T>(couplings_, states_, indices_);
+  for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
   const bool alone = states.size() == 1 && couplings.empty();
   if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
   begin_part(h, T(1));

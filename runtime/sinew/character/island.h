@@ -19,7 +19,12 @@ class IslandStepper {
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
   std::size_t bytes(const SolveRoom& room) const;
-  /// Set-up, before reserve().
+  /// Set-up, before reserve(): the world's plan, again where it has changed.
+  void declare(const StepPlan<T>& plan) {
+    settings_.plan = &plan;
+    solver_.declare(plan);
+    if (plan.contacts) finder_ = plan.contacts->make_finder();
+  }
   void declare(std::unique_ptr<IslandEffect<T>> effect) { effects_.push_back(std::move(effect)); }
   void drop_last_effect() { effects_.pop_back(); }
 
@@ -99,7 +104,7 @@ class IslandStepper {
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;
-  ContactFinder<T> finder_;
+  std::unique_ptr<ContactSearch<T>> finder_;               ///< null: no contacts are declared
   std::vector<std::unique_ptr<IslandEffect<T>>> effects_;  ///< declared
   std::vector<IslandTree<T>> trees_;                       ///< as these see them; empty where there are none
   EnergyLedger<T> ledger_;

@@ -103,7 +103,8 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
 template <class T>
 void IslandStepper<T>::forget_contacts() {
   for (Contact<T>& c : contacts_) {
-    measure<T>(problems_[c.tree_a]->kinematics, c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
+    settings_.plan->contacts->measure(problems_[c.tree_a]->kinematics,
+                                      c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
     if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
     c.offset -= std::min(c.gap, T(0));
     c.gap = std::max(c.gap, T(0));
@@ -130,10 +131,8 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
     }
   if (held_ == held_before) return;
   forget_contacts();
-  for (Coupling<T>* c : couplings_) {
-    place_nodes<T>(problems_, settings_.common_origin, *c);
-    measure_elements(*c);
-  }
+  for (Coupling<T>* c : couplings_)
+    (void)settings_.plan->couplings->measure(problems_, settings_.common_origin, *c);
 }
 
 #define SINEW_LADDER_INSTANCES(T)                                          \

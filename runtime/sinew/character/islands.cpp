@@ -82,6 +82,8 @@ void Islands<T>::wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> s
 /// Which island each working coupling belongs to; none where it sleeps.
 template <class T>
 void Islands<T>::divide_ties(const Couplings<T>& couplings) {
+  ties_.clear();
+  if (couplings.working().empty()) return;
   first_tie_.assign(first_.size() + 1, 0);  // one more than there will be: each island's end moves down
   const auto island = [&](int c) { return island_[first_tree(couplings[c])]; };
   for (const int c : couplings.working())
@@ -126,13 +128,14 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     for_each_tree(couplings[c], [&](int n) { unite(root_of(first), root_of(n)); });
   }
   awake_.clear();
+  const bool may_meet = body_contact && count > 1;
   for (int n = 0; n < count; ++n) {
     if (states[n]->parked) continue;
-    grid_.add(n, center(n), reach(n));
+    if (may_meet) grid_.add(n, center(n), reach(n));
     if (!states[n]->levels.asleep) awake_.push_back(n);
   }
-  grid_.build();
-  for (std::size_t next = 0; body_contact && next < awake_.size();) {  // grows by those who are woken
+  if (may_meet) grid_.build();
+  for (std::size_t next = 0; may_meet && next < awake_.size();) {  // grows by those who are woken
     const int n = awake_[next++];
     grid_.overlapping(center(n), reach(n), [&](int other) {
       CharacterState<T>& s = *states[other];

@@ -34,6 +34,7 @@ class Islands {
   }
   /// Couplings of an island, ascending.
   std::span<const int> ties(int island) const {
+    if (ties_.empty()) return {};
     return std::span(ties_).subspan(first_tie_[island], first_tie_[island + 1] - first_tie_[island]);
   }
 

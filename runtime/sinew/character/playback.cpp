@@ -30,29 +30,31 @@ void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const
 }  // namespace
 
 template <class T>
-bool play(CharacterState<T>& s, const WorldSettings& world, T h) {
+bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h) {
   TreeProblem<T>& p = s.problem;
   const Vec3<T> origin = s.target[0].translation;
   inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
                        p.force, p.moment);
   for (const ExternalForce<T>& j : s.impulses)
-    add_gradient<T>({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
-  if (world.ground && world.ground_support && s.settings.ground_contact)
-    share_support<T>(s.rig->support, p.kinematics.rotation, p.kinematics.origin,
-                     T(world.ground_height) - origin.z(), {}, s.standing, p.force, p.moment);
+    plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
+  if (plan.support && world.ground && world.ground_support && s.settings.ground_contact)
+    plan.support->share(s.rig->support, p.kinematics, T(world.ground_height) - origin.z(), s.standing,
+                        p.force, p.moment);
   if (!p.effects.empty()) add_effect_wrenches(s, world, origin, h);
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
   for (const JointRow<T>& row : p.effect_rows)
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
-  for (int i = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0; i < s.tree.bodies; ++i)
+  const int begin = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0, end = s.limited ? s.tree.bodies : begin;
+  for (int i = begin; i < end; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
   std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.played_from.swap(s.local);
-  for (std::size_t i = 0; i < s.local.size(); ++i)
-    s.local[i] = {s.target[i].rotation, s.target[i].translation};
+  std::transform(s.target.begin(), s.target.end(), s.local.begin(), [](const JointJet<T>& jet) {
+    return Transform<T>{jet.rotation, jet.translation};
+  });
   s.pose_changed();
   s.history.place = origin.template cast<double>();  // neighbours go by these two
   s.history.velocity[0] = s.motion.velocity[0];
@@ -83,6 +85,7 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     std::fill_n(s.load.begin() + s.tree.first_dof[i], s.tree.dof_count(i), T(0));
     s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
   }
+  s.settle_deviations();
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.pose_changed();
@@ -133,21 +136,6 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
                        s.problem.moment);
   advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), origin.template cast<double>(), s.history);
   s.history.step_before = T(0);
-}
-
-template <class T>
-bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
-  if (!s.settings.ground_contact) return false;
-  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.local[0].translation.template cast<double>();
-  const auto near = [&](double distance) { return distance < double(reach); };
-  return std::any_of(
-             around.obstacles.begin(), around.obstacles.end(),
-             [&](const Collider& o) {
-               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
-             }) ||
-         std::any_of(around.hosts.begin(), around.hosts.end(),
-                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
 }
 
 SINEW_PLAYBACK_INSTANCES(template, float)

@@ -8,11 +8,7 @@ namespace sinew {
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
 /// they can't. Leaves the history behind, and the report's totals to whoever asks for them.
 template <class T>
-bool play(CharacterState<T>& state, const WorldSettings& world, T h);
-
-/// Whether an obstacle may be in the way of the animation.
-template <class T>
-bool near_obstacle(const CharacterState<T>& state, const Surroundings& around, T h);
+bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h);
 
 /// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
 template <class T>
@@ -23,10 +19,9 @@ void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 template <class T>
 void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 
-#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                       \
-  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, T);               \
-  prefix bool near_obstacle<T>(const CharacterState<T>&, const Surroundings&, T); \
-  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);             \
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                             \
+  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T); \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                   \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)

@@ -197,6 +197,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_history(s, stream);
   if (!stream.reading()) return;
   s.owed = {};
+  s.settle_deviations();
   s.impulses.clear();
   s.refresh_limits();
   s.pose_changed();

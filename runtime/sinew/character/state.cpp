@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/character/contact_finder.h"
+
 namespace sinew {
 namespace {
 
@@ -17,7 +19,8 @@ constexpr double kLimbSpeed = 6;    ///< m/s against the root, where nobody has 
 }  // namespace
 
 template <class T>
-Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
+Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
+    : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
   for (std::size_t n = 0; n < skeleton.colliders.size(); ++n) {
     Collider on_body = skeleton.colliders[n];
     while (on_body.joint >= skeleton.body_count) {
@@ -25,7 +28,7 @@ Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleto
       on_body.joint = skeleton.joints[on_body.joint].parent;
     }
     first_point.push_back(static_cast<int>(points.size()));
-    append_contact_points<T>(on_body, points, static_cast<int>(n));
+    if (plan.contacts) plan.contacts->append_points(on_body, points, static_cast<int>(n));
     colliders.push_back(on_body);
     const Vec3<double>& size = on_body.size;
     const double round = size.x() + (on_body.shape == Shape::kCapsule ? size.z() : 0);
@@ -33,13 +36,13 @@ Rig<T>::Rig(const Skeleton& s) : skeleton(s), tree(skeleton), total_mass(skeleto
     bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
   }
   first_point.push_back(static_cast<int>(points.size()));
-  share_stiffness<T>(points);
-  support = SupportPoints<T>(tree, points);
+  if (plan.contacts) plan.contacts->share_stiffness(points);
+  if (plan.support) support = plan.support->points(tree, points);
   std::vector<Transform<T>> local;
   for (int i = 0; i < tree.bodies; ++i) local.push_back(skeleton.joints[i].rest.template cast<T>());
   Kinematics<T> rest(tree);
   forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
-  choose_self_pairs(rest);
+  if (plan.contacts) choose_self_pairs(rest, *plan.contacts);
   choose_baked();
   for (const ContactPoint<T>& p : points) {
     const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
@@ -65,7 +68,8 @@ void Rig<T>::choose_baked() {
 }
 
 template <class T>
-CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c)
+CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c,
+                                  const StepPlan<T>& plan)
     : rig(std::move(of)),
       skeleton(rig->skeleton),
       tree(rig->tree),
@@ -101,7 +105,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       baked(tree.bodies, 0),
       wanted(tree.bodies) {
   floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
-  impulses.reserve(64);
+  if (plan.impulses) impulses.reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
     target[i].rotation = rest.rotation;
@@ -114,7 +118,7 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
 
 /// Colliders of one body, of neighbours, and those that overlap at rest never touch: joints hold them.
 template <class T>
-void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
+void Rig<T>::choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& contacts) {
   const int count = static_cast<int>(colliders.size());
   may_touch.assign(std::size_t(count) * count, 0);
   const auto moving = [&](int body) {  // the body itself, or what it is fixed to
@@ -139,7 +143,7 @@ void Rig<T>::choose_self_pairs(const Kinematics<T>& rest) {
         c.shape = colliders[b].shape;
         c.size = colliders[b].size.template cast<T>();
         c.shape_pose = colliders[b].local.template cast<T>();
-        measure<T>(rest, &rest, c);
+        contacts.measure(rest, &rest, c);
         apart = c.gap > T(clearance);
       }
       may_touch[std::size_t(a) * count + b] = apart;
@@ -197,6 +201,19 @@ void CharacterState<T>::refresh_limits() {
   const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
   for (int dof = first; dof < tree.dofs; ++dof)
     driven = driven && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
+  limited = false;
+  for (int i = first > 0 ? 1 : 0; i < tree.bodies; ++i) limited = limited || joint_is_limited(i);
+}
+
+template <class T>
+bool CharacterState<T>::joint_is_limited(int body) const {
+  bool muscle = false, boundless = true;
+  for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof) {
+    muscle = muscle || problem.law.has_muscle(dof);
+    boundless =
+        boundless && std::isinf(problem.law.torque_minus[dof]) && std::isinf(problem.law.torque_plus[dof]);
+  }
+  return muscle && !boundless;
 }
 
 template <class T>
@@ -308,6 +325,7 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
+  settle_deviations();
   forget_contacts();
   levels.wake = levels.wake || levels.asleep;  // for those who slept with it
   levels.asleep = false;
@@ -353,9 +371,8 @@ void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T r
 }
 
 template <class T>
-bool CharacterState<T>::undisturbed() const {
-  if (is_prop) return false;
-  return std::all_of(deviation.begin(), deviation.end(),
+void CharacterState<T>::settle_deviations() {
+  calm = std::all_of(deviation.begin(), deviation.end(),
                      [](const Deviation<T>& d) { return d.on_animation && !d.released; });
 }
 

@@ -69,10 +69,10 @@ struct Rig {
   std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
   T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
 
-  explicit Rig(const Skeleton& skeleton);
+  Rig(const Skeleton& skeleton, const StepPlan<T>& plan);
 
  private:
-  void choose_self_pairs(const Kinematics<T>& rest);
+  void choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& contacts);
   void choose_baked();
 };
 
@@ -97,10 +97,12 @@ struct CharacterState {
   CharacterDetail detail;
   LevelState levels;
   bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
+  bool limited = false;  ///< some joint's muscles are neither dead nor boundless (see refresh_limits)
   bool tied = false;     ///< in this step, by a coupling: it has to be solved
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
   bool carried = false;  ///< in this step, see carry_over()
+  bool calm = true;      ///< no joint deviates: see settle_deviations
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
 
@@ -141,7 +143,7 @@ struct CharacterState {
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   CharacterReport report;
 
-  CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c);
+  CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c, const StepPlan<T>& plan);
 
   /// N/m of one contact point: the weight of the heaviest that it may have to bear (kg, of those near, at
   /// most a hundred times its own) sinks it by the accuracy's depth.
@@ -207,9 +209,14 @@ struct CharacterState {
   }
   /// m/s: of the root, or of the fastest particle.
   T pace() const;
-  bool undisturbed() const;
+  /// Every joint is on the animation, and none is released.
+  bool undisturbed() const { return calm && !is_prop; }
+  /// After deviations changed: sums them up for undisturbed(), which is asked in every step.
+  void settle_deviations();
   /// Every degree of freedom of a joint has a muscle, in both directions.
   bool joint_is_driven(int body) const;
+  /// It has muscles, and they do not bear whatever comes.
+  bool joint_is_limited(int body) const;
   /// Speed of the fastest body, m/s.
   T fastest() const;
   /// No joint has a muscle, nothing drives the root.

@@ -16,7 +16,10 @@ namespace {
 constexpr int kMostWorkers = 256;
 constexpr int kMostObstacles = 6;    ///< that one character touches at a time, for the room of its contacts
 constexpr int kMostBatchDofs = 128;  ///< of a rig whose characters are solved in batches
-constexpr int kSmallIsland = 8;      ///< characters that any worker has memory for; one worker has for all
+constexpr const char* kNoMuscles = "the world declares no Muscles: strength must be 0 or infinite";
+constexpr const char* kNoContacts =
+    "the world declares no Contacts: no obstacles, and WorldSettings::ground must be false";
+constexpr int kSmallIsland = 8;  ///< characters that any worker has memory for; one worker has for all
 
 /// Room for so many, with some to spare where it must be moved.
 template <class V>
@@ -28,10 +31,11 @@ void grow(std::vector<V>& v, int count) {
 }  // namespace
 
 template <class T>
-World<T>::World(const WorldSettings& settings) : impl_(std::make_unique<Impl>()) {
+World<T>::World(const WorldSettings& settings, DeclareNothing /*nothing*/) : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
   for (int n = 0; n < std::clamp(settings.workers, 1, kMostWorkers); ++n)
     impl_->workers.push_back(std::make_unique<typename Impl::Worker>());
+  for (const auto& worker : impl_->workers) worker->stepper.declare(impl_->plan);
 }
 
 template <class T>
@@ -53,7 +57,7 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   rooms.add(s.problem.room);
   // The world has its rig, too: three of them are two characters.
   const bool shared = s.rig.use_count() > 2 && s.tree.dofs <= kMostBatchDofs;
-  if (settings.batches && std::is_same_v<T, float> && shared && !s.is_prop && !s.is_particles)
+  if (settings.batches && plan.make_batches && shared && !s.is_prop && !s.is_particles)
     batch_room = larger(batch_room, s.problem.room);
 }
 
@@ -83,7 +87,7 @@ WorldMemory World<T>::Impl::memory() const {
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving += workers[n]->stepper.bytes(n == 0 ? most : small);
-  bytes.solving += workers.size() * workers[0]->batch.bytes(batch_room);
+  if (plan.make_batches) bytes.solving += workers.size() * workers[0]->batch->bytes(batch_room);
   return bytes;
 }
 
@@ -98,7 +102,7 @@ void World<T>::Impl::reserve() {
     workers[n]->members.reserve(room.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
-    workers[n]->batch.reserve(batch_room);
+    if (plan.make_batches) workers[n]->batch->reserve(batch_room);
     workers[n]->waiting.reserve(Impl::kMostWaiting);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
@@ -148,11 +152,16 @@ template <class T>
 Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& character) {
   if (states.size() >= kMostTrees)
     return Status::error(Code::kOutOfRange, "a world has room for 65534 characters and props");
+  if (settings.ground && !plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   auto same =
       std::find_if(rigs.begin(), rigs.end(), [&](const auto& rig) { return rig->skeleton == skeleton; });
-  if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton));
-  states.push_back(std::make_unique<CharacterState<T>>(*same, character));
+  if (same == rigs.end()) same = rigs.insert(same, std::make_shared<const Rig<T>>(skeleton, plan));
+  states.push_back(std::make_unique<CharacterState<T>>(*same, character, plan));
   CharacterState<T>& added = *states.back();
+  if (added.limited && !plan.joints.muscles) {
+    drop_last();
+    return Status::error(Code::kInvalidArgument, kNoMuscles);
+  }
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   const SolveRooms before = rooms;
   const SolveRoom batch_before = batch_room;
@@ -265,6 +274,7 @@ Status World<T>::add_obstacle(const Collider& obstacle) {
   if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
+  if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->obstacles.push_back(obstacle);
   impl_->meet_surroundings();
   return {};
@@ -278,6 +288,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
   const SignedDistance<double> probe = shape.distance(Vec3<double>::Zero());
   if (!std::isfinite(probe.distance) || std::abs(probe.normal.norm() - 1) > 1e-6)
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
+  if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->hosts.push_back({&shape, friction, restitution});
   impl_->meet_surroundings();
   return {};
@@ -333,7 +344,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
   for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
   couplings.begin_step(states);
-  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact);
+  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact && plan.contacts);
   large.clear();
   heavy.clear();
   light.clear();
@@ -370,6 +381,9 @@ Status World<T>::step(T h, const ParallelFor& parallel_for) {
   if (h <= T(0)) return Status::error(Code::kInvalidArgument, "step must be positive");
   if (h < T(1e-5)) return Status::error(Code::kOutOfRange, "step below 1e-5 s");
   if (h > T(0.25)) return Status::error(Code::kOutOfRange, "step above 0.25 s");
+  const auto limited = [](const auto& s) { return s->limited && !s->parked; };
+  if (!impl_->plan.joints.muscles && std::any_of(impl_->states.begin(), impl_->states.end(), limited))
+    return Status::error(Code::kInvalidArgument, kNoMuscles);
   impl_->step_all(h, parallel_for);
   return {};
 }

@@ -23,6 +23,7 @@
 #include "sinew/effects/island_effect.h"
 #include "sinew/effects/loop.h"
 #include "sinew/effects/particles.h"
+#include "sinew/effects/step_plan.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -176,10 +177,18 @@ class Character {
   CharacterState<T>* state_;
 };
 
+/// Begins a world whose effects are declared one by one.
+struct DeclareNothing {};
+
 template <class T>
 class World {
  public:
+  /// With the standard effects declared: Muscles, JointLimits, JointDamping, Impulses, Support, Contacts, and
+  /// Batches. A program that makes worlds so links them all.
   explicit World(const WorldSettings& settings);
+  /// With nothing but inertia and gravity: declare() the rest. What no world of a program declares, it does
+  /// not link.
+  World(const WorldSettings& settings, DeclareNothing nothing);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -219,14 +228,18 @@ class World {
   Status add_effect(int character, std::unique_ptr<Effect<T>> effect);
   Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect);
   void remove_effects(int character);
-  /// Set-up: what acts on all that is solved together, by its type: declare<Restitution>(),
-  /// declare<ContinuousDetection>(). Without, nothing bounces, and what is fast may pass what is thin. Again
-  /// changes nothing.
+  /// Set-up: an effect that acts on everybody, by its type: declare<Restitution>(),
+  /// declare<ContinuousDetection>(); in a world that begins with nothing, declare<Muscles>() and the other
+  /// standard ones, each before the first character is added. Again changes nothing.
   template <template <class> class E>
   Status declare() {
-    return declare([]() -> std::unique_ptr<IslandEffect<T>> { return std::make_unique<E<T>>(); });
+    if constexpr (requires(StepPlan<T> & plan) { E<T>::declare(plan); })
+      return declare(&E<T>::declare);
+    else
+      return declare([]() -> std::unique_ptr<IslandEffect<T>> { return std::make_unique<E<T>>(); });
   }
   Status declare(MakeIslandEffect<T> make);
+  Status declare(DeclareTerm<T> term);
 
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   void park_prop(int index);

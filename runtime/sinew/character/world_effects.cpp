@@ -35,6 +35,25 @@ void World<T>::remove_effects(int character) {
   s.levels.wake = true;
 }
 
+/// Set-up, at any time.
+template <class T>
+void World<T>::Impl::declare(DeclareTerm<T> term) {
+  term(plan);
+  for (const auto& worker : workers) {
+    worker->stepper.declare(plan);
+    if (plan.make_batches && !worker->batch) worker->batch = plan.make_batches();
+  }
+  meet_surroundings();
+}
+
+template <class T>
+Status World<T>::declare(DeclareTerm<T> term) {
+  if (!impl_->states.empty())
+    return Status::error(Code::kInvalidArgument, "to be declared before the first character");
+  impl_->declare(term);
+  return {};
+}
+
 template <class T>
 Status World<T>::declare(MakeIslandEffect<T> make) {
   std::vector<MakeIslandEffect<T>>& declared = impl_->declared;
@@ -54,6 +73,8 @@ Status World<T>::declare(MakeIslandEffect<T> make) {
   template Status World<T>::add_effect(int, std::unique_ptr<Effect<T>>);                      \
   template Status World<T>::add_prop_effect(int, std::unique_ptr<Effect<T>>);                 \
   template void World<T>::remove_effects(int);                                                \
+  template void World<T>::Impl::declare(DeclareTerm<T>);                                      \
+  template Status World<T>::declare(DeclareTerm<T>);                                          \
   template Status World<T>::declare(MakeIslandEffect<T>);
 SINEW_WORLD_EFFECT_INSTANCES(float)
 SINEW_WORLD_EFFECT_INSTANCES(double)

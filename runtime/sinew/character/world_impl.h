@@ -36,11 +36,11 @@ struct World<T>::Impl {
       return state->rig == other.state->rig && unknowns == other.unknowns;
     }
   };
-  static constexpr std::size_t kMostWaiting = 4 * BatchNewton::kMostLanes;  ///< per worker
+  static constexpr std::size_t kMostWaiting = 4 * BatchSolver::kMostLanes;  ///< per worker
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
-    BatchNewton batch;
+    std::unique_ptr<BatchSolver> batch;  ///< null: not declared
     std::vector<Waiting> waiting;
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
@@ -48,6 +48,7 @@ struct World<T>::Impl {
   };
 
   WorldSettings settings;
+  StepPlan<T> plan;  ///< what is declared
   std::vector<std::shared_ptr<const Rig<T>>> rigs;
   std::vector<std::unique_ptr<CharacterState<T>>>
       states;                          ///< characters and props in the order they were added
@@ -74,6 +75,7 @@ struct World<T>::Impl {
   WorldReport report;
   std::atomic<int> next_heavy{0}, next_light{0};
 
+  void declare(DeclareTerm<T> term);
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
   SolveRoom room_of_rig(const Rig<T>& rig) const;
   void count_in(CharacterState<T>& state);
@@ -88,7 +90,7 @@ struct World<T>::Impl {
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
   bool play_island(std::span<CharacterState<T>* const> members);
-  bool batches(const CharacterState<T>& state) const;
+  bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,
                     std::span<Coupling<T>* const> ties, double spent);

@@ -39,17 +39,19 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
   if (follows) {
     for (CharacterState<T>* s : members) {
       const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
-      s->levels.did = checks && play(*s, settings, h) ? Level::kChecked : Level::kPlayback;
+      s->levels.did = checks && play(*s, settings, plan, h) ? Level::kChecked : Level::kPlayback;
       if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
     }
     return true;
   }
   CharacterState<T>& s = *members[0];
-  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || near_obstacle<T>(s, surroundings(), h))
-    return false;
+  const auto in_the_way = [&](const CharacterState<T>& of) {
+    return plan.contacts && plan.contacts->near_obstacle(of, surroundings(), h);
+  };
+  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
   const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
-  if (checks && !play(s, settings, h)) return false;
+  if (checks && !play(s, settings, plan, h)) return false;
   if (!checks) follow(s, settings, h);
   s.levels.did = checks ? Level::kChecked : Level::kPlayback;
   return true;
@@ -57,9 +59,10 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
 
 /// Whether the first solve of a character that begin() found alone can be made in a batch.
 template <class T>
-bool World<T>::Impl::batches(const CharacterState<T>& s) const {
+bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
-    return s.problem.room.fits(batch_room) && BatchNewton::takes(s.problem, settings.accuracy);
+    return worker.batch && s.problem.room.fits(batch_room) &&
+           worker.batch->takes(s.problem, settings.accuracy);
   return false;
 }
 
@@ -76,7 +79,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
     if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
-        batches(*worker.members[0]))
+        batches(*worker.members[0], worker))
       return wait(island, worker, now(settings.detail.budget) - begin);
     lagged_count[island] = worker.stepper.end(lagged_of(island));
     for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
@@ -114,7 +117,7 @@ void World<T>::Impl::wait(int island, Worker& worker, double spent) {
       worker.waiting.emplace_back(Waiting{island, state, begun, spent, set_of_unknowns(state->problem.free)});
   const auto alike = std::count_if(worker.waiting.begin(), worker.waiting.end(),
                                    [&](const Waiting& other) { return other.alike(last); });
-  if (alike == worker.batch.lanes())
+  if (alike == worker.batch->lanes())
     solve_alike(worker, last);
   else if (worker.waiting.size() == kMostWaiting)
     solve_alike(worker, worker.waiting[0]);
@@ -123,7 +126,7 @@ void World<T>::Impl::wait(int island, Worker& worker, double spent) {
 /// Solves what waits and is like `one` in a batch, and goes on with every island from there.
 template <class T>
 void World<T>::Impl::solve_alike(Worker& worker, const Waiting& one) {
-  std::array<Waiting, BatchNewton::kMostLanes> batch;
+  std::array<Waiting, BatchSolver::kMostLanes> batch;
   std::size_t count = 0;
   const auto taken = [&, first = one](const Waiting& other) {
     if (!other.alike(first)) return false;
@@ -133,13 +136,13 @@ void World<T>::Impl::solve_alike(Worker& worker, const Waiting& one) {
   worker.waiting.erase(std::remove_if(worker.waiting.begin(), worker.waiting.end(), taken),
                        worker.waiting.end());
   double begin = now(settings.detail.budget);
-  std::array<SolveReport, BatchNewton::kMostLanes> reports;
+  std::array<SolveReport, BatchSolver::kMostLanes> reports;
   if constexpr (std::is_same_v<T, float>)
     if (count >= kFewestLanes) {
-      std::array<TreeProblem<float>*, BatchNewton::kMostLanes> problems;
+      std::array<TreeProblem<float>*, BatchSolver::kMostLanes> problems;
       for (std::size_t n = 0; n < count; ++n) problems[n] = &batch[n].state->problem;
-      worker.batch.solve(batch[0].begun.settings, settings.accuracy, std::span(problems.data(), count),
-                         reports);
+      worker.batch->solve(batch[0].begun.settings, settings.accuracy, std::span(problems.data(), count),
+                          reports);
     }
   const double share = (now(settings.detail.budget) - begin) / double(count);
   for (std::size_t n = 0; n < count; ++n) {

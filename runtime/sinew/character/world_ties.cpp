@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "sinew/character/world_impl.h"
+#include "sinew/optimizer/coupling_rows.h"
 
 namespace sinew {
 
@@ -68,6 +69,7 @@ int World<T>::add_loop(const LoopSettings& loop, Status& status) {
     status = Status::error(Code::kInvalidArgument, "a loop from the world to the world");
   if (!status) return -1;
   const double weight = std::max(impl_->weight_of(a), impl_->weight_of(b));
+  impl_->declare(Ties<T>::declare);
   const int coupling = impl_->tie(make_loop<T>(loop, a, b, weight), status);
   if (!status) return -1;
   impl_->loops.push_back(coupling);
@@ -127,6 +129,7 @@ int World<T>::add_particles(const ParticleBody& body, Status& status) {
   s.refresh_limits();
   s.pose_changed();
   set.state = static_cast<int>(impl_->states.size()) - 1;
+  impl_->declare(Ties<T>::declare);
   impl_->tie(make_elements<T>(body, set.state, set.place), status);
   if (!status) {
     impl_->drop_last();

@@ -1,6 +1,13 @@
 #include "sinew/effects/impulse.h"
 
 namespace sinew {
+namespace {
+
+/// Where a force acts now.
+template <class T>
+Vec3<T> point_of(const ExternalForce<T>& push, const Kinematics<T>& kinematics) {
+  return kinematics.origin[push.body] + kinematics.rotation[push.body] * push.local;
+}
 
 template <class T>
 double add_gradient(const ExternalForce<T>& push, const Kinematics<T>& kinematics, const Wrenches<T>& out) {
@@ -16,7 +23,17 @@ void add_curvature(const ExternalForce<T>& push, const Kinematics<T>& kinematics
   out[push.body].add_force(point_of(push, kinematics), -push.force);
 }
 
-SINEW_IMPULSE_INSTANCES(template, float)
-SINEW_IMPULSE_INSTANCES(template, double)
+template <class T>
+constexpr PushTerm<T> kPushes{add_gradient<T>, add_curvature<T>};
+
+}  // namespace
+
+template <class T>
+void Impulses<T>::declare(StepPlan<T>& plan) {
+  plan.impulses = &kPushes<T>;
+}
+
+template struct Impulses<float>;
+template struct Impulses<double>;
 
 }  // namespace sinew

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sinew/effects/effect.h"
+#include "sinew/effects/step_plan.h"
 
 namespace sinew {
 
@@ -13,25 +14,24 @@ struct ExternalForce {
   Vec3<T> force = Vec3<T>::Zero();  ///< world, N
 };
 
-/// Where a force acts now.
+/// What a push does in a step.
 template <class T>
-Vec3<T> point_of(const ExternalForce<T>& push, const Kinematics<T>& kinematics) {
-  return kinematics.origin[push.body] + kinematics.rotation[push.body] * push.local;
-}
+struct PushTerm {
+  /// Energy −F·x (J), its gradient added to `out`: what muscles must bear, too.
+  double (*add_gradient)(const ExternalForce<T>& push, const Kinematics<T>& kinematics,
+                         const Wrenches<T>& out);
+  /// Its second derivative: what turning the body does to the force's moment.
+  void (*add_curvature)(const ExternalForce<T>& push, const Kinematics<T>& kinematics,
+                        std::span<Composite<T>> out);
+};
 
-/// Energy −F·x (J), its gradient added to `out`: what muscles must bear, too.
+/// What World::declare takes. Without, Character::apply_impulse is refused.
 template <class T>
-double add_gradient(const ExternalForce<T>& push, const Kinematics<T>& kinematics, const Wrenches<T>& out);
+struct Impulses {
+  static void declare(StepPlan<T>& plan);
+};
 
-/// Its second derivative: what turning the body does to the force's moment.
-template <class T>
-void add_curvature(const ExternalForce<T>& push, const Kinematics<T>& kinematics,
-                   std::span<Composite<T>> out);
-
-#define SINEW_IMPULSE_INSTANCES(prefix, T)                                                          \
-  prefix double add_gradient<T>(const ExternalForce<T>&, const Kinematics<T>&, const Wrenches<T>&); \
-  prefix void add_curvature<T>(const ExternalForce<T>&, const Kinematics<T>&, std::span<Composite<T>>);
-SINEW_IMPULSE_INSTANCES(extern template, float)
-SINEW_IMPULSE_INSTANCES(extern template, double)
+extern template struct Impulses<float>;
+extern template struct Impulses<double>;
 
 }  // namespace sinew

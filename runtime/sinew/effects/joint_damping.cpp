@@ -2,7 +2,12 @@
 
 namespace sinew {
 
-template class JointDampingRows<float>;
-template class JointDampingRows<double>;
+template <class T>
+void JointDamping<T>::declare(StepPlan<T>& plan) {
+  plan.joints.damping = &JointDampingRows<T>::kTerm;
+}
+
+template struct JointDamping<float>;
+template struct JointDamping<double>;
 
 }  // namespace sinew

@@ -3,44 +3,47 @@
 #pragma once
 
 #include "sinew/effects/joint_step.h"
+#include "sinew/effects/step_plan.h"
 
 namespace sinew {
 
-template <class T, class Law = JointLaw<T>>
-class JointDampingRows {
- public:
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct JointDampingRows {
   using Step = JointStep<T, Law>;
 
-  static bool act(const Step& joint) {
+  static bool look(const Step& joint, JointOffset<T>& from_start, Rows& /*rows*/) {
     const Law& law = joint.law;
-    return joint.any_dof([&](int dof) { return law.dry_friction[dof] > 0 || law.damping[dof] > 0; });
+    if (!joint.any_dof([&](int dof) { return law.dry_friction[dof] > 0 || law.damping[dof] > 0; }))
+      return false;
+    from_start = offset_of<T>(joint.tree, joint.body, joint.start, joint.local);
+    return true;
   }
-  explicit JointDampingRows(const Step& joint)
-      : from_start_(offset_of<T>(joint.tree, joint.body, joint.start, joint.local)) {}
-
-  template <class Rows>
-  void append(const Step& joint, int k, Rows& rows) const {
+  static void append(const Step& joint, const JointOffset<T>& from_start, int k, Rows& rows) {
     const int dof = joint.first_dof() + k;
     const auto always = T(0) <= T(0);
     if (const Number<T> friction = joint.law.dry_friction[dof]; friction > 0) {
-      JointRow<T> row = joint.row(from_start_, RowScalar::kFromStart, k);
+      JointRow<T> row = joint.row(from_start, RowScalar::kFromStart, k);
       row.minus = row.plus = friction;
       row.width = 10 * joint.kink_width;
       rows.add_row(row, always);
     }
     if (const Number<T> damping = joint.law.damping[dof]; damping > 0) {
-      JointRow<T> row = joint.row(from_start_, RowScalar::kFromStart, k);
+      JointRow<T> row = joint.row(from_start, RowScalar::kFromStart, k);
       row.kind = RowKind::kSpring;
       row.stiffness = damping / joint.h;
       rows.add_row(row, always);
     }
   }
-
- private:
-  JointOffset<T> from_start_;
+  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
 };
 
-extern template class JointDampingRows<float>;
-extern template class JointDampingRows<double>;
+/// What World::declare takes. Without, the skeleton's friction and damping do nothing.
+template <class T>
+struct JointDamping {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct JointDamping<float>;
+extern template struct JointDamping<double>;
 
 }  // namespace sinew

@@ -2,7 +2,13 @@
 
 namespace sinew {
 
-template class JointLimitRows<float>;
-template class JointLimitRows<double>;
+template <class T>
+void JointLimits<T>::declare(StepPlan<T>& plan) {
+  plan.joints.limits = &JointLimitRows<T>::kTerm;
+  plan.joints.cones = &ConeRows<T>::kTerm;
+}
+
+template struct JointLimits<float>;
+template struct JointLimits<double>;
 
 }  // namespace sinew

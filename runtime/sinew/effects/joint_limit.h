@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/effects/joint_step.h"
+#include "sinew/effects/step_plan.h"
 
 namespace sinew {
 
@@ -32,22 +33,20 @@ void append_bounds(const JointStep<T, Law>& joint, const T& scalar, Number<T> lo
 }
 
 /// Ranges of single degrees of freedom.
-template <class T, class Law = JointLaw<T>>
-class JointLimitRows {
- public:
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct JointLimitRows {
   using Step = JointStep<T, Law>;
 
-  static bool act(const Step& joint) {
+  static bool look(const Step& joint, JointOffset<T>& from_rest, Rows& /*rows*/) {
     const Law& law = joint.law;
-    return law.swing_limit[joint.body] < 0 && joint.tree.type[joint.body] != JointType::kFree &&
-           joint.any_dof(
-               [&](int dof) { return law.lower[dof] > -law.kUnlimited || law.upper[dof] < law.kUnlimited; });
+    const bool ranges = law.swing_limit[joint.body] < 0 && joint.tree.type[joint.body] != JointType::kFree &&
+                        joint.any_dof([&](int dof) {
+                          return law.lower[dof] > -law.kUnlimited || law.upper[dof] < law.kUnlimited;
+                        });
+    if (ranges) from_rest = offset_of<T>(joint.tree, joint.body, rest_of(joint), joint.local);
+    return ranges;
   }
-  explicit JointLimitRows(const Step& joint)
-      : from_rest_(offset_of<T>(joint.tree, joint.body, rest_of(joint), joint.local)) {}
-
-  template <class Rows>
-  void append(const Step& joint, int k, Rows& rows) const {
+  static void append(const Step& joint, const JointOffset<T>& from_rest, int k, Rows& rows) {
     const int dof = joint.first_dof() + k;
     const Number<T> lower = joint.law.lower[dof], upper = joint.law.upper[dof], most = joint.law.kUnlimited;
     if (!(lower > -most || upper < most)) return;
@@ -55,15 +54,14 @@ class JointLimitRows {
     const auto at_start = [&] {
       return offset_value_of<T>(joint.tree, joint.body, rest_of(joint), joint.start)[k];
     };
-    append_bounds(joint, from_rest_.value[k], lower, lower > -most ? always : !always, upper,
-                  upper < most ? always : !always, at_start, joint.row(from_rest_, RowScalar::kFromRest, k),
+    append_bounds(joint, from_rest.value[k], lower, lower > -most ? always : !always, upper,
+                  upper < most ? always : !always, at_start, joint.row(from_rest, RowScalar::kFromRest, k),
                   rows);
   }
+  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
 
  private:
   static Transform<T> rest_of(const Step& joint) { return joint.tree.rest[joint.body].template cast<T>(); }
-
-  JointOffset<T> from_rest_;
 };
 
 /// Swing cone and twist range about the bone direction a at rest. With b the direction now, the swing angle
@@ -121,7 +119,8 @@ void append_cone(const JointStep<T, Law>& joint, Rows& rows) {
 /// axes, weighted by the rows' slopes; `relative`: from the rest pose. With w in rest axes:
 /// swing'' = [cos·(|w|² − (n·w)²) − (a·w)(b·w)]/sin, twist'' = (w·(a + b))(w·(a × b))/(1 + a·b)².
 template <class T>
-Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& a, T swing_slope, T twist_slope) {
+Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& a, const T& swing_slope,
+                       const T& twist_slope) {
   const Vec3<T> b = relative * a;
   const Vec3<T> across = a.cross(b);
   const T sine = largest(T(across.norm()), T(1e-6)), cosine = a.dot(b);
@@ -136,7 +135,18 @@ Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& a, T swing_slope,
   return turn.transpose() * (swing_slope * swing + twist_slope * twist) * turn;
 }
 
-extern template class JointLimitRows<float>;
-extern template class JointLimitRows<double>;
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct ConeRows {
+  static constexpr ConeTerm<T, Law, Rows> kTerm{append_cone<T, Law, Rows>, cone_curvature<T>};
+};
+
+/// What World::declare takes. Without, joints bend as far as they are bent.
+template <class T>
+struct JointLimits {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct JointLimits<float>;
+extern template struct JointLimits<double>;
 
 }  // namespace sinew

@@ -1,7 +1,7 @@
 // One joint within a step, as the effects see it that are energies of a joint's own freedom: muscle.h,
 // joint_damping.h, joint_limit.h. Each looks at the joint once and appends a row per degree of freedom that
-// it acts on; together they go from one degree of freedom to the next. Rows go to what has TreeProblem's
-// add_row(row, present).
+// it acts on; together they go from one degree of freedom to the next. Rows go to a JointRowList or to what
+// has its add_row(row, present).
 #pragma once
 
 #include <algorithm>
@@ -57,6 +57,47 @@ struct JointStep {
     }
     return row;
   }
+};
+
+/// Rows of a tree's joints at the present pose, in the order of the bodies.
+template <class T>
+struct JointRowList {
+  std::vector<JointRow<T>> rows;
+  std::vector<EllipsoidRow<T>> ellipsoids;
+
+  void clear_rows() {
+    rows.clear();
+    ellipsoids.clear();
+  }
+  void add_row(const JointRow<T>& row, bool present) {
+    if (present) rows.push_back(row);
+  }
+};
+
+/// What one of these effects does in a step: functions that its own object file holds.
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct JointTerm {
+  using Step = JointStep<T, Law>;
+  /// Whether it has rows to append; then with the joint's offset from where it measures.
+  bool (*look)(const Step& joint, JointOffset<T>& offset, Rows& rows);
+  /// Those of the kth degree of freedom.
+  void (*append)(const Step& joint, const JointOffset<T>& offset, int k, Rows& rows);
+};
+
+/// The same of a ball joint's swing cone and twist range, whose rows are the joint's last.
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct ConeTerm {
+  void (*append)(const JointStep<T, Law>& joint, Rows& rows);
+  /// See cone_curvature.
+  Mat3<T> (*curvature)(const Quat<T>& relative, const Vec3<T>& bone, const T& swing_slope,
+                       const T& twist_slope);
+};
+
+/// What acts on joints; null: not declared.
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct JointTerms {
+  const JointTerm<T, Law, Rows>*muscles = nullptr, *damping = nullptr, *limits = nullptr;
+  const ConeTerm<T, Law, Rows>* cones = nullptr;
 };
 
 }  // namespace sinew

@@ -1,21 +1,16 @@
 #include "sinew/effects/muscle.h"
 
+#include "sinew/optimizer/ellipsoid_rows.h"
+
 namespace sinew {
 
-template <class T, class Law>
-void MuscleRows<T, Law>::append(const Step& joint, std::vector<EllipsoidRow<T>>& ellipsoids) const {
-  EllipsoidRow<T>& row = ellipsoids.emplace_back();
-  row.dof = joint.first_dof();
-  row.gradient = from_target_.rotational;
-  row.width = joint.kink_width;
-  for (int a = 0; a < 3; ++a) {
-    row.value[a] = from_target_.value[a];
-    row.minus[a] = joint.law.torque_minus[row.dof + a];
-    row.plus[a] = joint.law.torque_plus[row.dof + a];
-  }
+template <class T>
+void Muscles<T>::declare(StepPlan<T>& plan) {
+  plan.joints.muscles = &MuscleRows<T>::kTerm;
+  plan.ellipsoid_rows = make_ellipsoid_rows<T>;
 }
 
-template class MuscleRows<float>;
-template class MuscleRows<double>;
+template struct Muscles<float>;
+template struct Muscles<double>;
 
 }  // namespace sinew

@@ -3,40 +3,60 @@
 #pragma once
 
 #include "sinew/effects/joint_step.h"
+#include "sinew/effects/step_plan.h"
 
 namespace sinew {
 
-template <class T, class Law = JointLaw<T>>
-class MuscleRows {
- public:
+template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
+struct MuscleRows {
   using Step = JointStep<T, Law>;
 
-  static bool act(const Step& joint) {
-    return joint.any_dof([&](int dof) { return joint.law.has_muscle(dof); });
+  static bool look(const Step& joint, JointOffset<T>& from_target, Rows& rows) {
+    if (!joint.any_dof([&](int dof) { return joint.law.has_muscle(dof); })) return false;
+    from_target = offset_of<T>(joint.tree, joint.body, joint.target, joint.local);
+    if constexpr (std::is_arithmetic_v<T>)
+      if (joint.law.ellipsoidal[joint.body]) {
+        rows.ellipsoids.push_back(ellipsoid(joint, from_target));
+        return false;
+      }
+    return true;
   }
-  explicit MuscleRows(const Step& joint)
-      : from_target_(offset_of<T>(joint.tree, joint.body, joint.target, joint.local)) {}
-
-  template <class Rows>
-  void append(const Step& joint, int k, Rows& rows) const {
+  static void append(const Step& joint, const JointOffset<T>& from_target, int k, Rows& rows) {
     const int dof = joint.first_dof() + k;
     const auto pulls = joint.law.has_muscle(dof);
     if (!any(pulls)) return;
-    JointRow<T> row = joint.row(from_target_, RowScalar::kFromTarget, k);
+    JointRow<T> row = joint.row(from_target, RowScalar::kFromTarget, k);
     row.minus = joint.law.torque_minus[dof];
     row.plus = joint.law.torque_plus[dof];
     row.width = joint.kink_width;
     row.muscle = true;
     rows.add_row(row, pulls);
   }
-  /// Instead of rows, where the joint's limits are an ellipsoid.
-  void append(const Step& joint, std::vector<EllipsoidRow<T>>& ellipsoids) const;
+  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
 
  private:
-  JointOffset<T> from_target_;
+  static EllipsoidRow<T> ellipsoid(const Step& joint, const JointOffset<T>& from_target) {
+    EllipsoidRow<T> row;
+    row.dof = joint.first_dof();
+    row.gradient = from_target.rotational;
+    row.width = joint.kink_width;
+    for (int a = 0; a < 3; ++a) {
+      row.value[a] = from_target.value[a];
+      row.minus[a] = joint.law.torque_minus[row.dof + a];
+      row.plus[a] = joint.law.torque_plus[row.dof + a];
+    }
+    return row;
+  }
 };
 
-extern template class MuscleRows<float>;
-extern template class MuscleRows<double>;
+/// What World::declare takes. Without, strengths are 0 (limp) or infinite (the animation is played whatever
+/// it takes).
+template <class T>
+struct Muscles {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct Muscles<float>;
+extern template struct Muscles<double>;
 
 }  // namespace sinew

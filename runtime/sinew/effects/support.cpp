@@ -28,4 +28,30 @@ SupportPoints<T>::SupportPoints(const Tree<T>& tree, std::span<const ContactPoin
 template struct SupportPoints<float>;
 template struct SupportPoints<double>;
 
+namespace {
+
+template <class T>
+SupportPoints<T> points_of(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts) {
+  return {tree, contacts};
+}
+
+template <class T>
+void share(const SupportPoints<T>& points, const Kinematics<T>& kinematics, const T& ground,
+           std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
+  share_support<T>(points, kinematics.rotation, kinematics.origin, ground, {}, room, force, moment);
+}
+
+template <class T>
+constexpr SupportTerm<T> kSupport{points_of<T>, share<T>};
+
+}  // namespace
+
+template <class T>
+void Support<T>::declare(StepPlan<T>& plan) {
+  plan.support = &kSupport<T>;
+}
+
+template struct Support<float>;
+template struct Support<double>;
+
 }  // namespace sinew

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sinew/effects/contact.h"
+#include "sinew/effects/step_plan.h"
 #include "sinew/skeleton/scalar.h"
 
 namespace sinew {
@@ -153,5 +154,22 @@ void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<
 
 extern template struct SupportPoints<float>;
 extern template struct SupportPoints<double>;
+
+/// The same as a character's step calls it.
+template <class T>
+struct SupportTerm {
+  SupportPoints<T> (*points)(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
+  void (*share)(const SupportPoints<T>& points, const Kinematics<T>& kinematics, const T& ground,
+                std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment);
+};
+
+/// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.
+template <class T>
+struct Support {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct Support<float>;
+extern template struct Support<double>;
 
 }  // namespace sinew

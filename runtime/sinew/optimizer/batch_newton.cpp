@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <type_traits>
 
 #include "sinew/optimizer/kernels/newton.h"
 
@@ -49,7 +50,7 @@ void BatchNewton::reserve(const SolveRoom& rig) {
   free_.reserve(rig.dofs);
 }
 
-bool BatchNewton::takes(const TreeProblem<float>& p, const Accuracy& accuracy) {
+bool BatchNewton::takes(const TreeProblem<float>& p, const Accuracy& accuracy) const {
   if (accuracy.scheme == Scheme::kMomentum || !p.pushes.empty() || !p.effects.empty()) return false;
   bool any = false;
   for (int i = 0; i < p.tree->bodies; ++i) {
@@ -91,5 +92,14 @@ void BatchNewton::solve(const StepSettings<float>& settings, const Accuracy& acc
   kernel(set_).solve(batch);
   std::copy_n(lane_reports.begin(), problems.size(), reports.begin());
 }
+
+template <class T>
+void Batches<T>::declare(StepPlan<T>& plan) {
+  if constexpr (std::is_same_v<T, float>)
+    plan.make_batches = []() -> std::unique_ptr<BatchSolver> { return std::make_unique<BatchNewton>(); };
+}
+
+template struct Batches<float>;
+template struct Batches<double>;
 
 }  // namespace sinew

@@ -14,28 +14,38 @@
 
 namespace sinew {
 
-/// Working memory of batches; keeps nothing from one to the next.
-class BatchNewton {
+/// As a world calls it.
+class BatchSolver {
  public:
   static constexpr int kMostLanes = 16;
 
-  explicit BatchNewton(InstructionSet set = best_instruction_set());
+  virtual ~BatchSolver() = default;
   /// Characters per batch.
-  int lanes() const { return lanes_; }
-
+  virtual int lanes() const = 0;
   /// Set-up for rigs of at most that size; solving allocates nothing.
-  void reserve(const SolveRoom& rig);
+  virtual void reserve(const SolveRoom& rig) = 0;
   /// That reserve() takes.
-  std::size_t bytes(const SolveRoom& rig) const;
+  virtual std::size_t bytes(const SolveRoom& rig) const = 0;
 
   /// Whether a batch solves such a problem: see above.
-  static bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy);
-
+  virtual bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy) const = 0;
   /// Solves up to lanes() problems of one tree, each with at least one unknown, from their `local`. Where a
   /// report says converged, the problem holds the solution and its kinematics, gradient, couples and rows;
   /// the others are as before: they need a solve of their own.
+  virtual void solve(const StepSettings<float>& settings, const Accuracy& accuracy,
+                     std::span<TreeProblem<float>* const> problems, std::span<SolveReport> reports) = 0;
+};
+
+/// Working memory of batches; keeps nothing from one to the next.
+class BatchNewton final : public BatchSolver {
+ public:
+  explicit BatchNewton(InstructionSet set = best_instruction_set());
+  int lanes() const override { return lanes_; }
+  void reserve(const SolveRoom& rig) override;
+  std::size_t bytes(const SolveRoom& rig) const override;
+  bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy) const override;
   void solve(const StepSettings<float>& settings, const Accuracy& accuracy,
-             std::span<TreeProblem<float>* const> problems, std::span<SolveReport> reports);
+             std::span<TreeProblem<float>* const> problems, std::span<SolveReport> reports) override;
 
  private:
   InstructionSet set_;
@@ -44,5 +54,15 @@ class BatchNewton {
   std::vector<std::uint8_t> free_;  ///< [dof] in some lane
   std::vector<std::byte> memory_;
 };
+
+/// What World::declare takes. Without, characters are solved one by one, with the same bits. Its kernels hold
+/// the rows of muscles, joint limits and damping, declared or not, and act by what is declared.
+template <class T>
+struct Batches {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct Batches<float>;
+extern template struct Batches<double>;
 
 }  // namespace sinew

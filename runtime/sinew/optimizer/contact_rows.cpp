@@ -1,7 +1,9 @@
 #include "sinew/optimizer/contact_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace sinew {
 namespace {
@@ -14,7 +16,103 @@ inline void add_combination(T* __restrict path, T a, const T* __restrict x, T b,
     for (int j = block; j < block + TreePattern::kBlock; ++j) path[j] += a * x[j] + b * y[j] + c * z[j];
 }
 
-}  // namespace
+template <class T>
+class ContactRows final : public ContactModel<T> {
+ public:
+  using Trees = typename ContactModel<T>::Trees;
+
+  void reserve(int contacts, int entries) override;
+  std::size_t bytes(const SolveRoom& room) const override {
+    return room.contacts * sizeof(Row) + room.contact_entries * (sizeof(int) + 6 * sizeof(T));
+  }
+  void limit(int entries) override { most_entries_ = entries; }
+  void evaluate(Trees trees, std::span<Contact<T>> contacts, T stick, double& energy) const override;
+  void add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick,
+                  TreeProblem<T>& tree) const override;
+  void collect(Trees trees, std::span<const Contact<T>> contacts, const Unknowns& unknowns,
+               const PathAxes<T>& axes, T near, T stick) override;
+  bool empty() const override { return rows_.empty(); }
+  bool coupled() const override { return coupled_; }
+  void look_along(std::span<const T> direction) override;
+  T slope(T t) const override;
+  void move(T t) override;
+  void correct(std::span<const Contact<T>> contacts) override;
+  bool measure(std::span<const Contact<T>> contacts) override;
+  void add_gradient(std::span<T> gradient) const override;
+  void add_curvature(TreeMatrix<T>& matrix) override;
+  void multiply(std::span<const T> x, std::span<T> y) const override;
+  void add_bending(TreeMatrix<T>& matrix) const override;
+  void multiply_bending(std::span<const T> x, std::span<T> y) const override;
+
+ private:
+  struct Side {
+    int first = 0;  ///< of its entries
+    int count = 0;
+    int depth = 0;  ///< position of the first entry on its unknown's path
+  };
+  struct Row {
+    int contact = 0;
+    Side side[2];
+    T stiffness = T(0), grip = T(0);  ///< N/m, μλ in N
+    T stretch = T(1);                 ///< change of the damped gap by the gap
+    T gap = T(0), slip[2]{};          ///< at the inner solution so far; the gap is the damped one
+    T d_gap = T(0), d_slip[2]{};      ///< along the direction looked at
+    bool in_factor = false;           ///< the last factor holds some curvature of it
+    bool bends = false;
+    Mat3<T> bending = Mat3<T>::Zero();  ///< −force·∇²distance, N/m, world axes
+  };
+  /// Second derivative by (gap, slip 1, slip 2).
+  struct Block {
+    T normal = T(0), slip11 = T(0), slip12 = T(0), slip22 = T(0);
+    bool zero() const { return normal <= T(0) && slip11 <= T(0) && slip22 <= T(0); }
+  };
+
+  Side add_side(const Contact<T>& contact, int leaf, const Vec3<T>& material, T sign, int above,
+                const TreePattern& pattern, const PathAxes<T>& axes);
+  Block block(const Row& row) const;
+
+  std::vector<Row> rows_;
+  std::vector<int> unknown_;  ///< [entry]
+  std::vector<T> gap_, slip_[2],
+      move_[3];  ///< [entry] change per unknown; move_: of the contact point, world
+  int most_entries_ = 0;
+  T stick_ = T(0);
+  bool coupled_ = false;
+};
+
+template <class T>
+void ContactRows<T>::evaluate(Trees trees, std::span<Contact<T>> contacts, T stick, double& energy) const {
+  for (Contact<T>& c : contacts) {
+    TreeProblem<T>& a = *trees[c.tree_a];
+    TreeProblem<T>* b = c.tree_b < 0 ? nullptr : trees[c.tree_b];
+    sinew::measure(a.kinematics, b ? &b->kinematics : nullptr, c);
+    if (!c.acts()) continue;
+    energy += double(contact_energy(c, stick));
+    const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, stick);
+    a.force[c.body_a] += normal + tangent;
+    a.moment[c.body_a] += c.point.cross(normal) + c.material_point.cross(tangent);
+    if (b) {
+      b->force[c.body_b] -= normal + tangent;
+      b->moment[c.body_b] -= c.point.cross(normal) + c.material_point_b.cross(tangent);
+    }
+  }
+}
+
+template <class T>
+void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick,
+                                TreeProblem<T>& p) const {
+  for (const Contact<T>& c : contacts) {
+    const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, stick);
+    if (trees[c.tree_a] == &p) {
+      p.composite[c.body_a].add_force(c.point, normal);
+      p.composite[c.body_a].add_force(c.material_point, tangent);
+    }
+    if (c.tree_b >= 0 && trees[c.tree_b] == &p) {
+      p.composite[c.body_b].add_force(c.point, -normal);
+      p.composite[c.body_b].add_force(c.material_point_b, -tangent);
+    }
+  }
+}
 
 template <class T>
 void ContactRows<T>::reserve(int contacts, int entries) {
@@ -56,8 +154,8 @@ typename ContactRows<T>::Side ContactRows<T>::add_side(const Contact<T>& c, int 
 }
 
 template <class T>
-void ContactRows<T>::collect(std::span<TreeProblem<T>* const> trees, std::span<const Contact<T>> contacts,
-                             const Unknowns& unknowns, const PathAxes<T>& axes, T near, T stick) {
+void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, const Unknowns& unknowns,
+                             const PathAxes<T>& axes, T near, T stick) {
   rows_.clear();
   unknown_.clear();
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->clear();
@@ -262,7 +360,14 @@ void ContactRows<T>::multiply_bending(std::span<const T> x, std::span<T> y) cons
   }
 }
 
-template class ContactRows<float>;
-template class ContactRows<double>;
+}  // namespace
+
+template <class T>
+std::unique_ptr<ContactModel<T>> make_contact_rows() {
+  return std::make_unique<ContactRows<T>>();
+}
+
+template std::unique_ptr<ContactModel<float>> make_contact_rows<float>();
+template std::unique_ptr<ContactModel<double>> make_contact_rows<double>();
 
 }  // namespace sinew

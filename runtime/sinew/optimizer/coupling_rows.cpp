@@ -1,11 +1,60 @@
 #include "sinew/optimizer/coupling_rows.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace sinew {
+namespace {
 
 template <class T>
-void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin, Coupling<T>& c) {
+class CouplingRows final : public CouplingModel<T> {
+ public:
+  void reserve(const SolveRoom& room) override;
+  std::size_t bytes(const SolveRoom& room) const override {
+    return room.nodes * (sizeof(Node) + 2 * sizeof(Vec3<T>)) + room.stencils * sizeof(Stencils) +
+           room.tetrahedra * sizeof(Tetrahedra) + room.node_entries * 3 * sizeof(T);
+  }
+  void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
+               const Unknowns& unknowns, const PathAxes<T>& axes) override;
+  bool empty() const override { return stencils_.empty() && tetrahedra_.empty(); }
+  bool coupled() const override { return coupled_; }
+  void add_curvature(TreeMatrix<T>& matrix) const override;
+  void multiply(std::span<const T> x, std::span<T> y) const override;
+
+ private:
+  struct Node {
+    int leaf = -1;   ///< last unknown of its path; −1: nothing moves it
+    int first = 0;   ///< of its entries
+    int single = 0;  ///< a particle: its path is its own three translations along the world's axes
+  };
+  struct Stencils {
+    int count = 0;
+    int node[4];
+    T weight[4];
+    Mat3<T> curvature;
+  };
+  struct Tetrahedra {
+    int node[4];
+    TetrahedronHessian<T> curvature;
+  };
+
+  void add_node(const CouplingNode<T>& node, std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns,
+                const PathAxes<T>& axes);
+  int cut(const int* nodes, int count, int node) const;
+  void add_block(int i, int j, const Mat3<T>& block, int from, TreeMatrix<T>& matrix) const;
+  void note_coupling(const int* nodes, int count);
+
+  const TreePattern* pattern_ = nullptr;
+  std::vector<Node> nodes_;
+  std::vector<T> along_[3];  ///< [entry] displacement per unknown, world axes, root first
+  std::vector<Stencils> stencils_;
+  std::vector<Tetrahedra> tetrahedra_;
+  mutable std::vector<Vec3<T>> moved_, pulled_;  ///< [node] of a product
+  bool coupled_ = false;
+};
+
+template <class T>
+double measure(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin, Coupling<T>& c) {
   for (CouplingNode<T>& node : c.nodes) {
     if (node.tree < 0) {
       node.point = (node.place - common_origin).template cast<T>();
@@ -14,6 +63,7 @@ void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& com
       node.point = k.origin[node.body] + k.rotation[node.body] * node.local;
     }
   }
+  return measure_elements(c);
 }
 
 template <class T>
@@ -207,7 +257,22 @@ void CouplingRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
   }
 }
 
-SINEW_COUPLING_ROWS_INSTANCES(template, float)
-SINEW_COUPLING_ROWS_INSTANCES(template, double)
+template <class T>
+std::unique_ptr<CouplingModel<T>> make_rows() {
+  return std::make_unique<CouplingRows<T>>();
+}
+
+template <class T>
+constexpr CouplingTerm<T> kCouplings{make_rows<T>, measure<T>, add_wrenches<T>, lead_out<T>};
+
+}  // namespace
+
+template <class T>
+void Ties<T>::declare(StepPlan<T>& plan) {
+  plan.couplings = &kCouplings<T>;
+}
+
+template struct Ties<float>;
+template struct Ties<double>;
 
 }  // namespace sinew

@@ -6,84 +6,59 @@
 // joins and is left to conjugate gradients, as with contacts between trees.
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "sinew/effects/coupling.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
 
-/// Puts every node where its body is now, `common_origin` in world coordinates.
+/// As the inner problem calls it: null there where nothing is tied.
 template <class T>
-void place_nodes(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin,
-                 Coupling<T>& coupling);
-
-/// Adds the nodes' gradients to the wrenches of their bodies (after begin_evaluation).
-template <class T>
-void add_wrenches(const Coupling<T>& coupling, std::span<TreeProblem<T>* const> trees);
-
-template <class T>
-class CouplingRows {
+class CouplingModel {
  public:
+  virtual ~CouplingModel() = default;
   /// Set-up; nothing allocates afterwards.
-  void reserve(const SolveRoom& room);
+  virtual void reserve(const SolveRoom& room) = 0;
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return room.nodes * (sizeof(Node) + 2 * sizeof(Vec3<T>)) + room.stencils * sizeof(Stencils) +
-           room.tetrahedra * sizeof(Tetrahedra) + room.node_entries * 3 * sizeof(T);
-  }
+  virtual std::size_t bytes(const SolveRoom& room) const = 0;
 
   /// Linearises all elements about the present kinematics of `trees`, where their nodes have been placed.
-  void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
-               const Unknowns& unknowns, const PathAxes<T>& axes);
-  bool empty() const { return stencils_.empty() && tetrahedra_.empty(); }
+  virtual void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
+                       const Unknowns& unknowns, const PathAxes<T>& axes) = 0;
+  virtual bool empty() const = 0;
   /// Some element has unknowns on paths that part.
-  bool coupled() const { return coupled_; }
+  virtual bool coupled() const = 0;
 
   /// Adds what lies within paths, without what could make the matrix indefinite: unknowns that several parted
   /// branches of an element share are left out, as they hardly change its energy.
-  void add_curvature(TreeMatrix<T>& matrix) const;
+  virtual void add_curvature(TreeMatrix<T>& matrix) const = 0;
   /// y += the whole second derivative · x.
-  void multiply(std::span<const T> x, std::span<T> y) const;
-
- private:
-  struct Node {
-    int leaf = -1;   ///< last unknown of its path; −1: nothing moves it
-    int first = 0;   ///< of its entries
-    int single = 0;  ///< a particle: its path is its own three translations along the world's axes
-  };
-  struct Stencils {
-    int count = 0;
-    int node[4];
-    T weight[4];
-    Mat3<T> curvature;
-  };
-  struct Tetrahedra {
-    int node[4];
-    TetrahedronHessian<T> curvature;
-  };
-
-  void add_node(const CouplingNode<T>& node, std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns,
-                const PathAxes<T>& axes);
-  int cut(const int* nodes, int count, int node) const;
-  void add_block(int i, int j, const Mat3<T>& block, int from, TreeMatrix<T>& matrix) const;
-  void note_coupling(const int* nodes, int count);
-
-  const TreePattern* pattern_ = nullptr;
-  std::vector<Node> nodes_;
-  std::vector<T> along_[3];  ///< [entry] displacement per unknown, world axes, root first
-  std::vector<Stencils> stencils_;
-  std::vector<Tetrahedra> tetrahedra_;
-  mutable std::vector<Vec3<T>> moved_, pulled_;  ///< [node] of a product
-  bool coupled_ = false;
+  virtual void multiply(std::span<const T> x, std::span<T> y) const = 0;
 };
 
-#define SINEW_COUPLING_ROWS_INSTANCES(prefix, T)                                                   \
-  prefix class CouplingRows<T>;                                                                    \
-  prefix void place_nodes<T>(std::span<TreeProblem<T>* const>, const Vec3<double>&, Coupling<T>&); \
-  prefix void add_wrenches<T>(const Coupling<T>&, std::span<TreeProblem<T>* const>);
-SINEW_COUPLING_ROWS_INSTANCES(extern template, float)
-SINEW_COUPLING_ROWS_INSTANCES(extern template, double)
+/// What couplings do in a step.
+template <class T>
+struct CouplingTerm {
+  std::unique_ptr<CouplingModel<T>> (*make_rows)();
+  /// Puts every node where its body is now, `common_origin` in world coordinates; energy and gradients there:
+  /// see measure_elements.
+  double (*measure)(std::span<TreeProblem<T>* const> trees, const Vec3<double>& common_origin,
+                    Coupling<T>& coupling);
+  /// Adds the nodes' gradients to the wrenches of their bodies (after begin_evaluation).
+  void (*add_wrenches)(const Coupling<T>& coupling, std::span<TreeProblem<T>* const> trees);
+  /// See lead_out.
+  void (*lead_out)(T h, Coupling<T>& coupling);
+};
+
+/// Declared by whoever ties something: World::add_loop, add_particles.
+template <class T>
+struct Ties {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct Ties<float>;
+extern template struct Ties<double>;
 
 }  // namespace sinew

@@ -1,5 +1,7 @@
 #include "sinew/optimizer/ellipsoid_rows.h"
 
+#include <vector>
+
 namespace sinew {
 namespace {
 
@@ -13,7 +15,30 @@ void add_three(const Vec3<T>& v, int first, std::span<T> x) {
   for (int a = 0; a < 3; ++a) x[first + a] += v[a];
 }
 
-}  // namespace
+template <class T>
+class EllipsoidRows final : public EllipsoidModel<T> {
+ public:
+  void reserve(int joints) override { rows_.reserve(joints); }
+  std::size_t bytes(int joints) const override { return joints * sizeof(Row); }
+  void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns) override;
+  bool empty() const override { return rows_.empty(); }
+  void add_gradient(std::span<T> gradient) const override;
+  T slope(T t) const override;
+  void look_along(std::span<const T> step) override;
+  void move(T t) override;
+  void add_curvature(const Unknowns& unknowns, TreeMatrix<T>& matrix) const override;
+  void multiply(std::span<const T> x, std::span<T> y) const override;
+  void rewind() override;
+  bool measure(std::span<TreeProblem<T>* const> trees) override;
+
+ private:
+  struct Row {
+    EllipsoidRow<T> row;
+    int unknown = 0;  ///< of the joint's first degree of freedom
+    Vec3<T> value = Vec3<T>::Zero(), d_value = Vec3<T>::Zero();
+  };
+  std::vector<Row> rows_;
+};
 
 template <class T>
 void EllipsoidRows<T>::collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns) {
@@ -81,7 +106,14 @@ bool EllipsoidRows<T>::measure(std::span<TreeProblem<T>* const> trees) {
   return n == rows_.size();
 }
 
-template class EllipsoidRows<float>;
-template class EllipsoidRows<double>;
+}  // namespace
+
+template <class T>
+std::unique_ptr<EllipsoidModel<T>> make_ellipsoid_rows() {
+  return std::make_unique<EllipsoidRows<T>>();
+}
+
+template std::unique_ptr<EllipsoidModel<float>> make_ellipsoid_rows<float>();
+template std::unique_ptr<EllipsoidModel<double>> make_ellipsoid_rows<double>();
 
 }  // namespace sinew

@@ -1,45 +1,43 @@
 // Ellipsoidal muscle limits in the convex model of an outer pass, as contact_rows.h for contacts.
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
 
+/// As the inner problem calls it: null there where no muscles are declared.
 template <class T>
-class EllipsoidRows {
+class EllipsoidModel {
  public:
-  void reserve(int joints) { rows_.reserve(joints); }
+  virtual ~EllipsoidModel() = default;
+  /// Set-up for so many joints; nothing allocates afterwards.
+  virtual void reserve(int joints) = 0;
   /// That reserve() takes.
-  static std::size_t bytes(int joints) { return joints * sizeof(Row); }
+  virtual std::size_t bytes(int joints) const = 0;
 
   /// Takes the rows of the trees as they were measured. Unknowns are those of all trees together.
-  void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns);
-  bool empty() const { return rows_.empty(); }
-  void add_gradient(std::span<T> gradient) const;
+  virtual void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns) = 0;
+  virtual bool empty() const = 0;
+  virtual void add_gradient(std::span<T> gradient) const = 0;
   /// Derivative along the step of look_along(), t of it away.
-  T slope(T t) const;
-  void look_along(std::span<const T> step);
-  void move(T t);
-  void add_curvature(const Unknowns& unknowns, TreeMatrix<T>& matrix) const;
-  void multiply(std::span<const T> x, std::span<T> y) const;
+  virtual T slope(T t) const = 0;
+  virtual void look_along(std::span<const T> step) = 0;
+  virtual void move(T t) = 0;
+  virtual void add_curvature(const Unknowns& unknowns, TreeMatrix<T>& matrix) const = 0;
+  virtual void multiply(std::span<const T> x, std::span<T> y) const = 0;
   /// Back to the values that were collected.
-  void rewind();
+  virtual void rewind() = 0;
   /// Values as the trees hold them now. False where the rows are others than those collected.
-  bool measure(std::span<TreeProblem<T>* const> trees);
-
- private:
-  struct Row {
-    EllipsoidRow<T> row;
-    int unknown = 0;  ///< of the joint's first degree of freedom
-    Vec3<T> value = Vec3<T>::Zero(), d_value = Vec3<T>::Zero();
-  };
-  std::vector<Row> rows_;
+  virtual bool measure(std::span<TreeProblem<T>* const> trees) = 0;
 };
 
-extern template class EllipsoidRows<float>;
-extern template class EllipsoidRows<double>;
+template <class T>
+std::unique_ptr<EllipsoidModel<T>> make_ellipsoid_rows();
+
+extern template std::unique_ptr<EllipsoidModel<float>> make_ellipsoid_rows<float>();
+extern template std::unique_ptr<EllipsoidModel<double>> make_ellipsoid_rows<double>();
 
 }  // namespace sinew

@@ -24,6 +24,13 @@ T dot(std::span<const T> a, std::span<const T> b) {
 }  // namespace
 
 template <class T>
+void InnerProblem<T>::declare(const StepPlan<T>& plan) {
+  if (plan.contact_rows) contact_rows_ = plan.contact_rows();
+  if (plan.couplings && !couplings_) couplings_ = plan.couplings->make_rows();
+  if (plan.ellipsoid_rows && !ellipsoids_) ellipsoids_ = plan.ellipsoid_rows();
+}
+
+template <class T>
 void InnerProblem<T>::reserve(const SolveRoom& room) {
   const int dofs = room.dofs;
   most_entries_ = room.contact_entries;
@@ -32,11 +39,11 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   unknowns_.reserve(dofs);
   axes_.reserve(dofs, room.path_entries);
   for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, room.path_entries);
-  contact_rows_.reserve(room.contacts, room.contact_entries);
-  coupling_rows_.reserve(room);
+  contact_rows_->reserve(room.contacts, room.contact_entries);
+  if (couplings_) couplings_->reserve(room);
   joint_rows_.reserve(dofs * 8 + room.effect_rows);
   path_.resize(TreePattern::padded(dofs));
-  ellipsoid_rows_.reserve(dofs / 3);
+  if (ellipsoids_) ellipsoids_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
     v->reserve(dofs);
@@ -50,7 +57,7 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   unknowns_.clear();
   int entries = 0;
   for (const TreeProblem<T>* p : trees_) entries += p->room.contact_entries;
-  contact_rows_.limit(std::min(entries, most_entries_));
+  contact_rows_->limit(std::min(entries, most_entries_));
   for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
 }
 
@@ -61,13 +68,13 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
   axes_.clear();
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
-  contact_rows_.collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
-  ellipsoid_rows_.collect(trees_, unknowns_);
+  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
+  if (ellipsoids_) ellipsoids_->collect(trees_, unknowns_);
   joint_rows_.clear();
   for (TreeProblem<T>* p : trees_)
     for (const JointRow<T>& row : p->rows)
       joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
-  coupling_rows_.collect(trees_, couplings, unknowns_, axes_);
+  if (couplings_) couplings_->collect(trees_, couplings, unknowns_, axes_);
   assemble(contacts, couplings, geometric);
   // The gradient without the rows', which are added back wherever they move.
   base_gradient_.assign(size(), T(0));
@@ -86,17 +93,7 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
   for (TreeProblem<T>* p : trees_) {
     begin_composite(*settings_, *p);
     if (geometric) {
-      for (const Contact<T>& c : contacts) {
-        const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
-        if (trees_[c.tree_a] == p) {
-          p->composite[c.body_a].add_force(c.point, normal);
-          p->composite[c.body_a].add_force(c.material_point, tangent);
-        }
-        if (c.tree_b >= 0 && trees_[c.tree_b] == p) {
-          p->composite[c.body_b].add_force(c.point, -normal);
-          p->composite[c.body_b].add_force(c.material_point_b, -tangent);
-        }
-      }
+      contact_rows_->add_forces(trees_, contacts, settings_->stick, *p);
       for (const Coupling<T>* c : couplings)
         for (const CouplingNode<T>& node : c->nodes)
           if (node.tree >= 0 && trees_[node.tree] == p)
@@ -110,15 +107,15 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<C
                        smooth_);
     if (geometric) add_joint_geometry(*p);
   }
-  if (geometric) contact_rows_.add_bending(smooth_);
-  if (coupling_rows_.empty()) return;
+  if (geometric) contact_rows_->add_bending(smooth_);
+  if (!tied()) return;
   local_.values() = smooth_.values();
-  coupling_rows_.add_curvature(local_);
+  couplings_->add_curvature(local_);
 }
 
 template <class T>
 void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
-  measure_joint_curvature(p);
+  measure_joint_curvature(*settings_, p);
   const Tree<T>& tree = *p.tree;
   for (int i = 0; i < tree.bodies; ++i) {
     if (tree.type[i] != JointType::kBall && tree.type[i] != JointType::kFree) continue;
@@ -132,8 +129,8 @@ void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
 
 template <class T>
 void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
-  contact_rows_.add_gradient(gradient);
-  ellipsoid_rows_.add_gradient(gradient);
+  contact_rows_->add_gradient(gradient);
+  if (ellipsoids_) ellipsoids_->add_gradient(gradient);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T slope = row.slope(rows.value);
@@ -143,7 +140,8 @@ void InnerProblem<T>::add_row_gradient(std::span<T> gradient) const {
 
 template <class T>
 T InnerProblem<T>::row_slope(T t) const {
-  T slope = contact_rows_.slope(t) + ellipsoid_rows_.slope(t);
+  T slope = contact_rows_->slope(t);
+  if (ellipsoids_) slope += ellipsoids_->slope(t);
   for (const JointRows& rows : joint_rows_)
     slope += rows.row.slope(rows.value + t * rows.d_value) * rows.d_value;
   return slope;
@@ -185,15 +183,15 @@ T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
 template <class T>
 void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) const {
   smooth_.multiply(x, y);
-  if (geometric_ && contact_rows_.coupled()) contact_rows_.multiply_bending(x, y);
-  if (!coupling_rows_.empty()) coupling_rows_.multiply(x, y);
+  if (geometric_ && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
+  if (tied()) couplings_->multiply(x, y);
 }
 
 template <class T>
 void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const {
   multiply_smooth(x, y);
-  contact_rows_.multiply(x, y);
-  ellipsoid_rows_.multiply(x, y);
+  contact_rows_->multiply(x, y);
+  if (ellipsoids_) ellipsoids_->multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T curvature = row.curvature(rows.value);
@@ -207,9 +205,9 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far.
 template <class T>
 bool InnerProblem<T>::newton_step() {
-  factor_.values() = coupling_rows_.empty() ? smooth_.values() : local_.values();
-  contact_rows_.add_curvature(factor_);
-  ellipsoid_rows_.add_curvature(unknowns_, factor_);
+  factor_.values() = tied() ? local_.values() : smooth_.values();
+  contact_rows_->add_curvature(factor_);
+  if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
     const T curvature = rows.in_factor = row.curvature(rows.value);
@@ -240,12 +238,12 @@ bool InnerProblem<T>::conjugate_gradients() {
   direction_ = preconditioned_;
   T energy = dot<T>(residual_, preconditioned_);
   const T goal = energy * T(kCgTolerance * kCgTolerance);
-  const int most = coupling_rows_.empty() ? kMostProducts : std::max(kMostProducts, 2 * size());
+  const int most = tied() ? std::max(kMostProducts, 2 * size()) : kMostProducts;
   for (int iteration = 0; iteration < most && energy > goal; ++iteration) {
     multiply_full(direction_, product_);
     ++products;
     const T curvature = dot<T>(direction_, product_);
-    if (!(curvature > T(0))) return iteration > 0 && coupling_rows_.empty();
+    if (!(curvature > T(0))) return iteration > 0 && !tied();
     const T length = energy / curvature;
     for (int k = 0; k < size(); ++k) {
       step_[k] += length * direction_[k];
@@ -285,8 +283,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     if (iteration == 0) report.first_length = double(length);
     const bool last =
         (iteration > 0 && double(length) < kShrink * report.first_length) || length < T(0.1) * tolerance;
-    contact_rows_.look_along(step_);
-    ellipsoid_rows_.look_along(step_);
+    contact_rows_->look_along(step_);
+    if (ellipsoids_) ellipsoids_->look_along(step_);
     for (JointRows& rows : joint_rows_) {
       const JointRow<T>& row = rows.row;
       rows.d_value = T(0);
@@ -300,7 +298,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     }
     // Where no row bears on the way, the model is quadratic and the step exact.
     const bool straight =
-        contact_rows_.empty() && ellipsoid_rows_.empty() &&
+        contact_rows_->empty() && !rounded() &&
         std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
     report.straight = straight && iteration == 0;
     const T t = straight ? T(1) : exact_line_search(quadratic, linear);
@@ -309,8 +307,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       correction_product_[k] += t * product_[k];
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
-    contact_rows_.move(t);
-    ellipsoid_rows_.move(t);
+    contact_rows_->move(t);
+    if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
     if (last || straight) break;
     add_row_gradient(inner_gradient_);
@@ -322,18 +320,18 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
 
 template <class T>
 void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
-  contact_rows_.look_along(correction_);
-  contact_rows_.correct(contacts);
-  ellipsoid_rows_.rewind();
+  contact_rows_->look_along(correction_);
+  contact_rows_->correct(contacts);
+  if (ellipsoids_) ellipsoids_->rewind();
   for (JointRows& rows : joint_rows_) rows.value = rows.row.value;
 }
 
 template <class T>
 double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (!ellipsoid_rows_.measure(trees_)) return kNone;
+  if (ellipsoids_ && !ellipsoids_->measure(trees_)) return kNone;
   // As the last factor holds them, which what leaves the tree never is.
-  bool same = contact_rows_.measure(contacts) && ellipsoid_rows_.empty() && !coupling_rows_.coupled();
+  bool same = contact_rows_->measure(contacts) && !rounded() && !(couplings_ && couplings_->coupled());
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;

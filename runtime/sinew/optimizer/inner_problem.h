@@ -28,11 +28,13 @@ struct InnerReport {
 template <class T>
 class InnerProblem {
  public:
+  /// Set-up, before reserve(): what `plan` has rows of, it can solve.
+  void declare(const StepPlan<T>& plan);
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return ContactRows<T>::bytes(room) + CouplingRows<T>::bytes(room) +
-           EllipsoidRows<T>::bytes(room.dofs / 3) +
+  std::size_t bytes(const SolveRoom& room) const {
+    return contact_rows_->bytes(room) + (couplings_ ? couplings_->bytes(room) : 0) +
+           (ellipsoids_ ? ellipsoids_->bytes(room.dofs / 3) : 0) +
            room.dofs * (8 * sizeof(JointRows) + 13 * sizeof(T) + 8 * sizeof(int)) +
            room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
            room.bodies * 2 * sizeof(Vec3<T>);
@@ -60,9 +62,10 @@ class InnerProblem {
   /// where a row has changed.
   double chord(std::span<const Contact<T>> contacts);
 
+  const ContactModel<T>& contacts() const { return *contact_rows_; }
   std::vector<T>& correction() { return correction_; }
   const std::vector<T>& correction() const { return correction_; }
-  bool has_contacts() const { return !contact_rows_.empty(); }
+  bool has_contacts() const { return !contact_rows_->empty(); }
   /// Directional derivative of the true energy at the chart centres.
   T slope(std::span<const T> direction) const;
   /// Directional derivative with the gradient that the trees hold now.
@@ -89,7 +92,9 @@ class InnerProblem {
 
   void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
                 bool geometric);
-  bool coupled() const { return contact_rows_.coupled() || coupling_rows_.coupled(); }
+  bool rounded() const { return ellipsoids_ && !ellipsoids_->empty(); }
+  bool tied() const { return couplings_ && !couplings_->empty(); }
+  bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
   void add_joint_geometry(TreeProblem<T>& tree);
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
@@ -109,10 +114,10 @@ class InnerProblem {
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   bool geometric_ = true;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
-  ContactRows<T> contact_rows_;
-  CouplingRows<T> coupling_rows_;
+  std::unique_ptr<ContactModel<T>> contact_rows_ = std::make_unique<ContactModel<T>>();
+  std::unique_ptr<CouplingModel<T>> couplings_;    ///< null: none are declared
+  std::unique_ptr<EllipsoidModel<T>> ellipsoids_;  ///< the same
   std::vector<JointRows> joint_rows_;
-  EllipsoidRows<T> ellipsoid_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far

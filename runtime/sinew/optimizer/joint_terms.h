@@ -14,11 +14,11 @@ void measure_joint_rows(const StepSettings<T>& settings, TreeProblem<T>& problem
 /// its own three rotations, `problem.joint_curvature`. Zero for joints without active rows. Call after
 /// measure_joint_rows.
 template <class T>
-void measure_joint_curvature(TreeProblem<T>& problem);
+void measure_joint_curvature(const StepSettings<T>& settings, TreeProblem<T>& problem);
 
 #define SINEW_JOINT_TERMS_INSTANCES(prefix, T)                                \
   prefix void measure_joint_rows<T>(const StepSettings<T>&, TreeProblem<T>&); \
-  prefix void measure_joint_curvature<T>(TreeProblem<T>&);
+  prefix void measure_joint_curvature<T>(const StepSettings<T>&, TreeProblem<T>&);
 SINEW_JOINT_TERMS_INSTANCES(extern template, float)
 SINEW_JOINT_TERMS_INSTANCES(extern template, double)
 

@@ -4,21 +4,21 @@
 // add_row(row, present) leaves one out where it is not present.
 #pragma once
 
-#include <optional>
 #include <type_traits>
 
-#include "sinew/effects/joint_damping.h"
-#include "sinew/effects/joint_limit.h"
-#include "sinew/effects/muscle.h"
+#include "sinew/effects/joint_step.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
 
-/// See measure_joint_rows.
-template <class T, class Problem>
-void measure_rows(const StepSettings<Number<T>>& settings, Problem& p) {
+/// See measure_joint_rows. `terms`: JointTerms of the problem's law and rows.
+template <class T, class Terms, class Problem>
+void measure_rows(const StepSettings<Number<T>>& settings, const Terms& terms, Problem& p) {
   using Law = std::remove_cvref_t<decltype(p.law)>;
   const Tree<Number<T>>& tree = *p.tree;
+  constexpr int kTerms = 3;
+  const decltype(terms.muscles) in_order[kTerms] = {terms.muscles, terms.damping, terms.limits};
+  JointOffset<T> offset[kTerms];
   p.clear_rows();
   for (int i = 0; i < tree.bodies; ++i) {
     if (tree.dof_count(i) == 0 || !p.free[tree.first_dof[i]]) continue;
@@ -32,29 +32,19 @@ void measure_rows(const StepSettings<Number<T>>& settings, Problem& p) {
                                   settings.kink_width,
                                   settings.limit_stiffness,
                                   settings.limit_damping};
-    std::optional<MuscleRows<T, Law>> muscles;
-    std::optional<JointDampingRows<T, Law>> damping;
-    std::optional<JointLimitRows<T, Law>> limits;
-    if (MuscleRows<T, Law>::act(joint)) muscles.emplace(joint);
-    if (JointDampingRows<T, Law>::act(joint)) damping.emplace(joint);
-    if (JointLimitRows<T, Law>::act(joint)) limits.emplace(joint);
-    if constexpr (std::is_arithmetic_v<T>)
-      if (muscles && p.law.ellipsoidal[i]) {
-        muscles->append(joint, p.ellipsoids);
-        muscles.reset();
-      }
-    for (int k = 0; (muscles || damping || limits) && k < joint.dofs(); ++k) {
-      if (muscles) muscles->append(joint, k, p);
-      if (damping) damping->append(joint, k, p);
-      if (limits) limits->append(joint, k, p);
-    }
-    if (p.law.swing_limit[i] >= 0) append_cone(joint, p);
+    bool acts[kTerms] = {}, any_acts = false;
+    for (int n = 0; n < kTerms; ++n)
+      if (in_order[n]) any_acts |= acts[n] = in_order[n]->look(joint, offset[n], p);
+    for (int k = 0; any_acts && k < joint.dofs(); ++k)
+      for (int n = 0; n < kTerms; ++n)
+        if (acts[n]) in_order[n]->append(joint, offset[n], k, p);
+    if (terms.cones && p.law.swing_limit[i] >= 0) terms.cones->append(joint, p);
   }
 }
 
 /// See measure_joint_curvature.
-template <class T, class Problem>
-void measure_curvature(Problem& p) {
+template <class T, class Terms, class Problem>
+void measure_curvature(const Terms& terms, Problem& p) {
   const Tree<Number<T>>& tree = *p.tree;
   std::size_t r = 0, e = 0;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -94,8 +84,8 @@ void measure_curvature(Problem& p) {
     }
     if (const auto bears = either(swing != T(0), twist != T(0)); any(bears)) {
       curvature += select(bears,
-                          cone_curvature<T>(rest.rotation.conjugate() * p.local[i].rotation,
-                                            p.law.swing_axis[i].template cast<T>(), swing, twist),
+                          terms.cones->curvature(rest.rotation.conjugate() * p.local[i].rotation,
+                                                 p.law.swing_axis[i].template cast<T>(), swing, twist),
                           nothing);
       curved = true;
     }

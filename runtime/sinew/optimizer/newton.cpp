@@ -18,24 +18,10 @@ double NewtonSolver<T>::evaluate() {
   ++report_.evaluations;
   double energy = 0;
   for (TreeProblem<T>* p : trees_) energy += begin_evaluation(*settings_, *p);
-  for (Contact<T>& c : contacts_) {
-    TreeProblem<T>& a = *trees_[c.tree_a];
-    TreeProblem<T>* b = c.tree_b < 0 ? nullptr : trees_[c.tree_b];
-    measure(a.kinematics, b ? &b->kinematics : nullptr, c);
-    if (!c.acts()) continue;
-    energy += double(contact_energy(c, settings_->stick));
-    const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, settings_->stick);
-    a.force[c.body_a] += normal + tangent;
-    a.moment[c.body_a] += c.point.cross(normal) + c.material_point.cross(tangent);
-    if (b) {
-      b->force[c.body_b] -= normal + tangent;
-      b->moment[c.body_b] -= c.point.cross(normal) + c.material_point_b.cross(tangent);
-    }
-  }
+  inner_.contacts().evaluate(trees_, contacts_, settings_->stick, energy);
   for (Coupling<T>* c : couplings_) {
-    place_nodes<T>(trees_, settings_->common_origin, *c);
-    energy += measure_elements(*c);
-    add_wrenches<T>(*c, trees_);
+    energy += settings_->plan->couplings->measure(trees_, settings_->common_origin, *c);
+    settings_->plan->couplings->add_wrenches(*c, trees_);
   }
   for (TreeProblem<T>* p : trees_) finish_gradient(*p);
   return energy;

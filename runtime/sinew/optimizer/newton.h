@@ -42,11 +42,13 @@ struct SolveReport {
 template <class T>
 class NewtonSolver {
  public:
+  /// Set-up, before reserve(): the plan that the settings of solves will have.
+  void declare(const StepPlan<T>& plan) { inner_.declare(plan); }
   /// Set-up for solves of at most that size; solving allocates nothing.
   void reserve(const SolveRoom& room);
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room) {
-    return InnerProblem<T>::bytes(room) + room.dofs * sizeof(T) + room.bodies * sizeof(Transform<T>);
+  std::size_t bytes(const SolveRoom& room) const {
+    return inner_.bytes(room) + room.dofs * sizeof(T) + room.bodies * sizeof(Transform<T>);
   }
 
   /// Minimises over the free degrees of freedom of all trees together, starting at their `local`. On return

@@ -27,8 +27,8 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
       joint_curvature(t.bodies, Mat3<T>::Zero()) {
   pushes.reserve(64);
   room = room_of(t, 0, 0, 0);
-  rows.reserve(6 * t.dofs + 3 * t.bodies);
-  ellipsoids.reserve(t.bodies);
+  this->rows.reserve(6 * t.dofs + 3 * t.bodies);
+  this->ellipsoids.reserve(t.bodies);
 }
 
 template <class T>
@@ -37,7 +37,7 @@ void TreeProblem<T>::plan(Effect<T>& effect) {
   effects.push_back(&effect);
   stiffness.resize(tree->bodies);
   effect_rows.reserve(effect_rows.capacity() + effect.most_rows());
-  rows.reserve(rows.capacity() + effect.most_rows());
+  this->rows.reserve(this->rows.capacity() + effect.most_rows());
 }
 
 template <class T>
@@ -52,7 +52,7 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   forward_kinematics<T>(tree, p.local, p.common_origin, p.kinematics);
   double energy = inertial_energy<T>(settings, p);
   for (const ExternalForce<T>& push : p.pushes)
-    energy += add_gradient<T>(push, p.kinematics, {p.force, p.moment});
+    energy += settings.plan->impulses->add_gradient(push, p.kinematics, {p.force, p.moment});
   measure_joint_rows(settings, p);
   if (!p.effects.empty()) {
     for (const Effect<T>* effect : p.effects)
@@ -83,7 +83,8 @@ void finish_gradient(TreeProblem<T>& p) {
 template <class T>
 void begin_composite(const StepSettings<T>& settings, TreeProblem<T>& p) {
   inertial_composite<T>(p);
-  for (const ExternalForce<T>& push : p.pushes) add_curvature<T>(push, p.kinematics, p.composite);
+  for (const ExternalForce<T>& push : p.pushes)
+    settings.plan->impulses->add_curvature(push, p.kinematics, p.composite);
   if (p.effects.empty()) return;
   if (p.stiff) std::fill(p.stiffness.begin(), p.stiffness.end(), SpatialStiffness<T>{});
   p.stiff = false;

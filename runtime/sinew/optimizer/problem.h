@@ -9,10 +9,8 @@
 #include "sinew/effects/contact.h"
 #include "sinew/effects/effect.h"
 #include "sinew/effects/impulse.h"
-#include "sinew/muscle/ellipsoid_row.h"
-#include "sinew/muscle/joint_coordinates.h"
-#include "sinew/muscle/joint_law.h"
-#include "sinew/muscle/joint_rows.h"
+#include "sinew/effects/joint_step.h"
+#include "sinew/effects/step_plan.h"
 #include "sinew/optimizer/scheme.h"
 #include "sinew/optimizer/solve_room.h"
 #include "sinew/residual/composite.h"
@@ -21,7 +19,7 @@ namespace sinew {
 
 /// Everything a solve knows and computes about one tree. Sized once.
 template <class T>
-struct TreeProblem {
+struct TreeProblem : JointRowList<T> {
   const Tree<T>* tree;
   JointLaw<T> law;
   Prediction<T> prediction;
@@ -36,8 +34,6 @@ struct TreeProblem {
   std::vector<Vec3<T>> body_force;     ///< [body] inertia + gravity + pushes, at the centre of mass
   std::vector<Vec3<T>> couple;         ///< [body] rotational part of the inertial gradient
   std::vector<T> gradient;             ///< [dof] ∂E/∂d in the chart centred at `local`
-  std::vector<JointRow<T>> rows;
-  std::vector<EllipsoidRow<T>> ellipsoids;
   std::vector<Composite<T>> composite;
   std::vector<Mat3<T>> joint_curvature;        ///< [body] see measure_joint_curvature
   std::vector<Effect<T>*> effects;             ///< the step's plan: those with instances on this tree
@@ -50,18 +46,12 @@ struct TreeProblem {
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
   /// Set-up: puts an effect, attached to this tree, into the plan if it has instances.
   void plan(Effect<T>& effect);
-  void clear_rows() {
-    rows.clear();
-    ellipsoids.clear();
-  }
-  void add_row(const JointRow<T>& row, bool present) {
-    if (present) rows.push_back(row);
-  }
 };
 
 /// Values that all trees of a solve share.
 template <class T>
 struct StepSettings {
+  const StepPlan<T>* plan = &StepPlan<T>::none();     ///< what is declared
   T h = T(1) / 60;                                    ///< s
   Vec3<T> gravity{0, 0, T(-9.81)};                    ///< m/s²
   Vec3<double> common_origin = Vec3<double>::Zero();  ///< m, world; of all that is computed

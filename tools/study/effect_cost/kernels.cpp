@@ -32,6 +32,7 @@ struct Solving {
   TreeProblem<float> problem;
   std::unique_ptr<Effect<float>> effect;
   History<float> history;
+  StepPlan<float> plan;
   StepSettings<float> settings;
   TreeProblem<float>* trees[1] = {&problem};
 
@@ -45,6 +46,8 @@ struct Solving {
     for (int i = 0; i < tree.bodies; ++i) problem.start[i] = problem.target[i] = tree.rest[i];
     problem.local = problem.start;
     std::fill(problem.free.begin(), problem.free.end(), std::uint8_t{1});
+    declare_term(name, plan);
+    settings.plan = &plan;
     if (auto made = make_module(name, first_rods(instances))) {
       effect = std::move(made);
       if (!effect->attach(skeleton, tree)) std::abort();
@@ -71,6 +74,7 @@ struct Pass : Work, private Solving {
   Pass(const std::string& name, int instances) : Solving(name, instances) {
     SolveRoom room = room_of(tree, 0, 0, 0);
     room.effect_rows = effect ? effect->most_rows() : 0;
+    inner.declare(plan);
     inner.reserve(room);
     inner.begin(settings, trees);
   }
@@ -94,6 +98,7 @@ struct OnePass : Work, private Solving {
 
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
     once.max_iterations = 1;
+    solver.declare(plan);
     problem.room = room_of(tree, kRods, 2 * kRods, 0);
     SolveRoom room = problem.room;
     if (name == "character_contact") {
@@ -106,7 +111,7 @@ struct OnePass : Work, private Solving {
     for (int i = 0; i < instances; ++i) {
       fresh.push_back(contact(name, i));
       const Kinematics<float>& other = below ? below->problem.kinematics : problem.kinematics;
-      begin_step<float>(problem.kinematics, fresh.back().tree_b < 0 ? nullptr : &other, fresh.back());
+      begin_contact(problem.kinematics, fresh.back().tree_b < 0 ? nullptr : &other, fresh.back());
     }
   }
   static Contact<float> contact(const std::string& name, int rod) {

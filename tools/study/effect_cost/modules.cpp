@@ -1,14 +1,21 @@
 #include "study/effect_cost/modules.h"
 
+#include "sinew/character/contacts.h"
 #include "sinew/effects/buoyancy.h"
 #include "sinew/effects/cloth.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/force_field.h"
+#include "sinew/effects/impulse.h"
+#include "sinew/effects/joint_damping.h"
+#include "sinew/effects/joint_limit.h"
 #include "sinew/effects/joint_spring.h"
+#include "sinew/effects/muscle.h"
 #include "sinew/effects/restitution.h"
 #include "sinew/effects/soft_tissue.h"
 #include "sinew/effects/strand.h"
+#include "sinew/effects/support.h"
 #include "sinew/effects/wind.h"
+#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew::study {
 
@@ -45,7 +52,25 @@ std::unique_ptr<Effect<float>> make_module(const std::string& name, const std::v
 bool declare_module(const std::string& name, World<float>& world) {
   if (name == "restitution") return bool(world.declare<Restitution>());
   if (name == "continuous_detection") return bool(world.declare<ContinuousDetection>());
+  if (name == "muscles") return bool(world.declare<Muscles>());
+  if (name == "impulses") return bool(world.declare<Impulses>());
+  if (name == "batches") return bool(world.declare<Batches>());
+  if (name == "contacts") return bool(world.declare<Contacts>());
+  if (name == "support") return world.declare<Contacts>() && world.declare<Support>();
   return false;
+}
+
+void declare_term(const std::string& name, StepPlan<float>& plan) {
+  if (name == "muscles") Muscles<float>::declare(plan);
+  const bool touches =
+      name == "ground" || name == "obstacle" || name == "self_collision" || name == "character_contact";
+  if (touches) Contacts<float>::declare(plan);
+  if (name == "joint_limits") JointLimits<float>::declare(plan);
+  if (name == "joint_damping" || name == "dry_friction") JointDamping<float>::declare(plan);
+}
+
+void begin_contact(const Kinematics<float>& a, const Kinematics<float>* b, Contact<float>& contact) {
+  begin_step<float>(a, b, contact);
 }
 
 namespace {

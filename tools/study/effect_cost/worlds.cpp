@@ -1,5 +1,6 @@
 // Whole steps of a world: the wheel on its animation, and things that are solved for.
 #include <cstdlib>
+#include <limits>
 
 #include "sinew/character/world.h"
 #include "study/effect_cost/figure.h"
@@ -33,16 +34,22 @@ struct Checked : Work {
   std::size_t effect_bytes = 0;
 
   Checked(std::string what, int count)
-      : effect(std::move(what)), instances(count), world(settings(effect, count)) {
+      : effect(std::move(what)), instances(count), world(settings(effect, count), DeclareNothing{}) {
     Status status;
     BuiltIn on{.muscles = kRods};
     if (effect == "support") on.colliders = instances;
     const Skeleton s = wheel(on);
-    (void)world.add_character(s, {}, status);
+    const bool declared_by_type = declare_module(effect, world);
+    constexpr double boundless = std::numeric_limits<double>::infinity();
+    CharacterSettings figure;
+    figure.strength = effect == "muscles" ? 1 : boundless;
+    (void)world.add_character(s, figure, status);
     check(status);
     check(world.character(0).set_target(at_rest(s)));
     world.character(0).reset();
-    if (effect == "none" || effect == "gravity" || effect == "support" || effect == "impulses") return;
+    for (int i = instances; effect == "muscles" && i < kRods; ++i)
+      check(world.character(0).set_strength(i + 1, boundless));
+    if (effect == "none" || effect == "gravity" || declared_by_type) return;
     auto made = make_module(effect, first_rods(instances));
     if (!made) unknown(effect);
     const Effect<float>& declared = *made;
@@ -72,8 +79,11 @@ struct Solved : Work {
   std::vector<double> radii;  ///< [ball]
   std::size_t without = 0;
 
-  Solved(const std::string& what, int instances) : world(settings(what)), effect(what) {
-    if (effect == "loops") add_limp_wheel();
+  Solved(const std::string& what, int instances) : world(settings(what), DeclareNothing{}), effect(what) {
+    if (effect == "loops")
+      add_limp_wheel();
+    else if (effect != "none" && !declare_module("contacts", world))
+      unknown(effect);
     without = world.memory().characters;
     if (effect == "prop" || effect == "resting_prop" || effect == "prop_contact") {
       for (int i = 0; i < instances; ++i) add_props(i);

@@ -58,7 +58,7 @@ class PackNewton {
     count<P>(lanes, reports_, &SolveReport::evaluations);
     place_bodies<P>(*p.tree, std::span<const Transform<P>>(p.local), p.common_origin, p.kinematics);
     Wide energy = inertial_energy<P>(*settings_, p);
-    measure_rows<P>(*settings_, p);
+    measure_rows<P>(*settings_, p.terms, p);
     for (const PackRow<P>& row : p.rows) energy += widened(row.energy(row.value));
     project_gradient<P>(p);
     return energy;

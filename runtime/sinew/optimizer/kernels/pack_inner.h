@@ -197,7 +197,7 @@ class PackInner {
 
   void add_joint_geometry() {
     PackProblem<P>& p = *problem_;
-    measure_curvature<P>(p);
+    measure_curvature<P>(p.terms, p);
     const Tree<float>& tree = *p.tree;
     for (int i = 0; i < tree.bodies; ++i) {
       if (tree.type[i] != JointType::kBall && tree.type[i] != JointType::kFree) continue;

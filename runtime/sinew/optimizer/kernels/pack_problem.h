@@ -3,6 +3,9 @@
 #pragma once
 
 #include "sinew/animation/kernels/pack_eigen.h"
+#include "sinew/effects/joint_damping.h"
+#include "sinew/effects/joint_limit.h"
+#include "sinew/effects/muscle.h"
 #include "sinew/optimizer/joint_terms_pass.h"
 #include "sinew/optimizer/kernels/newton.h"
 #include "sinew/optimizer/problem_pass.h"
@@ -131,6 +134,7 @@ struct PackLaw {
 template <class P>
 struct PackProblem {
   const Tree<float>* tree = nullptr;
+  JointTerms<P, PackLaw<P>, PackProblem> terms;  ///< those that are declared for scalars
   PackLaw<P> law;
   PackPrediction<P> prediction;
   Vec3<P> common_origin;
@@ -203,7 +207,16 @@ struct PackProblem {
     lane_of(prediction.weight, lane) = from.prediction.weight;
     put(from.common_origin, lane, common_origin);
   }
+  void declare(const JointTerms<float>& declared) {
+    using Law = PackLaw<P>;
+    terms = {};
+    if (declared.muscles) terms.muscles = &MuscleRows<P, Law, PackProblem>::kTerm;
+    if (declared.damping) terms.damping = &JointDampingRows<P, Law, PackProblem>::kTerm;
+    if (declared.limits) terms.limits = &JointLimitRows<P, Law, PackProblem>::kTerm;
+    if (declared.cones) terms.cones = &ConeRows<P, Law, PackProblem>::kTerm;
+  }
   void gather(const Batch& batch) {
+    declare(batch.settings->plan->joints);
     const TreeProblem<float>& first = *batch.problems[0];
     tree = first.tree;
     law.dry_friction = first.law.dry_friction;
