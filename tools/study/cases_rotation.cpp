@@ -206,10 +206,8 @@ Verdict joint_through_pi(const Trial& t) {
 template <class T>
 std::vector<Transform<T>> flown(scene::Scene scene, const Vec3<double>& turn, double h,
                                 Measurement& measured) {
-  // Asks about the frame, not about the solver, nor about float's roundings, which the speeds after a start
-  // in eighths of a step hold eight times.
+  // Asks about the frame, not about the solver.
   scene.world.accuracy.tolerance = sizeof(T) == 8 ? 1e-8 : 1e-6;
-  scene.world.accuracy.start_parts = 3;
   scene.characters[0].pose = {{0, {{0, turn}}}};
   Stage<T> stage(scene);
   stage.run(1, h);

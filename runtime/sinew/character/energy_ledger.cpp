@@ -26,7 +26,9 @@ double total(const CharacterReport& r) {
 /// kept in double precision, and energies are summed in that.
 template <class T>
 double rounding(const CharacterState<T>& s, const Vec3<double>& gravity) {
-  const double weight = s.total_mass * gravity.norm() * double(s.radius);
+  T reach = T(0);  // m²
+  for (const Vec3<T>& center : s.history.center) reach = std::max(reach, center.squaredNorm());
+  const double weight = s.total_mass * gravity.norm() * std::sqrt(double(reach));
   return 4 * double(std::numeric_limits<T>::epsilon()) *
              (s.report.kinetic_energy + s.report.elastic_energy + weight) +
          16 * std::numeric_limits<double>::epsilon() * std::abs(total(s.report));
