@@ -1,0 +1,54 @@
+// What a limp figure keeps in flight.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "character/scenes.h"
+
+namespace sinew {
+namespace {
+
+struct Kept {
+  double kinetic = 0;  ///< share of the kinetic energy after the first step
+  double turning = 0;  ///< change of the angular momentum, share of it
+  double sliding = 0;  ///< kg·m/s, change of the momentum
+};
+
+/// Two seconds without gravity at 60 Hz, joint speeds of `speed` rad/s rms at the start; mean of ten.
+template <class T>
+Kept fly(double speed) {
+  Kept mean;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    WorldSettings settings;
+    settings.ground = false;
+    settings.gravity.setZero();
+    fixtures::Limp<T> limp(settings, 5, speed, seed);
+    EXPECT_TRUE(limp.world.step(T(1 / 60.0)).ok());
+    const CharacterReport start = limp.world.character(0).report();
+    for (int n = 1; n < 120; ++n) EXPECT_TRUE(limp.world.step(T(1 / 60.0)).ok());
+    const CharacterReport& end = limp.world.character(0).report();
+    mean.kinetic += end.kinetic_energy / start.kinetic_energy / 10;
+    mean.turning +=
+        (end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm() / 10;
+    mean.sliding += (end.momentum - start.momentum).norm() / 10;
+  }
+  std::printf("%-6s %2.0f rad/s: kinetic energy kept %.4f, angular momentum off %.1e, momentum %.1e kg m/s\n",
+              sizeof(T) == 4 ? "float" : "double", speed, mean.kinetic, mean.turning, mean.sliding);
+  return mean;
+}
+
+TEST(Flight, KeepsBothMomentaToRounding) {
+  for (const double speed : {1.0, 3.0, 10.0}) {
+    const Kept exact = fly<double>(speed), rounded = fly<float>(speed);
+    EXPECT_LT(exact.turning, 1e-6) << speed;  // the common turn is found for one inertia, and made for all
+    EXPECT_LT(exact.sliding, 1e-12 * 75 * speed) << speed;
+    // Roundings of 120 steps, of limbs that carry more than the whole.
+    EXPECT_LT(rounded.turning, 1e-4) << speed;
+    EXPECT_LT(rounded.sliding, 1e-5 * 75 * speed) << speed;
+    EXPECT_LE(exact.kinetic, 1) << speed;
+    EXPECT_LE(rounded.kinetic, 1) << speed;
+  }
+}
+
+}  // namespace
+}  // namespace sinew
