@@ -88,7 +88,7 @@ OwnEquations<T> own_equations(const StepSettings<T>& settings, const TreeProblem
     const Vec3<T> push = body.mass * v + w.cross(body.first);
     const Vec3<T> turn = body.rotational * w + body.first.cross(v);
     for (int b = 0; b < count; ++b) own.matrix(a, b) = k.w[first + b].dot(turn) + k.v[first + b].dot(push);
-    const T damping = p.law.damping[first + a] / settings.h;
+    const T damping = settings.plan->joints.damping ? p.law.damping[first + a] / settings.h : T(0);
     own.torque[a] = w.dot(moment) + v.dot(force) + damping * moved[a];
     own.matrix(a, a) += damping;
   }
@@ -111,7 +111,7 @@ Pull<T> pull_of(const StepSettings<T>& settings, TreeProblem<T>& p, int i, const
   Pull<T> pull{joint_offset_value<T>(*p.tree, i, limp ? p.start[i] : p.target[i], p.local[i]), asked};
   const T load = p.law.ellipsoidal[i] ? p.law.load(*p.tree, i, first, p.gradient) : T(0);
   for (int a = 0; a < asked.size(); ++a) {
-    const T friction = p.law.dry_friction[first + a];
+    const T friction = settings.plan->joints.damping ? p.law.dry_friction[first + a] : T(0);
     const T minus = limp ? friction : p.law.torque_minus[first + a];
     const T plus = limp ? friction : p.law.torque_plus[first + a];
     if (p.law.ellipsoidal[i])
