@@ -170,7 +170,8 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
     const Outcome outcome = line_search(T(tolerance), energy);
-    report_.converged = small || (outcome == Outcome::kFull && length < kStillValid &&
+    report_.converged = small || (outcome == Outcome::kFull &&
+                                  length < (inner_.has_contacts() ? kStillValidInContact : kStillValid) &&
                                   converge_by_chords(tolerance, length, energy));
     if (outcome == Outcome::kRefused) break;
   }
