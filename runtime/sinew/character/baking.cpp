@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "sinew/effects/step_plan.h"
+#include "sinew/optimizer/joint_terms_pass.h"
 #include "sinew/optimizer/problem_pass.h"
 
 namespace sinew {
@@ -159,16 +159,7 @@ void move_by_itself(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
 /// room for its own.
 template <class T>
 bool bears_at_limit(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
-  const JointStep<T> joint{*p.tree,
-                           p.law,
-                           i,
-                           p.local[i],
-                           p.target[i],
-                           p.start[i],
-                           settings.h,
-                           settings.kink_width,
-                           settings.limit_stiffness,
-                           settings.limit_damping};
+  const auto joint = joint_step<T>(settings, p, i);
   const JointTerms<T>& terms = settings.plan->joints;
   const std::ptrdiff_t others = std::ssize(p.rows);
   JointOffset<T> offset;

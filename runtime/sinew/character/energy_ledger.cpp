@@ -143,16 +143,6 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
 }
 
 template <class T>
-double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
-  double sum = 0;
-  for (const CharacterState<T>* s : states) {
-    const Totals t = totals<T>(s->tree, s->history, gravity);
-    sum += t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
-  }
-  return sum;
-}
-
-template <class T>
 double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
   before_.clear();
   double sum = 0;
@@ -187,7 +177,5 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const V
 
 template class EnergyLedger<float>;
 template class EnergyLedger<double>;
-template double energy<float>(std::span<CharacterState<float>* const>, const Vec3<double>&);
-template double energy<double>(std::span<CharacterState<double>* const>, const Vec3<double>&);
 
 }  // namespace sinew

@@ -15,10 +15,6 @@
 
 namespace sinew {
 
-/// Kinetic, potential and stored energy of the trees now, J.
-template <class T>
-double energy(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
-
 template <class T>
 class EnergyLedger {
  public:
@@ -43,7 +39,5 @@ class EnergyLedger {
 
 extern template class EnergyLedger<float>;
 extern template class EnergyLedger<double>;
-extern template double energy<float>(std::span<CharacterState<float>* const>, const Vec3<double>&);
-extern template double energy<double>(std::span<CharacterState<double>* const>, const Vec3<double>&);
 
 }  // namespace sinew

@@ -312,11 +312,12 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   part_begun_ = false;
   const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
   if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
+  closed_ = passive();
+  budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
+  const bool closed = closed_;
   SolveReport solved = attempt();
   total_.add(solved);
-  const bool closed = passive();
-  double budget = closed ? ledger_.open(states_, world_->gravity) : 0;
-  if (closed && (solved.converged || splits_left == 0) && unreachable(budget)) {
+  if (closed && (solved.converged || splits_left == 0) && unreachable()) {
     solved = solve_from_start();
     total_.add(solved);
     ++restarts_;
@@ -331,14 +332,14 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     return effect->may_change_speeds(contacts_);
   });
   if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
-    budget = ledger_.open(states_, world_->gravity);
-  hold_lost(!solved.converged && closed && unreachable(budget));
+    budget_ = ledger_.open(states_, world_->gravity);
+  hold_lost(!solved.converged && closed && unreachable());
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);
   }
   for (const auto& effect : effects_) {
-    if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget)) continue;
+    if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;
     for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
   }
   if (!solved.converged || closed) {

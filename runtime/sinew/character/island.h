@@ -74,7 +74,7 @@ class IslandStepper {
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
-  bool unreachable(double budget) const;
+  bool unreachable() const;
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);
   void forget_contacts();
@@ -95,6 +95,8 @@ class IslandStepper {
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
   std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
   SolveReport total_;
+  bool closed_ = false;  ///< nothing can do work on the trees in this part
+  double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
   bool second_ = false;                            ///< bdf2 is used
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone

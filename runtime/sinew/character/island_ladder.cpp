@@ -53,19 +53,19 @@ double IslandStepper<T>::pose_energy() const {
 /// it.
 template <class T>
 bool IslandStepper<T>::lifted() const {
-  if (contacts_.empty() || !passive()) return false;
-  const double had = energy<T>(states_, world_->gravity), stored = pose_energy();
+  if (contacts_.empty() || !closed_) return false;
+  const double had = budget_, stored = pose_energy();
   return stored > had + 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
 }
 
-/// Whether only energy from nowhere could reach the present poses: they store more than the `budget` that the
-/// trees had (J), by more than what stands still stores in its contacts, which is far above rounding.
+/// Whether only energy from nowhere could reach the present poses: they store more than the trees had, by
+/// more than what stands still stores in its contacts, which is far above rounding.
 template <class T>
-bool IslandStepper<T>::unreachable(double budget) const {
+bool IslandStepper<T>::unreachable() const {
   double mass = 0;
   for (const CharacterState<T>* s : states_) mass += s->total_mass;
   const double standing = mass * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
-  return pose_energy() > budget + standing;
+  return pose_energy() > budget_ + standing;
 }
 
 /// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in
@@ -139,7 +139,7 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
   template bool IslandStepper<T>::passive() const;                         \
   template double IslandStepper<T>::pose_energy() const;                   \
   template bool IslandStepper<T>::lifted() const;                          \
-  template bool IslandStepper<T>::unreachable(double) const;               \
+  template bool IslandStepper<T>::unreachable() const;                     \
   template SolveReport IslandStepper<T>::solve_from_start();               \
   template void IslandStepper<T>::hold(CharacterState<T>&);                \
   template void IslandStepper<T>::forget_contacts();                       \

@@ -11,10 +11,24 @@
 
 namespace sinew {
 
+/// Joint i of a tree as the effects see it.
+template <class T, class Problem>
+auto joint_step(const StepSettings<Number<T>>& settings, const Problem& p, int i) {
+  return JointStep<T, std::remove_cvref_t<decltype(p.law)>>{*p.tree,
+                                                            p.law,
+                                                            i,
+                                                            p.local[i],
+                                                            p.target[i],
+                                                            p.start[i],
+                                                            settings.h,
+                                                            settings.kink_width,
+                                                            settings.limit_stiffness,
+                                                            settings.limit_damping};
+}
+
 /// See measure_joint_rows. `terms`: JointTerms of the problem's law and rows.
 template <class T, class Terms, class Problem>
 void measure_rows(const StepSettings<Number<T>>& settings, const Terms& terms, Problem& p) {
-  using Law = std::remove_cvref_t<decltype(p.law)>;
   const Tree<Number<T>>& tree = *p.tree;
   constexpr int kTerms = 3;
   const decltype(terms.muscles) in_order[kTerms] = {terms.muscles, terms.damping, terms.limits};
@@ -22,16 +36,7 @@ void measure_rows(const StepSettings<Number<T>>& settings, const Terms& terms, P
   p.clear_rows();
   for (int i = 0; i < tree.bodies; ++i) {
     if (tree.dof_count(i) == 0 || !p.free[tree.first_dof[i]]) continue;
-    const JointStep<T, Law> joint{tree,
-                                  p.law,
-                                  i,
-                                  p.local[i],
-                                  p.target[i],
-                                  p.start[i],
-                                  settings.h,
-                                  settings.kink_width,
-                                  settings.limit_stiffness,
-                                  settings.limit_damping};
+    const auto joint = joint_step<T>(settings, p, i);
     bool acts[kTerms] = {}, any_acts = false;
     for (int n = 0; n < kTerms; ++n)
       if (in_order[n]) any_acts |= acts[n] = in_order[n]->look(joint, offset[n], p);
