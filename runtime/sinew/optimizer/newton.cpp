@@ -28,6 +28,16 @@ double NewtonSolver<T>::evaluate() {
 }
 
 template <class T>
+double NewtonSolver<T>::energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                               std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings) {
+  settings_ = &settings;
+  trees_ = trees;
+  contacts_ = contacts;
+  couplings_ = couplings;
+  return evaluate();
+}
+
+template <class T>
 void NewtonSolver<T>::remember_charts() {
   base_.clear();
   for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
@@ -153,12 +163,12 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     ++report_.outer_passes;
     inner_.build(contacts_, couplings_, true);
     InnerReport inner = inner_.minimise(T(tolerance));
-    if (!inner.solved) {
+    if (!inner.solved && inner_.geometric()) {
       ++report_.plain_passes;
       inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
-      if (!inner.solved) break;
     }
+    if (!inner.solved) break;
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));
