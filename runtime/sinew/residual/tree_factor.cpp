@@ -8,14 +8,12 @@ void TreePattern::reserve(int capacity) {
   parent.reserve(capacity);
   depth.reserve(capacity);
   row.reserve(capacity);
-  run.reserve(capacity);
 }
 
 void TreePattern::clear() {
   parent.clear();
   depth.clear();
   row.clear();
-  run.clear();
   size = entries = 0;
 }
 
@@ -23,7 +21,6 @@ int TreePattern::add(int above) {
   parent.push_back(above);
   depth.push_back(above < 0 ? 0 : depth[above] + 1);
   row.push_back(entries);
-  run.push_back(above >= 0 && above == size - 1 ? run.back() : size);
   entries += padded(depth.back() + 1);
   return size++;
 }

@@ -59,42 +59,21 @@ auto factorise_tree(const TreePattern& p, T* values, std::span<T> diagonal) {
   return definite;
 }
 
-/// Calls f(first, entries, count) for the runs of consecutive unknowns above k, from below: a limb's unknowns
-/// follow each other, and so do those of the spine that it hangs on. 1.7 times as fast as one by one.
-template <class T, class Function>
-inline void for_runs_above(const TreePattern& p, const T* path, int k, const Function& f) {
-  int position = p.depth[k];
-  for (int l = p.parent[k]; l >= 0; l = p.parent[p.run[l]]) {
-    const int first = p.run[l], count = l - first + 1;
-    position -= count;
-    f(first, path + position, count);
-  }
-}
-
 /// Solves LᵀL·x = b in place, with the factor that factorise_tree left.
 template <class T>
 void solve_by_tree(const TreePattern& p, const T* values, std::span<T> b) {
   for (int k = p.size - 1; k >= 0; --k) {  // Lᵀ y = b
     const T* path = values + p.row[k];
-    const T own = b[k] = b[k] * path[p.depth[k]];
-    for_runs_above(p, path, k, [&](int first, const T* __restrict entries, int count) {
-      T* __restrict above = b.data() + first;
-      for (int i = 0; i < count; ++i) above[i] -= entries[i] * own;
-    });
+    b[k] *= path[p.depth[k]];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) b[l] -= path[position] * b[k];
   }
   for (int k = 0; k < p.size; ++k) {  // L x = y
     const T* path = values + p.row[k];
-    T even = b[k], odd = T(0);
-    for_runs_above(p, path, k, [&](int first, const T* entries, int count) {
-      const T* above = b.data() + first;
-      int i = 0;
-      for (; i + 1 < count; i += 2) {
-        even -= entries[i] * above[i];
-        odd -= entries[i + 1] * above[i + 1];
-      }
-      if (i < count) even -= entries[i] * above[i];
-    });
-    b[k] = (even + odd) * path[p.depth[k]];
+    T sum = b[k];
+    int position = p.depth[k] - 1;
+    for (int l = p.parent[k]; l >= 0; l = p.parent[l], --position) sum -= path[position] * b[l];
+    b[k] = sum * path[p.depth[k]];
   }
 }
 
