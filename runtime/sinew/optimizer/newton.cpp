@@ -29,6 +29,16 @@ double NewtonSolver<T>::evaluate() {
 }
 
 template <class T>
+double NewtonSolver<T>::energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                               std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings) {
+  settings_ = &settings;
+  trees_ = trees;
+  contacts_ = contacts;
+  couplings_ = couplings;
+  return evaluate();
+}
+
+template <class T>
 void NewtonSolver<T>::remember_charts() {
   base_.clear();
   for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
@@ -173,15 +183,15 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
       inner_.build(contacts_, couplings_, true);
       inner = inner_.minimise(T(tolerance));
     }
-    // Where it was indefinite now it is likely to be so in the next pass.
-    const bool again = !geometric || inner.solved;
-    if (!inner.solved) {
+    const bool plain = !geometric || (!inner.solved && inner_.geometric());
+    // Where it was indefinite now it is likely to be so in the next pass; after that it is tried again.
+    geometric = !geometric || inner.solved;
+    if (plain) {
       ++report_.plain_passes;
       inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
-      if (!inner.solved) break;
     }
-    geometric = again;
+    if (!inner.solved) break;
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));

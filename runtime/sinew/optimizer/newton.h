@@ -58,6 +58,10 @@ class NewtonSolver {
                     std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
                     std::span<Coupling<T>* const> couplings = {});
 
+  /// J, of the incremental potential where the trees' `local` are.
+  double energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
+
  private:
   /// What became of an outer pass's correction.
   enum class Outcome { kRefused, kShortened, kCorrected, kFull };
