@@ -183,15 +183,15 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
       inner_.build(contacts_, couplings_, true);
       inner = inner_.minimise(T(tolerance));
     }
-    // Where it was indefinite now it is likely to be so in the next pass.
-    const bool again = !geometric || inner.solved;
-    if (!inner.solved && (!geometric || inner_.geometric())) {
+    const bool plain = !geometric || (!inner.solved && inner_.geometric());
+    // Where it was indefinite now it is likely to be so in the next pass; after that it is tried again.
+    geometric = !geometric || inner.solved;
+    if (plain) {
       ++report_.plain_passes;
       inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
     }
     if (!inner.solved) break;
-    geometric = again;
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));
