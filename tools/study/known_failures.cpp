@@ -14,7 +14,6 @@ struct KnownFailure {
 };
 
 constexpr KnownFailure kKnownFailures[] = {
-    {"root_turned_by_pi", "float: 1 to 2 mrad in a second, of roundings in the first eighths of a step"},
     {"limp_fall_counts", "more factorisations than the prototype"},
     {"piston",
      "jammed between piston and wall, a thigh's knee is kicked about: 10 to 16 m/s, in fine steps too"},
