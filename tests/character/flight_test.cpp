@@ -81,5 +81,28 @@ TEST(Flight, BeginsWithAWholeStepOfSecondOrder) {
   }
 }
 
+/// Momentum (kg·m/s) of a ball of 1 kg after two steps without gravity.
+double thrown(double speed) {
+  WorldSettings settings;
+  settings.ground = false;
+  settings.gravity.setZero();
+  settings.detail.sleep_after = 0;
+  World<float> world(settings);
+  PropSettings ball;
+  ball.mass = 1;
+  ball.velocity = {speed, 0, 0};
+  Status status;
+  (void)world.add_prop(ball, status);
+  EXPECT_TRUE(status.ok()) << status.reason;
+  for (int n = 0; n < 2; ++n) EXPECT_TRUE(world.step(1 / 60.0f).ok());
+  return world.prop_report(0).momentum.x();
+}
+
+TEST(Flight, KeepsSmallSpeedsButNoneThatAProcessorIsSlowWith) {
+  EXPECT_NEAR(thrown(1e-20), 1e-20, 1e-26);
+  EXPECT_EQ(thrown(1e-35), 0);  // its square, and what it moves in a step, are denormal
+  EXPECT_EQ(thrown(1e-41), 0);
+}
+
 }  // namespace
 }  // namespace sinew

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "scene/humanoid.h"
 #include "sinew/skeleton/rotation.h"
@@ -134,23 +136,34 @@ Verdict absurd_numbers(const Trial& t) {
 
 template <class T>
 Verdict denormal_speeds(const Trial& t) {
-  double seconds[2];
-  Measurement measured;
-  for (const bool denormal : {false, true}) {
-    Stage<T> stage(weightless());
+  const auto balls = [](bool denormal) {
+    auto stage = std::make_unique<Stage<T>>(weightless());
     for (int i = 0; i < 300; ++i) {
       PropSettings ball;
       ball.pose.translation = {10.0 * i, 0, 0};
       if (denormal) ball.velocity = Vec3<double>::Constant(sizeof(T) == 4 ? 1e-41 : 1e-310);
-      stage.add_prop(ball);
+      stage->add_prop(ball);
     }
-    stage.run(t.quick ? 0.2 : 2, t.h);
-    seconds[denormal] = stage.measured().microseconds;
-    measured.merge(stage.measured());
+    return stage;
+  };
+  const std::unique_ptr<Stage<T>> zero = balls(false), denormal = balls(true);
+  // In turns, so that what else the machine does meets both.
+  std::vector<double> ratios;
+  for (int turn = 0; turn < (t.quick ? 2 : 20); ++turn) {
+    double microseconds[2];
+    for (Stage<T>* stage : {zero.get(), denormal.get()}) {
+      const double before = stage->measured().microseconds;
+      stage->run(0.1, t.h);
+      microseconds[stage == denormal.get()] = stage->measured().microseconds - before;
+    }
+    ratios.push_back(microseconds[1] / microseconds[0]);
   }
+  Measurement measured = zero->measured();
+  measured.merge(denormal->measured());
   Verdict v(measured);
   v.general();
-  if (!t.quick) v.at_most("time against speeds of zero", seconds[1] / seconds[0], 1.1);
+  std::nth_element(ratios.begin(), ratios.begin() + std::ssize(ratios) / 2, ratios.end());
+  if (!t.quick) v.at_most("time against speeds of zero", ratios[ratios.size() / 2], 1.1);
   return v;
 }
 

@@ -13,7 +13,7 @@ constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
 constexpr int kFirstHost = 0x4000;      ///< of contact identities
 constexpr double kMostPiled = 8;        ///< of the heaviest body: what a contact may bear of a pile
-constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something
+constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something or was pressed into it
 constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
@@ -73,7 +73,8 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
     lead_out(c);
   }
   c.start_gap = c.gap;
-  if (c.offset <= T(kLeftInside)) c.damp(damping_time_, h_);
+  // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
+  if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kExitSpeed)), h_);
   contacts_.push_back(c);
 }
 
@@ -251,9 +252,10 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   T heaviest = T(0), together = T(0);
   most_ = 0;
   for (const CharacterState<T>* s : states) {
+    most_ += static_cast<std::size_t>(s->problem.room.contacts);
+    if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) continue;  // led as a whole
     heaviest = std::max(heaviest, T(s->total_mass));
     together += T(s->total_mass);
-    most_ += static_cast<std::size_t>(s->problem.room.contacts);
   }
   bears_ = std::min(together, T(kMostPiled) * heaviest);
   most_ = std::min(most_, room_);

@@ -16,7 +16,8 @@ constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
 /// second on all of it: in a figure that turns as if rigid, what swings is the turning.
 constexpr double kTooRigid = 1e-3, kLooseEnough = 1e-2;
 
-constexpr double kSmall = 0.99;  ///< of speeds: a change that bdf2's history bears
+constexpr double kNoSpin = 1e-30;  ///< rad/s: not worth keeping, see set_momentum
+constexpr double kSmall = 0.99;    ///< of speeds: a change that bdf2's history bears
 
 double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
@@ -137,7 +138,7 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
   double share = 0;
   if (loose > 0 && (keeps || missing < 0))
     share = std::clamp(std::min(loose, 1.0) * missing / rigid.relative_energy, -kMostTaken, kMostGiven);
-  if (share == 0 && turn.isZero(0)) return;
+  if (share == 0 && turn.isZero(kNoSpin)) return;
   change(s, rigid, T(std::sqrt(1 + share)), turn);
   s.report_totals(gravity);
 }

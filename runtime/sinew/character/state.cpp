@@ -197,6 +197,7 @@ void CharacterState<T>::refresh_limits() {
     problem.law.torque_minus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_minus);
     problem.law.torque_plus[dof] += muscle_limit(static_cast<int>(m), muscle.torque_plus);
   }
+  problem.law.refresh_presence();
   driven = !is_prop;
   const int first = root_is_kinematic() && tree.type[0] == JointType::kFree ? tree.dof_count(0) : 0;
   for (int dof = first; dof < tree.dofs; ++dof)
@@ -395,10 +396,7 @@ T CharacterState<T>::fastest() const {
 
 template <class T>
 bool CharacterState<T>::limp() const {
-  const auto none = [](T most) { return most <= T(0); };
-  const JointLaw<T>& law = problem.law;
-  return !root_is_kinematic() && std::all_of(law.torque_plus.begin(), law.torque_plus.end(), none) &&
-         std::all_of(law.torque_minus.begin(), law.torque_minus.end(), none);
+  return !root_is_kinematic() && !problem.law.present.muscles;
 }
 
 template <class T>

@@ -1,5 +1,7 @@
 #include "sinew/muscle/joint_law.h"
 
+#include <algorithm>
+
 namespace sinew {
 
 template <class T>
@@ -21,6 +23,19 @@ JointLaw<T>::JointLaw(const Tree<T>& tree, const Skeleton& skeleton) {
     twist_upper.push_back(T(joint.twist_upper));
     ellipsoidal.push_back(joint.ellipsoidal_limit);
   }
+  refresh_presence();
+}
+
+template <class T>
+void JointLaw<T>::refresh_presence() {
+  const auto above = [](const std::vector<T>& values, T least) {
+    return std::any_of(values.begin(), values.end(), [&](T value) { return value > least; });
+  };
+  const auto below = [](T value) { return value < kUnlimited; };
+  present.muscles = above(torque_minus, T(0)) || above(torque_plus, T(0));
+  present.losses = above(dry_friction, T(0)) || above(damping, T(0));
+  present.ranges = above(lower, -kUnlimited) || std::any_of(upper.begin(), upper.end(), below);
+  present.cones = std::any_of(swing_limit.begin(), swing_limit.end(), [](T most) { return most >= T(0); });
 }
 
 template <class T>

@@ -11,6 +11,11 @@
 
 namespace sinew {
 
+/// Which of a law's properties any joint has: what none has is not looked for in joint after joint.
+struct JointLawPresence {
+  bool muscles = false, losses = false, ranges = false, cones = false;
+};
+
 /// Limits and passive properties of a tree's joints, as the step needs them.
 template <class T>
 struct JointLaw {
@@ -23,8 +28,11 @@ struct JointLaw {
   std::vector<Vec3<T>> swing_axis;           ///< [body]
   std::vector<T> twist_lower, twist_upper;   ///< [body]
   std::vector<std::uint8_t> ellipsoidal;     ///< [body] 1: the three limits are an ellipsoid's half axes
+  JointLawPresence present;
 
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
+  /// After muscles came or went.
+  void refresh_presence();
   /// Whether a muscle pulls on a degree of freedom at all.
   bool has_muscle(int dof) const { return torque_minus[dof] > T(0) || torque_plus[dof] > T(0); }
   /// Muscle limit of a degree of freedom on the side of `torque`.

@@ -21,7 +21,6 @@ class EllipsoidRows final : public EllipsoidModel<T> {
   void reserve(int joints) override { rows_.reserve(joints); }
   std::size_t bytes(int joints) const override { return joints * sizeof(Row); }
   void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns) override;
-  bool empty() const override { return rows_.empty(); }
   void add_gradient(std::span<T> gradient) const override;
   T slope(T t) const override;
   void look_along(std::span<const T> step) override;

@@ -20,7 +20,6 @@ class EllipsoidModel {
 
   /// Takes the rows of the trees as they were measured. Unknowns are those of all trees together.
   virtual void collect(std::span<TreeProblem<T>* const> trees, const Unknowns& unknowns) = 0;
-  virtual bool empty() const = 0;
   virtual void add_gradient(std::span<T> gradient) const = 0;
   /// Derivative along the step of look_along(), t of it away.
   virtual T slope(T t) const = 0;

@@ -27,7 +27,7 @@ template <class T>
 void InnerProblem<T>::declare(const StepPlan<T>& plan) {
   if (plan.contact_rows) contact_rows_ = plan.contact_rows();
   if (plan.couplings && !couplings_) couplings_ = plan.couplings->make_rows();
-  if (plan.ellipsoid_rows && !ellipsoids_) ellipsoids_ = plan.ellipsoid_rows();
+  if (plan.ellipsoid_rows && !ellipsoid_model_) ellipsoid_model_ = plan.ellipsoid_rows();
 }
 
 template <class T>
@@ -43,7 +43,7 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   if (couplings_) couplings_->reserve(room);
   joint_rows_.reserve(dofs * 8 + room.effect_rows);
   path_.resize(TreePattern::padded(dofs));
-  if (ellipsoids_) ellipsoids_->reserve(dofs / 3);
+  if (ellipsoid_model_) ellipsoid_model_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
                   &correction_product_, &residual_, &preconditioned_, &direction_})
     v->reserve(dofs);
@@ -69,6 +69,7 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
   contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
+  ellipsoids_ = rounded() ? ellipsoid_model_.get() : nullptr;
   if (ellipsoids_) ellipsoids_->collect(trees_, unknowns_);
   joint_rows_.clear();
   for (TreeProblem<T>* p : trees_)
@@ -84,6 +85,13 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
   smooth_gradient_.assign(size(), T(0));
   add_row_gradient(smooth_gradient_);
   for (int k = 0; k < size(); ++k) smooth_gradient_[k] = base_gradient_[k] - smooth_gradient_[k];
+}
+
+/// Whether some joint's muscles share an ellipsoidal limit at the trees' present poses.
+template <class T>
+bool InnerProblem<T>::rounded() const {
+  return ellipsoid_model_ && std::any_of(trees_.begin(), trees_.end(),
+                                         [](const TreeProblem<T>* p) { return !p->ellipsoids.empty(); });
 }
 
 template <class T>
@@ -298,7 +306,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     }
     // Where no row bears on the way, the model is quadratic and the step exact.
     const bool straight =
-        contact_rows_->empty() && !rounded() &&
+        contact_rows_->empty() && !ellipsoids_ &&
         std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
     report.straight = straight && iteration == 0;
     const T t = straight ? T(1) : exact_line_search(quadratic, linear);
@@ -329,9 +337,9 @@ void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
 template <class T>
 double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (ellipsoids_ && !ellipsoids_->measure(trees_)) return kNone;
+  if (ellipsoids_ ? !ellipsoids_->measure(trees_) : rounded()) return kNone;
   // As the last factor holds them, which what leaves the tree never is.
-  bool same = contact_rows_->measure(contacts) && !rounded() && !(couplings_ && couplings_->coupled());
+  bool same = contact_rows_->measure(contacts) && !ellipsoids_ && !(couplings_ && couplings_->coupled());
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;

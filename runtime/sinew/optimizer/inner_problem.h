@@ -34,7 +34,7 @@ class InnerProblem {
   /// That reserve() takes.
   std::size_t bytes(const SolveRoom& room) const {
     return contact_rows_->bytes(room) + (couplings_ ? couplings_->bytes(room) : 0) +
-           (ellipsoids_ ? ellipsoids_->bytes(room.dofs / 3) : 0) +
+           (ellipsoid_model_ ? ellipsoid_model_->bytes(room.dofs / 3) : 0) +
            room.dofs * (8 * sizeof(JointRows) + 13 * sizeof(T) + 8 * sizeof(int)) +
            room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
            room.bodies * 2 * sizeof(Vec3<T>);
@@ -92,7 +92,7 @@ class InnerProblem {
 
   void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
                 bool geometric);
-  bool rounded() const { return ellipsoids_ && !ellipsoids_->empty(); }
+  bool rounded() const;
   bool tied() const { return couplings_ && !couplings_->empty(); }
   bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
   void add_joint_geometry(TreeProblem<T>& tree);
@@ -115,8 +115,9 @@ class InnerProblem {
   bool geometric_ = true;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
   std::unique_ptr<ContactModel<T>> contact_rows_ = std::make_unique<ContactModel<T>>();
-  std::unique_ptr<CouplingModel<T>> couplings_;    ///< null: none are declared
-  std::unique_ptr<EllipsoidModel<T>> ellipsoids_;  ///< the same
+  std::unique_ptr<CouplingModel<T>> couplings_;         ///< null: none are declared
+  std::unique_ptr<EllipsoidModel<T>> ellipsoid_model_;  ///< the same
+  EllipsoidModel<T>* ellipsoids_ = nullptr;             ///< that one; null too where no joint has any
   std::vector<JointRows> joint_rows_;
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows

@@ -31,9 +31,15 @@ template <class T, class Terms, class Problem>
 void measure_rows(const StepSettings<Number<T>>& settings, const Terms& terms, Problem& p) {
   const Tree<Number<T>>& tree = *p.tree;
   constexpr int kTerms = 3;
-  const decltype(terms.muscles) in_order[kTerms] = {terms.muscles, terms.damping, terms.limits};
+  const JointLawPresence there = p.law.present;
+  using Term = decltype(terms.muscles);
+  const Term in_order[kTerms] = {there.muscles ? terms.muscles : nullptr,
+                                 there.losses ? terms.damping : nullptr,
+                                 there.ranges ? terms.limits : nullptr};
+  const auto cones = there.cones ? terms.cones : nullptr;
   JointOffset<T> offset[kTerms];
   p.clear_rows();
+  if (!in_order[0] && !in_order[1] && !in_order[2] && !cones) return;
   for (int i = 0; i < tree.bodies; ++i) {
     if (tree.dof_count(i) == 0 || !p.free[tree.first_dof[i]]) continue;
     const auto joint = joint_step<T>(settings, p, i);
@@ -43,7 +49,7 @@ void measure_rows(const StepSettings<Number<T>>& settings, const Terms& terms, P
     for (int k = 0; any_acts && k < joint.dofs(); ++k)
       for (int n = 0; n < kTerms; ++n)
         if (acts[n]) in_order[n]->append(joint, offset[n], k, p);
-    if (terms.cones && p.law.swing_limit[i] >= 0) terms.cones->append(joint, p);
+    if (cones && p.law.swing_limit[i] >= 0) cones->append(joint, p);
   }
 }
 

@@ -324,8 +324,12 @@ Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, co
 
 template <class T>
 void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history) {
+  // m/s: what is kept for ever must not be kept below what processors calculate with at full speed.
+  constexpr double kNone = 1e-30;
   const double mass = std::accumulate(tree.mass.begin(), tree.mass.end(), 0.0);
-  history.changed.push = ((momentum - linear_momentum<T>(tree, history.velocity)) / mass).template cast<T>();
+  const bool rests = momentum.cwiseAbs().maxCoeff() < kNone * mass;
+  const Vec3<double> wanted = rests ? Vec3<double>(Vec3<double>::Zero()) : momentum;
+  history.changed.push = ((wanted - linear_momentum<T>(tree, history.velocity)) / mass).template cast<T>();
   for (Vec3<T>& velocity : history.velocity) velocity += history.changed.push;
 }
 

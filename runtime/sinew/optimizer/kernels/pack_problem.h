@@ -127,6 +127,7 @@ struct PackLaw {
   std::span<P> torque_minus, torque_plus;
   std::span<const float> dry_friction, damping, lower, upper, swing_limit, twist_lower, twist_upper;
   std::span<const Vec3<float>> swing_axis;
+  JointLawPresence present;  ///< in any lane
 
   MaskOf<P> has_muscle(int dof) const { return either(torque_minus[dof] > P(0), torque_plus[dof] > P(0)); }
 };
@@ -231,7 +232,11 @@ struct PackProblem {
     const auto in = [&](int lane) -> const TreeProblem<float>& {
       return batch.problems[lane] ? *batch.problems[lane] : first;
     };
-    for (int lane = 0; lane < P::kLanes; ++lane) gather(in(lane), lane);
+    law.present = first.law.present;
+    for (int lane = 0; lane < P::kLanes; ++lane) {
+      gather(in(lane), lane);
+      law.present.muscles |= in(lane).law.present.muscles;
+    }
     alike = true;
     for (int dof = 0; dof < tree->dofs; ++dof) {
       free[dof] = batch.unknowns->of_dof[dof] >= 0;
