@@ -4,8 +4,8 @@
 // too: how many bits the distance has, by an exponential Golomb code (Teuhola, "A compression method for
 // clustered bit-vectors", 1978) of how far that is from the mean of those before, then those bits. Distances
 // of one field differ by powers of two rather than around a mean: a Golomb-Rice code of the distances
-// themselves took 7 % more. A prediction that is right to the bit costs two bits (or the mark), one that is
-// good for nothing a few bits more than the number.
+// themselves took 9 % more. A prediction that is right to the bit costs one bit, one that is good for nothing
+// about two bits more than the number.
 #pragma once
 
 #include <algorithm>
