@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/character/contacts.h"
 #include "sinew/optimizer/contact_rows.h"
@@ -11,10 +12,11 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
-constexpr int kFirstHost = 0x4000;      ///< of contact identities
-constexpr double kMostPiled = 8;        ///< of the heaviest body: what a contact may bear of a pile
-constexpr double kExitSpeed = 0.45;     ///< m/s, of what begins inside something or was pressed into it
-constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
+constexpr int kFirstHost = 0x4000;    ///< of contact identities
+constexpr double kMostPiled = 8;      ///< of the heaviest body: what a contact may bear of a pile
+constexpr double kMostGripped = 4;    ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kExitSpeed = 0.45;   ///< m/s, of what begins inside something or was pressed into it
+constexpr double kLeftInside = 1e-3;  ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
@@ -106,6 +108,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
     c.gap = gap;
   }
   c.stiffness = std::max(c.stiffness, found->stiffness);
+  c.lagged_normal_force = std::min(c.lagged_normal_force, most_sunk_ * c.stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
@@ -251,9 +254,15 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
                     std::sqrt(world.accuracy.sink_depth / std::max(1.0, world.gravity.norm())));
   T heaviest = T(0), together = T(0);
   most_ = 0;
+  most_sunk_ = std::numeric_limits<T>::infinity();
   for (const CharacterState<T>* s : states) {
     most_ += static_cast<std::size_t>(s->problem.room.contacts);
-    if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) continue;  // led as a whole
+    if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) {  // led as a whole
+      // It presses with whatever force it takes. With friction to match, what stands aslant between it and a
+      // wall is jammed for good, and driven in until it comes out at the back.
+      most_sunk_ = T(kMostGripped * world.accuracy.sink_depth);
+      continue;
+    }
     heaviest = std::max(heaviest, T(s->total_mass));
     together += T(s->total_mass);
   }

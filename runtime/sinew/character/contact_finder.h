@@ -101,6 +101,7 @@ class ContactFinder final : public ContactSearch<T> {
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), bears_ = T(0);  ///< s; kg
   T damping_time_ = T(0);      ///< of contacts, s
+  T most_sunk_ = T(0);         ///< m: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
   std::vector<Bound> bounds_;        ///< all colliders of all states

@@ -17,8 +17,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertified = 0.9;    ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
+constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
@@ -179,15 +178,6 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   }
 }
 
-/// Starts the solve nearer to where it was, where an effect says so.
-template <class T>
-void IslandStepper<T>::limit_guess(T h) {
-  free_share_.assign(states_.size(), T(1));
-  for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
-  for (std::size_t n = 0; n < states_.size(); ++n)
-    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
-}
-
 /// What may touch within h, but for what trees that were held are caught in.
 template <class T>
 void IslandStepper<T>::find_contacts(T h) {
@@ -231,16 +221,6 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   find_contacts(h);
 }
 
-/// Whether a limp body is about to strike something within h.
-template <class T>
-bool IslandStepper<T>::strikes(T h) const {
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    const bool limp = (states_[c.tree_a]->limp() && !states_[c.tree_a]->is_prop) ||
-                      (c.tree_b >= 0 && states_[c.tree_b]->limp() && !states_[c.tree_b]->is_prop);
-    return limp && c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach;
-  });
-}
-
 /// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
 template <class T>
 void IslandStepper<T>::begin_solve() {
@@ -258,6 +238,7 @@ void IslandStepper<T>::begin_solve() {
               h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+  if (strikes_deep(h)) choose_guess(h);
 }
 
 /// Of a part, unless it has been made for us.
@@ -271,7 +252,7 @@ SolveReport IslandStepper<T>::first_solve() {
 
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
-SolveReport IslandStepper<T>::attempt() {
+SolveReport IslandStepper<T>::attempt(bool may_split) {
   const WorldSettings& world = *world_;
   const T h = settings_.h;
   mispredicted_ = false;
@@ -284,6 +265,7 @@ SolveReport IslandStepper<T>::attempt() {
       predict_all(Scheme::kBdf1, h);
       total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
+    if (may_split && !total.converged) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
       released = release_overloaded(*s) || released;
@@ -315,7 +297,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   closed_ = passive();
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
   const bool closed = closed_;
-  SolveReport solved = attempt();
+  SolveReport solved = attempt(splits_left > 0);
   total_.add(solved);
   if (closed && (solved.converged || splits_left == 0) && unreachable()) {
     solved = solve_from_start();

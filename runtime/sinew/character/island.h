@@ -68,9 +68,11 @@ class IslandStepper {
   void find_contacts(T h);
   void begin_part(T h, T fraction);
   bool strikes(T h) const;
+  bool strikes_deep(T h) const;
+  void choose_guess(T h);
   void begin_solve();
   SolveReport first_solve();
-  SolveReport attempt();
+  SolveReport attempt(bool may_split);
   void reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
   void choose_lagged(std::span<const LaggedForce<T>> lagged);

@@ -19,7 +19,7 @@ struct SolveReport {
   int factorisations = 0;
   int products = 0;  ///< matrix–vector, of conjugate gradients
   int evaluations = 0;
-  int plain_passes = 0;  ///< without the geometric terms, which made the matrix indefinite
+  int plain_passes = 0;  ///< without the geometric terms, which make the matrix indefinite
   int chords = 0;        ///< simplified Newton steps, with the matrix of the pass before
   int corrections = 0;   ///< second-order corrections that saved a step
   bool converged = false;
@@ -58,11 +58,16 @@ class NewtonSolver {
                     std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
                     std::span<Coupling<T>* const> couplings = {});
 
+  /// J, of the incremental potential where the trees' `local` are.
+  double energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
+
  private:
   /// What became of an outer pass's correction.
   enum class Outcome { kRefused, kShortened, kCorrected, kFull };
 
   double evaluate();
+  bool forces_mislead() const;
   void remember_charts();
   void try_step(T t);
   bool converge_by_chords(double tolerance, double length, double& energy);

@@ -1,0 +1,68 @@
+// What is pressed harder than it can bear: between something that is led and a wall.
+#include <algorithm>
+
+#include "character/scenes.h"
+
+namespace sinew {
+namespace {
+
+/// Of 1000 kg and 0.2 × 2 × 2 m, with its middle at x, and led there.
+template <class T>
+std::vector<JointJet<T>> piston_at(double x, double speed) {
+  std::vector<JointJet<T>> jets(1);
+  jets[0].translation = {T(x), T(0), T(1)};
+  jets[0].velocity = {T(speed), T(0), T(0)};
+  return jets;
+}
+
+Skeleton piston() {
+  Skeleton s;
+  s.name = "piston";
+  s.body_count = 1;
+  Joint& joint = s.joints.emplace_back();
+  joint.name = "body";
+  joint.type = JointType::kFree;
+  joint.mass = 1000;
+  joint.inertia = Vec3<double>(667, 337, 337).asDiagonal();
+  Collider& box = s.colliders.emplace_back();
+  box.shape = Shape::kBox;
+  box.size = {0.1, 1, 1};
+  box.friction = 1;
+  return s;
+}
+
+TEST(Crush, LimbsThatAPistonHasJammedComeFreeWhenItGoesBack) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
+    fixtures::Limp<float> figure({}, 0, 0.1, seed);
+    World<float>& world = figure.world;
+    Collider wall;
+    wall.shape = Shape::kBox;
+    wall.size = {0.5, 2, 1};
+    wall.local.translation = {1.5, 0, 1};
+    ASSERT_TRUE(world.add_obstacle(wall).ok());
+    CharacterSettings led;
+    led.ground_contact = false;
+    Status status;
+    ASSERT_EQ(world.add_character(piston(), led, status), 1) << status.reason;
+    ASSERT_TRUE(world.character(1).set_target(piston_at<float>(-0.6, 0)).ok());
+    world.character(1).reset();
+    // At 1 m/s until 1 cm is left to the wall, where it stays for a second, and back; two seconds more.
+    double deepest = 0;
+    for (int n = 1; n <= 360; ++n) {
+      const double t = n / 60.0, there = 1.49;
+      const double way = std::clamp(std::min(t, 2 * there + 1 - t), 0.0, there);
+      const double speed = way <= 0 || way >= there ? 0 : t < 2 ? 1 : -1;
+      ASSERT_TRUE(world.character(1).set_target(piston_at<float>(way - 0.6, speed)).ok());
+      ASSERT_TRUE(world.step(1 / 60.f).ok());
+      deepest = std::max(deepest, world.character(0).report().penetration);
+    }
+    EXPECT_GT(deepest, 0.05) << seed;  // a chest of 26 cm in a gap of 1 cm
+    // A limb that stuck out at the piston's back stayed 12 cm in it. Of 24 seeds the worst three keep a foot
+    // 11 mm between the floor and the wall's underside, which it leaves by creeping.
+    EXPECT_LT(world.character(0).report().penetration, 0.02) << seed;
+    EXPECT_LT(world.character(0).report().kinetic_energy, 5) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace sinew
