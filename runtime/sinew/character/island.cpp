@@ -136,7 +136,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   Vec3<double> momentum;
   if (s.left_to_gravity)
     momentum = carried_momentum<T>(s.tree, s.history, p.prediction, h) +
-               double(p.prediction.momentum_step) * s.total_mass * world.gravity;
+               double(p.prediction.first ? h : p.prediction.momentum_step) * s.total_mass * world.gravity;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
   if (s.left_to_gravity) set_momentum<T>(s.tree, momentum, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
@@ -357,29 +357,6 @@ int IslandStepper<T>::parts_of(T h) const {
     parts = std::max(parts, static_cast<int>(std::min(wanted, double(kMostParts))));
   }
   return parts;
-}
-
-/// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
-template <class T>
-bool IslandStepper<T>::starts() const {
-  const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    return s->history.step_before == T(0) && s->contact_signature == 0;
-  });
-  return fresh && world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive();
-}
-
-/// The first part of a step from a reset, up to the fraction `end`: in parts that double, because two of them
-/// are bdf1's (which in whole steps of 1/60 s take 2 % of a thrown humanoid's energy, and cost more accuracy
-/// than the half second after them), and bdf2 bears no sudden growth of the step.
-template <class T>
-void IslandStepper<T>::start(T end, int splits) {
-  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostParts);
-  T begin = T(0);
-  for (int n = parts - 1; n >= 0; --n) {
-    const T next = end / T(1 << n);
-    advance_part(begin, next, splits);
-    begin = next;
-  }
 }
 
 template <class T>

@@ -62,6 +62,8 @@ class IslandStepper {
   bool starts() const;
   void limit_guess(T h);
   void start(T end, int splits);
+  bool starts_whole() const;
+  bool begin_whole();
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);

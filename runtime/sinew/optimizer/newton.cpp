@@ -100,7 +100,7 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
 }
 
 template <class T>
-typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, double& energy) {
+typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, bool slight, double& energy) {
   const T slope = inner_.slope(inner_.correction());
   remember_charts();
   const double before = energy;
@@ -108,7 +108,8 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, doub
   for (int attempt = 0; attempt < 14; ++attempt) {
     try_step(t);
     energy = evaluate();
-    if (accepted(t, slope, before, energy)) return attempt == 0 ? Outcome::kFull : Outcome::kShortened;
+    if (accepted(t, slope, before, energy, slight))
+      return attempt == 0 ? Outcome::kFull : Outcome::kShortened;
     const T new_slope = inner_.slope_now(inner_.correction());
     if (attempt == 0 && inner_.has_contacts() && correct_step(tolerance, before, energy)) {
       ++report_.corrections;
@@ -202,7 +203,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
                               : double(inner_.displacement(inner_.correction()));
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
-    const Outcome outcome = line_search(T(tolerance), energy);
+    const Outcome outcome = line_search(T(tolerance), small && !inner_.has_contacts(), energy);
     report_.converged = small || (outcome == Outcome::kFull &&
                                   length < (inner_.has_contacts() ? kStillValidInContact : kStillValid) &&
                                   converge_by_chords(tolerance, length, energy));

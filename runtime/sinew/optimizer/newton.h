@@ -73,7 +73,7 @@ class NewtonSolver {
   bool converge_by_chords(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
   bool correct_step(T tolerance, double energy, double& new_energy);
-  Outcome line_search(T tolerance, double& energy);
+  Outcome line_search(T tolerance, bool slight, double& energy);
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
