@@ -26,7 +26,9 @@ convert::Error make_directory(const std::string& directory) {
 void print_accuracy(const study::AccuracyResult& result) {
   std::printf("%s\n", result.scene.title.c_str());
   for (const study::Slope& s : result.slopes) {
-    std::printf("  order of %s %s: %.2f", s.engine.c_str(), s.option.c_str(), s.found);
+    std::printf("  order of %s %s: ", s.engine.c_str(), s.option.c_str());
+    if (s.found == 0) std::printf("none, all errors are below %.0e m", study::kExact);
+    if (s.found != 0) std::printf("%.2f", s.found);
     if (s.expected > 0) std::printf(" (theory %.0f)", s.expected);
     std::puts("");
   }

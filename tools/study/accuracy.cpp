@@ -135,6 +135,7 @@ class Sweep {
         slope.found = kept->get<double>();
       else
         store_.keep(name, slope.found = slope_of(option));
+      if (slope.found == 0) slope.expected = 0;
       result.slopes.push_back(slope);
     }
   }
@@ -149,7 +150,9 @@ class Sweep {
       p.survived = trip.survived;
       if (p.survived) p.error = apart(scene_, trip.track, reference("Sinew"));
     }
-    return order_of(fine);
+    const bool exact = std::all_of(fine.begin(), fine.end(),
+                                   [](const AccuracyPoint& p) { return p.survived && p.error < kExact; });
+    return exact ? 0 : order_of(fine);
   }
 
   void estimates(AccuracyResult& result) {

@@ -21,10 +21,8 @@ AccuracyScene tumbling_body() {
       "No contact, no joint: only the rotation is integrated. Lines fall with their order: twice the time "
       "buys half the error of a first-order scheme and a quarter of a second-order one. Our bdf2 moves a "
       "rigid "
-      "body exactly; its line is what its start leaves.";
-  s.to_catch_up =
-      "a closed form for single bodies in flight; ours solves for them as for any tree, after a start of two "
-      "first-order steps.";
+      "body exactly, from its first step on.";
+  s.to_catch_up = "a closed form for single bodies in flight; ours solves for them as for any tree.";
   s.scene.ground = false;
   s.scene.gravity.setZero();
   Figure body = resting(free_body(1, box_inertia(1, {0.1, 0.2, 0.3})));

@@ -157,15 +157,15 @@ bool IslandStepper<T>::begin_whole() {
 /// growth of the step.
 template <class T>
 void IslandStepper<T>::start(T end, int splits) {
+  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostStartParts);
   begin_part(end * frame_, end);
-  if (starts_whole() && begin_whole()) {
+  if (parts > 1 && starts_whole() && begin_whole()) {
     part_begun_ = solve_begun_ = second_ = true;
     advance_part(T(0), end, splits);
     for (CharacterState<T>* s : states_)
       if (s->steps_unchanged > 0) s->steps_unchanged = kUnchangedSteps;
     return;
   }
-  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostStartParts);
   T begin = T(0);
   for (int n = parts - 1; n >= 0; --n) {
     const T next = end / T(1 << n);
