@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sinew/optimizer/newton_constants.h"
+
 namespace sinew {
 namespace {
 
@@ -39,7 +41,7 @@ class ContactRows final : public ContactModel<T> {
   void correct(std::span<const Contact<T>> contacts) override;
   bool measure(std::span<const Contact<T>> contacts) override;
   void add_gradient(std::span<T> gradient) const override;
-  void add_curvature(TreeMatrix<T>& matrix) override;
+  void add_curvature(TreeMatrix<T>& matrix, T drag) override;
   void multiply(std::span<const T> x, std::span<T> y) const override;
   void add_bending(TreeMatrix<T>& matrix) const override;
   void multiply_bending(std::span<const T> x, std::span<T> y) const override;
@@ -50,6 +52,17 @@ class ContactRows final : public ContactModel<T> {
     int count = 0;
     int depth = 0;  ///< position of the first entry on its unknown's path
   };
+  /// Second derivative by (gap, slip 1, slip 2).
+  struct Block {
+    T normal = T(0), slip11 = T(0), slip12 = T(0), slip22 = T(0);
+    bool zero() const { return normal <= T(0) && slip11 <= T(0) && slip22 <= T(0); }
+    /// But for a share of the largest entries.
+    bool near(const Block& o, T share) const {
+      const T most = share * std::max(o.slip11, o.slip22);
+      return std::abs(normal - o.normal) <= share * o.normal && std::abs(slip11 - o.slip11) <= most &&
+             std::abs(slip12 - o.slip12) <= most && std::abs(slip22 - o.slip22) <= most;
+    }
+  };
   struct Row {
     int contact = 0;
     Side side[2];
@@ -57,19 +70,13 @@ class ContactRows final : public ContactModel<T> {
     T stretch = T(1);                 ///< change of the damped gap by the gap
     T gap = T(0), slip[2]{};          ///< at the inner solution so far; the gap is the damped one
     T d_gap = T(0), d_slip[2]{};      ///< along the direction looked at
-    bool in_factor = false;           ///< the last factor holds some curvature of it
+    Block curvature;                  ///< that the last factor holds of it
     bool bends = false;
     Mat3<T> bending = Mat3<T>::Zero();  ///< −force·∇²distance, N/m, world axes
   };
-  /// Second derivative by (gap, slip 1, slip 2).
-  struct Block {
-    T normal = T(0), slip11 = T(0), slip12 = T(0), slip22 = T(0);
-    bool zero() const { return normal <= T(0) && slip11 <= T(0) && slip22 <= T(0); }
-  };
-
   Side add_side(const Contact<T>& contact, int leaf, const Vec3<T>& material, T sign, int above,
                 const TreePattern& pattern, const PathAxes<T>& axes);
-  Block block(const Row& row) const;
+  Block block(const Row& row, T drag) const;
 
   std::vector<Row> rows_;
   std::vector<int> unknown_;  ///< [entry]
@@ -245,10 +252,12 @@ bool ContactRows<T>::measure(std::span<const Contact<T>> contacts) {
   bool same = true;
   for (Row& row : rows_) {
     const Contact<T>& c = contacts[row.contact];
-    same = same && !row.in_factor && c.damped_gap() >= T(0) && row.grip <= T(0);
     row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];
     row.slip[1] = c.slip[1];
+    if (!same) continue;
+    const Block now = block(row, T(0));
+    same = coupled_ ? now.zero() && row.curvature.zero() : now.near(row.curvature, T(kSameCurvature));
   }
   return same;
 }
@@ -273,7 +282,7 @@ void ContactRows<T>::add_gradient(std::span<T> gradient) const {
 }
 
 template <class T>
-typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
+typename ContactRows<T>::Block ContactRows<T>::block(const Row& row, T drag) const {
   Block b;
   b.normal = row.stretch * ContactLaw<T>::curvature(row.stiffness, row.gap);
   if (row.grip <= T(0)) return b;
@@ -281,7 +290,7 @@ typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
   const T across = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);
   b.slip11 = b.slip22 = across;
   if (slip <= T(0)) return b;
-  const T along = row.grip * FrictionLaw<T>::curvature(slip, stick_) - across;
+  const T along = std::max(row.grip * FrictionLaw<T>::curvature(slip, stick_), drag * across) - across;
   const T x = row.slip[0] / slip, y = row.slip[1] / slip;
   b.slip11 += along * x * x;
   b.slip12 = along * x * y;
@@ -290,11 +299,10 @@ typename ContactRows<T>::Block ContactRows<T>::block(const Row& row) const {
 }
 
 template <class T>
-void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) {
+void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix, T drag) {
   for (Row& row : rows_) {
-    const Block b = block(row);
-    row.in_factor = !b.zero();
-    if (!row.in_factor) continue;
+    const Block b = row.curvature = block(row, drag);
+    if (b.zero()) continue;
     for (const Side& side : row.side) {
       const T *gap = gap_.data() + side.first, *first = slip_[0].data() + side.first,
               *second = slip_[1].data() + side.first;
@@ -312,7 +320,7 @@ void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix) {
 template <class T>
 void ContactRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
   for (const Row& row : rows_) {
-    const Block b = block(row);
+    const Block& b = row.curvature;
     if (b.zero()) continue;
     T gap = T(0), first = T(0), second = T(0);
     for (const Side& side : row.side)

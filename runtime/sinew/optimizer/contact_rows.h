@@ -50,15 +50,16 @@ class ContactModel {
   /// Re-measures: as far from the chart centres as the direction leads, gaps and slips are the contacts' own
   /// (second-order correction).
   virtual void correct(std::span<const Contact<T>> /*contacts*/) {}
-  /// Gaps and slips as the contacts have them now. True where that changes nothing that the last
-  /// factor holds.
+  /// Gaps and slips as the contacts have them now. True where that changes little of what the last factor
+  /// holds.
   virtual bool measure(std::span<const Contact<T>> /*contacts*/) { return true; }
 
   /// gradient += ∂E/∂d at the present gaps and slips.
   virtual void add_gradient(std::span<T> /*gradient*/) const {}
   /// Adds each side's second derivative at the present gaps and slips; what couples two sides is left out.
-  virtual void add_curvature(TreeMatrix<T>& /*matrix*/) {}
-  /// y += the whole second derivative · x, both sides and what couples them.
+  /// Friction resists further slip at least by the share `drag` of what it resists across.
+  virtual void add_curvature(TreeMatrix<T>& /*matrix*/, T /*drag*/) {}
+  /// y += the whole second derivative · x as add_curvature() found it, both sides and what couples them.
   virtual void multiply(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
   /// Geometric term: the surface's own bending turns the normal, −force·∇²distance. Per side, and what
   /// couples two sides.

@@ -212,9 +212,9 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far.
 template <class T>
-bool InnerProblem<T>::newton_step() {
+bool InnerProblem<T>::newton_step(T drag) {
   factor_.values() = tied() ? local_.values() : smooth_.values();
-  contact_rows_->add_curvature(factor_);
+  contact_rows_->add_curvature(factor_, drag);
   if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
@@ -267,9 +267,10 @@ bool InnerProblem<T>::conjugate_gradients() {
   return true;
 }
 
-/// Length of the step that the last factor would take now (m): small where the step before met no new kink.
+/// The step that the last factor would take now is residual_; its length (m) is small where the step before
+/// met no new kink.
 template <class T>
-double InnerProblem<T>::remaining_length() {
+double InnerProblem<T>::remaining_step() {
   for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
   factor_.solve(residual_);
   return double(displacement(residual_));
@@ -284,13 +285,14 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     v->assign(n, T(0));
   inner_gradient_ = smooth_gradient_;
   add_row_gradient(inner_gradient_);
+  double moved = 0;
+  const auto enough = [&] { return kShrink * std::min(report.first_length, moved); };
   for (int iteration = 0; iteration < kMostInnerSteps; ++iteration) {
-    if (!newton_step()) return report;
+    if (!newton_step(T(kLeastDrag))) return report;
     const T length = displacement(step_);
     if (!std::isfinite(length)) return report;
     if (iteration == 0) report.first_length = double(length);
-    const bool last =
-        (iteration > 0 && double(length) < kShrink * report.first_length) || length < T(0.1) * tolerance;
+    const bool last = (iteration > 0 && double(length) < enough()) || length < T(0.1) * tolerance;
     contact_rows_->look_along(step_);
     if (ellipsoids_) ellipsoids_->look_along(step_);
     for (JointRows& rows : joint_rows_) {
@@ -315,12 +317,16 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       correction_product_[k] += t * product_[k];
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
+    moved += double(t * length);
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
     if (last || straight) break;
     add_row_gradient(inner_gradient_);
-    if (!coupled() && remaining_length() < kShrink * report.first_length) break;
+    if (!coupled() && remaining_step() < enough()) {
+      for (int k = 0; k < n; ++k) correction_[k] += residual_[k];
+      break;
+    }
   }
   report.solved = true;
   return report;
@@ -356,7 +362,7 @@ double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   if (same) {
     for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
     factor_.solve(step_);
-  } else if (!newton_step()) {
+  } else if (!newton_step(T(0))) {
     return kNone;
   }
   correction_ = step_;

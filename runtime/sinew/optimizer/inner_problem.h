@@ -59,7 +59,7 @@ class InnerProblem {
   /// Simplified Newton step, a chord, from where the last correction led: true gradient, rows as the trees
   /// and `contacts` found them there, this pass's H₀ and Jacobians. It becomes correction(); the model is
   /// spent. Returns its length (m, see displacement), infinite where there is none. Costs a factorisation
-  /// where a row has changed.
+  /// where a row has changed much.
   double chord(std::span<const Contact<T>> contacts);
 
   const ContactModel<T>& contacts() const { return *contact_rows_; }
@@ -99,9 +99,9 @@ class InnerProblem {
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
-  bool newton_step();
+  bool newton_step(T drag);
   bool conjugate_gradients();
-  double remaining_length();
+  double remaining_step();
   void multiply_smooth(std::span<const T> x, std::span<T> y) const;
   void multiply_full(std::span<const T> x, std::span<T> y) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sinew/optimizer/newton_constants.h"
 
@@ -123,7 +124,8 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
     remember_charts();
     try_step(T(1));
     const double new_energy = evaluate();
-    const bool last = next < kCautious * tolerance;
+    const double rate = std::max(next / length, kLeastRate);
+    const bool last = next * rate < kCautious * tolerance * (1 - rate);  // a geometric series is left
     if (!accepted(T(1), slope, energy, new_energy, last)) {
       try_step(T(0));
       energy = evaluate();
@@ -134,6 +136,20 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
     if (last) return true;
     length = next;
   }
+}
+
+/// Whether contacts bear much more at the first guess than they can in the end: it is where inertia leads.
+template <class T>
+bool NewtonSolver<T>::forces_mislead() const {
+  T now = T(0), before = T(0), mass = T(0);
+  for (const Contact<T>& c : contacts_) {
+    now += normal_force(c);
+    before += c.lagged_normal_force;
+  }
+  if (now == T(0)) return false;
+  for (const TreeProblem<T>* p : trees_)
+    mass = std::accumulate(p->tree->mass.begin(), p->tree->mass.end(), mass);
+  return now > T(kMisleading) * std::max(before, mass * settings_->gravity.norm());
 }
 
 template <class T>
@@ -149,16 +165,23 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   double energy = evaluate();
   report_.converged = inner_.size() == 0;
   const double tolerance = accuracy.tolerance;
+  bool geometric = !forces_mislead();
   while (!report_.converged && report_.outer_passes < accuracy.max_iterations) {
     ++report_.outer_passes;
-    inner_.build(contacts_, couplings_, true);
-    InnerReport inner = inner_.minimise(T(tolerance));
+    InnerReport inner;
+    if (geometric) {
+      inner_.build(contacts_, couplings_, true);
+      inner = inner_.minimise(T(tolerance));
+    }
+    // Where it was indefinite now it is likely to be so in the next pass.
+    const bool again = !geometric || inner.solved;
     if (!inner.solved) {
       ++report_.plain_passes;
       inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
       if (!inner.solved) break;
     }
+    geometric = again;
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));

@@ -19,7 +19,7 @@ struct SolveReport {
   int factorisations = 0;
   int products = 0;  ///< matrix–vector, of conjugate gradients
   int evaluations = 0;
-  int plain_passes = 0;  ///< without the geometric terms, which made the matrix indefinite
+  int plain_passes = 0;  ///< without the geometric terms, which make the matrix indefinite
   int chords = 0;        ///< simplified Newton steps, with the matrix of the pass before
   int corrections = 0;   ///< second-order corrections that saved a step
   bool converged = false;
@@ -63,6 +63,7 @@ class NewtonSolver {
   enum class Outcome { kRefused, kShortened, kCorrected, kFull };
 
   double evaluate();
+  bool forces_mislead() const;
   void remember_charts();
   void try_step(T t);
   bool converge_by_chords(double tolerance, double length, double& energy);

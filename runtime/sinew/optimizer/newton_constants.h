@@ -8,12 +8,24 @@ namespace sinew {
 /// factorisation, or conjugate gradients over all who touch: at 0.03 a pile of a crowd took four times as
 /// long.
 constexpr double kStillValid = 0.03, kStillValidInContact = 0.01;
-constexpr double kChordRate = 0.5;    ///< of the step before: chords that shrink less do not pay
-constexpr double kCautious = 0.1;     ///< of the tolerance, for a chord to be the last
+constexpr double kChordRate = 0.7;   ///< of the step before: chords that shrink less do not pay
+constexpr double kLeastRate = 0.25;  ///< of chords to come, however fast the last one shrank
+/// Change of a contact's curvature, by its largest, that a chord's factor may have missed: 0.4 saves another
+/// half of their factorisations, but leaves errors above the tolerance.
+constexpr double kSameCurvature = 0.2;
+constexpr double kCautious = 0.1;  ///< of the tolerance, may be left after the last chord
+/// Of the forces that contacts bore in the last step, or of the weight: where those at the guess are so much
+/// larger, they are those of bodies that went through the floor, and their geometric terms mislead.
+constexpr double kMisleading = 1.5;
 constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
 
 // Of its convex model (inner_problem.h)
-constexpr double kShrink = 0.1;  ///< of the first step: tighter costs factorisations, looser outer passes
+/// Of the first step, or of the way made so far where that is shorter: tighter costs factorisations, looser
+/// outer passes.
+constexpr double kShrink = 0.1;
+/// What friction resists along a slip, at least, by what it resists across it. Exactly it is nothing, and the
+/// step runs on to where the slip has turned round: a line search then stops at one kink after the other.
+constexpr double kLeastDrag = 0.3;
 constexpr int kMostInnerSteps = 8;
 constexpr double kRotationArm = 0.15;  ///< m; turns a rotation into a displacement for the tolerance
 

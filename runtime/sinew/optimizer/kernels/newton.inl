@@ -126,7 +126,8 @@ class PackNewton {
       const P slope = inner_.slope_now(inner_.correction());
       try_step(lanes);
       const Wide energy = evaluate(lanes);
-      const Live last = narrowed(next < Wide(kCautious * tolerance_));
+      const Wide rate = largest(next / length, Wide(kLeastRate));
+      const Live last = narrowed(next * rate < kCautious * tolerance_ * (Wide(1) - rate));
       const Live taken = accepted(slope, energy_, energy, last);
       active = both(active, either(!lanes, taken));
       lanes = both(lanes, taken);

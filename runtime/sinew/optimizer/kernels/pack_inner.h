@@ -102,6 +102,8 @@ class PackInner {
     for (int k = 0; k < size(); ++k) inner_gradient_[k] = smooth_gradient_[k];
     add_row_gradient(inner_gradient_);
     for (PackRow<P>& row : problem_->model_rows) row.in_factor = P(0);
+    moved_ = widened(P(0));
+    const auto enough = [&] { return kShrink * smallest(first_length_, moved_); };
     for (int iteration = 0; iteration < kMostInnerSteps && any(running); ++iteration) {
       const Live definite = newton_step(running);
       const P length = displacement(step_);
@@ -110,12 +112,15 @@ class PackInner {
       running = both(running, good);
       if (iteration == 0) first_length_ = widened(length);
       Live last = length < P(0.1f) * P(tolerance);
-      if (iteration > 0) last = either(last, narrowed(widened(length) < kShrink * first_length_));
-      const Live straight = take_step(running);
+      if (iteration > 0) last = either(last, narrowed(widened(length) < enough()));
+      const Live straight = take_step(running, length);
       running = both(running, both(!last, !straight));
       if (!any(running)) break;
       add_row_gradient(inner_gradient_);
-      running = both(running, !narrowed(remaining_length() < kShrink * first_length_));
+      const Live rest = both(running, narrowed(remaining_step() < enough()));
+      for (int k = 0; k < size(); ++k)
+        correction_[k] = select(rest, P(correction_[k] + residual_[k]), correction_[k]);
+      running = both(running, !rest);
     }
     return solved;
   }
@@ -282,13 +287,13 @@ class PackInner {
     for (int k = 0; k < size(); ++k) out[k] = -inner_gradient_[k];
     solve_by_tree<P>(*factor_.pattern, factor_.values.data(), out);
   }
-  auto remaining_length() {
+  auto remaining_step() {
     step_from_factor(residual_);
     return widened(displacement(residual_));
   }
 
   /// Answers where no row bears on the way: there the model is quadratic and the step exact.
-  Live take_step(const Live& lanes) {
+  Live take_step(const Live& lanes, const P& length) {
     Live straight = all(true);
     for (PackRow<P>& row : problem_->model_rows) {
       row.along = P(0);
@@ -310,6 +315,7 @@ class PackInner {
           select(lanes, P(correction_product_[k] + t * product_[k]), correction_product_[k]);
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
+    moved_ += widened(P(t * length));
     for (PackRow<P>& row : problem_->model_rows) row.at = select(lanes, P(row.at + t * row.along), row.at);
     return straight;
   }
@@ -349,7 +355,7 @@ class PackInner {
   std::span<P> base_gradient_, smooth_gradient_, inner_gradient_, step_, product_, correction_,
       correction_product_, residual_, diagonal_;
   std::span<Vec3<P>> turn_, slide_;
-  decltype(widened(P())) first_length_;
+  decltype(widened(P())) first_length_, moved_;
 };
 
 }  // namespace
