@@ -4,12 +4,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 #include <random>
 
 #include "crowd/job_system.h"
 #include "fixtures/clips.h"
 #include "fixtures/humanoid.h"
+#include "fixtures/pile.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
@@ -272,6 +274,29 @@ void population_frame(benchmark::State& state, double hits_per_second, int threa
   per_character(state, characters);
 }
 
+/// Limp figures that fall upon each other, from the first touch to the heap at rest: 2 s, then anew. Counters
+/// are of single steps of all of them, processor time.
+void pile(benchmark::State& state) {
+  constexpr int kRun = 120;  // steps
+  const int figures = int(state.range(0));
+  const Skeleton rig = fixtures::humanoid();
+  const auto world = fixtures::pile_of(figures);
+  std::vector<double> microseconds;
+  for (auto _ : state) {
+    if (!microseconds.empty() && microseconds.size() % kRun == 0) {
+      state.PauseTiming();
+      fixtures::drop_pile(*world, rig, figures);
+      state.ResumeTiming();
+    }
+    const std::clock_t begin = std::clock();
+    benchmark::DoNotOptimize(world->step(float(kStep)));
+    microseconds.push_back(1e6 * double(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  std::sort(microseconds.begin(), microseconds.end());
+  state.counters["p50_us"] = microseconds[microseconds.size() / 2];
+  state.counters["max_us"] = microseconds.back();
+}
+
 constexpr InstructionSet kBaseline = InstructionSet::kBaseline, kAvx2 = InstructionSet::kAvx2,
                          kAvx512 = InstructionSet::kAvx512;
 
@@ -299,6 +324,8 @@ BENCHMARK_CAPTURE(limp_arm, alone, false, false)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, batches, true, false)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, two_sets_alone, false, true)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, two_sets_batches, true, true)->Arg(64);
+
+BENCHMARK(pile)->Arg(3)->Arg(10)->Arg(30)->Iterations(120)->Unit(benchmark::kMicrosecond);
 
 BENCHMARK_CAPTURE(population_frame, hit_4_threads, 0.05, 4)->Arg(1000)->Iterations(600)->UseRealTime();
 BENCHMARK_CAPTURE(population_frame, hit_1_thread, 0.05, 1)

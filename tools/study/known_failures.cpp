@@ -14,7 +14,6 @@ struct KnownFailure {
 };
 
 constexpr KnownFailure kKnownFailures[] = {
-    {"root_turned_by_pi", "float: 1 to 2 mrad in a second, of roundings in the first eighths of a step"},
     {"limp_fall_counts", "8 passes at the 99th percentile, 4.7 factorisations: the prototype had 7 and 3.7"},
     {"piston",
      "squeezed past its dead centre between piston and wall, a thigh flings its shin: 8.1 to 8.9 m/s, 8 "

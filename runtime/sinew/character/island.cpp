@@ -16,8 +16,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertified = 0.9;    ///< of the limit: below, a joint at its target leaves the unknowns
-constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
+constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
 constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
@@ -136,7 +135,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   Vec3<double> momentum;
   if (s.left_to_gravity)
     momentum = carried_momentum<T>(s.tree, s.history, p.prediction, h) +
-               double(p.prediction.momentum_step) * s.total_mass * world.gravity;
+               double(p.prediction.first ? h : p.prediction.momentum_step) * s.total_mass * world.gravity;
   advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
   if (s.left_to_gravity) set_momentum<T>(s.tree, momentum, s.history);
   if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
@@ -176,15 +175,6 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
                                                 : Transform<T>{now.rotation, now.translation};
     s.wanted[i] = s.in_solve(i, wanted, settings_.common_origin);
   }
-}
-
-/// Starts the solve nearer to where it was, where an effect says so.
-template <class T>
-void IslandStepper<T>::limit_guess(T h) {
-  free_share_.assign(states_.size(), T(1));
-  for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
-  for (std::size_t n = 0; n < states_.size(); ++n)
-    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
 }
 
 /// What may touch within h, but for what trees that were held are caught in.
@@ -230,16 +220,6 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   find_contacts(h);
 }
 
-/// Whether a limp body is about to strike something within h.
-template <class T>
-bool IslandStepper<T>::strikes(T h) const {
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    const bool limp = (states_[c.tree_a]->limp() && !states_[c.tree_a]->is_prop) ||
-                      (c.tree_b >= 0 && states_[c.tree_b]->limp() && !states_[c.tree_b]->is_prop);
-    return limp && c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach;
-  });
-}
-
 /// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
 template <class T>
 void IslandStepper<T>::begin_solve() {
@@ -257,6 +237,7 @@ void IslandStepper<T>::begin_solve() {
               h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+  if (strikes_deep(h)) choose_guess(h);
 }
 
 /// Of a part, unless it has been made for us.
@@ -270,7 +251,7 @@ SolveReport IslandStepper<T>::first_solve() {
 
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
-SolveReport IslandStepper<T>::attempt() {
+SolveReport IslandStepper<T>::attempt(bool may_split) {
   const WorldSettings& world = *world_;
   const T h = settings_.h;
   mispredicted_ = false;
@@ -283,6 +264,7 @@ SolveReport IslandStepper<T>::attempt() {
       predict_all(Scheme::kBdf1, h);
       total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
     }
+    if (may_split && !total.converged) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
       released = release_overloaded(*s) || released;
@@ -314,7 +296,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   closed_ = passive();
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
   const bool closed = closed_;
-  SolveReport solved = attempt();
+  SolveReport solved = attempt(splits_left > 0);
   total_.add(solved);
   if (closed && (solved.converged || splits_left == 0) && unreachable()) {
     solved = solve_from_start();
@@ -375,29 +357,6 @@ int IslandStepper<T>::parts_of(T h) const {
     parts = std::max(parts, static_cast<int>(std::min(wanted, double(kMostParts))));
   }
   return parts;
-}
-
-/// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
-template <class T>
-bool IslandStepper<T>::starts() const {
-  const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    return s->history.step_before == T(0) && s->contact_signature == 0;
-  });
-  return fresh && world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive();
-}
-
-/// The first part of a step from a reset, up to the fraction `end`: in parts that double, because two of them
-/// are bdf1's (which in whole steps of 1/60 s take 2 % of a thrown humanoid's energy, and cost more accuracy
-/// than the half second after them), and bdf2 bears no sudden growth of the step.
-template <class T>
-void IslandStepper<T>::start(T end, int splits) {
-  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostParts);
-  T begin = T(0);
-  for (int n = parts - 1; n >= 0; --n) {
-    const T next = end / T(1 << n);
-    advance_part(begin, next, splits);
-    begin = next;
-  }
 }
 
 template <class T>

@@ -62,13 +62,17 @@ class IslandStepper {
   bool starts() const;
   void limit_guess(T h);
   void start(T end, int splits);
+  bool starts_whole() const;
+  bool begin_whole();
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);
   bool strikes(T h) const;
+  bool strikes_deep(T h) const;
+  void choose_guess(T h);
   void begin_solve();
   SolveReport first_solve();
-  SolveReport attempt();
+  SolveReport attempt(bool may_split);
   void reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
   void choose_lagged(std::span<const LaggedForce<T>> lagged);

@@ -267,8 +267,8 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
-  // Two halves of 41 bits, three numbers and a byte more each.
-  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 3 * (sizeof(T) + 1)));
+  // Two halves of 44 bits, three numbers and at most two bytes more each.
+  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 3 * (sizeof(T) + 2)));
   {
     ResidualCoder<std::uint32_t> coder("contact", stream, true);
     std::uint32_t high = 0, low = 0;

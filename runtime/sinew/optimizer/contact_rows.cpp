@@ -29,8 +29,7 @@ class ContactRows final : public ContactModel<T> {
   }
   void limit(int entries) override { most_entries_ = entries; }
   void evaluate(Trees trees, std::span<Contact<T>> contacts, T stick, double& energy) const override;
-  void add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick,
-                  TreeProblem<T>& tree) const override;
+  void add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick) const override;
   void collect(Trees trees, std::span<const Contact<T>> contacts, const Unknowns& unknowns,
                const PathAxes<T>& axes, T near, T stick) override;
   bool empty() const override { return rows_.empty(); }
@@ -43,6 +42,7 @@ class ContactRows final : public ContactModel<T> {
   void add_gradient(std::span<T> gradient) const override;
   void add_curvature(TreeMatrix<T>& matrix, T drag) override;
   void multiply(std::span<const T> x, std::span<T> y) const override;
+  void multiply_coupling(std::span<const T> x, std::span<T> y) const override;
   void add_bending(TreeMatrix<T>& matrix) const override;
   void multiply_bending(std::span<const T> x, std::span<T> y) const override;
 
@@ -73,10 +73,19 @@ class ContactRows final : public ContactModel<T> {
     Block curvature;                  ///< that the last factor holds of it
     bool bends = false;
     Mat3<T> bending = Mat3<T>::Zero();  ///< −force·∇²distance, N/m, world axes
+
+    bool couples() const { return side[0].count > 0 && side[1].count > 0; }
   };
+  /// By gap and slips.
+  struct Change {
+    T gap = T(0), slip[2] = {};
+  };
+
   Side add_side(const Contact<T>& contact, int leaf, const Vec3<T>& material, T sign, int above,
                 const TreePattern& pattern, const PathAxes<T>& axes);
   Block block(const Row& row, T drag) const;
+  Change along(const Side& side, std::span<const T> direction) const;
+  void pull(const Side& side, const Block& block, const Change& change, std::span<T> y) const;
 
   std::vector<Row> rows_;
   std::vector<int> unknown_;  ///< [entry]
@@ -106,18 +115,17 @@ void ContactRows<T>::evaluate(Trees trees, std::span<Contact<T>> contacts, T sti
 }
 
 template <class T>
-void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick,
-                                TreeProblem<T>& p) const {
+void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick) const {
   for (const Contact<T>& c : contacts) {
+    if (!c.acts()) continue;
     const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, stick);
-    if (trees[c.tree_a] == &p) {
-      p.composite[c.body_a].add_force(c.point, normal);
-      p.composite[c.body_a].add_force(c.material_point, tangent);
-    }
-    if (c.tree_b >= 0 && trees[c.tree_b] == &p) {
-      p.composite[c.body_b].add_force(c.point, -normal);
-      p.composite[c.body_b].add_force(c.material_point_b, -tangent);
-    }
+    Composite<T>& a = trees[c.tree_a]->composite[c.body_a];
+    a.add_force(c.point, normal);
+    a.add_force(c.material_point, tangent);
+    if (c.tree_b < 0) continue;
+    Composite<T>& b = trees[c.tree_b]->composite[c.body_b];
+    b.add_force(c.point, -normal);
+    b.add_force(c.material_point_b, -tangent);
   }
 }
 
@@ -193,25 +201,40 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     const T force = normal_force(c);
     row.bends = force > T(0) && c.bends;
     if (row.bends) row.bending = -force * c.bending;
-    coupled_ = coupled_ || (row.side[0].count > 0 && row.side[1].count > 0);
+    coupled_ = coupled_ || row.couples();
     rows_.push_back(row);
   }
 }
 
 template <class T>
+typename ContactRows<T>::Change ContactRows<T>::along(const Side& side, std::span<const T> direction) const {
+  Change change;
+  for (int e = side.first; e < side.first + side.count; ++e) {
+    const T d = direction[unknown_[e]];
+    change.gap += gap_[e] * d;
+    change.slip[0] += slip_[0][e] * d;
+    change.slip[1] += slip_[1][e] * d;
+  }
+  return change;
+}
+
+/// y += the side's rowsᵀ · block · change.
+template <class T>
+void ContactRows<T>::pull(const Side& side, const Block& b, const Change& change, std::span<T> y) const {
+  const T normal = b.normal * change.gap;
+  const T one = b.slip11 * change.slip[0] + b.slip12 * change.slip[1];
+  const T two = b.slip12 * change.slip[0] + b.slip22 * change.slip[1];
+  for (int e = side.first; e < side.first + side.count; ++e)
+    y[unknown_[e]] += normal * gap_[e] + one * slip_[0][e] + two * slip_[1][e];
+}
+
+template <class T>
 void ContactRows<T>::look_along(std::span<const T> direction) {
   for (Row& row : rows_) {
-    T gap = T(0), first = T(0), second = T(0);
-    for (const Side& side : row.side)
-      for (int e = side.first; e < side.first + side.count; ++e) {
-        const T d = direction[unknown_[e]];
-        gap += gap_[e] * d;
-        first += slip_[0][e] * d;
-        second += slip_[1][e] * d;
-      }
-    row.d_gap = row.stretch * gap;
-    row.d_slip[0] = first;
-    row.d_slip[1] = second;
+    const Change a = along(row.side[0], direction), b = along(row.side[1], direction);
+    row.d_gap = row.stretch * (a.gap + b.gap);
+    row.d_slip[0] = a.slip[0] + b.slip[0];
+    row.d_slip[1] = a.slip[1] + b.slip[1];
   }
 }
 
@@ -320,21 +343,20 @@ void ContactRows<T>::add_curvature(TreeMatrix<T>& matrix, T drag) {
 template <class T>
 void ContactRows<T>::multiply(std::span<const T> x, std::span<T> y) const {
   for (const Row& row : rows_) {
-    const Block& b = row.curvature;
-    if (b.zero()) continue;
-    T gap = T(0), first = T(0), second = T(0);
-    for (const Side& side : row.side)
-      for (int e = side.first; e < side.first + side.count; ++e) {
-        const T d = x[unknown_[e]];
-        gap += gap_[e] * d;
-        first += slip_[0][e] * d;
-        second += slip_[1][e] * d;
-      }
-    const T normal = b.normal * gap;
-    const T one = b.slip11 * first + b.slip12 * second, two = b.slip12 * first + b.slip22 * second;
-    for (const Side& side : row.side)
-      for (int e = side.first; e < side.first + side.count; ++e)
-        y[unknown_[e]] += normal * gap_[e] + one * slip_[0][e] + two * slip_[1][e];
+    if (row.curvature.zero()) continue;
+    const Change a = along(row.side[0], x), b = along(row.side[1], x);
+    const Change both{a.gap + b.gap, {a.slip[0] + b.slip[0], a.slip[1] + b.slip[1]}};
+    for (const Side& side : row.side) pull(side, row.curvature, both, y);
+  }
+}
+
+template <class T>
+void ContactRows<T>::multiply_coupling(std::span<const T> x, std::span<T> y) const {
+  for (const Row& row : rows_) {
+    if (row.curvature.zero() || !row.couples()) continue;
+    const Change a = along(row.side[0], x), b = along(row.side[1], x);
+    pull(row.side[0], row.curvature, b, y);
+    pull(row.side[1], row.curvature, a, y);
   }
 }
 

@@ -30,9 +30,8 @@ class ContactModel {
   /// the wrenches.
   virtual void evaluate(Trees /*trees*/, std::span<Contact<T>> /*contacts*/, T /*stick*/,
                         double& /*energy*/) const {}
-  /// Geometric terms of the forces on one of the trees, into its composites.
-  virtual void add_forces(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/, T /*stick*/,
-                          TreeProblem<T>& /*tree*/) const {}
+  /// Geometric terms of the forces, into the trees' composites.
+  virtual void add_forces(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/, T /*stick*/) const {}
 
   /// Linearises all contacts nearer than `near` (m) about the present kinematics of `trees`.
   virtual void collect(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/,
@@ -61,6 +60,8 @@ class ContactModel {
   virtual void add_curvature(TreeMatrix<T>& /*matrix*/, T /*drag*/) {}
   /// y += the whole second derivative · x as add_curvature() found it, both sides and what couples them.
   virtual void multiply(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
+  /// y += what couples two sides · x: all that add_curvature leaves out.
+  virtual void multiply_coupling(std::span<const T> /*x*/, std::span<T> /*y*/) const {}
   /// Geometric term: the surface's own bending turns the normal, −force·∇²distance. Per side, and what
   /// couples two sides.
   virtual void add_bending(TreeMatrix<T>& /*matrix*/) const {}

@@ -31,8 +31,9 @@ double integration_error(const TreeProblem<T>& problem, const History<T>& histor
                          T h, const Vec3<double>& common_origin) {
   const Tree<T>& tree = *problem.tree;
   const bool second = problem.prediction.scheme == Scheme::kBdf2;
-  const T w = second ? h / history.step_before : T(0);
-  const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1), k2 = second ? w * w / (1 + w) : T(0);
+  const bool first = problem.prediction.first;
+  const T w = second && !first ? h / history.step_before : T(0);
+  const T k1 = problem.prediction.k1, k2 = problem.prediction.k2;
   const T factor = second ? problem.prediction.momentum_step / 3 : h / 2;
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   T sum = T(0), mass = T(0);
@@ -40,7 +41,9 @@ double integration_error(const TreeProblem<T>& problem, const History<T>& histor
     mass += tree.mass[i];
     if (!carried_by_integration(problem, load, i)) continue;
     const Vec3<T> moved = problem.kinematics.center[i] - place - history.center[i];
-    const Vec3<T> velocity = (k1 * moved - k2 * (history.center[i] - history.center_before[i])) / h;
+    const Vec3<T> before =
+        first ? Vec3<T>(h * history.velocity[i]) : Vec3<T>(history.center[i] - history.center_before[i]);
+    const Vec3<T> velocity = (k1 * moved - k2 * before) / h;
     Vec3<T> change = velocity - history.velocity[i];
     // Angular velocities in body axes, of the momenta that the scheme carries: a steady spin is no error.
     const auto spin = [&](const Mat3<T>& rotation, const Vec3<T>& momentum) {
@@ -50,7 +53,13 @@ double integration_error(const TreeProblem<T>& problem, const History<T>& histor
         problem.prediction.momentum[i] + problem.prediction.momentum_step * problem.couple[i];
     const Vec3<T> now = spin(history.rotation[i], history.momentum[i]);
     Vec3<T> turning = spin(problem.kinematics.rotation[i], momentum) - now;
-    if (second) {
+    if (first) {
+      // The acceleration at the start, which the prediction holds, in place of the last change of speed.
+      change -= 4 / h * (problem.prediction.center[i] - place - history.center[i] - before);
+      const Vec3<T> pushed = 2 * (problem.prediction.momentum[i] - history.momentum[i]);
+      const Vec3<T> gyration = now.cross(Vec3<T>(tree.inertia[i] * now));
+      turning -= spin(history.rotation[i], pushed) - h * (tree.inverse_inertia[i] * gyration);
+    } else if (second) {
       change -= w * (history.velocity[i] - history.velocity_before[i]);
       turning -= w * (now - spin(history.rotation_before[i], history.momentum_before[i]));
     }

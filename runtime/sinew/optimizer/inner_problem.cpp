@@ -13,6 +13,8 @@ namespace {
 constexpr double kNear = 0.1;  ///< m; contacts further away are left out
 constexpr int kMostProducts = 80;
 constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
+constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
+constexpr double kFar = 1e-3;          ///< m: the next pass will see another problem anyway
 
 template <class T>
 T dot(std::span<const T> a, std::span<const T> b) {
@@ -45,7 +47,7 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   path_.resize(TreePattern::padded(dofs));
   if (ellipsoid_model_) ellipsoid_model_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
-                  &correction_product_, &residual_, &preconditioned_, &direction_})
+                  &correction_product_, &residual_, &preconditioned_, &direction_, &factored_})
     v->reserve(dofs);
 }
 
@@ -64,7 +66,6 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
 template <class T>
 void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
                             bool geometric) {
-  geometric_ = geometric;
   axes_.clear();
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
@@ -76,7 +77,8 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
     for (const JointRow<T>& row : p->rows)
       joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
   if (couplings_) couplings_->collect(trees_, couplings, unknowns_, axes_);
-  assemble(contacts, couplings, geometric);
+  geometric_ = geometric && !(trees_.size() > 1 && contact_rows_->coupled());
+  assemble(contacts, couplings);
   // The gradient without the rows', which are added back wherever they move.
   base_gradient_.assign(size(), T(0));
   for (const TreeProblem<T>* p : trees_)
@@ -95,27 +97,26 @@ bool InnerProblem<T>::rounded() const {
 }
 
 template <class T>
-void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
-                               bool geometric) {
+void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
+                               std::span<Coupling<T>* const> couplings) {
   smooth_.set_zero();
+  for (TreeProblem<T>* p : trees_) begin_composite(*settings_, *p);
+  if (geometric_) {
+    contact_rows_->add_forces(trees_, contacts, settings_->stick);
+    for (const Coupling<T>* c : couplings)
+      for (const CouplingNode<T>& node : c->nodes)
+        if (node.tree >= 0) trees_[node.tree]->composite[node.body].add_force(node.point, node.gradient);
+  }
   for (TreeProblem<T>* p : trees_) {
-    begin_composite(*settings_, *p);
-    if (geometric) {
-      contact_rows_->add_forces(trees_, contacts, settings_->stick, *p);
-      for (const Coupling<T>* c : couplings)
-        for (const CouplingNode<T>& node : c->nodes)
-          if (node.tree >= 0 && trees_[node.tree] == p)
-            p->composite[node.body].add_force(node.point, node.gradient);
-    }
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
-                            geometric, smooth_);
+                            geometric_, smooth_);
     add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
     if (p->stiff)
       add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
                        smooth_);
-    if (geometric) add_joint_geometry(*p);
+    if (geometric_) add_joint_geometry(*p);
   }
-  if (geometric) contact_rows_->add_bending(smooth_);
+  if (geometric_) contact_rows_->add_bending(smooth_);
   if (!tied()) return;
   local_.values() = smooth_.values();
   couplings_->add_curvature(local_);
@@ -233,10 +234,11 @@ bool InnerProblem<T>::newton_step(T drag) {
   return true;
 }
 
-/// Solves with the whole matrix, the factor as preconditioner. Where curvature turns negative on the way, the
-/// step so far is a descent direction (truncated Newton); false if that happens at once, or with couplings:
-/// there a pass without geometric terms gets further (hands on a wheel: 7 passes instead of 10 at the 99th
-/// percentile, a massless spin between loops 20 instead of 60).
+/// Solves with the whole matrix A, the factor F as preconditioner. What contacts couple is all that the two
+/// differ by, and F·direction follows from the residuals: a product costs the coupling alone. Where curvature
+/// turns negative on the way, the step so far is a descent direction (truncated Newton); false if that
+/// happens at once, or with couplings: there a pass without geometric terms gets further (hands on a wheel: 7
+/// passes instead of 10 at the 99th percentile, a massless spin between loops 20 instead of 60).
 template <class T>
 bool InnerProblem<T>::conjugate_gradients() {
   std::fill(step_.begin(), step_.end(), T(0));
@@ -244,11 +246,23 @@ bool InnerProblem<T>::conjugate_gradients() {
   preconditioned_ = residual_;
   factor_.solve(preconditioned_);
   direction_ = preconditioned_;
+  factored_ = residual_;
   T energy = dot<T>(residual_, preconditioned_);
   const T goal = energy * T(kCgTolerance * kCgTolerance);
+  T far = tied() ? T(0) : energy * T(kCgFar * kCgFar);
   const int most = tied() ? std::max(kMostProducts, 2 * size()) : kMostProducts;
   for (int iteration = 0; iteration < most && energy > goal; ++iteration) {
-    multiply_full(direction_, product_);
+    if (energy <= far) {
+      if (displacement(step_) > T(kFar)) return true;
+      far = T(0);
+    }
+    if (tied()) {
+      multiply_full(direction_, product_);
+    } else {
+      product_ = factored_;
+      contact_rows_->multiply_coupling(direction_, product_);
+      if (geometric_) contact_rows_->multiply_bending(direction_, product_);
+    }
     ++products;
     const T curvature = dot<T>(direction_, product_);
     if (!(curvature > T(0))) return iteration > 0 && !tied();
@@ -262,7 +276,10 @@ bool InnerProblem<T>::conjugate_gradients() {
     const T next = dot<T>(residual_, preconditioned_);
     const T ratio = next / energy;
     energy = next;
-    for (int k = 0; k < size(); ++k) direction_[k] = preconditioned_[k] + ratio * direction_[k];
+    for (int k = 0; k < size(); ++k) {
+      direction_[k] = preconditioned_[k] + ratio * direction_[k];
+      factored_[k] = residual_[k] + ratio * factored_[k];
+    }
   }
   return true;
 }

@@ -35,7 +35,7 @@ class InnerProblem {
   std::size_t bytes(const SolveRoom& room) const {
     return contact_rows_->bytes(room) + (couplings_ ? couplings_->bytes(room) : 0) +
            (ellipsoid_model_ ? ellipsoid_model_->bytes(room.dofs / 3) : 0) +
-           room.dofs * (8 * sizeof(JointRows) + 13 * sizeof(T) + 8 * sizeof(int)) +
+           room.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
            room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
            room.bodies * 2 * sizeof(Vec3<T>);
   }
@@ -48,8 +48,11 @@ class InnerProblem {
     return unknowns_.of_dof[tree.first_unknown_map + dof];
   }
 
-  /// Model about the present pose, whose gradient and wrenches the trees hold.
+  /// Model about the present pose, whose gradient and wrenches the trees hold. Trees in contact with each
+  /// other have no geometric terms, asked for or not: in a pile they led astray (README.md).
   void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
+  /// Whether the model has geometric terms.
+  bool geometric() const { return geometric_; }
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
   /// Second-order correction: the model again, with gaps and slips as the contacts found them where the
@@ -90,8 +93,7 @@ class InnerProblem {
     }
   };
 
-  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
-                bool geometric);
+  void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
   bool rounded() const;
   bool tied() const { return couplings_ && !couplings_->empty(); }
   bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
@@ -123,9 +125,9 @@ class InnerProblem {
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far
   std::vector<T> step_, product_, correction_, correction_product_;
-  std::vector<T> residual_, preconditioned_, direction_;  ///< conjugate gradients
-  std::vector<T> path_;                                   ///< one row of add_stiffness
-  mutable std::vector<Vec3<T>> turn_, slide_;             ///< [body] of displacement()
+  std::vector<T> residual_, preconditioned_, direction_, factored_;  ///< conjugate gradients
+  std::vector<T> path_;                                              ///< one row of add_stiffness
+  mutable std::vector<Vec3<T>> turn_, slide_;                        ///< [body] of displacement()
 };
 
 extern template class InnerProblem<float>;

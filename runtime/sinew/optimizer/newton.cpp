@@ -29,6 +29,16 @@ double NewtonSolver<T>::evaluate() {
 }
 
 template <class T>
+double NewtonSolver<T>::energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                               std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings) {
+  settings_ = &settings;
+  trees_ = trees;
+  contacts_ = contacts;
+  couplings_ = couplings;
+  return evaluate();
+}
+
+template <class T>
 void NewtonSolver<T>::remember_charts() {
   base_.clear();
   for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
@@ -90,7 +100,7 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
 }
 
 template <class T>
-typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, double& energy) {
+typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, bool slight, double& energy) {
   const T slope = inner_.slope(inner_.correction());
   remember_charts();
   const double before = energy;
@@ -98,7 +108,8 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, doub
   for (int attempt = 0; attempt < 14; ++attempt) {
     try_step(t);
     energy = evaluate();
-    if (accepted(t, slope, before, energy)) return attempt == 0 ? Outcome::kFull : Outcome::kShortened;
+    if (accepted(t, slope, before, energy, slight))
+      return attempt == 0 ? Outcome::kFull : Outcome::kShortened;
     const T new_slope = inner_.slope_now(inner_.correction());
     if (attempt == 0 && inner_.has_contacts() && correct_step(tolerance, before, energy)) {
       ++report_.corrections;
@@ -173,15 +184,15 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
       inner_.build(contacts_, couplings_, true);
       inner = inner_.minimise(T(tolerance));
     }
-    // Where it was indefinite now it is likely to be so in the next pass.
-    const bool again = !geometric || inner.solved;
-    if (!inner.solved) {
+    const bool plain = !geometric || (!inner.solved && inner_.geometric());
+    // Where it was indefinite now it is likely to be so in the next pass; after that it is tried again.
+    geometric = !geometric || inner.solved;
+    if (plain) {
       ++report_.plain_passes;
       inner_.build(contacts_, couplings_, false);
       inner = inner_.minimise(T(tolerance));
-      if (!inner.solved) break;
     }
-    geometric = again;
+    if (!inner.solved) break;
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));
@@ -192,7 +203,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
                               : double(inner_.displacement(inner_.correction()));
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
-    const Outcome outcome = line_search(T(tolerance), energy);
+    const Outcome outcome = line_search(T(tolerance), small && !inner_.has_contacts(), energy);
     report_.converged = small || (outcome == Outcome::kFull &&
                                   length < (inner_.has_contacts() ? kStillValidInContact : kStillValid) &&
                                   converge_by_chords(tolerance, length, energy));

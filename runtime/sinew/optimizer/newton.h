@@ -58,6 +58,10 @@ class NewtonSolver {
                     std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
                     std::span<Coupling<T>* const> couplings = {});
 
+  /// J, of the incremental potential where the trees' `local` are.
+  double energy(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
+
  private:
   /// What became of an outer pass's correction.
   enum class Outcome { kRefused, kShortened, kCorrected, kFull };
@@ -69,7 +73,7 @@ class NewtonSolver {
   bool converge_by_chords(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
   bool correct_step(T tolerance, double energy, double& new_energy);
-  Outcome line_search(T tolerance, double& energy);
+  Outcome line_search(T tolerance, bool slight, double& energy);
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;

@@ -78,6 +78,13 @@ Mat3<T> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
   return r * tree.inertia[i] * r.transpose();
 }
 
+/// Angular velocity (rad/s, body axes) of a state that was set, not differenced.
+template <class T>
+Vec3<T> spin_at_start(const History<T>& history, int i) {
+  const Mat3<T> spin = history.rotation[i].transpose() * history.rotation_rate[i];
+  return Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2;
+}
+
 /// Of the whole tree, were its joints locked, about its centre of mass (m, from the history's place); world
 /// axes.
 template <class T>
@@ -124,11 +131,12 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
              const Vec3<double>& common_origin, Prediction<T>& out) {
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const bool second = scheme == Scheme::kBdf2 && history.step_before > T(0);
-  out.exact = false;
+  out.exact = out.first = false;
   out.scheme = scheme == Scheme::kMomentum ? scheme : second ? Scheme::kBdf2 : Scheme::kBdf1;
   if (!second) {
     out.weight = T(1) / (h * h);
     out.momentum_step = h;
+    out.k1 = T(1), out.k2 = T(0);
     for (int i = 0; i < tree.bodies; ++i) {
       out.center[i] = place + history.center[i] + h * history.velocity[i];
       out.rotation[i] = history.rotation[i] + h * history.rotation_rate[i];
@@ -141,7 +149,7 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
   const T a0 = (1 + w) * (1 + w) / (1 + 2 * w);
   const T a1 = -w * w / (1 + 2 * w);
   const T beta = (1 + w) / (1 + 2 * w);
-  const T k1 = (1 + 2 * w) / (1 + w), k2 = w * w / (1 + w);
+  const T k1 = out.k1 = (1 + 2 * w) / (1 + w), k2 = out.k2 = w * w / (1 + w);
   out.weight = T(1) / (beta * h * beta * h);
   out.momentum_step = beta * h;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -162,10 +170,50 @@ void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
 }
 
 template <class T>
+void predict_at_rest(const Tree<T>& tree, const History<T>& history, std::span<const Vec3<T>> force,
+                     std::span<const Vec3<T>> couple, T span, const Vec3<double>& common_origin,
+                     Prediction<T>& out) {
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
+  out.exact = out.first = false;
+  out.scheme = Scheme::kBdf1;
+  out.weight = T(1) / span;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Mat3<T>& r = history.rotation[i];
+    out.center[i] = place + history.center[i];
+    if (tree.mass[i] > T(0)) out.center[i] -= span / tree.mass[i] * force[i];
+    const Vec3<T> back = tree.inverse_inertia[i] * (r.transpose() * couple[i]);
+    out.rotation[i] = r * rotation_exp<T>(-span * back).toRotationMatrix();
+    out.start[i] = r;
+  }
+}
+
+template <class T>
+void predict_first(const Tree<T>& tree, const History<T>& history, const Kinematics<T>& kinematics,
+                   std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin,
+                   Prediction<T>& out) {
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
+  out.first = true;
+  out.scheme = Scheme::kBdf2;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> acceleration = out.weight * (kinematics.center[i] - out.center[i]);
+    out.center[i] = place + history.center[i] + h * history.velocity[i] + h * h / 4 * acceleration;
+    out.momentum[i] = history.momentum[i] + h / 2 * torque[i];
+    const Mat3<T>& r0 = history.rotation[i];
+    const Vec3<T> turned = h * spin_at_start(history, i);
+    Vec3<T> x = turned;
+    if (!torque_free_rotation<T>(tree.inertia[i], r0.transpose() * out.momentum[i], turned, T(2), T(1), h, x))
+      x = turned;
+    out.rotation[i] = r0 * rotation_exp<T>(x).toRotationMatrix();
+  }
+  out.weight = 4 / (h * h);
+  out.momentum_step = h / 2;
+  out.k1 = T(2), out.k2 = T(1);
+}
+
+template <class T>
 void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Prediction<T>& out) {
   if (out.scheme != Scheme::kBdf2 || tree.type[0] != JointType::kFree || tree.dofs != 6) return;
   out.exact = true;
-  const T w = h / history.step_before, k1 = (1 + 2 * w) / (1 + w), k2 = w * w / (1 + w);
   T mass = T(0);
   Vec3<T> center = Vec3<T>::Zero(), velocity = center, predicted = center;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -188,12 +236,14 @@ void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Pr
   const auto turn = [&](T seconds) {
     return Vec3<T>(rotation_log<T>(now.conjugate() * free_rotation<T>(inverse, now, momentum, seconds)));
   };
-  const Vec3<T> exact = turn(h), before = -turn(-history.step_before);
+  const Vec3<T> exact = turn(h);
+  const Vec3<T> before =
+      out.first ? Vec3<T>(h * (inverse * (r0.transpose() * momentum))) : Vec3<T>(-turn(-history.step_before));
   const auto turned_by = [&](const Quat<T>& q) {
     return Mat3<T>((now * q * now.conjugate()).toRotationMatrix());
   };
   Vec3<T> x = exact;
-  if (torque_free_rotation<T>(inertia, r0.transpose() * momentum, before, k1, k2, h, x)) {
+  if (torque_free_rotation<T>(inertia, r0.transpose() * momentum, before, out.k1, out.k2, h, x)) {
     const Mat3<T> missed = turned_by(rotation_exp<T>(exact) * rotation_exp<T>(-x));
     for (int i = 0; i < tree.bodies; ++i) {
       out.rotation[i] = missed * out.rotation[i];
@@ -224,19 +274,19 @@ template <class T>
 void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
              std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin, History<T>& history) {
   const Vec3<T> moved = follow_root(kinematics, common_origin, history);
-  const bool second = prediction.scheme == Scheme::kBdf2;
   // Backward difference of the last three (or two) states; the same coefficients serve positions and
   // rotations.
-  const T w = second ? h / history.step_before : T(0);
-  const T k1 = second ? (1 + 2 * w) / (1 + w) : T(1);
-  const T k2 = second ? w * w / (1 + w) : T(0);
+  const T k1 = prediction.k1, k2 = prediction.k2;
   for (int i = 0; i < tree.bodies; ++i) {
     const Vec3<T> c1 = kinematics.center[i] - kinematics.origin[0];
     const Vec3<T> c0 = history.center[i] - moved, before = history.center_before[i] - moved;
     const Mat3<T>& r1 = kinematics.rotation[i];
-    const Vec3<T> velocity = (k1 * (c1 - c0) - k2 * (c0 - before)) / h;
-    const Mat3<T> rate =
-        (k1 * (r1 - history.rotation[i]) - k2 * (history.rotation[i] - history.rotation_before[i])) / h;
+    const Vec3<T> moved_before = prediction.first ? Vec3<T>(h * history.velocity[i]) : Vec3<T>(c0 - before);
+    const Mat3<T> turned_before = prediction.first
+                                      ? Mat3<T>(h * history.rotation_rate[i])
+                                      : Mat3<T>(history.rotation[i] - history.rotation_before[i]);
+    const Vec3<T> velocity = (k1 * (c1 - c0) - k2 * moved_before) / h;
+    const Mat3<T> rate = (k1 * (r1 - history.rotation[i]) - k2 * turned_before) / h;
     history.center_before[i] = c0;
     history.center[i] = c1;
     history.velocity_before[i] = history.velocity[i];
@@ -267,7 +317,7 @@ template <class T>
 Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, const Prediction<T>& prediction,
                               T h) {
   const Vec3<double> now = linear_momentum<T>(tree, history.velocity);
-  if (prediction.scheme != Scheme::kBdf2) return now;
+  if (prediction.scheme != Scheme::kBdf2 || prediction.first) return now;
   const double w = double(h) / double(history.step_before);
   return now + w * w / (1 + 2 * w) * (now - linear_momentum<T>(tree, history.velocity_before));
 }

@@ -13,6 +13,7 @@
 // With an affine R̂ bdf2 would be as stable, but free spin would decay.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sinew/optimizer/accuracy.h"
@@ -101,8 +102,10 @@ struct Prediction {
   std::vector<Mat3<T>> start;     ///< R₀ (momentum scheme)
   T weight = T(0);                ///< α, 1/s²
   T momentum_step = T(0);         ///< βh, s
+  T k1 = T(1), k2 = T(0);  ///< of the backward difference: rate at the end = (k1 (x₁ − x₀) − k2 (x₀ − x₋₁))/h
   Scheme scheme = Scheme::kBdf1;
   bool exact = false;  ///< where nothing touches the tree: see predict_free_flight
+  bool first = false;  ///< bdf2 with no earlier state: see predict_first
 
   explicit Prediction(int bodies);
 };
@@ -111,6 +114,22 @@ struct Prediction {
 template <class T>
 void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
              const Vec3<double>& common_origin, Prediction<T>& out);
+
+/// Targets with which a solve that begins and ends at rest finds how the tree's bodies accelerate now, under
+/// the torques that its rows have at the start: it moves them by `span` (s²) times that. `force` and `couple`
+/// [body] (about each centre of mass) are what the motion asks for were no joint accelerated.
+template <class T>
+void predict_at_rest(const Tree<T>& tree, const History<T>& history, std::span<const Vec3<T>> force,
+                     std::span<const Vec3<T>> couple, T span, const Vec3<double>& common_origin,
+                     Prediction<T>& out);
+
+/// The first step of bdf2, as if the one before had been infinitely short (w → ∞): the trapezoidal rule, of
+/// second order from the first step on. `out` holds the targets of predict_at_rest, `kinematics` and `torque`
+/// [body] what its solve has found.
+template <class T>
+void predict_first(const Tree<T>& tree, const History<T>& history, const Kinematics<T>& kinematics,
+                   std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin,
+                   Prediction<T>& out);
 
 /// Turns bdf2's prediction of a rigid tree with a free root about its centre of mass by what the backward
 /// difference misses of a free body's rotation: where nothing touches it, it moves exactly, whatever the
@@ -149,6 +168,10 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   prefix struct History<T>;                                                                                  \
   prefix struct Prediction<T>;                                                                               \
   prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<double>&, Prediction<T>&); \
+  prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,                \
+                                 std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);          \
+  prefix void predict_first<T>(const Tree<T>&, const History<T>&, const Kinematics<T>&,                      \
+                               std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);            \
   prefix void predict_free_flight<T>(const Tree<T>&, const History<T>&, T, Prediction<T>&);                  \
   prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                         \
                          std::span<const Vec3<T>>, T, const Vec3<double>&, History<T>&);                     \

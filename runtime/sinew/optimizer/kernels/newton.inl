@@ -107,7 +107,7 @@ class PackNewton {
     const P slope = inner_.slope(inner_.correction());
     try_step(active);
     const Wide energy = evaluate(active);
-    active = both(active, accepted(slope, energy_, energy, Live::all(false)));
+    active = both(active, accepted(slope, energy_, energy, small));
     energy_ = energy;
     const Live near = both(both(active, !small), narrowed(length < Wide(kStillValid)));
     return either(both(active, small), chords(near, length, active));

@@ -1,0 +1,66 @@
+// Where IslandStepper starts a solve: not beyond what its bodies would strike on the way.
+#include <algorithm>
+
+#include "sinew/character/baking.h"
+#include "sinew/character/island.h"
+#include "sinew/character/unknowns.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
+constexpr double kDeep = 0.01;        ///< m; guesses that go no deeper are left again in a pass or two
+
+}  // namespace
+
+/// Starts the solve nearer to where it was, where an effect says so.
+template <class T>
+void IslandStepper<T>::limit_guess(T h) {
+  free_share_.assign(states_.size(), T(1));
+  for (const auto& effect : effects_) effect->limit_guess(trees_, contacts_, h, free_share_);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
+}
+
+/// Whether a limp body is about to strike something within h.
+template <class T>
+bool IslandStepper<T>::strikes(T h) const {
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+    const bool limp = (states_[c.tree_a]->limp() && !states_[c.tree_a]->is_prop) ||
+                      (c.tree_b >= 0 && states_[c.tree_b]->limp() && !states_[c.tree_b]->is_prop);
+    return limp && c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach;
+  });
+}
+
+/// Whether what strikes would be deep inside by the end of the step, at the speed that it has.
+template <class T>
+bool IslandStepper<T>::strikes_deep(T h) const {
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const Contact<T>& c) { return c.fresh && h * c.approach - c.start_gap > T(kDeep); });
+}
+
+/// A guess that goes deep into something is up a hill of the energy, with other minima beside it. Where the
+/// trees began lies lower, as a rule: the one of the two that does is where the solve starts.
+template <class T>
+void IslandStepper<T>::choose_guess(T h) {
+  const double ahead = solver_.energy(settings_, problems_, contacts_, couplings_);
+  const auto guess = [&](auto share_of) {
+    for (std::size_t n = 0; n < states_.size(); ++n) {
+      first_guess(*states_[n], h, share_of(n));
+      move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+    }
+  };
+  guess([](std::size_t) { return T(0); });
+  if (solver_.energy(settings_, problems_, contacts_, couplings_) < ahead) return;
+  guess([&](std::size_t n) { return effects_.empty() ? T(1) : free_share_[n]; });
+}
+
+#define SINEW_GUESS_INSTANCES(T)                         \
+  template void IslandStepper<T>::limit_guess(T);        \
+  template bool IslandStepper<T>::strikes(T) const;      \
+  template bool IslandStepper<T>::strikes_deep(T) const; \
+  template void IslandStepper<T>::choose_guess(T);
+SINEW_GUESS_INSTANCES(float)
+SINEW_GUESS_INSTANCES(double)
+
+}  // namespace sinew

@@ -1,0 +1,185 @@
+// The first step of IslandStepper from a reset, where bdf2 has no earlier state.
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "sinew/character/island.h"
+#include "sinew/character/unknowns.h"
+#include "sinew/residual/residual_pass.h"
+
+namespace sinew {
+namespace {
+
+constexpr int kMostStartParts = 16;
+constexpr double kTrialTurn = 3e-3;  ///< of a trial at rest: its span times the square of the fastest spin
+
+/// Angular velocity (rad/s) in body axes, as a matrix; not symmetric in part where it was differenced.
+template <class T>
+Mat3<T> spin_matrix(const CharacterState<T>& s, int i) {
+  return s.history.rotation[i].transpose() * s.history.rotation_rate[i];
+}
+
+/// Whether all of a tree can move, by nothing but its joints' own rows, and its velocities are those that
+/// were set.
+template <class T>
+bool is_free_and_set(const CharacterState<T>& s) {
+  const TreeProblem<T>& p = s.problem;
+  if (s.history.step_before != T(0) || s.contact_signature != 0 || s.limit_signature != 0 ||
+      !p.effects.empty() ||
+      std::any_of(s.baked.begin(), s.baked.end(), [](auto baked) { return baked != 0; }))
+    return false;
+  if (std::any_of(p.free.begin(), p.free.end(), [](auto free) { return free == 0; })) return false;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T> spin = spin_matrix(s, i);
+    const T size = spin.norm(), rounded = T(1e-4) * size;
+    if (!((spin + spin.transpose()).norm() <= rounded)) return false;
+    const Vec3<T> w(spin(2, 1), spin(0, 2), spin(1, 0));
+    const Vec3<T> momentum = s.history.rotation[i].transpose() * s.history.momentum[i];
+    if (!((s.tree.inertia[i] * w - momentum).norm() <= rounded * s.tree.inertia[i].norm())) return false;
+  }
+  return true;
+}
+
+/// Motion of a joint that does not accelerate, from the velocities of the bodies that it joins.
+template <class T>
+JointJet<T> coasting_jet(const CharacterState<T>& s, int i) {
+  const TreeProblem<T>& p = s.problem;
+  const Kinematics<T>& k = p.kinematics;
+  const auto spin = [&](int body) {
+    const Mat3<T> m = spin_matrix(s, body);
+    return Vec3<T>(m(2, 1), m(0, 2), m(1, 0));
+  };
+  const auto origin_velocity = [&](int body) {
+    const Vec3<T> arm = k.center[body] - k.origin[body];
+    return Vec3<T>(s.history.velocity[body] - (k.rotation[body] * spin(body)).cross(arm));
+  };
+  JointJet<T> jet;
+  jet.rotation = p.start[i].rotation;
+  jet.translation = p.start[i].translation;
+  jet.omega = spin(i);
+  jet.velocity = origin_velocity(i);
+  const int parent = s.tree.parent[i];
+  if (parent < 0) return jet;
+  const Mat3<T>& outer = k.rotation[parent];
+  const Vec3<T> carried = outer * spin(parent);
+  jet.omega -= k.rotation[i].transpose() * carried;
+  jet.velocity = outer.transpose() * (jet.velocity - origin_velocity(parent) -
+                                      carried.cross(Vec3<T>(k.origin[i] - k.origin[parent])));
+  if (s.tree.type[i] == JointType::kUniversal) {
+    const Vec3<T> first = (k.rotation[i].transpose() * k.w[s.tree.first_dof[i]]), second = s.tree.axis2[i];
+    const T along = first.dot(second), scale = 1 - along * along;
+    const T rate = (jet.omega.dot(first) - along * jet.omega.dot(second)) / scale;
+    const T rate2 = (jet.omega.dot(second) - along * jet.omega.dot(first)) / scale;
+    jet.alpha = (first * rate).cross(second * rate2);
+  }
+  return jet;
+}
+
+/// What the bodies' motion asks for were no joint accelerated: forces and, about the centres of mass, couples
+/// (world axes) into the problem's room for wrenches.
+template <class T>
+void measure_coasting(CharacterState<T>& s) {
+  TreeProblem<T>& p = s.problem;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int parent = s.tree.parent[i];
+    BodyMotion<T>& body = s.motion.body[i];
+    move_body<T>(s.tree, i, coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
+                 parent < 0 ? nullptr : &s.motion.body[parent], body);
+    const Mat3<T>& r = p.kinematics.rotation[i];
+    p.force[i] = r * body.force;
+    p.moment[i] = r * Vec3<T>(body.moment - s.tree.center_of_mass[i].cross(body.force));
+  }
+}
+
+}  // namespace
+
+/// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
+template <class T>
+bool IslandStepper<T>::starts() const {
+  const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
+    return s->history.step_before == T(0) && s->contact_signature == 0;
+  });
+  return fresh && world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive();
+}
+
+/// Whether the part that has been begun may be bdf2's first: nothing near that could be met.
+template <class T>
+bool IslandStepper<T>::starts_whole() const {
+  return contacts_.empty() && std::all_of(states_.begin(), states_.end(),
+                                          [](const CharacterState<T>* s) { return is_free_and_set(*s); });
+}
+
+/// Predicts that part from how the bodies accelerate at its start. False where that was not found.
+template <class T>
+bool IslandStepper<T>::begin_whole() {
+  const T h = settings_.h;
+  for (CharacterState<T>* s : states_) {
+    TreeProblem<T>& p = s->problem;
+    T fastest = T(0);
+    for (int i = 0; i < s->tree.bodies; ++i)
+      fastest = std::max(fastest, spin_matrix(*s, i).squaredNorm() / 2);
+    const T span = std::min(h * h / 2, T(kTrialTurn) / std::max(fastest, std::numeric_limits<T>::min()));
+    measure_coasting(*s);
+    predict_at_rest<T>(s->tree, s->history, p.force, p.moment, span, settings_.common_origin, p.prediction);
+    p.local = p.start;
+    if (s->tree.bodies == 1) {  // nothing to find out
+      p.kinematics.center[0] = p.prediction.center[0] + span * settings_.gravity;
+      p.couple[0].setZero();
+      continue;
+    }
+    // What rubs goes by how far a joint has come since the start.
+    for (int i = 0; i < s->tree.bodies; ++i) {
+      std::array<T, 6> back = s->rate[i];
+      for (T& r : back) r *= -h;
+      p.start[i] = at_offset<T>(s->tree, i, p.start[i], back);
+    }
+  }
+  SolveReport trial;
+  trial.converged = true;
+  if (std::any_of(states_.begin(), states_.end(), [](const auto* s) { return s->tree.bodies > 1; })) {
+    trial = solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+    total_.add(trial);
+  }
+  for (CharacterState<T>* s : states_) {
+    TreeProblem<T>& p = s->problem;
+    predict_first<T>(s->tree, s->history, p.kinematics, p.couple, h, settings_.common_origin, p.prediction);
+    predict_free_flight<T>(s->tree, s->history, h, p.prediction);
+    std::copy_n(s->local.begin(), s->tree.bodies, p.start.begin());
+    if (s->floats) p.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
+    first_guess(*s, h);
+  }
+  return trial.converged;
+}
+
+/// The first part of a step from a reset, up to the fraction `end`. Whole where nothing is near; else in
+/// parts that double, because two of them are bdf1's (which in whole steps of 1/60 s take 2 % of a thrown
+/// humanoid's energy, and cost more accuracy than the half second after them), and bdf2 bears no sudden
+/// growth of the step.
+template <class T>
+void IslandStepper<T>::start(T end, int splits) {
+  begin_part(end * frame_, end);
+  if (starts_whole() && begin_whole()) {
+    part_begun_ = solve_begun_ = second_ = true;
+    advance_part(T(0), end, splits);
+    for (CharacterState<T>* s : states_)
+      if (s->steps_unchanged > 0) s->steps_unchanged = kUnchangedSteps;
+    return;
+  }
+  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostStartParts);
+  T begin = T(0);
+  for (int n = parts - 1; n >= 0; --n) {
+    const T next = end / T(1 << n);
+    advance_part(begin, next, splits);
+    begin = next;
+  }
+}
+
+#define SINEW_START_INSTANCES(T)                        \
+  template bool IslandStepper<T>::starts() const;       \
+  template bool IslandStepper<T>::starts_whole() const; \
+  template bool IslandStepper<T>::begin_whole();        \
+  template void IslandStepper<T>::start(T, int);
+SINEW_START_INSTANCES(float)
+SINEW_START_INSTANCES(double)
+
+}  // namespace sinew
