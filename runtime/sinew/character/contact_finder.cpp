@@ -88,6 +88,7 @@ void ContactFinder<T>::lead_out(Contact<T>& c) const {
   const T offset = std::max(-c.gap - T(kExitSpeed) * h_, T(0));
   c.offset += offset;
   c.gap += offset;
+  c.lent = ContactLaw<T>::energy(c.stiffness, c.gap);
 }
 
 /// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
@@ -101,7 +102,9 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.lagged_normal_force = found->force;
   c.offset = found->offset;
   if (c.offset > T(kLeftInside)) c.offset = std::max(c.offset - T(kExitSpeed) * h_, T(kLeftInside));
+  const T stored = ContactLaw<T>::energy(found->stiffness, c.gap + found->offset);
   c.gap += c.offset;
+  c.lent = ContactLaw<T>::energy(found->stiffness, c.gap) - stored;
   if (found->stiffness < c.stiffness && c.gap < T(0)) {
     const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
     c.offset += gap - c.gap;

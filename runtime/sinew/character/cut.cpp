@@ -1,7 +1,6 @@
 #include "sinew/character/cut.h"
 
 #include <cmath>
-#include <limits>
 
 namespace sinew {
 namespace {
@@ -52,7 +51,7 @@ bool carry_over(CharacterState<T>& s, T h) {
   s.local[0] = before;
   restart(before, s.target[0], s.own_last_target()[0]);
   s.pose_changed();
-  s.energy_ceiling = std::numeric_limits<double>::infinity();
+  s.forget_energy();
   return true;
 }
 

@@ -23,6 +23,12 @@ double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
 }
 
+/// What it has, without what was lent to it.
+template <class T>
+double owned(const CharacterState<T>& s) {
+  return total(s.report) - s.lent;
+}
+
 /// What rounded positions and momenta make of its energy, J: no gain. In T, wherever it is, for its place is
 /// kept in double precision, and energies are summed in that.
 template <class T>
@@ -61,21 +67,39 @@ bool is_rigid(const CharacterState<T>& s) {
   return s.tree.dofs == 6 && s.tree.type[0] == JointType::kFree;
 }
 
+/// What was lent to a tree and is not stored any more has become motion, lost its way or lifted something:
+/// pays as much of it back, with this tree's motion, as the trees have above their ceiling.
+template <class T>
+void pay_back(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double ceiling) {
+  double excess = -ceiling;
+  for (const CharacterState<T>* s : states) excess += total(s->report);
+  for (CharacterState<T>* s : states) {
+    const double kinetic = s->report.kinetic_energy, spent = s->lent - s->report.elastic_energy;
+    const double paid = std::min({spent, excess, kinetic});
+    if (!(paid > 0)) continue;
+    slow(*s, std::sqrt(1 - paid / kinetic), false);
+    s->report_totals(gravity);
+    s->lent -= paid;
+    excess -= paid;
+  }
+}
+
 /// Takes out what the trees have above their ceiling. True if there was something.
 template <class T>
 bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
            bool strict, bool never_rises) {
   double now = 0, kinetic = 0, internal = 0, ceiling = 0, rounded = 0;
+  for (const CharacterState<T>* s : states) ceiling += s->energy_ceiling;
+  if (strict || !std::isfinite(ceiling)) ceiling = before;
+  if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
+  pay_back(states, gravity, ceiling);
   for (const CharacterState<T>* s : states) {
     const CharacterReport& r = s->report;
-    now += total(r);
+    now += owned(*s);
     kinetic += r.kinetic_energy;
     rounded += rounding(*s, gravity);
     internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
-    ceiling += s->energy_ceiling;
   }
-  if (strict || !std::isfinite(ceiling)) ceiling = before;
-  if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
   const double gained = now - ceiling;
   const bool above = gained > rounded && kinetic > 0;
   if (above) {
@@ -85,14 +109,17 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
     for (CharacterState<T>* s : states) {
       slow(*s, factor, about_center);
       s->report_totals(gravity);
-      now += total(s->report);
+      now += owned(*s);
     }
   }
   const bool rigid =
       std::all_of(states.begin(), states.end(), [](const CharacterState<T>* s) { return is_rigid(*s); });
   const double slack = rigid ? ceiling - now : std::min(ceiling - now, kSlack * kinetic);
   const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
-  for (CharacterState<T>* s : states) s->energy_ceiling = total(s->report) + spare;
+  for (CharacterState<T>* s : states) {
+    s->lent = std::min(s->lent, s->report.elastic_energy);  // the rest has been lost, or has lifted something
+    s->energy_ceiling = owned(*s) + spare;
+  }
   return above;
 }
 
@@ -124,7 +151,7 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
   Vec3<double> turn = Vec3<double>::Zero();
   if (s.left_to_gravity) turn = rigid.spin_of(before.angular_momentum - r.angular_momentum);
   const double turned = turn.dot(r.angular_momentum + 0.5 * rigid.inertia * turn);  // J, that it gives
-  const double now = total(r) + turned, rounded = rounding(s, gravity);
+  const double now = owned(s) + turned, rounded = rounding(s, gravity);
   const bool keeps = lossless(s);
   // Kept at a mark of its own, which sinks by more than roundings may lift what is measured against it: these
   // add up neither to a gain nor to a loss.
@@ -150,15 +177,17 @@ double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const V
   for (const CharacterState<T>* s : states) {
     const Totals t = totals<T>(s->tree, s->history, gravity);
     const double energy = t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
-    before_.push_back({energy, t.angular_momentum});
+    before_.push_back({energy - s->lent, t.angular_momentum});
     sum += energy;
   }
   return sum;
 }
 
 template <class T>
-bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity,
-                             bool strict, bool tied) const {
+bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+                             const Vec3<double>& gravity, bool strict, bool tied) const {
+  for (const Contact<T>& c : contacts)
+    if (c.tree_b < 0) states[c.tree_a]->lent += double(c.lent);
   const bool touching = std::any_of(states.begin(), states.end(),
                                     [](const CharacterState<T>* s) { return s->report.contacts > 0; });
   if (touching || tied || strict) {

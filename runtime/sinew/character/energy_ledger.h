@@ -22,14 +22,15 @@ class EnergyLedger {
   /// Notes the energy of the trees before a step, J. Returns their sum.
   double open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
   /// Holds the trees of a passive island, stepped together since open(), under their ceiling. `strict` takes
-  /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together. True
-  /// if motion was taken out.
-  bool settle(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, bool strict,
-              bool tied) const;
+  /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together. What
+  /// obstacles lent through `contacts` to a tree that began inside them is paid by its motion alone. True if
+  /// motion was taken out.
+  bool settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+              const Vec3<double>& gravity, bool strict, bool tied) const;
 
  private:
   struct Before {
-    double energy = 0;                                     ///< J
+    double energy = 0;                                     ///< J, without what was lent
     Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
   };
   static void keep_in_flight(CharacterState<T>& state, const Vec3<double>& gravity, const Before& before);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "sinew/character/baking.h"
@@ -324,10 +323,11 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;
     for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
   }
+  const bool tied = !couplings_.empty();
   if (!solved.converged || closed) {
-    if (ledger_.settle(states_, world_->gravity, !solved.converged, !couplings_.empty())) ++damped_;
+    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied)) ++damped_;
   } else {
-    for (CharacterState<T>* s : states_) s->energy_ceiling = std::numeric_limits<double>::infinity();
+    for (CharacterState<T>* s : states_) s->forget_energy();
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {

@@ -190,6 +190,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("steps since a push", s.settling);
   stream.value("steps of passing", s.passing);
   stream.value("energy ceiling", s.energy_ceiling);
+  stream.value("energy lent by surfaces", s.lent);
   stream.value("stored energy", s.report.elastic_energy);
   visit_levels(s, stream);
   visit_pose(s, stream);

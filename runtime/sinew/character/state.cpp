@@ -342,7 +342,7 @@ void CharacterState<T>::forget_contacts() {
   steps_unchanged = 0;
   settling = 0;
   passing = 0;
-  energy_ceiling = std::numeric_limits<double>::infinity();
+  forget_energy();
 }
 
 template <class T>

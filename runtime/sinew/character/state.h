@@ -141,6 +141,7 @@ struct CharacterState {
   int settling = 0;          ///< steps in which bdf2's velocity has not quite taken in the last push yet
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
+  double lent = 0;  ///< J, by surfaces that lead it out of them, and stored in contacts still: not its own
   CharacterReport report;
 
   CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c, const StepPlan<T>& plan);
@@ -200,6 +201,11 @@ struct CharacterState {
   void reset_to_target(const Vec3<T>& gravity);
   /// Nothing touches, and the speed before the last step's is not known.
   void forget_contacts();
+  /// Something has done work on it: what it may have is not known.
+  void forget_energy() {
+    energy_ceiling = std::numeric_limits<double>::infinity();
+    lent = 0;
+  }
   /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
   /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
   void update_deviation(int body, const Transform<T>& at, T h, T return_time);

@@ -94,6 +94,7 @@ struct Contact {
   T lagged_normal_force = T(0);  ///< λ, N
   T restitution = T(0);          ///< of a bounce: impulse of the release by that of the compression
   T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
+  T lent = T(0);                 ///< J, that it stores more because the offset shrank when the step began
   bool fresh = true;             ///< bore nothing after the last step
   T start_gap = T(0);            ///< when the step began, m
   T stretch = T(1);              ///< 1 + τ/h: change of the damped gap by the gap
