@@ -20,7 +20,7 @@ struct Accuracy {
   int max_iterations = 60;  ///< outer passes; the mean is 1.7, hard impacts at 1/30 s need the tail
   int substeps = 1;         ///< every step in so many equal parts
   int start_parts = 4;      ///< a step from a reset, which bdf2 has no history for, is cut into parts that
-                        ///< double, where something is near or acts; in flight it is taken whole
+                            ///< double, where something is near or acts; in flight it is taken whole
   double max_rotation = 0;  ///< rad; more substeps where a body would turn further in one. 0: never
   double impact_step =
       1.0 / 60;              ///< s; a longer step in which a limp body strikes something is halved. 0: never
