@@ -298,7 +298,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool closed = closed_;
   SolveReport solved = attempt(splits_left > 0);
   total_.add(solved);
-  if (closed && (solved.converged || splits_left == 0) && unreachable()) {
+  if (closed && (solved.converged || splits_left == 0) && excess() > 0) {
     solved = solve_from_start();
     total_.add(solved);
     ++restarts_;
@@ -314,7 +314,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   });
   if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
     budget_ = ledger_.open(states_, world_->gravity);
-  hold_lost(!solved.converged && closed && unreachable());
+  hold_lost(!solved.converged && closed && excess() > standing());
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     finish(s, static_cast<int>(n), *world_, h);

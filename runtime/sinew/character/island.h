@@ -78,7 +78,8 @@ class IslandStepper {
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
-  bool unreachable() const;
+  double excess() const;
+  double standing() const;
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);
   void forget_contacts();

@@ -48,24 +48,29 @@ double IslandStepper<T>::pose_energy() const {
   return sum;
 }
 
-/// Whether bdf2 has led passive trees in contact to poses that store more than they had, motion included: its
-/// prediction carries on what an impact has just stopped. bdf1 never does, and no loss of speed would undo
-/// it.
+/// J that the present poses store beyond what the trees had, surfaces that come back to them gave, and
+/// rounding makes of it: only energy from nowhere could reach them where it is above 0.
 template <class T>
-bool IslandStepper<T>::lifted() const {
-  if (contacts_.empty() || !closed_) return false;
-  const double had = budget_, stored = pose_energy();
-  return stored > had + 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
+double IslandStepper<T>::excess() const {
+  const double stored = pose_energy();
+  double had = budget_;
+  for (const Contact<T>& c : contacts_) had += double(c.lent);
+  return stored - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
 }
 
-/// Whether only energy from nowhere could reach the present poses: they store more than the trees had, by
-/// more than what stands still stores in its contacts, which is far above rounding.
+/// Whether bdf2 has led passive trees in contact to such poses: its prediction carries on what an impact has
+/// just stopped. bdf1 never does, and no loss of speed would undo it.
 template <class T>
-bool IslandStepper<T>::unreachable() const {
+bool IslandStepper<T>::lifted() const {
+  return !contacts_.empty() && closed_ && excess() > 0;
+}
+
+/// J that what stands still stores in its contacts: no more than a solve that failed may leave.
+template <class T>
+double IslandStepper<T>::standing() const {
   double mass = 0;
   for (const CharacterState<T>* s : states_) mass += s->total_mass;
-  const double standing = mass * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
-  return pose_energy() > budget_ + standing;
+  return mass * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
 }
 
 /// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in
@@ -139,7 +144,8 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
   template bool IslandStepper<T>::passive() const;                         \
   template double IslandStepper<T>::pose_energy() const;                   \
   template bool IslandStepper<T>::lifted() const;                          \
-  template bool IslandStepper<T>::unreachable() const;                     \
+  template double IslandStepper<T>::excess() const;                        \
+  template double IslandStepper<T>::standing() const;                      \
   template SolveReport IslandStepper<T>::solve_from_start();               \
   template void IslandStepper<T>::hold(CharacterState<T>&);                \
   template void IslandStepper<T>::forget_contacts();                       \
