@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "study/tables/peers/simbody_muscle.h"
 
@@ -102,9 +103,11 @@ class World : public SimbodyWorld {
     pushed_ = true;
   }
 
-  double energy() const override {
+  double energy() const override try {
     system_.realize(state(), SimTK::Stage::Dynamics);
     return system_.calcEnergy(state());
+  } catch (const std::exception&) {  // it throws again after a step in which it threw
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
   std::vector<SimbodyPlace> pose(int figure) const override {
