@@ -48,13 +48,11 @@ double IslandStepper<T>::pose_energy() const {
   return sum;
 }
 
-/// J that the present poses store beyond what the trees had, surfaces that come back to them gave, and
-/// rounding makes of it: only energy from nowhere could reach them where it is above 0.
+/// J that the present poses store beyond what the trees had and what rounding makes of it: only energy from
+/// nowhere could reach them where it is above 0.
 template <class T>
 double IslandStepper<T>::excess() const {
-  const double stored = pose_energy();
-  double had = budget_;
-  for (const Contact<T>& c : contacts_) had += double(c.lent);
+  const double had = budget_, stored = pose_energy();
   return stored - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
 }
 
