@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "character/scenes.h"
+#include "sinew/character/prop.h"
 
 namespace sinew {
 namespace {
@@ -16,19 +17,12 @@ std::vector<JointJet<T>> piston_at(double x, double speed) {
 }
 
 Skeleton piston() {
-  Skeleton s;
-  s.name = "piston";
-  s.body_count = 1;
-  Joint& joint = s.joints.emplace_back();
-  joint.name = "body";
-  joint.type = JointType::kFree;
-  joint.mass = 1000;
-  joint.inertia = Vec3<double>(667, 337, 337).asDiagonal();
-  Collider& box = s.colliders.emplace_back();
+  PropSettings box;
   box.shape = Shape::kBox;
+  box.mass = 1000;
   box.size = {0.1, 1, 1};
   box.friction = 1;
-  return s;
+  return skeleton_of(box);
 }
 
 TEST(Crush, LimbsThatAPistonHasJammedComeFreeWhenItGoesBack) {
