@@ -85,10 +85,26 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
 template <class T>
 void ContactFinder<T>::lead_out(Contact<T>& c) const {
   if (c.gap >= T(-kLeftInside)) return;
-  const T offset = std::max(-c.gap - T(kExitSpeed) * h_, T(0));
-  c.offset += offset;
-  c.gap += offset;
-  c.lent = ContactLaw<T>::energy(c.stiffness, c.gap);
+  c.offset -= c.gap;
+  c.gap = T(0);
+  bring_back(c, c.stiffness, T(0));
+}
+
+/// The surface of what is led out of it comes back, to `least` m off its place at most; an obstacle's no
+/// further than what it lends by that takes the tree along at the walking pace: a stiff one would shoot it out.
+template <class T>
+void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness, T least) const {
+  const T stored = ContactLaw<T>::energy(stiffness, c.gap);
+  T back = std::min(T(kExitSpeed) * h_, c.offset - least);
+  if (c.tree_b < 0) {
+    const T enough = T(states_[c.tree_a]->total_mass * kExitSpeed *
+                       (kExitSpeed / 2 + world_->gravity.norm() * double(h_)));
+    back = std::min(back, ContactLaw<T>::depth_storing(stiffness, stored + enough) + c.gap);
+  }
+  if (!(back > T(0))) return;
+  c.offset -= back;
+  c.gap -= back;
+  c.lent = ContactLaw<T>::energy(stiffness, c.gap) - stored;
 }
 
 /// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
@@ -101,10 +117,8 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.fresh = false;
   c.lagged_normal_force = found->force;
   c.offset = found->offset;
-  if (c.offset > T(kLeftInside)) c.offset = std::max(c.offset - T(kExitSpeed) * h_, T(kLeftInside));
-  const T stored = ContactLaw<T>::energy(found->stiffness, c.gap + found->offset);
   c.gap += c.offset;
-  c.lent = ContactLaw<T>::energy(found->stiffness, c.gap) - stored;
+  bring_back(c, found->stiffness, T(kLeftInside));
   if (found->stiffness < c.stiffness && c.gap < T(0)) {
     const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
     c.offset += gap - c.gap;

@@ -90,6 +90,7 @@ class ContactFinder final : public ContactSearch<T> {
   void add(Contact<T>& contact, T reach);
   void remember(Contact<T>& contact) const;
   void lead_out(Contact<T>& contact) const;
+  void bring_back(Contact<T>& contact, T stiffness, T least) const;
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
 

@@ -148,6 +148,11 @@ struct ContactLaw {
   static T depth(T k, T force) {
     return force < k * width / 2 ? std::sqrt(2 * width * force / k) : force / k + width / 2;
   }
+  /// How deep is what stores an energy: the inverse of energy(k, −depth).
+  static T depth_storing(T k, T energy) {
+    return energy < k * width * width / 6 ? std::cbrt(6 * width * energy / k)
+                                          : width / 2 + std::sqrt(2 * energy / k - width * width / 12);
+  }
   static T curvature(T k, T gap) {
     const T p = -gap;
     if (p <= T(0)) return T(0);
