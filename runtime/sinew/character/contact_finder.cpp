@@ -91,7 +91,8 @@ void ContactFinder<T>::lead_out(Contact<T>& c) const {
 }
 
 /// The surface of what is led out of it comes back, to `least` m off its place at most; an obstacle's no
-/// further than what it lends by that takes the tree along at the walking pace: a stiff one would shoot it out.
+/// further than what it lends by that takes the tree along at the walking pace: a stiff one would shoot it
+/// out.
 template <class T>
 void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness, T least) const {
   const T stored = ContactLaw<T>::energy(stiffness, c.gap);
