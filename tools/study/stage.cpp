@@ -224,7 +224,7 @@ void Stage<T>::book(const CharacterReport& r) {
   energy_ += r.kinetic_energy + r.potential_energy + elastic_of(r);
   m_.finite = m_.finite && std::isfinite(r.kinetic_energy) && std::isfinite(r.potential_energy);
   m_.penetration = std::max(m_.penetration, r.penetration);
-  if (r.unknown_dofs > 0) m_.count(r);
+  if (r.unknown_dofs > 0 && (r.contacts > 0 || !in_contact_only_)) m_.count(r);
 }
 
 template <class T>

@@ -61,6 +61,9 @@ class Stage {
   /// The state has been set from outside (teleport, reset): the books start afresh at the next step.
   void forget() { fresh_ = true; }
 
+  /// Counts passes, factorisations and unconverged steps only where something touches.
+  void count_in_contact_only() { in_contact_only_ = true; }
+
   /// Ends the run: something could not be set up.
   void refuse(const std::string& reason) { m_.refused = reason; }
 
@@ -118,7 +121,7 @@ class Stage {
   Measurement m_;
   double base_ = 0;  ///< energy at the start
   double energy_ = 0, kinetic_ = 0;
-  bool fresh_ = false;
+  bool fresh_ = false, in_contact_only_ = false;
 };
 
 /// Kinetic and potential energy (J) of a skeleton in the state of `jets`.

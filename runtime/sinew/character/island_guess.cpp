@@ -9,7 +9,7 @@ namespace sinew {
 namespace {
 
 constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
-constexpr double kDeep = 0.01;        ///< m; guesses that go no deeper are left again in a pass or two
+constexpr double kDeep = 0.03;        ///< m; guesses that go no deeper are left again in a pass or two
 
 }  // namespace
 

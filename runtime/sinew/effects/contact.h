@@ -92,6 +92,7 @@ struct Contact {
   T stiffness = T(1e5);          ///< N/m
   T friction = T(0.8);           ///< μ
   T lagged_normal_force = T(0);  ///< λ, N
+  T expected_force = T(0);       ///< N, along the normal at the end: what a solve knows of it so far
   T restitution = T(0);          ///< of a bounce: impulse of the release by that of the compression
   T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
   T lent = T(0);                 ///< J, that it stores more because the offset shrank when the step began

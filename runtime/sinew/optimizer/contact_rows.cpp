@@ -38,7 +38,9 @@ class ContactRows final : public ContactModel<T> {
   T slope(T t) const override;
   void move(T t) override;
   void correct(std::span<const Contact<T>> contacts) override;
-  bool measure(std::span<const Contact<T>> contacts) override;
+  void measure(std::span<const Contact<T>> contacts) override;
+  bool in_factor(T drag) const override;
+  void expect_forces(std::span<Contact<T>> contacts) const override;
   void add_gradient(std::span<T> gradient) const override;
   void add_curvature(TreeMatrix<T>& matrix, T drag) override;
   void multiply(std::span<const T> x, std::span<T> y) const override;
@@ -117,8 +119,9 @@ void ContactRows<T>::evaluate(Trees trees, std::span<Contact<T>> contacts, T sti
 template <class T>
 void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick) const {
   for (const Contact<T>& c : contacts) {
-    if (!c.acts()) continue;
-    const Vec3<T> normal = normal_gradient(c), tangent = friction_gradient(c, stick);
+    const bool rubs = c.friction * c.lagged_normal_force > T(0);
+    if (!rubs && c.expected_force <= T(0)) continue;
+    const Vec3<T> normal = -c.expected_force * c.normal, tangent = friction_gradient(c, stick);
     Composite<T>& a = trees[c.tree_a]->composite[c.body_a];
     a.add_force(c.point, normal);
     a.add_force(c.material_point, tangent);
@@ -198,9 +201,8 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     if (c.tree_b >= 0)
       row.side[1] = add_side(c, leaf_b, c.material_point_b, T(-1), shared, unknowns.pattern, axes);
     if (row.side[0].count + row.side[1].count == 0) continue;
-    const T force = normal_force(c);
-    row.bends = force > T(0) && c.bends;
-    if (row.bends) row.bending = -force * c.bending;
+    row.bends = c.expected_force > T(0) && c.bends;
+    if (row.bends) row.bending = -c.expected_force * c.bending;
     coupled_ = coupled_ || row.couples();
     rows_.push_back(row);
   }
@@ -271,18 +273,28 @@ void ContactRows<T>::correct(std::span<const Contact<T>> contacts) {
 }
 
 template <class T>
-bool ContactRows<T>::measure(std::span<const Contact<T>> contacts) {
-  bool same = true;
+void ContactRows<T>::measure(std::span<const Contact<T>> contacts) {
   for (Row& row : rows_) {
     const Contact<T>& c = contacts[row.contact];
     row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];
     row.slip[1] = c.slip[1];
-    if (!same) continue;
-    const Block now = block(row, T(0));
-    same = coupled_ ? now.zero() && row.curvature.zero() : now.near(row.curvature, T(kSameCurvature));
   }
-  return same;
+}
+
+template <class T>
+bool ContactRows<T>::in_factor(T drag) const {
+  return std::all_of(rows_.begin(), rows_.end(), [&](const Row& row) {
+    const Block now = block(row, drag);
+    return coupled_ ? now.zero() && row.curvature.zero() : now.near(row.curvature, T(kSameCurvature));
+  });
+}
+
+template <class T>
+void ContactRows<T>::expect_forces(std::span<Contact<T>> contacts) const {
+  for (Contact<T>& c : contacts) c.expected_force = T(0);
+  for (const Row& row : rows_)
+    contacts[row.contact].expected_force = ContactLaw<T>::force(row.stiffness, row.gap);
 }
 
 template <class T>

@@ -30,7 +30,7 @@ class ContactModel {
   /// the wrenches.
   virtual void evaluate(Trees /*trees*/, std::span<Contact<T>> /*contacts*/, T /*stick*/,
                         double& /*energy*/) const {}
-  /// Geometric terms of the forces, into the trees' composites.
+  /// Geometric terms of friction and of the normal forces expected, into the trees' composites.
   virtual void add_forces(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/, T /*stick*/) const {}
 
   /// Linearises all contacts nearer than `near` (m) about the present kinematics of `trees`.
@@ -49,9 +49,12 @@ class ContactModel {
   /// Re-measures: as far from the chart centres as the direction leads, gaps and slips are the contacts' own
   /// (second-order correction).
   virtual void correct(std::span<const Contact<T>> /*contacts*/) {}
-  /// Gaps and slips as the contacts have them now. True where that changes little of what the last factor
-  /// holds.
-  virtual bool measure(std::span<const Contact<T>> /*contacts*/) { return true; }
+  /// Gaps and slips as the contacts have them now.
+  virtual void measure(std::span<const Contact<T>> /*contacts*/) {}
+  /// Whether the last factor is still good: no curvature has changed much (see add_curvature() for `drag`).
+  virtual bool in_factor(T /*drag*/) const { return true; }
+  /// Tells the contacts the normal forces at the inner solution.
+  virtual void expect_forces(std::span<Contact<T>> /*contacts*/) const {}
 
   /// gradient += ∂E/∂d at the present gaps and slips.
   virtual void add_gradient(std::span<T> /*gradient*/) const {}

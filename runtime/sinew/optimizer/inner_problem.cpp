@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kNear = 0.1;  ///< m; contacts further away are left out
+constexpr double kNear = 0.3;  ///< m; contacts further away are left out
 constexpr int kMostProducts = 80;
 constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
@@ -211,9 +211,22 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
   }
 }
 
-/// step_ = −H⁻¹·inner_gradient_ at the inner solution so far.
+/// Whether the last factor still holds what rows curve by now; what leaves the tree it never does.
 template <class T>
-bool InnerProblem<T>::newton_step(T drag) {
+bool InnerProblem<T>::factor_holds(T drag) const {
+  return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(drag) &&
+         std::all_of(joint_rows_.begin(), joint_rows_.end(),
+                     [](const JointRows& r) { return r.in_factor == r.row.curvature(r.value); });
+}
+
+/// step_ = −H⁻¹·inner_gradient_ at the inner solution so far. May `reuse` the last factor.
+template <class T>
+bool InnerProblem<T>::newton_step(T drag, bool reuse) {
+  if (reuse && factor_holds(drag)) {
+    for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
+    factor_.solve(step_);
+    return true;
+  }
   factor_.values() = tied() ? local_.values() : smooth_.values();
   contact_rows_->add_curvature(factor_, drag);
   if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
@@ -303,9 +316,10 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
   inner_gradient_ = smooth_gradient_;
   add_row_gradient(inner_gradient_);
   double moved = 0;
+  T drag = T(kLeastDrag);
   const auto enough = [&] { return kShrink * std::min(report.first_length, moved); };
   for (int iteration = 0; iteration < kMostInnerSteps; ++iteration) {
-    if (!newton_step(T(kLeastDrag))) return report;
+    if (!newton_step(drag, iteration > 0 && has_contacts())) return report;
     const T length = displacement(step_);
     if (!std::isfinite(length)) return report;
     if (iteration == 0) report.first_length = double(length);
@@ -335,6 +349,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
     moved += double(t * length);
+    if (t > T(kTooShort)) drag *= T(kRelease);
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
@@ -361,27 +376,20 @@ template <class T>
 double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (ellipsoids_ ? !ellipsoids_->measure(trees_) : rounded()) return kNone;
-  // As the last factor holds them, which what leaves the tree never is.
-  bool same = contact_rows_->measure(contacts) && !ellipsoids_ && !(couplings_ && couplings_->coupled());
+  contact_rows_->measure(contacts);
   std::size_t n = 0;
   for (const TreeProblem<T>* p : trees_) {
     if (n + p->rows.size() > joint_rows_.size()) return kNone;
     for (const JointRow<T>& row : p->rows) {
       JointRows& mine = joint_rows_[n++];
       if (row.dof != mine.row.dof || row.kind != mine.row.kind || row.scalar != mine.row.scalar) return kNone;
-      same = same && mine.in_factor == row.curvature(row.value);
       mine.value = row.value;
     }
     for (int dof = 0; dof < p->tree->dofs; ++dof)
       if (const int k = unknown(*p, dof); k >= 0) inner_gradient_[k] = p->gradient[dof];
   }
   if (n != joint_rows_.size()) return kNone;
-  if (same) {
-    for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
-    factor_.solve(step_);
-  } else if (!newton_step(T(0))) {
-    return kNone;
-  }
+  if (!newton_step(T(0), true)) return kNone;
   correction_ = step_;
   return double(displacement(correction_));
 }

@@ -55,6 +55,8 @@ class InnerProblem {
   bool geometric() const { return geometric_; }
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
+  /// Tells the contacts the normal forces at the minimiser, whose geometric terms the next model has.
+  void expect_forces(std::span<Contact<T>> contacts) const { contact_rows_->expect_forces(contacts); }
   /// Second-order correction: the model again, with gaps and slips as the contacts found them where the
   /// correction led, and the old Jacobians. Call minimise() after it.
   void correct(std::span<const Contact<T>> contacts);
@@ -101,7 +103,8 @@ class InnerProblem {
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
-  bool newton_step(T drag);
+  bool factor_holds(T drag) const;
+  bool newton_step(T drag, bool reuse);
   bool conjugate_gradients();
   double remaining_step();
   void multiply_smooth(std::span<const T> x, std::span<T> y) const;

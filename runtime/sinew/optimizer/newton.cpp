@@ -135,7 +135,7 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
     remember_charts();
     try_step(T(1));
     const double new_energy = evaluate();
-    const double rate = std::max(next / length, kLeastRate);
+    const double rate = std::max(next / length, inner_.has_contacts() ? kLeastRateInContact : kLeastRate);
     const bool last = next * rate < kCautious * tolerance * (1 - rate);  // a geometric series is left
     if (!accepted(T(1), slope, energy, new_energy, last)) {
       try_step(T(0));
@@ -173,6 +173,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
   couplings_ = couplings;
   report_ = {};
   inner_.begin(settings, trees);
+  for (Contact<T>& c : contacts_) c.expected_force = c.lagged_normal_force;
   double energy = evaluate();
   report_.converged = inner_.size() == 0;
   const double tolerance = accuracy.tolerance;
@@ -193,6 +194,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
       inner = inner_.minimise(T(tolerance));
     }
     if (!inner.solved) break;
+    inner_.expect_forces(contacts_);
     // A rotation vector is good for about one radian.
     T longest = T(0);
     for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));

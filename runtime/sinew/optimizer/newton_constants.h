@@ -8,11 +8,12 @@ namespace sinew {
 /// factorisation, or conjugate gradients over all who touch: at 0.03 a pile of a crowd took four times as
 /// long.
 constexpr double kStillValid = 0.03, kStillValidInContact = 0.01;
-constexpr double kChordRate = 0.7;   ///< of the step before: chords that shrink less do not pay
-constexpr double kLeastRate = 0.25;  ///< of chords to come, however fast the last one shrank
-/// Change of a contact's curvature, by its largest, that a chord's factor may have missed: 0.4 saves another
-/// half of their factorisations, but leaves errors above the tolerance.
-constexpr double kSameCurvature = 0.2;
+constexpr double kChordRate = 0.7;  ///< of the step before: chords that shrink less do not pay
+/// Of chords to come, however fast the last one shrank: contacts may have changed since the factor.
+constexpr double kLeastRate = 0.25, kLeastRateInContact = 0.5;
+/// Change of a contact's curvature, by its largest, that a factor may have missed: more would leave errors
+/// above the tolerance.
+constexpr double kSameCurvature = 0.7;
 constexpr double kCautious = 0.1;  ///< of the tolerance, may be left after the last chord
 /// Of the forces that contacts bore in the last step, or of the weight: where those at the guess are so much
 /// larger, they are those of bodies that went through the floor, and their geometric terms mislead.
@@ -26,6 +27,8 @@ constexpr double kShrink = 0.1;
 /// What friction resists along a slip, at least, by what it resists across it. Exactly it is nothing, and the
 /// step runs on to where the slip has turned round: a line search then stops at one kink after the other.
 constexpr double kLeastDrag = 0.3;
+/// A step that should have been longer by so much was held back by that: from then on by this share of it.
+constexpr double kTooShort = 1.1, kRelease = 0.3;
 constexpr int kMostInnerSteps = 8;
 constexpr double kRotationArm = 0.15;  ///< m; turns a rotation into a displacement for the tolerance
 
