@@ -11,23 +11,53 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// Greatest speeds while a figure is crushed, m/s.
+struct CrushSpeeds {
+  double joint = 0;  ///< of any joint
+  double along = 0;  ///< of the centre of mass, the way the piston goes
+};
+
 template <class T>
-Verdict piston(const Trial& t) {
-  Stage<T> stage(t.scene);
-  double fastest = 0;
+CrushSpeeds crush(Stage<T>& stage, double duration, double h) {
+  CrushSpeeds most;
   std::vector<Vec3<T>> last;
-  stage.run(t.scene.duration, t.h, [&](double) {
+  double center = 0;
+  stage.run(duration, h, [&](double) {
     const auto model = stage.character(0).model();
-    if (!last.empty())
-      for (std::size_t i = 0; i < last.size(); ++i)
-        fastest = std::max(fastest, double((model[i].translation - last[i]).norm()) / t.h);
+    const double x = stage.center_of_mass(0).x();
+    if (!last.empty()) most.along = std::max(most.along, std::abs(x - center) / h);
+    for (std::size_t i = 0; i < last.size(); ++i)
+      most.joint = std::max(most.joint, double((model[i].translation - last[i]).norm()) / h);
+    center = x;
     last.clear();
     for (const Transform<T>& joint : model) last.push_back(joint.translation);
   });
+  return most;
+}
+
+/// A limb that is squeezed past its dead centre flings its end, in finer steps no less: what steps an eighth
+/// as long show is no explosion. The fastest of four starts, for where a hand goes is chaotic.
+template <class T>
+double fling_in_fine_steps(const Trial& t) {
+  double fastest = 0;
+  for (const double aside : {0.0, 0.001, 0.002, 0.003}) {
+    scene::Scene scene = t.scene;
+    scene.characters[0].position.x() += aside;
+    Stage<T> stage(scene);
+    fastest = std::max(fastest, crush(stage, t.scene.duration, t.h / 8).joint);
+  }
+  return fastest;
+}
+
+template <class T>
+Verdict piston(const Trial& t) {
+  constexpr double kPistonSpeed = 1;  // m/s, of the scene
+  Stage<T> stage(t.scene);
+  const CrushSpeeds fastest = crush(stage, t.scene.duration, t.h);
   Verdict v(stage.measured());
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
-  // Falling from standing reaches 5 m/s by itself: the piston must not throw.
-  v.at_most("largest speed of a joint (m/s)", fastest, 8);
+  v.at_most("speed of the centre of mass along the piston's way (m/s)", fastest.along, 3 * kPistonSpeed);
+  v.at_most("speed of a joint (m/s), that in fine steps", fastest.joint, fling_in_fine_steps<T>(t));
   v.at_most("kinetic energy at the end (J)", stage.character(0).report().kinetic_energy, 5);
   v.at_most("depth in anything at the end (m)", stage.character(0).report().penetration, 0.01);
   return v;
@@ -227,7 +257,8 @@ std::vector<HardCase> actuation_cases() {
       {"piston",
        "49",
        "godot#29256",
-       "finite, not thrown, at rest and free after the piston has gone",
+       "thrown at 3 times the piston's speed at most, limbs no faster than in fine steps; at rest and free "
+       "after it",
        {1.0 / 60},
        piston<float>,
        piston<double>},
