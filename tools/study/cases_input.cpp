@@ -149,7 +149,7 @@ Verdict denormal_speeds(const Trial& t) {
   const std::unique_ptr<Stage<T>> zero = balls(false), denormal = balls(true);
   // In turns, so that what else the machine does meets both.
   std::vector<double> ratios;
-  for (int turn = 0; turn < (t.quick ? 2 : 20); ++turn) {
+  for (int turn = 0; turn < (t.quick ? 2 : 100); ++turn) {
     double microseconds[2];
     for (Stage<T>* stage : {zero.get(), denormal.get()}) {
       const double before = stage->measured().microseconds;

@@ -10,7 +10,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kNear = 0.3;  ///< m; contacts further away are left out
+/// m; contacts further away are left out: in an impact steps are long. Among many trees that costs too much.
+constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
 constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
@@ -69,7 +70,8 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
   axes_.clear();
   for (const TreeProblem<T>* p : trees_)
     axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
-  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(kNear), settings_->stick);
+  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(trees_.size() > 1 ? kNearOthers : kNear),
+                         settings_->stick);
   ellipsoids_ = rounded() ? ellipsoid_model_.get() : nullptr;
   if (ellipsoids_) ellipsoids_->collect(trees_, unknowns_);
   joint_rows_.clear();
