@@ -75,7 +75,8 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
 template <class T>
 Mat3<T> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
   const Mat3<T>& r = history.rotation[i];
-  return r * tree.inertia[i] * r.transpose();
+  const Mat3<T> turned = r.lazyProduct(tree.inertia[i]);
+  return turned.lazyProduct(r.transpose());
 }
 
 /// Angular velocity (rad/s, body axes) of a state that was set, not differenced.
@@ -411,11 +412,15 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
   change.turn = turn.template cast<T>();
   change.factor = factor;
   for (int i = 0; i < tree.bodies; ++i) {
-    const Mat3<T> inertia = world_inertia(tree, history, i);
-    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - inertia * change.spin);
-    history.velocity_before[i] += change.scaled(history.center[i], history.velocity[i]);
-    history.velocity[i] += change.faster(history.center[i], history.velocity[i]);
-    history.momentum[i] += stronger + inertia * change.turn;
+    const Mat3<T>& r = history.rotation[i];
+    const auto momentum_of = [&](const Vec3<T>& spin) {
+      return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * spin)));
+    };
+    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - momentum_of(change.spin));
+    const Vec3<T> scaled = change.scaled(history.center[i], history.velocity[i]);
+    history.velocity_before[i] += scaled;
+    history.velocity[i] += scaled + change.turn.cross(history.center[i] - change.center);
+    history.momentum[i] += stronger + momentum_of(change.turn);
     history.momentum_before[i] += stronger;
     history.rotation_rate[i] += change.faster(history.rotation[i], history.rotation_rate[i]);
   }
