@@ -123,9 +123,8 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
       add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
                        smooth_);
     if (geometric_)
-      add_joint_geometry(*p, [&](int k, int l, T value) {
-        smooth_.row(k)[unknowns_.pattern.depth[l]] += value;
-      });
+      add_joint_geometry(*p,
+                         [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
   if (geometric_) contact_rows_->add_bending(smooth_);
   if (!tied()) return;
@@ -259,8 +258,7 @@ bool InnerProblem<T>::factorise(T drag) {
   factor_.values() = tied() ? local_.values() : smooth_.values();
   contact_rows_->add_curvature(factor_, drag);
   if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
-  add_row_curvature(
-      [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
+  add_row_curvature([&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
   return factor_.factorise();
 }
 
