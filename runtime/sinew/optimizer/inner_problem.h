@@ -54,6 +54,8 @@ class InnerProblem {
   void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
   /// Whether the model has geometric terms.
   bool geometric() const { return geometric_; }
+  /// Whether nothing but what joints do acts on the tree; it is one then.
+  bool joints_only() const { return articulated_; }
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
   /// Second-order correction: the model again, with gaps and slips as the contacts found them where the

@@ -204,8 +204,11 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
     const Outcome outcome = line_search(T(tolerance), small && !inner_.has_contacts(), energy);
-    // Without rows the model is smooth, and its step Newton's own.
-    const bool exact = inner.straight && !plain && kLeft * length * length < kCautious * tolerance;
+    // Where no row bears the energy is smooth, and the step Newton's own; what effects do may bend otherwise
+    // than their matrix says.
+    const bool exact = inner.straight && inner_.joints_only() && inner_.geometric() &&
+                       trees_[0]->prediction.scheme != Scheme::kMomentum &&
+                       kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
     report_.converged = small || (outcome == Outcome::kFull &&
                                   (exact || (near && converge_by_chords(tolerance, length, energy))));
