@@ -8,8 +8,9 @@
 // leaves one of the same kind, that of an articulated body (Featherstone, "Rigid Body Dynamics Algorithms",
 // 2008, chapter 7):
 //     U = C S − E S,   LLᵀ = D − SᵀE S,   Y = U L⁻ᵀ,   E ← E + Y Yᵀ.
-// O(unknowns), where TreeMatrix with its assembly is O(unknowns·depth²): 12 thousand instructions instead of
-// 47 for a humanoid's 37 unknowns. Contacts act along whole paths, and are TreeMatrix's.
+// O(unknowns), where TreeMatrix is O(unknowns·depth²): built, factorised and solved once, 30 thousand
+// instructions instead of 52 for a humanoid's 37 unknowns (callgrind, float). Contacts act along whole paths,
+// and are TreeMatrix's.
 #pragma once
 
 #include <span>
