@@ -208,7 +208,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // than their matrix says.
     const bool exact = inner.straight && inner_.joints_only() && inner_.geometric() &&
                        trees_[0]->prediction.scheme != Scheme::kMomentum &&
-                       kLeft * length * length < kCautious * tolerance;
+                       length < kExactWithin * tolerance && kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
     report_.converged = small || (outcome == Outcome::kFull &&
                                   (exact || (near && converge_by_chords(tolerance, length, energy))));

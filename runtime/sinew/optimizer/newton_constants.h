@@ -20,6 +20,7 @@ constexpr double kMisleading = 1.5;
 /// 1/m: what a whole Newton step through nothing but smooth terms leaves, by the square of its length. In
 /// limp flights at 1 to 10 rad/s rms half leave less than 6, 99 in 100 less than 30 to 130 (1/240 to 1/30 s).
 constexpr double kLeft = 30;
+constexpr double kExactWithin = 10;   ///< tolerances: rounding too leaves a share of a step
 constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
 
 // Of its convex model (inner_problem.h)

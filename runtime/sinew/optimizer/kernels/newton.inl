@@ -109,8 +109,9 @@ class PackNewton {
     const Wide energy = evaluate(active);
     active = both(active, accepted(slope, energy_, energy, small));
     energy_ = energy;
-    const Live exact =
-        both(inner_.straight(), narrowed(Wide(kLeft) * length * length < Wide(kCautious * tolerance_)));
+    const Live brief = both(narrowed(length < Wide(kExactWithin * tolerance_)),
+                            narrowed(Wide(kLeft) * length * length < Wide(kCautious * tolerance_)));
+    const Live exact = both(inner_.straight(), brief);
     const Live done = both(active, either(small, exact));
     const Live near = both(both(active, !done), narrowed(length < Wide(kStillValid)));
     return either(done, chords(near, length, active));
