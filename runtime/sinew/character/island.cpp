@@ -99,11 +99,14 @@ template <class T>
 void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSettings& world, T h) {
   TreeProblem<T>& p = s.problem;
   read_torques(s);
+  const bool falls = s.only_falls();
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
-    const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
+    const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, s.wanted[i], p.local[i]);
+    const std::array<T, 6> from_target =
+        falls ? from_animation : joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
     T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
@@ -115,7 +118,7 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
     if (!s.baked[i] || s.joint_is_driven(i))
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
-    s.update_deviation(i, p.local[i], h, T(world.accuracy.return_time));
+    s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
     s.local[i] = p.local[i];
   }
   s.settle_deviations();

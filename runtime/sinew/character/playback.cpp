@@ -83,7 +83,8 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     if (s.deviation[i].on_animation) continue;
     // Nobody measures what the way back takes: no muscle counts as saturated.
     std::fill_n(s.load.begin() + s.tree.first_dof[i], s.tree.dof_count(i), T(0));
-    s.update_deviation(i, s.local[i], h, T(world.accuracy.return_time));
+    s.update_deviation(i, joint_offset_value<T>(s.tree, i, s.wanted[i], s.local[i]), h,
+                       T(world.accuracy.return_time));
   }
   s.settle_deviations();
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)

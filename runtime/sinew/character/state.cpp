@@ -346,8 +346,7 @@ void CharacterState<T>::forget_contacts() {
 }
 
 template <class T>
-void CharacterState<T>::update_deviation(int i, const Transform<T>& at, T h, T return_time) {
-  const std::array<T, 6> from_animation = joint_offset_value<T>(tree, i, wanted[i], at);
+void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& from_animation, T h, T return_time) {
   Deviation<T>& d = deviation[i];
   const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);

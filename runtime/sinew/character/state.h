@@ -206,9 +206,10 @@ struct CharacterState {
     energy_ceiling = std::numeric_limits<double>::infinity();
     lent = 0;
   }
-  /// After a step of h seconds: how far a joint at `local` is off what the animation wants, and how fast that
-  /// changes; on the animation where both are next to nothing. `return_time` of the way back, s.
-  void update_deviation(int body, const Transform<T>& at, T h, T return_time);
+  /// After a step of h seconds: how far a joint is off what the animation wants (`from_animation`, a
+  /// joint_offset), and how fast that changes; on the animation where both are next to nothing. `return_time`
+  /// of the way back, s.
+  void update_deviation(int body, const std::array<T, 6>& from_animation, T h, T return_time);
   /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
   Vec3<double> middle() const {
     return is_particles ? Vec3<double>(particles_middle.template cast<double>()) : history.place;
@@ -227,6 +228,11 @@ struct CharacterState {
   T fastest() const;
   /// No joint has a muscle, nothing drives the root.
   bool limp() const;
+  /// Nor is any joint put anywhere but by the solve: where the way back to the animation leads is not asked.
+  bool only_falls() const {
+    return limp() && levels.allowed >= Level::kPartial &&
+           std::min(detail.most, levels.cap) > Level::kPartial && !detail.bake;
+  }
   /// The simulated joint that carries `joint`, itself or an ancestor.
   int body_of(int joint) const;
   void update_model();

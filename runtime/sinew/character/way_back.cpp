@@ -63,6 +63,10 @@ Transform<T> animation_within(const JointJet<T>& before, const JointJet<T>& now,
 template <class T>
 void choose_targets(CharacterState<T>& s, T return_time, T h) {
   TreeProblem<T>& p = s.problem;
+  if (s.only_falls()) {
+    std::copy(s.wanted.begin(), s.wanted.end(), p.target.begin());
+    return;
+  }
   const T decay = std::exp(-h / return_time);
   bool summed = false;
   for (int i = 0; i < s.tree.bodies; ++i) {

@@ -33,7 +33,7 @@ Kernel kernel(InstructionSet set) {
 
 /// Of one rig: rows as TreeProblem reserves them.
 Shape shape_of(const SolveRoom& rig) {
-  return {rig.bodies, rig.dofs, rig.path_entries, 6 * rig.dofs + 3 * rig.bodies};
+  return {rig.bodies, rig.dofs, 6 * rig.dofs + 3 * rig.bodies};
 }
 
 }  // namespace
@@ -70,12 +70,6 @@ void BatchNewton::solve(const StepSettings<float>& settings, const Accuracy& acc
     for (int dof = 0; dof < tree.dofs; ++dof) free_[dof] |= p->free[dof];
   unknowns_.clear();
   append_unknowns<float>(tree, free_, unknowns_);
-  int entries = 0;
-  for (int k = 0; k < unknowns_.pattern.size; ++k) {
-    unknowns_.pattern.row[k] = entries;
-    entries += unknowns_.pattern.depth[k] + 1;
-  }
-  unknowns_.pattern.entries = entries;
   std::array<SolveReport, kMostLanes> lane_reports;
   Batch batch;
   batch.settings = &settings;
@@ -83,7 +77,6 @@ void BatchNewton::solve(const StepSettings<float>& settings, const Accuracy& acc
   std::copy(problems.begin(), problems.end(), batch.problems);
   batch.unknowns = &unknowns_;
   batch.shape = shape_of(problems[0]->room);
-  batch.shape.entries = entries;
   void* memory = memory_.data();
   std::size_t space = memory_.size();
   batch.scratch = std::align(kAlignment, 1, memory, space);

@@ -42,6 +42,7 @@ void InnerProblem<T>::reserve(const SolveRoom& room) {
   unknowns_.reserve(dofs);
   axes_.reserve(dofs, room.path_entries);
   for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, room.path_entries);
+  joints_.reserve(room.bodies, dofs);
   contact_rows_->reserve(room.contacts, room.contact_entries);
   if (couplings_) couplings_->reserve(room);
   joint_rows_.reserve(dofs * 8 + room.effect_rows);
@@ -68,10 +69,14 @@ template <class T>
 void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
                             bool geometric) {
   axes_.clear();
+  const bool joints_only =
+      trees_.size() == 1 && couplings.empty() && trees_[0]->effects.empty() && !rounded();
   for (const TreeProblem<T>* p : trees_)
-    axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
+    if (!joints_only || !contacts.empty())
+      axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
   contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(trees_.size() > 1 ? kNearOthers : kNear),
                          settings_->stick);
+  articulated_ = joints_only && contact_rows_->empty();
   ellipsoids_ = rounded() ? ellipsoid_model_.get() : nullptr;
   if (ellipsoids_) ellipsoids_->collect(trees_, unknowns_);
   joint_rows_.clear();
@@ -80,7 +85,10 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
       joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
   if (couplings_) couplings_->collect(trees_, couplings, unknowns_, axes_);
   geometric_ = geometric && !(trees_.size() > 1 && contact_rows_->coupled());
-  assemble(contacts, couplings);
+  if (articulated_)
+    assemble_articulated();
+  else
+    assemble(contacts, couplings);
   // The gradient without the rows', which are added back wherever they move.
   base_gradient_.assign(size(), T(0));
   for (const TreeProblem<T>* p : trees_)
@@ -116,7 +124,9 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
     if (p->stiff)
       add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
                        smooth_);
-    if (geometric_) add_joint_geometry(*p);
+    if (geometric_)
+      add_joint_geometry(*p,
+                         [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
   if (geometric_) contact_rows_->add_bending(smooth_);
   if (!tied()) return;
@@ -124,8 +134,19 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
   couplings_->add_curvature(local_);
 }
 
+/// H₀ of a tree on which nothing acts but what its joints do.
 template <class T>
-void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
+void InnerProblem<T>::assemble_articulated() {
+  TreeProblem<T>& p = *trees_[0];
+  begin_composite(*settings_, p);
+  joints_.assemble(*p.tree, p.kinematics, p.composite, unknowns_, geometric_);
+  if (geometric_ && !p.rows.empty())
+    add_joint_geometry(p, [&](int k, int l, T value) { joints_.add(k, l, value); });
+}
+
+template <class T>
+template <class Add>
+void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p, const Add& add) {
   measure_joint_curvature(*settings_, p);
   const Tree<T>& tree = *p.tree;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -133,8 +154,7 @@ void InnerProblem<T>::add_joint_geometry(TreeProblem<T>& p) {
     const int k = unknown(p, tree.first_dof[i + 1] - 3);
     if (k < 0) continue;
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b <= a; ++b)
-        smooth_.row(k + a)[unknowns_.pattern.depth[k + b]] += p.joint_curvature[i](a, b);
+      for (int b = 0; b <= a; ++b) add(k + a, k + b, p.joint_curvature[i](a, b));
   }
 }
 
@@ -192,14 +212,15 @@ T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
 }
 
 template <class T>
-void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) const {
+void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) {
+  if (articulated_) return joints_.multiply(x, y);
   smooth_.multiply(x, y);
   if (geometric_ && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
 template <class T>
-void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const {
+void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
   multiply_smooth(x, y);
   contact_rows_->multiply(x, y);
   if (ellipsoids_) ellipsoids_->multiply(x, y);
@@ -213,6 +234,44 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) const 
   }
 }
 
+/// Curvature of the joints' rows at the inner solution so far.
+template <class T>
+template <class Add>
+void InnerProblem<T>::add_row_curvature(const Add& add) {
+  for (JointRows& rows : joint_rows_) {
+    const JointRow<T>& row = rows.row;
+    const T curvature = rows.in_factor = row.curvature(rows.value);
+    if (curvature <= T(0)) continue;
+    for (int i = 0; i < row.count; ++i)
+      for (int j = 0; j <= i; ++j)
+        add(rows.unknown + i, rows.unknown + j, curvature * row.gradient[i] * row.gradient[j]);
+  }
+}
+
+/// Of the model at the inner solution so far, but for what leaves the tree.
+template <class T>
+bool InnerProblem<T>::factorise(T drag) {
+  ++factorisations;
+  if (articulated_) {
+    joints_.begin_factor();
+    add_row_curvature([&](int k, int l, T value) { joints_.add_to_factor(k, l, value); });
+    return joints_.factorise();
+  }
+  factor_.values() = tied() ? local_.values() : smooth_.values();
+  contact_rows_->add_curvature(factor_, drag);
+  if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
+  add_row_curvature([&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
+  return factor_.factorise();
+}
+
+template <class T>
+void InnerProblem<T>::solve_factored(std::span<T> b) {
+  if (articulated_)
+    joints_.solve(b);
+  else
+    factor_.solve(b);
+}
+
 /// Whether the last factor still holds what rows curve by now; what leaves the tree it never does.
 template <class T>
 bool InnerProblem<T>::factor_holds(T drag) const {
@@ -224,28 +283,11 @@ bool InnerProblem<T>::factor_holds(T drag) const {
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far. May `reuse` the last factor.
 template <class T>
 bool InnerProblem<T>::newton_step(T drag, bool reuse) {
-  if (reuse && factor_holds(drag)) {
-    for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
-    factor_.solve(step_);
-    return true;
-  }
-  factor_.values() = tied() ? local_.values() : smooth_.values();
-  contact_rows_->add_curvature(factor_, drag);
-  if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
-  for (JointRows& rows : joint_rows_) {
-    const JointRow<T>& row = rows.row;
-    const T curvature = rows.in_factor = row.curvature(rows.value);
-    if (curvature <= T(0)) continue;
-    for (int i = 0; i < row.count; ++i)
-      for (int j = 0; j <= i; ++j)
-        factor_.row(rows.unknown + i)[unknowns_.pattern.depth[rows.unknown + j]] +=
-            curvature * row.gradient[i] * row.gradient[j];
-  }
-  ++factorisations;
-  if (!factor_.factorise()) return false;
-  if (coupled()) return conjugate_gradients();
+  const bool holds = reuse && factor_holds(drag);
+  if (!holds && !factorise(drag)) return false;
+  if (!holds && coupled()) return conjugate_gradients();
   for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
-  factor_.solve(step_);
+  solve_factored(step_);
   return true;
 }
 
@@ -304,7 +346,7 @@ bool InnerProblem<T>::conjugate_gradients() {
 template <class T>
 double InnerProblem<T>::remaining_step() {
   for (int k = 0; k < size(); ++k) residual_[k] = -inner_gradient_[k];
-  factor_.solve(residual_);
+  solve_factored(residual_);
   return double(displacement(residual_));
 }
 
@@ -333,18 +375,22 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       rows.d_value = T(0);
       for (int a = 0; a < row.count; ++a) rows.d_value += row.gradient[a] * step_[rows.unknown + a];
     }
+    // Where no row bears on the way, the model is quadratic and the step exact.
+    const bool straight =
+        contact_rows_->empty() && !ellipsoids_ &&
+        std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
+    report.straight = straight && iteration == 0;
+    if (straight) {
+      for (int k = 0; k < n; ++k) correction_[k] += step_[k];
+      break;
+    }
     multiply_smooth(step_, product_);
     T quadratic = T(0), linear = T(0);
     for (int k = 0; k < n; ++k) {
       quadratic += step_[k] * product_[k];
       linear += step_[k] * (smooth_gradient_[k] + correction_product_[k]);
     }
-    // Where no row bears on the way, the model is quadratic and the step exact.
-    const bool straight =
-        contact_rows_->empty() && !ellipsoids_ &&
-        std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
-    report.straight = straight && iteration == 0;
-    const T t = straight ? T(1) : exact_line_search(quadratic, linear);
+    const T t = exact_line_search(quadratic, linear);
     for (int k = 0; k < n; ++k) {
       correction_[k] += t * step_[k];
       correction_product_[k] += t * product_[k];
@@ -355,7 +401,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
-    if (last || straight) break;
+    if (last) break;
     add_row_gradient(inner_gradient_);
     if (!coupled() && remaining_step() < enough()) {
       for (int k = 0; k < n; ++k) correction_[k] += residual_[k];

@@ -16,6 +16,7 @@
 #include "sinew/optimizer/coupling_rows.h"
 #include "sinew/optimizer/ellipsoid_rows.h"
 #include "sinew/optimizer/problem.h"
+#include "sinew/residual/articulated_matrix.h"
 
 namespace sinew {
 
@@ -37,7 +38,7 @@ class InnerProblem {
            (ellipsoid_model_ ? ellipsoid_model_->bytes(room.dofs / 3) : 0) +
            room.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
            room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
-           room.bodies * 2 * sizeof(Vec3<T>);
+           room.bodies * 2 * sizeof(Vec3<T>) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs);
   }
 
   /// Numbers the unknowns of all trees.
@@ -53,6 +54,8 @@ class InnerProblem {
   void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
   /// Whether the model has geometric terms.
   bool geometric() const { return geometric_; }
+  /// Whether nothing but what joints do acts on the tree; it is one then.
+  bool joints_only() const { return articulated_; }
   /// Minimises from the chart centres; the minimiser is correction().
   InnerReport minimise(T tolerance);
   /// Tells the contacts the normal forces at the minimiser, whose geometric terms the next model has.
@@ -99,16 +102,22 @@ class InnerProblem {
   bool rounded() const;
   bool tied() const { return couplings_ && !couplings_->empty(); }
   bool coupled() const { return contact_rows_->coupled() || (couplings_ && couplings_->coupled()); }
-  void add_joint_geometry(TreeProblem<T>& tree);
+  void assemble_articulated();
+  template <class Add>
+  void add_joint_geometry(TreeProblem<T>& tree, const Add& add);
+  template <class Add>
+  void add_row_curvature(const Add& add);
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
+  bool factorise(T drag);
+  void solve_factored(std::span<T> b);
   bool factor_holds(T drag) const;
   bool newton_step(T drag, bool reuse);
   bool conjugate_gradients();
   double remaining_step();
-  void multiply_smooth(std::span<const T> x, std::span<T> y) const;
-  void multiply_full(std::span<const T> x, std::span<T> y) const;
+  void multiply_smooth(std::span<const T> x, std::span<T> y);
+  void multiply_full(std::span<const T> x, std::span<T> y);
 
   const StepSettings<T>* settings_ = nullptr;
   std::span<TreeProblem<T>* const> trees_;
@@ -117,6 +126,8 @@ class InnerProblem {
   TreeMatrix<T> smooth_{unknowns_.pattern};  ///< H₀
   TreeMatrix<T> local_{unknowns_.pattern};   ///< H₀ + what coupling elements do within a path
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
+  ArticulatedMatrix<T> joints_;              ///< in place of these where nothing but joints acts on a tree
+  bool articulated_ = false;                 ///< it is
   bool geometric_ = true;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
   std::unique_ptr<ContactModel<T>> contact_rows_ = std::make_unique<ContactModel<T>>();

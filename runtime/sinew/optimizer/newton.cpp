@@ -206,9 +206,14 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // The second clause is needed: a truncated inner solve alone passed with errors up to 173 mm.
     const bool small = length < tolerance && inner.first_length < 2 * tolerance;
     const Outcome outcome = line_search(T(tolerance), small && !inner_.has_contacts(), energy);
+    // Where no row bears the energy is smooth, and the step Newton's own; what effects do may bend otherwise
+    // than their matrix says.
+    const bool exact = inner.straight && inner_.joints_only() && inner_.geometric() &&
+                       trees_[0]->prediction.scheme != Scheme::kMomentum &&
+                       length < kExactWithin * tolerance && kLeft * length * length < kCautious * tolerance;
+    const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
     report_.converged = small || (outcome == Outcome::kFull &&
-                                  length < (inner_.has_contacts() ? kStillValidInContact : kStillValid) &&
-                                  converge_by_chords(tolerance, length, energy));
+                                  (exact || (near && converge_by_chords(tolerance, length, energy))));
     if (outcome == Outcome::kRefused) break;
   }
   report_.factorisations = inner_.factorisations;

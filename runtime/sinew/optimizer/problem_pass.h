@@ -28,13 +28,22 @@ Vec3<T> momentum_couple(const StepSettings<T>& settings, const TreeProblem<T>& p
   return (inertia * turn / settings.h - p.prediction.momentum[i]) / settings.h;
 }
 
+/// Couple of A = α R P R̂ᵀ about a body's centre of mass, from (R − R̂) P: R̂ P R̂ᵀ is symmetric and has none,
+/// and near the prediction what is left does not drown in its rounding.
+template <class T>
+Vec3<T> inertial_couple(const Mat3<T>& turned_second, const Mat3<T>& predicted, const T& weight) {
+  const auto entry = [&](int i, int j) {
+    return T(turned_second.row(i).dot(predicted.row(j)) - turned_second.row(j).dot(predicted.row(i)));
+  };
+  return weight * Vec3<T>(entry(2, 1), entry(0, 2), entry(1, 0));
+}
+
 /// What inertia asks for about a body's centre of mass; not the momentum scheme's.
 template <class T, class Problem>
 Vec3<T> inertial_couple(const Problem& p, int i) {
-  const Mat3<T> second = p.tree->second_moment[i].template cast<T>();
-  const Mat3<T> a =
-      (p.prediction.weight * p.kinematics.rotation[i]) * second * p.prediction.rotation[i].transpose();
-  return {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
+  const Mat3<T>& predicted = p.prediction.rotation[i];
+  const Mat3<T> turned = (p.kinematics.rotation[i] - predicted) * p.tree->second_moment[i].template cast<T>();
+  return inertial_couple<T>(turned, predicted, p.prediction.weight);
 }
 
 /// Inertia's and gravity's part of begin_evaluation: energy (J, in double precision), wrenches.
@@ -49,16 +58,16 @@ auto inertial_energy(const StepSettings<Number<T>>& settings, Problem& p) {
     const Mat3<T>& r = p.kinematics.rotation[i];
     const Vec3<T> off = c - p.prediction.center[i];
     const T mass = T(tree.mass[i]);
-    const Mat3<T> second = tree.second_moment[i].template cast<T>();
-    const Mat3<T> turned = r - p.prediction.rotation[i];
     energy +=
         widened(T(T(0.5) * weight * mass * off.squaredNorm())) + widened(gravity_energy<T>(mass, gravity, c));
     p.body_force[i] = (weight * mass) * off + gravity_gradient<T>(mass, gravity);
     if (p.prediction.scheme == Scheme::kMomentum) {
       if constexpr (std::is_arithmetic_v<T>) p.couple[i] = momentum_couple(settings, p, i);
     } else {
-      energy += widened(T(T(0.5) * weight * weighted_square<T>(turned, second)));
-      p.couple[i] = inertial_couple<T>(p, i);
+      const Mat3<T> turned = r - p.prediction.rotation[i];
+      const Mat3<T> second = turned.lazyProduct(tree.second_moment[i].template cast<T>());
+      energy += widened(T(T(0.5) * weight * sum_of_products<T>(second, turned)));
+      p.couple[i] = inertial_couple<T>(second, p.prediction.rotation[i], weight);
     }
     p.force[i] = p.body_force[i];
     p.moment[i] = c.cross(p.force[i]) + p.couple[i];

@@ -38,6 +38,15 @@ namespace {
 
 constexpr int kMostRotationParts = 64;  ///< of a free body's turn in one step
 
+/// (m − skew(carried)·turned)⁻¹, column by column.
+template <class T>
+Mat3<T> inverse_jacobian(Mat3<T> m, const Vec3<T>& carried, const Mat3<T>& turned) {
+  for (int a = 0; a < 3; ++a) m.col(a) -= carried.cross(turned.col(a));
+  Mat3<T> normals;
+  for (int a = 0; a < 3; ++a) normals.col(a) = m.col((a + 1) % 3).cross(m.col((a + 2) % 3));
+  return normals.transpose() / m.col(0).dot(normals.col(0));
+}
+
 /// Rotation vector x over one step of a free body whose backward-difference momentum equation is
 /// I (k₁x − k₂x₋)/h = exp(−x)·l, in body axes. False where Newton does not converge or the turn is too large
 /// to trust. Fixed-point iteration fails from h|ω| = 0.5 on.
@@ -58,7 +67,7 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
     // The Jacobian of the first iterate serves until it stops to pay.
     const T size = error.norm();
     if (iteration == 0 || size > T(0.2) * last)
-      inverse = (inertia * (k1 / h) - skew(carried) * right_jacobian(x)).inverse();
+      inverse = inverse_jacobian(Mat3<T>(inertia * (k1 / h)), carried, right_jacobian(x));
     last = size;
     Vec3<T> step = inverse * error;
     if (!step.allFinite()) return false;
@@ -75,7 +84,8 @@ bool torque_free_rotation(const Mat3<T>& inertia, const Vec3<T>& l, const Vec3<T
 template <class T>
 Mat3<T> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
   const Mat3<T>& r = history.rotation[i];
-  return r * tree.inertia[i] * r.transpose();
+  const Mat3<T> turned = r.lazyProduct(tree.inertia[i]);
+  return turned.lazyProduct(r.transpose());
 }
 
 /// Angular velocity (rad/s, body axes) of a state that was set, not differenced.
@@ -411,11 +421,15 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
   change.turn = turn.template cast<T>();
   change.factor = factor;
   for (int i = 0; i < tree.bodies; ++i) {
-    const Mat3<T> inertia = world_inertia(tree, history, i);
-    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - inertia * change.spin);
-    history.velocity_before[i] += change.scaled(history.center[i], history.velocity[i]);
-    history.velocity[i] += change.faster(history.center[i], history.velocity[i]);
-    history.momentum[i] += stronger + inertia * change.turn;
+    const Mat3<T>& r = history.rotation[i];
+    const auto momentum_of = [&](const Vec3<T>& spin) {
+      return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * spin)));
+    };
+    const Vec3<T> stronger = (factor - 1) * (history.momentum[i] - momentum_of(change.spin));
+    const Vec3<T> scaled = change.scaled(history.center[i], history.velocity[i]);
+    history.velocity_before[i] += scaled;
+    history.velocity[i] += scaled + change.turn.cross(history.center[i] - change.center);
+    history.momentum[i] += stronger + momentum_of(change.turn);
     history.momentum_before[i] += stronger;
     history.rotation_rate[i] += change.faster(history.rotation[i], history.rotation_rate[i]);
   }

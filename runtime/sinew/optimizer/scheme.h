@@ -40,7 +40,10 @@ struct MotionChange {
   Vec3<T> faster(const Vec3<T>& x, const Vec3<T>& v) const { return scaled(x, v) + turn.cross(x - center); }
   /// What the rate of a rotation gains.
   Mat3<T> faster(const Mat3<T>& rotation, const Mat3<T>& rate) const {
-    return (factor - 1) * (rate - skew<T>(spin) * rotation) + skew<T>(turn) * rotation;
+    const Vec3<T> gained = turn - (factor - 1) * spin;
+    Mat3<T> sum = (factor - 1) * rate;
+    for (int a = 0; a < 3; ++a) sum.col(a) += gained.cross(rotation.col(a));
+    return sum;
   }
 };
 

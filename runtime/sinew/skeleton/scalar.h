@@ -75,10 +75,10 @@ auto finite(const T& x) {
   return x - x == T(0);
 }
 
-/// tr(x p xᵀ).
+/// tr(a bᵀ).
 template <class T>
-requires std::is_arithmetic_v<T> T weighted_square(const Mat3<T>& x, const Mat3<T>& p) {
-  return (x * p).cwiseProduct(x).sum();
+requires std::is_arithmetic_v<T> T sum_of_products(const Mat3<T>& a, const Mat3<T>& b) {
+  return a.cwiseProduct(b).sum();
 }
 
 template <class T>

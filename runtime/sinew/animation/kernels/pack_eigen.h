@@ -39,8 +39,8 @@ namespace {
 
 /// See scalar.h; sums in the order in which Eigen adds nine floats on x86.
 template <class P>
-requires(!std::is_arithmetic_v<P>) P weighted_square(const Mat3<P>& x, const Mat3<P>& p) {
-  const Mat3<P> m = (x * p).cwiseProduct(x);
+requires(!std::is_arithmetic_v<P>) P sum_of_products(const Mat3<P>& a, const Mat3<P>& b) {
+  const Mat3<P> m = a.cwiseProduct(b);
   return (((m(0) + m(4)) + (m(2) + m(6))) + ((m(1) + m(5)) + (m(3) + m(7)))) + m(8);
 }
 

@@ -17,8 +17,7 @@ constexpr int kMaxLanes = 16;
 /// What decides about the memory of a batch.
 struct Shape {
   int bodies = 0, dofs = 0;
-  int entries = 0;  ///< of a matrix of all degrees of freedom
-  int rows = 0;     ///< of the joints, at most
+  int rows = 0;  ///< of the joints, at most
 };
 
 /// Characters of one rig that nothing touches, with nothing on them but their muscles, limits and gravity.
@@ -26,7 +25,7 @@ struct Batch {
   const StepSettings<float>* settings = nullptr;  ///< `common_origin` is not looked at
   const Accuracy* accuracy = nullptr;
   TreeProblem<float>* problems[kMaxLanes] = {};  ///< [lane] null: none
-  const Unknowns* unknowns = nullptr;  ///< of the tree, all that are free in some lane; rows not padded
+  const Unknowns* unknowns = nullptr;            ///< of the tree, all that are free in some lane
   Shape shape;
   void* scratch = nullptr;  ///< scratch_bytes(), aligned to 64
   /// Appends to a problem's rows; code that others share, not a kernel's.

@@ -109,8 +109,12 @@ class PackNewton {
     const Wide energy = evaluate(active);
     active = both(active, accepted(slope, energy_, energy, small));
     energy_ = energy;
-    const Live near = both(both(active, !small), narrowed(length < Wide(kStillValid)));
-    return either(both(active, small), chords(near, length, active));
+    const Live brief = both(narrowed(length < Wide(kExactWithin * tolerance_)),
+                            narrowed(Wide(kLeft) * length * length < Wide(kCautious * tolerance_)));
+    const Live exact = both(inner_.straight(), brief);
+    const Live done = both(active, either(small, exact));
+    const Live near = both(both(active, !done), narrowed(length < Wide(kStillValid)));
+    return either(done, chords(near, length, active));
   }
 
   /// NewtonSolver::converge_by_chords in the given lanes.

@@ -22,29 +22,6 @@ void count(const MaskOf<P>& mask, SolveReport* reports, int SolveReport::*what) 
   for (int lane = 0; lane < P::kLanes; ++lane) reports[lane].*what += mask.lane(lane);
 }
 
-/// Projection of wrenches on paths, as PathAxes.
-template <class P>
-struct PackPaths {
-  const PackKinematics<P>& kinematics;
-  const Unknowns& unknowns;
-
-  void project(int k, const Vec3<P>& f, const Vec3<P>& m, int last, P* out) const {
-    for (int l = k, i = last; i >= 0; l = unknowns.pattern.parent[l], --i) {
-      const Vec3<P>&w = kinematics.w[unknowns.dof[l]], &v = kinematics.v[unknowns.dof[l]];
-      out[i] =
-          (m.x() * w.x() + m.y() * w.y() + m.z() * w.z()) + (f.x() * v.x() + f.y() * v.y() + f.z() * v.z());
-    }
-  }
-};
-
-template <class P>
-struct PackMatrix {
-  const TreePattern* pattern = nullptr;
-  std::span<P> values;
-  P* row(int k) const { return values.data() + pattern->row[k]; }
-  P& at(int k, int l) const { return row(k)[pattern->depth[l]]; }
-};
-
 template <class P>
 class PackInner {
  public:
@@ -52,9 +29,14 @@ class PackInner {
   static Live all(bool set) { return Live::all(set); }
 
   void lay_out(const Shape& shape, Arena& memory) {
-    for (auto* s : {&smooth_.values, &factor_.values}) memory.take(*s, shape.entries);
+    for (auto* s : {&matrix_.own, &matrix_.factor}) memory.take(*s, shape.dofs);
+    for (auto* s : {&matrix_.axes, &matrix_.moved, &matrix_.reduced}) memory.take(*s, shape.dofs);
+    for (auto* s : {&matrix_.force, &matrix_.motion}) memory.take(*s, shape.bodies);
+    memory.take(matrix_.eliminated, shape.bodies);
+    memory.take(matrix_.blocks, shape.bodies);
+    memory.take(matrix_.first, shape.dofs);
     for (auto* s : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
-                    &correction_product_, &residual_, &diagonal_})
+                    &correction_product_, &residual_})
       memory.take(*s, shape.dofs);
     for (auto* s : {&turn_, &slide_}) memory.take(*s, shape.bodies);
   }
@@ -63,10 +45,9 @@ class PackInner {
     problem_ = &problem;
     unknowns_ = batch.unknowns;
     reports_ = batch.reports;
-    smooth_.pattern = factor_.pattern = &unknowns_->pattern;
     const int n = size();
     for (auto* s : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
-                    &correction_product_, &residual_, &diagonal_})
+                    &correction_product_, &residual_})
       *s = s->first(n);
   }
   int size() const { return unknowns_->pattern.size; }
@@ -77,10 +58,7 @@ class PackInner {
   void build() {
     PackProblem<P>& p = *problem_;
     inertial_composite<P>(p);
-    const PackPaths<P> paths{p.kinematics, *unknowns_};
-    assemble_rows<P>(*p.tree, p.kinematics, paths, p.composite, *unknowns_, 0, true, smooth_);
-    add_floor_to_rows<P>(*p.tree, p.kinematics, std::span<const Composite<P>>(p.composite), *unknowns_, 0,
-                         smooth_);
+    assemble_joints<P>(*p.tree, p.kinematics, p.composite, *unknowns_, true, matrix_);
     add_joint_geometry();
     if (!p.alike) leave_out();
     std::swap(p.rows, p.model_rows);
@@ -114,6 +92,7 @@ class PackInner {
       Live last = length < P(0.1f) * P(tolerance);
       if (iteration > 0) last = either(last, narrowed(widened(length) < enough()));
       const Live straight = take_step(running, length);
+      if (iteration == 0) straight_ = straight;
       running = both(running, both(!last, !straight));
       if (!any(running)) break;
       add_row_gradient(inner_gradient_);
@@ -126,6 +105,8 @@ class PackInner {
   }
   /// m, of the first Newton step of minimise().
   const auto& first_length() const { return first_length_; }
+  /// Lanes in which that was all: no row bore on its way.
+  const Live& straight() const { return straight_; }
 
   /// Simplified Newton step of the given lanes, see InnerProblem::chord(). Infinite where there is none.
   auto chord(const Live& lanes) {
@@ -188,15 +169,20 @@ class PackInner {
     for (int k = 0; k < size(); ++k) out[k] = masked(k, problem_->gradient[unknowns_->dof[k]]);
   }
 
-  /// A degree of freedom that is none of a lane's unknowns has a row of the identity there: its step is 0,
-  /// and elimination subtracts zeros.
+  /// A degree of freedom that is none of a lane's unknowns moves nothing there, and has a row of the
+  /// identity: its step is 0, and elimination subtracts zeros.
   void leave_out() {
     const PackProblem<P>& p = *problem_;
     for (int k = 0; k < size(); ++k) {
       const Live mine = p.live[unknowns_->dof[k]];
-      smooth_.at(k, k) = select(mine, smooth_.at(k, k), P(1));
-      for (int l = unknowns_->pattern.parent[k]; l >= 0; l = unknowns_->pattern.parent[l])
-        smooth_.at(k, l) = select(both(mine, p.live[unknowns_->dof[l]]), smooth_.at(k, l), P(0));
+      for (int c = 0; c < 6; ++c) {
+        matrix_.axes[k][c] = select(mine, matrix_.axes[k][c], P(0));
+        matrix_.moved[k][c] = select(mine, matrix_.moved[k][c], P(0));
+      }
+      matrix_.own_entry(k, k) = select(mine, matrix_.own_entry(k, k), P(1));
+      for (int l = matrix_.first[k]; l < k; ++l)
+        matrix_.own_entry(k, l) =
+            select(both(mine, p.live[unknowns_->dof[l]]), matrix_.own_entry(k, l), P(0));
     }
   }
 
@@ -209,7 +195,7 @@ class PackInner {
       const int k = unknowns_->of_dof[tree.first_dof[i + 1] - 3];
       if (k < 0) continue;
       for (int a = 0; a < 3; ++a)
-        for (int b = 0; b <= a; ++b) smooth_.at(k + a, k + b) += p.joint_curvature[i](a, b);
+        for (int b = 0; b <= a; ++b) matrix_.own_entry(k + a, k + b) += p.joint_curvature[i](a, b);
     }
   }
 
@@ -270,22 +256,23 @@ class PackInner {
 
   /// step_ = −H⁻¹·inner_gradient_ in the given lanes; elsewhere the factor stays what it was.
   Live newton_step(const Live& lanes) {
-    for (std::size_t n = 0; n < smooth_.values.size(); ++n) factor_.values[n] = smooth_.values[n];
+    for (int k = 0; k < size(); ++k) matrix_.factor[k] = matrix_.own[k];
     for (PackRow<P>& row : problem_->model_rows) {
       const P curvature = row.in_factor = select(lanes, row.curvature(row.at), row.in_factor);
       if (!any(curvature > P(0))) continue;
       for (int i = 0; i < row.count; ++i)
         for (int j = 0; j <= i; ++j)
-          factor_.at(row.unknown + i, row.unknown + j) += curvature * row.gradient[i] * row.gradient[j];
+          matrix_.factor_entry(row.unknown + i, row.unknown + j) +=
+              curvature * row.gradient[i] * row.gradient[j];
     }
     count<P>(lanes, reports_, &SolveReport::factorisations);
-    const Live definite = factorise_tree<P>(*factor_.pattern, factor_.values.data(), diagonal_);
+    const Live definite = factorise_joints<P>(matrix_);
     step_from_factor(step_);
     return definite;
   }
   void step_from_factor(std::span<P> out) const {
     for (int k = 0; k < size(); ++k) out[k] = -inner_gradient_[k];
-    solve_by_tree<P>(*factor_.pattern, factor_.values.data(), out);
+    solve_by_joints<P>(matrix_, out);
   }
   auto remaining_step() {
     step_from_factor(residual_);
@@ -300,7 +287,7 @@ class PackInner {
       for (int a = 0; a < row.count; ++a) row.along += row.gradient[a] * step_[row.unknown + a];
       straight = both(straight, either(!row.present, !bears(row)));
     }
-    multiply_by_tree<P>(*smooth_.pattern, smooth_.values.data(), step_, product_);
+    multiply_by_joints<P>(matrix_, std::span<const P>(step_), product_);
     P quadratic = P(0), linear = P(0);
     for (int k = 0; k < size(); ++k) {
       quadratic += step_[k] * product_[k];
@@ -351,11 +338,12 @@ class PackInner {
   PackProblem<P>* problem_ = nullptr;
   const Unknowns* unknowns_ = nullptr;
   SolveReport* reports_ = nullptr;
-  PackMatrix<P> smooth_, factor_;
+  ArticulatedParts<P> matrix_;
   std::span<P> base_gradient_, smooth_gradient_, inner_gradient_, step_, product_, correction_,
-      correction_product_, residual_, diagonal_;
+      correction_product_, residual_;
   std::span<Vec3<P>> turn_, slide_;
   decltype(widened(P())) first_length_, moved_;
+  Live straight_;
 };
 
 }  // namespace

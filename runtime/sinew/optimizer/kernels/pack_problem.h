@@ -9,8 +9,7 @@
 #include "sinew/optimizer/joint_terms_pass.h"
 #include "sinew/optimizer/kernels/newton.h"
 #include "sinew/optimizer/problem_pass.h"
-#include "sinew/residual/composite_pass.h"
-#include "sinew/residual/tree_factor_pass.h"
+#include "sinew/residual/articulated_pass.h"
 
 namespace sinew::newton_kernels {
 namespace {

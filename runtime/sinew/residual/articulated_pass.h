@@ -1,0 +1,243 @@
+// The recursions of articulated_matrix.h, on any scalar: float, double or a pack of matrices of one tree
+// (pack.h).
+#pragma once
+
+#include <array>
+#include <span>
+#include <type_traits>
+
+#include "sinew/residual/composite_pass.h"
+#include "sinew/skeleton/scalar.h"
+
+namespace sinew {
+
+/// (w, v) or (moment, force); two zeros behind where that makes whole vectors.
+template <class T>
+using SpatialVector = Eigen::Array<T, std::is_arithmetic_v<T> ? 8 : 6, 1>;
+/// Columns of a 6×6 matrix.
+template <class T>
+using SpatialForm = std::array<SpatialVector<T>, 6>;
+/// Of the block of one joint, up to the diagonal.
+template <class T>
+using JointBlockRow = std::array<T, 6>;
+
+/// Unknowns of a body's joint.
+struct JointBlock {
+  int parent = -1;           ///< body
+  int first = 0, count = 0;  ///< unknowns
+  bool laden = false;        ///< its E is not zero
+};
+
+/// Where a matrix lies.
+template <class T>
+struct ArticulatedParts {
+  int bodies = 0;
+  std::span<JointBlock> blocks;               ///< [body]
+  std::span<int> first;                       ///< [unknown] of its block
+  std::span<SpatialVector<T>> axes;           ///< [unknown] S
+  std::span<SpatialVector<T>> moved;          ///< [unknown] C·S: what moving it asks of those above
+  std::span<SpatialVector<T>> reduced;        ///< [unknown] Y
+  std::span<JointBlockRow<T>> own, factor;    ///< [unknown] D; L, its diagonal inverted
+  std::span<SpatialForm<T>> eliminated;       ///< [body] E
+  std::span<SpatialVector<T>> force, motion;  ///< [body] p, V
+
+  T& own_entry(int k, int l) const { return own[k][l - first[k]]; }
+  T& factor_entry(int k, int l) const { return factor[k][l - first[k]]; }
+};
+
+template <class T>
+SpatialVector<T> spatial(const Vec3<T>& a, const Vec3<T>& b) {
+  SpatialVector<T> s;
+  if constexpr (std::is_arithmetic_v<T>)
+    s << a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), T(0), T(0);
+  else
+    s << a.x(), a.y(), a.z(), b.x(), b.y(), b.z();
+  return s;
+}
+
+/// The sums of a vector of four, in which two zeros take part: packs have the bits of scalars.
+template <class T>
+T spatial_dot(const SpatialVector<T>& a, const SpatialVector<T>& b) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    const Eigen::Array<T, 4, 1> sum =
+        a.template head<4>() * b.template head<4>() + a.template tail<4>() * b.template tail<4>();
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+  } else {
+    const T zero = T(0);
+    return ((a[0] * b[0] + a[4] * b[4]) + (a[2] * b[2] + zero)) +
+           ((a[1] * b[1] + a[5] * b[5]) + (a[3] * b[3] + zero));
+  }
+}
+
+template <class T>
+SpatialVector<T> spatial_product(const SpatialForm<T>& form, const SpatialVector<T>& x) {
+  return ((form[0] * x[0] + form[1] * x[1]) + (form[2] * x[2] + form[3] * x[3])) +
+         (form[4] * x[4] + form[5] * x[5]);
+}
+
+/// What small motions of a composite body ask for; with what the turning of the axes adds, see
+/// geometric_column.
+template <class T>
+SpatialForm<T> form_of(const Composite<T>& c, bool geometric) {
+  Mat3<T> turning = c.rotational;
+  Vec3<T> arm = c.first;  // that a unit of v asks for is the moment arm × v
+  if (geometric) {
+    turning += c.virial - T(0.5) * skew<T>(c.couple);
+    arm -= c.force;
+  }
+  const Vec3<T>& f = c.first;
+  const T zero = T(0);
+  return {spatial<T>(turning.col(0), Vec3<T>(zero, -f.z(), f.y())),
+          spatial<T>(turning.col(1), Vec3<T>(f.z(), zero, -f.x())),
+          spatial<T>(turning.col(2), Vec3<T>(-f.y(), f.x(), zero)),
+          spatial<T>(Vec3<T>(zero, arm.z(), -arm.y()), Vec3<T>(c.mass, zero, zero)),
+          spatial<T>(Vec3<T>(-arm.z(), zero, arm.x()), Vec3<T>(zero, c.mass, zero)),
+          spatial<T>(Vec3<T>(arm.y(), -arm.x(), zero), Vec3<T>(zero, zero, c.mass))};
+}
+
+/// See ArticulatedMatrix::assemble.
+template <class T, class K>
+void assemble_joints(const Tree<Number<T>>& tree, const K& kin, std::span<Composite<T>> bodies,
+                     const Unknowns& unknowns, bool geometric, ArticulatedParts<T>& m) {
+  m.bodies = tree.bodies;
+  int next = unknowns.pattern.size;  // unknowns of the bodies after this one begin here
+  for (int i = tree.bodies - 1; i >= 0; --i) {
+    const Composite<T>& c = bodies[i];
+    const int end = next;
+    while (next > 0 && tree.dof_body[unknowns.dof[next - 1]] == i) --next;
+    m.blocks[i] = {tree.parent[i], next, end - next, false};
+    if (end > next) {
+      const SpatialForm<T> form = form_of(c, geometric);
+      const bool one_rotation_vector = tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree;
+      const T inertia = T(Number<T>(kInertiaFloor)) * c.rotational.trace();
+      const T mass = T(Number<T>(kInertiaFloor)) * c.mass;
+      for (int k = next; k < end; ++k) {
+        const Vec3<T>&w = kin.w[unknowns.dof[k]], &v = kin.v[unknowns.dof[k]];
+        m.first[k] = next;
+        m.axes[k] = spatial<T>(w, v);
+        m.moved[k] = spatial_product<T>(form, m.axes[k]);
+        for (int l = next; l <= k; ++l) {
+          T& entry = m.own_entry(k, l) = spatial_dot<T>(m.axes[l], m.moved[k]);
+          // One rotation vector: neither axis acts first.
+          if (one_rotation_vector && l < k && !slides(tree, unknowns.dof[l]))
+            entry = T(0.5) * (entry + spatial_dot<T>(m.axes[k], m.moved[l]));
+        }
+        m.own_entry(k, k) += mass * v.squaredNorm() + inertia * w.squaredNorm();
+      }
+    }
+    if (const int p = tree.parent[i]; p >= 0) bodies[p] += c;
+  }
+}
+
+/// y = H·x.
+template <class T>
+void multiply_by_joints(const ArticulatedParts<T>& m, std::span<const T> x, std::span<T> y) {
+  for (int i = 0; i < m.bodies; ++i) m.force[i].setZero();
+  for (int i = m.bodies - 1; i >= 0; --i) {
+    const JointBlock& b = m.blocks[i];
+    for (int k = b.first; k < b.first + b.count; ++k) y[k] = spatial_dot<T>(m.axes[k], m.force[i]);
+    for (int k = b.first; k < b.first + b.count; ++k) {
+      for (int l = b.first; l < k; ++l) {
+        y[k] += m.own_entry(k, l) * x[l];
+        y[l] += m.own_entry(k, l) * x[k];
+      }
+      y[k] += m.own_entry(k, k) * x[k];
+      m.force[i] += x[k] * m.moved[k];
+    }
+    if (b.parent >= 0) m.force[b.parent] += m.force[i];
+  }
+  for (int i = 0; i < m.bodies; ++i) {
+    const JointBlock& b = m.blocks[i];
+    SpatialVector<T> motion = SpatialVector<T>::Zero();
+    if (b.parent >= 0) motion = m.motion[b.parent];
+    const SpatialVector<T> above = motion;
+    for (int k = b.first; k < b.first + b.count; ++k) {
+      y[k] += spatial_dot<T>(m.moved[k], above);
+      motion += x[k] * m.axes[k];
+    }
+    m.motion[i] = motion;
+  }
+}
+
+/// Replaces the block that `factor` holds of H by the matrix' factor. Set where H is positive definite: see
+/// TreeMatrix::factorise.
+template <class T>
+auto factorise_joints(const ArticulatedParts<T>& m) {
+  using std::sqrt;
+  constexpr auto kRounding = Number<T>(sizeof(Number<T>) == 4 ? 1e-5 : 1e-12);  // of the diagonal
+  auto definite = T(1) > T(0);
+  for (int i = 0; i < m.bodies; ++i) m.blocks[i].laden = false;
+  for (int i = m.bodies - 1; i >= 0; --i) {
+    const JointBlock& b = m.blocks[i];
+    const SpatialForm<T>& e = m.eliminated[i];
+    for (int k = b.first; k < b.first + b.count; ++k) {
+      JointBlockRow<T>& row = m.factor[k];
+      const int own = k - b.first;
+      const T least = kRounding * row[own];
+      SpatialVector<T> y = m.moved[k];
+      if (b.laden) {
+        const SpatialVector<T> taken = spatial_product<T>(e, m.axes[k]);
+        y -= taken;
+        for (int l = 0; l <= own; ++l) row[l] -= spatial_dot<T>(m.axes[b.first + l], taken);
+      }
+      for (int l = 0; l < own; ++l) {
+        const JointBlockRow<T>& before = m.factor[b.first + l];
+        for (int n = 0; n < l; ++n) row[l] -= row[n] * before[n];
+        row[l] *= before[l];
+        row[own] -= row[l] * row[l];
+        y -= row[l] * m.reduced[b.first + l];
+      }
+      const T pivot = largest(row[own], least);
+      definite = both(definite, both(row[own] > -least, pivot > T(0)));  // not so where they are NaN
+      if (!any(definite)) return definite;
+      row[own] = T(1) / sqrt(pivot);
+      m.reduced[k] = y * row[own];
+    }
+    if (b.parent < 0) continue;
+    JointBlock& parent = m.blocks[b.parent];
+    SpatialForm<T>& above = m.eliminated[b.parent];
+    for (int c = 0; c < 6; ++c) {
+      SpatialVector<T> column = SpatialVector<T>::Zero();
+      if (parent.laden) column = above[c];
+      if (b.laden) column += e[c];
+      for (int k = b.first; k < b.first + b.count; ++k) column += m.reduced[k][c] * m.reduced[k];
+      above[c] = column;
+    }
+    parent.laden = parent.laden || b.laden || b.count > 0;
+  }
+  return definite;
+}
+
+/// Solves H·x = b in place, with the factor that factorise_joints left.
+template <class T>
+void solve_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
+  for (int i = 0; i < m.bodies; ++i) m.force[i].setZero();
+  for (int i = m.bodies - 1; i >= 0; --i) {
+    const JointBlock& b = m.blocks[i];
+    const SpatialVector<T> below = m.force[i];
+    SpatialVector<T> force = below;
+    for (int k = b.first; k < b.first + b.count; ++k) {
+      const JointBlockRow<T>& row = m.factor[k];
+      x[k] -= spatial_dot<T>(m.axes[k], below);
+      for (int l = b.first; l < k; ++l) x[k] -= row[l - b.first] * x[l];
+      x[k] *= row[k - b.first];
+      force += x[k] * m.reduced[k];
+    }
+    if (b.parent >= 0) m.force[b.parent] += force;
+  }
+  for (int i = 0; i < m.bodies; ++i) {
+    const JointBlock& b = m.blocks[i];
+    SpatialVector<T> motion = SpatialVector<T>::Zero();
+    if (b.parent >= 0) motion = m.motion[b.parent];
+    const SpatialVector<T> above = motion;
+    for (int k = b.first + b.count - 1; k >= b.first; --k) {
+      x[k] -= spatial_dot<T>(m.reduced[k], above);
+      for (int l = k + 1; l < b.first + b.count; ++l) x[k] -= m.factor[l][k - b.first] * x[l];
+      x[k] *= m.factor[k][k - b.first];
+      motion += x[k] * m.axes[k];
+    }
+    m.motion[i] = motion;
+  }
+}
+
+}  // namespace sinew
