@@ -17,6 +17,7 @@ template <class T>
 void ArticulatedMatrix<T>::assemble(const Tree<T>& tree, const Kinematics<T>& kin,
                                     std::span<Composite<T>> bodies, const Unknowns& unknowns,
                                     bool geometric) {
+  size_ = unknowns.pattern.size;
   assemble_joints<T>(tree, kin, bodies, unknowns, geometric, parts_);
 }
 

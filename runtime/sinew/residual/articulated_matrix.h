@@ -13,6 +13,7 @@
 // and are TreeMatrix's.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,7 @@ class ArticulatedMatrix {
   void multiply(std::span<const T> x, std::span<T> y);
 
   /// Copies H to where it is factorised; there add_to_factor() adds as add() does.
-  void begin_factor() { factor_ = own_; }
+  void begin_factor() { std::copy_n(own_.begin(), size_, factor_.begin()); }
   void add_to_factor(int k, int l, T value) { parts_.factor_entry(k, l) += value; }
   /// False where that is not positive definite; as TreeMatrix::factorise.
   bool factorise();
@@ -54,6 +55,7 @@ class ArticulatedMatrix {
   std::vector<JointBlockRow<T>> own_, factor_;
   std::vector<SpatialForm<T>> eliminated_;
   ArticulatedParts<T> parts_;  ///< these
+  int size_ = 0;               ///< unknowns
 };
 
 extern template class ArticulatedMatrix<float>;
