@@ -177,7 +177,8 @@ double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const V
   for (const CharacterState<T>* s : states) {
     const Totals t = totals<T>(s->tree, s->history, gravity);
     const double energy = t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
-    before_.push_back({energy - s->lent, t.angular_momentum});
+    const bool begins = s->history.step_before == T(0) && s->contact_signature == 0;
+    before_.push_back({energy - s->lent, t.angular_momentum, begins || s->lent > 0});
     sum += energy;
   }
   return sum;
@@ -187,7 +188,7 @@ template <class T>
 bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
                              const Vec3<double>& gravity, bool strict, bool tied) const {
   for (const Contact<T>& c : contacts)
-    if (c.tree_b < 0) states[c.tree_a]->lent += double(c.lent);
+    if (c.tree_b < 0 && before_[c.tree_a].borrows) states[c.tree_a]->lent += double(c.lent);
   const bool touching = std::any_of(states.begin(), states.end(),
                                     [](const CharacterState<T>* s) { return s->report.contacts > 0; });
   if (touching || tied || strict) {

@@ -32,6 +32,7 @@ class EnergyLedger {
   struct Before {
     double energy = 0;                                     ///< J, without what was lent
     Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
+    bool borrows = false;  ///< begins now, or has not paid yet: else it came in by itself
   };
   static void keep_in_flight(CharacterState<T>& state, const Vec3<double>& gravity, const Before& before);
 
