@@ -10,7 +10,8 @@
 namespace sinew {
 namespace {
 
-/// m; contacts further away are left out: in an impact steps are long. Among many trees that costs too much.
+/// m; contacts further away are left out: in an impact steps are long. Among many trees, and where loops or
+/// particles leave the tree to conjugate gradients, that costs too much.
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
 constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
@@ -69,12 +70,12 @@ template <class T>
 void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings,
                             bool geometric) {
   axes_.clear();
-  const bool joints_only =
-      trees_.size() == 1 && couplings.empty() && trees_[0]->effects.empty() && !rounded();
+  const bool alone = trees_.size() == 1 && couplings.empty();
+  const bool joints_only = alone && trees_[0]->effects.empty() && !rounded();
   for (const TreeProblem<T>* p : trees_)
     if (!joints_only || !contacts.empty())
       axes_.append(*p->tree, p->kinematics, unknowns_, p->first_unknown_map);
-  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(trees_.size() > 1 ? kNearOthers : kNear),
+  contact_rows_->collect(trees_, contacts, unknowns_, axes_, T(alone ? kNear : kNearOthers),
                          settings_->stick);
   articulated_ = joints_only && contact_rows_->empty();
   ellipsoids_ = rounded() ? ellipsoid_model_.get() : nullptr;
