@@ -95,14 +95,15 @@ void ContactFinder<T>::lead_out(Contact<T>& c) const {
 /// out.
 template <class T>
 void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness, T least) const {
-  const T stored = ContactLaw<T>::energy(stiffness, c.gap);
   T back = std::min(T(kExitSpeed) * h_, c.offset - least);
+  if (!(back > T(0))) return;  // as a rule: nothing is led
+  const T stored = ContactLaw<T>::energy(stiffness, c.gap);
   if (c.tree_b < 0) {
     const T enough = T(states_[c.tree_a]->total_mass * kExitSpeed *
                        (kExitSpeed / 2 + world_->gravity.norm() * double(h_)));
     back = std::min(back, ContactLaw<T>::depth_storing(stiffness, stored + enough) + c.gap);
   }
-  if (!(back > T(0))) return;
+  back = std::max(back, T(0));
   c.offset -= back;
   c.gap -= back;
   c.lent = ContactLaw<T>::energy(stiffness, c.gap) - stored;
