@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "fixtures/counting_new.h"
+#include "fixtures/paths.h"
 #include "sinew/character/world.h"
+#include "sinew/skeleton/rotation.h"
 #include "study/linkage.h"
 
 namespace sinew {
@@ -114,7 +116,7 @@ TEST(Loop, PendulumOnALoopSwingsAsOneOnAJoint) {
     const Linkage free = rod(JointType::kFree, {0, 0, 0}, {1, 0, 0}, 2);
     tied.add(free);
     Anchor a = free.anchor(0, {0, 0, 0}), b;
-    a.frame.rotation = b.frame.rotation = Quat<double>::FromTwoVectors(V::UnitZ(), V::UnitY());
+    a.frame.rotation = b.frame.rotation = rotation_between<double>(V::UnitZ(), V::UnitY());
     tied.tie(kind, a, b);
     double apart = 0, gap = 0;
     for (int n = 0; n < 60; ++n) {
@@ -133,7 +135,7 @@ TEST(Loop, PendulumOnALoopSwingsAsOneOnAJoint) {
 
 /// Column of a reference table by its name, sampled every 0.1 s.
 std::vector<double> reference(const std::string& file, const std::string& column) {
-  std::ifstream in(std::string(SINEW_SHARED_DIR) + "/mechanisms/reference/" + file);
+  std::ifstream in(shared_dir() + "/mechanisms/reference/" + file);
   std::string line, cell;
   std::getline(in, line);
   std::istringstream head(line);
@@ -166,7 +168,7 @@ TEST(Loop, BricardsMechanismFollowsItsReference) {
   Scene<double> scene(airborne({0, -9.81, 0}));
   scene.add(l);
   Anchor a = l.anchor(4, {0, 0, 1}), b = world_anchor({0, 0, 1});
-  a.frame.rotation = b.frame.rotation = Quat<double>::FromTwoVectors(V::UnitZ(), V::UnitX());
+  a.frame.rotation = b.frame.rotation = rotation_between<double>(V::UnitZ(), V::UnitX());
   scene.tie(LoopKind::kHinge, a, b);
   double worst = 0, gap = 0;
   for (int n = 1; n <= 10; ++n) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "fixtures/paths.h"
 
 namespace sinew::test {
 namespace {
@@ -10,8 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kCharacter = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
-const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
+const std::string kCharacter = source_dir() + "/assets/character/mannequin.glb";
+const std::string kAsset = binary_dir() + "/sample.sinew";
 
 TEST(Command, UsageErrorsExitWithTwoAndHelpWithZero) {
   EXPECT_EQ(sinew("").code, 2);

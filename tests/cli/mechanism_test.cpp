@@ -3,13 +3,14 @@
 #include <sstream>
 
 #include "cli/command.h"
+#include "fixtures/paths.h"
 
 namespace sinew::test {
 namespace {
 
 using nlohmann::json;
 
-const std::string kMechanisms = std::string(SINEW_SOURCE_DIR) + "/assets/mechanisms/";
+const std::string kMechanisms = source_dir() + "/assets/mechanisms/";
 
 TEST(MechanismCommand, WritesCoordinatesAndPointsAtTheInstantsAsked) {
   const std::string table = own_directory() + "out.csv";

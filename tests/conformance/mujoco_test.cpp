@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "convert/convert.h"
+#include "fixtures/paths.h"
 #include "sinew/residual/dynamics.h"
 
 namespace sinew {
@@ -52,7 +53,7 @@ double largest(const Eigen::MatrixXd& m) {
 class Robot : public testing::TestWithParam<const char*> {};
 
 TEST_P(Robot, AgreesWithMujocoToNineDigits) {
-  const std::string path = std::string(SINEW_SHARED_DIR) + "/assets/urdf/" + GetParam();
+  const std::string path = shared_dir() + "/assets/urdf/" + GetParam();
   if (!std::filesystem::exists(path))
     GTEST_SKIP() << "no ../shared here: " << GetParam() << " was not compared";
   Asset asset;

@@ -3,13 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <filesystem>
 
 #include "convert/human.h"
 #include "convert/muscles.h"
 #include "convert/volume.h"
+#include "fixtures/paths.h"
+#include "sinew/skeleton/principal_axes.h"
 
 namespace sinew::convert {
 namespace {
@@ -60,7 +61,7 @@ TEST(Volume, IsSharedBetweenPartsByTheNearestVertex) {
 TEST(Body, MannequinsPartsWeighWhatHumanPartsDo) {
   Asset asset;
   nlohmann::json report;
-  const std::string file = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
+  const std::string file = source_dir() + "/assets/character/mannequin.glb";
   ASSERT_FALSE(convert_files({file}, {{"total_mass", 75}}, asset, report));
   const Skeleton& s = asset.skeleton;
   const auto share = [&](std::initializer_list<Role> roles) {
@@ -79,7 +80,7 @@ TEST(Body, MannequinsPartsWeighWhatHumanPartsDo) {
               0.06);
   for (const Joint& joint : s.joints) {
     if (joint.mass <= 0) continue;
-    const Vec3<double> principal = Eigen::SelfAdjointEigenSolver<Mat3<double>>(joint.inertia).eigenvalues();
+    const Vec3<double> principal = principal_axes(joint.inertia).values;
     EXPECT_GT(principal[0] + principal[1], principal[2]) << joint.name;
   }
 }
@@ -196,7 +197,7 @@ TEST(Muscles, AreNotRaisedByWhatAMarkersJumpAsksForAFrameOrTwo) {
 TEST(Body, OptionsOverrideMassesAndTorquesByNameOrRole) {
   Asset asset;
   nlohmann::json report;
-  const std::string file = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
+  const std::string file = source_dir() + "/assets/character/mannequin.glb";
   const nlohmann::json options = {
       {"total_mass", 75},
       {"muscles", {{"neck_rotation", 9}}},

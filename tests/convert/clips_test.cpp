@@ -4,13 +4,14 @@
 #include <map>
 
 #include "convert/convert.h"
+#include "fixtures/paths.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/residual/tree.h"
 
 namespace sinew::convert {
 namespace {
 
-const std::string kMannequin = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
+const std::string kMannequin = source_dir() + "/assets/character/mannequin.glb";
 
 /// Highest torque [N·m] that one clip asks of each joint.
 std::map<std::string, double> peaks(const std::string& clip, Asset& asset) {

@@ -4,12 +4,13 @@
 
 #include "convert/options.h"
 #include "convert/roles.h"
+#include "fixtures/paths.h"
 
 namespace sinew::convert {
 namespace {
 
 TEST(Convert, TheDemoCharacterGivesTheSameBytesTwice) {
-  const std::string file = std::string(SINEW_SOURCE_DIR) + "/assets/character/mannequin.glb";
+  const std::string file = source_dir() + "/assets/character/mannequin.glb";
   Asset a, b;
   nlohmann::json report;
   ASSERT_FALSE(convert_files({file}, {{"total_mass", 75}}, a, report));

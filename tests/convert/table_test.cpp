@@ -6,6 +6,7 @@
 #include <set>
 
 #include "convert/convert.h"
+#include "fixtures/paths.h"
 
 namespace sinew::convert {
 namespace {
@@ -41,7 +42,7 @@ void expect_conversion(const fs::path& file) {
 }
 
 TEST(Table, EverySharedAssetConvertsAndWhatMustBeRefusedIs) {
-  const fs::path root = fs::path(SINEW_SHARED_DIR) / "assets";
+  const fs::path root = fs::path(shared_dir()) / "assets";
   if (!fs::exists(root)) GTEST_SKIP() << "no ../shared here: its assets were not converted";
   const std::set<std::string> models{".bvh", ".fbx", ".glb", ".gltf", ".dae", ".urdf"};
   std::set<fs::path> good, bad;

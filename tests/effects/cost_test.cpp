@@ -7,13 +7,13 @@
 #include <memory>
 #include <string>
 
+#include "fixtures/paths.h"
 #include "study/effects.h"
 
 namespace sinew::study {
 namespace {
 
-const EffectOptions kFull{SINEW_EFFECT_COST, SINEW_BINARY_DIR},
-    kBare{SINEW_EFFECT_COST_BARE, SINEW_BINARY_DIR};
+const EffectOptions kFull{SINEW_EFFECT_COST, binary_dir()}, kBare{SINEW_EFFECT_COST_BARE, binary_dir()};
 
 /// Empty where callgrind can count.
 std::string why_not() {

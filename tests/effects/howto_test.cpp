@@ -18,6 +18,7 @@ std::vector<EffectRow> with_the_readmes_line() {
   std::vector<EffectRow> rows(effect_registry().begin(), effect_registry().end());
   rows.insert(rows.end(), {
 #include "breeze_row.inc"
+#include "fixtures/paths.h"
                           });
   return rows;
 }
@@ -26,7 +27,7 @@ std::vector<EffectRow> with_the_readmes_line() {
 convert::Error load(const std::string& effects, Scene& scene) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / ("sinew_howto_" + std::to_string(getpid()) + ".json");
-  std::ofstream(file) << R"({"duration": 6, "characters": [{"asset": ")" << SINEW_BINARY_DIR
+  std::ofstream(file) << R"({"duration": 6, "characters": [{"asset": ")" << binary_dir()
                       << R"(/sample.sinew", "strength": [[0, 0]], "root": [[0, "free"]]}], "effects": )"
                       << effects << "}";
   const std::vector<EffectRow> rows = with_the_readmes_line();

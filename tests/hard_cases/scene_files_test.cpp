@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "fixtures/paths.h"
 #include "scene/run.h"
 #include "study/hard_case.h"
 
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 
 std::set<std::string> files_in_folder() {
   std::set<std::string> files;
-  for (const auto& entry : fs::directory_iterator(SINEW_SOURCE_DIR "/assets/scenes/hard_cases"))
+  for (const auto& entry : fs::directory_iterator(source_dir() + "/assets/scenes/hard_cases"))
     files.insert(entry.path().filename().string());
   return files;
 }
@@ -38,7 +39,7 @@ class SceneFile : public testing::TestWithParam<std::string> {};
 TEST_P(SceneFile, RunsAsAScene) {
   scene::Scene scene;
   const convert::Error error =
-      scene::load_scene(SINEW_SOURCE_DIR "/assets/scenes/hard_cases/" + GetParam(), scene);
+      scene::load_scene(source_dir() + "/assets/scenes/hard_cases/" + GetParam(), scene);
   ASSERT_FALSE(error) << error.message;
   EXPECT_NE(scene.title, "");
   scene.duration = 4 / scene.frame_rate;

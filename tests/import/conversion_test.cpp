@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "convert/convert.h"
+#include "fixtures/paths.h"
 #include "reading.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/io/asset.h"
@@ -57,7 +58,7 @@ class SharedAsset : public testing::Test {
     EXPECT_EQ(made.error, "");
     return made;
   }
-  const fs::path root_ = fs::path(SINEW_SHARED_DIR) / "assets";
+  const fs::path root_ = fs::path(shared_dir()) / "assets";
 };
 
 constexpr double kCmuUnit = 0.056444;  ///< m, by the library's own notes

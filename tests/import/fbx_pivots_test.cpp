@@ -7,6 +7,7 @@
 #include <assimp/Importer.hpp>
 #include <map>
 
+#include "fixtures/paths.h"
 #include "import/keys.h"
 #include "reading.h"
 
@@ -111,7 +112,7 @@ Eigen::Matrix4d global(const aiNode* node) {
 TEST(FbxPivots, RealRigsRestWhereAssimpPutsThem) {
   int compared = 0;
   for (const char* name : {"fbx/geno.fbx", "fbx/pab_arnaud.fbx", "fbx/sausage_3clips.fbx"}) {
-    const auto file = std::filesystem::path(SINEW_SHARED_DIR) / "assets" / name;
+    const auto file = std::filesystem::path(shared_dir()) / "assets" / name;
     if (!std::filesystem::exists(file)) continue;
     const Outcome outcome = read(file);
     ASSERT_TRUE(outcome.ok) << outcome.error;
@@ -131,12 +132,12 @@ TEST(FbxPivots, RealRigsRestWhereAssimpPutsThem) {
       ++compared;
     }
   }
-  if (compared == 0) GTEST_SKIP() << SINEW_SHARED_DIR << "/assets is not there";
+  if (compared == 0) GTEST_SKIP() << shared_dir() << "/assets is not there";
 }
 
 // A walker's head is above its hips and one foot well below them, whatever the rig's pivots are.
 TEST(FbxPivots, RealClipsStandUpright) {
-  const auto file = std::filesystem::path(SINEW_SHARED_DIR) / "assets/fbx/pab_locomotions.fbx";
+  const auto file = std::filesystem::path(shared_dir()) / "assets/fbx/pab_locomotions.fbx";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const Outcome outcome = read(file);
   ASSERT_TRUE(outcome.ok) << outcome.error;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "fixtures/paths.h"
 #include "reading.h"
 
 namespace sinew::import::test {
@@ -11,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kAssets = fs::path(SINEW_SHARED_DIR) / "assets";
+const fs::path kAssets = fs::path(shared_dir()) / "assets";
 const fs::path kModels = "/usr/share/assimp/models";
 
 int bones_in(const SourceScene& s) {

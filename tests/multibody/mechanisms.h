@@ -13,12 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "fixtures/paths.h"
 #include "mechanism/mechanism_file.h"
 
 namespace sinew::multibody {
 
-inline const std::string kOwn = std::string(SINEW_SOURCE_DIR) + "/assets/mechanisms/";
-inline const std::string kShared = std::string(SINEW_SHARED_DIR) + "/mechanisms/";
+inline const std::string kOwn = source_dir() + "/assets/mechanisms/";
+inline const std::string kShared = shared_dir() + "/mechanisms/";
 
 inline bool have_shared() {
   return std::filesystem::exists(kShared);

@@ -2,6 +2,7 @@
 // same motion.
 #include "study/tables/tables.h"
 
+#include "fixtures/paths.h"
 #include "mechanisms.h"
 #include "study/tables/peers.h"
 
@@ -20,7 +21,7 @@ TEST(Tables, ErrorIsTheWorstRelativeDifferenceOfPositionsAndRates) {
 
 TEST(Tables, RunOnTheMechanismsOfTheRepositoryAlone) {
   TablesOptions options;
-  options.mechanisms = std::string(SINEW_SOURCE_DIR) + "/assets/mechanisms";
+  options.mechanisms = source_dir() + "/assets/mechanisms";
   options.quick = true;
   TablesResult result;
   ASSERT_EQ(run_tables(options, {}, result), "");

@@ -9,13 +9,14 @@
 #include <set>
 #include <sstream>
 
+#include "fixtures/paths.h"
 #include "scene/run.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew::scene {
 namespace {
 
-const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
+const std::string kAsset = binary_dir() + "/sample.sinew";
 
 struct Result {
   Scene scene;
@@ -239,7 +240,7 @@ TEST(Scene, SubstepsAreSolvedAndReported) {
 /// Keys in `code` marks of the README's table: those of its row `name`, or all first columns for the top
 /// level.
 std::set<std::string> documented(const std::string& name) {
-  std::ifstream readme(SINEW_SOURCE_DIR "/tools/scene/README.md");
+  std::ifstream readme(source_dir() + "/tools/scene/README.md");
   std::set<std::string> keys;
   for (std::string line; std::getline(readme, line);) {
     if (line.rfind("| `", 0) != 0) continue;

@@ -7,12 +7,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "fixtures/paths.h"
 #include "scene/run.h"
 
 namespace sinew::scene {
 namespace {
 
-const std::string kAsset = std::string(SINEW_BINARY_DIR) + "/sample.sinew";
+const std::string kAsset = binary_dir() + "/sample.sinew";
 
 std::string written(const std::string& name, std::string content) {
   const std::string wanted = "mannequin.sinew";
@@ -25,7 +26,7 @@ std::string written(const std::string& name, std::string content) {
 }
 
 std::string sample(const std::string& name) {
-  std::ifstream in(std::string(SINEW_SOURCE_DIR) + "/assets/scenes/" + name);
+  std::ifstream in(source_dir() + "/assets/scenes/" + name);
   std::stringstream content;
   content << in.rdbuf();
   return content.str();

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
+
+#include "sinew/skeleton/principal_axes.h"
 
 namespace sinew {
 namespace {
@@ -94,6 +98,37 @@ TEST(Rotation, TwistIgnoresSwing) {
       const Quat<double> negated(-q.w(), -q.x(), -q.y(), -q.z());
       EXPECT_NEAR(twist_angle(negated, axis), twist, 1e-12);
     }
+}
+
+TEST(Rotation, BetweenTakesOneDirectionToTheOtherTheShorterWay) {
+  for (const V& from : vectors(6.0))
+    for (const V& to : vectors(6.0)) {
+      if (from.norm() < 1e-6 || to.norm() < 1e-6) continue;  // their direction is lost in squares
+      const Quat<double> q = rotation_between<double>(from, to);
+      // Within a millionth of opposite any axis across serves, so the end is reached to the root of its
+      // square.
+      EXPECT_LT((q * from.normalized() - to.normalized()).norm(), 1e-5);
+      EXPECT_NEAR(rotation_log(q).norm(),
+                  std::acos(std::clamp(from.normalized().dot(to.normalized()), -1.0, 1.0)), 1e-5);
+    }
+}
+
+TEST(Rotation, BetweenOppositesIsHalfATurn) {
+  for (const V& from : {V(1, 0, 0), V(0, -2, 0), V(0, 0, 3), V(1, 2, 3)}) {
+    const Quat<double> q = rotation_between<double>(from, V(-from));
+    EXPECT_NEAR(q.norm(), 1, 1e-15);
+    EXPECT_LT((q * from + from).norm(), 1e-14 * from.norm());
+  }
+}
+
+TEST(PrincipalAxes, DiagonaliseASymmetricMatrix) {
+  Mat3<double> m;
+  m << 4, 1, -2, 1, 3, 0.5, -2, 0.5, 6;
+  const auto [values, axes] = principal_axes(m);
+  EXPECT_LE(values[0], values[1]);
+  EXPECT_LE(values[1], values[2]);
+  EXPECT_LT((axes * values.asDiagonal() * axes.transpose() - m).norm(), 1e-14);
+  EXPECT_LT((axes.transpose() * axes - Mat3<double>::Identity()).norm(), 1e-14);
 }
 
 TEST(Transform, InverseUndoesAndProductsChain) {

@@ -1,6 +1,5 @@
 #include "convert/body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +9,7 @@
 #include "convert/roles.h"
 #include "convert/shapes.h"
 #include "convert/volume.h"
+#include "sinew/skeleton/principal_axes.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew::convert {
@@ -224,7 +224,7 @@ class BodyBuilder {
       c.shape = Shape::kCapsule;
       c.size = {radius, radius, std::max(0.0, part.length / 2 - radius)};
       c.local.translation = part.direction * (part.length / 2);
-      c.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), part.direction);
+      c.local.rotation = rotation_between<double>(Vec3<double>::UnitZ(), part.direction);
     }
     const Vec3<double>& s = c.size;
     part.volume = c.shape == Shape::kBox ? 8 * s.x() * s.y() * s.z()
@@ -251,7 +251,7 @@ class BodyBuilder {
       widest = std::max(widest, r.norm());
     });
     if (widest > 0.35) {
-      const Vec3<double> main = Eigen::SelfAdjointEigenSolver<Mat3<double>>(scatter).eigenvectors().col(2);
+      const Vec3<double> main = principal_axes(scatter).axes.col(2);
       axis = main.dot(axis) < 0 ? Vec3<double>(-main) : main;
     }
     axis -= bone * bone.dot(axis);

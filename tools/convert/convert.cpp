@@ -145,7 +145,7 @@ std::string report_text(const nlohmann::json& r) {
   const auto list = [&](const char* key, const char* title) {
     if (!r.contains(key) || r[key].empty()) return;
     text += title;
-    for (const auto& item : r[key]) text += " " + item.get<std::string>();
+    for (const auto& item : r[key]) text.append(" ").append(item.get<std::string>());
     text += "\n";
   };
   list("control_joints", "control joints, no body:");

@@ -5,6 +5,7 @@
 
 #include "sinew/animation/sampling_job.h"
 #include "sinew/effects/support.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::convert {
 namespace {
@@ -72,7 +73,7 @@ bool anatomical_axes(Role role, const Vec3<double>& bone, const Quat<double>& re
   for (const Group& group : kGroups) {
     if (std::find(group.roles.begin(), group.roles.end(), role) == group.roles.end()) continue;
     Quat<double> raised = Quat<double>::Identity();
-    if (group.arm) raised = Quat<double>::FromTwoVectors(-Vec3<double>::UnitZ(), bone);
+    if (group.arm) raised = rotation_between<double>(-Vec3<double>::UnitZ(), bone);
     out.axes = (rest.conjugate() * raised).toRotationMatrix();
     for (int k = 0; k < 3; ++k) {
       const bool mirrored = is_left(role) && k != 1;

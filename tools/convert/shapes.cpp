@@ -1,8 +1,10 @@
 #include "convert/shapes.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "sinew/skeleton/principal_axes.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::convert {
 namespace {
@@ -29,7 +31,7 @@ double capsule_along(const std::vector<Vec3<double>>& vertices, const Vec3<doubl
   c.shape = Shape::kCapsule;
   c.size = {radius, radius, half};
   c.local.translation = offset + d * centre;
-  c.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), d);
+  c.local.rotation = rotation_between<double>(Vec3<double>::UnitZ(), d);
   double sum = 0;
   std::vector<double> out;
   for (const Vec3<double>& v : vertices) {
@@ -48,7 +50,7 @@ Collider fit_capsule(const std::vector<Vec3<double>>& vertices, const Vec3<doubl
   middle /= double(vertices.size());
   Mat3<double> scatter = Mat3<double>::Zero();
   for (const Vec3<double>& v : vertices) scatter += (v - middle) * (v - middle).transpose();
-  const Mat3<double> axes = Eigen::SelfAdjointEigenSolver<Mat3<double>>(scatter).eigenvectors();
+  const Mat3<double> axes = principal_axes(scatter).axes;
   Collider best;
   double off = capsule_along(vertices, middle, bone, 0.55, height, best);
   for (const double share : {0.55, 0.25})  // flat parts: more within the skin

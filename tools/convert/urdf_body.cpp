@@ -1,10 +1,11 @@
 #include "convert/urdf_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "convert/body.h"
+#include "sinew/skeleton/principal_axes.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::convert {
 namespace {
@@ -13,14 +14,13 @@ using import::SourceUrdfLink;
 
 /// Nearest inertia that a body can have: principal moments raised until none exceeds the sum of the others.
 bool repair_inertia(Mat3<double>& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(inertia);
-  Vec3<double> m = eigen.eigenvalues();
+  const auto [moments, axes] = principal_axes(inertia);
+  Vec3<double> m = moments;
   const Vec3<double> before = m;
   const double floor = 1e-9 * std::max(1e-9, m.cwiseAbs().maxCoeff());
   m = m.cwiseMax(floor);
   if (m[2] > m[0] + m[1]) m[0] = m[2] - m[1];
   if (before[0] >= -1e-12 * m[2] && before[0] + before[1] >= before[2] * (1 - 1e-9)) return false;
-  const Mat3<double>& axes = eigen.eigenvectors();
   inertia = axes * m.asDiagonal() * axes.transpose();
   inertia = 0.5 * (inertia + inertia.transpose()).eval();
   return true;
@@ -42,7 +42,7 @@ void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceU
     const double length = child.origin.translation.norm(), radius = std::min(0.04, 0.2 * length);
     c.size = {radius, radius, std::max(0.0, length / 2 - radius)};
     c.local.translation = child.origin.translation / 2;
-    c.local.rotation = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), child.origin.translation);
+    c.local.rotation = rotation_between<double>(Vec3<double>::UnitZ(), child.origin.translation);
     out.colliders.push_back(c);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/shapes.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::render {
 namespace {
@@ -178,7 +179,7 @@ void append_bones(const Skeleton& s, const std::vector<Transform<float>>& rest,
 void append_part(const Collider& c, Role role, const Transform<float>& world, float load, Geometry& out) {
   const float radius = float(c.size.x()), half = float(c.size.z());
   if (c.shape == Shape::kBox) {
-    append_capsule({world.rotation * Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), Vec3<float>::UnitX()),
+    append_capsule({world.rotation * rotation_between<float>(Vec3<float>::UnitZ(), Vec3<float>::UnitX()),
                     world.translation},
                    0.6f * half, 0.75f * radius, kBone, 0, out);
     return;

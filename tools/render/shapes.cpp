@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "sinew/skeleton/rotation.h"
+
 namespace sinew::render {
 namespace {
 
@@ -91,7 +93,7 @@ void append_box(const Transform<float>& world, const Vec3<float>& half, const Ve
 }
 
 Transform<float> between(const Vec3<float>& a, const Vec3<float>& b) {
-  return {Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), b - a), (a + b) / 2};
+  return {rotation_between<float>(Vec3<float>::UnitZ(), b - a), (a + b) / 2};
 }
 
 void append_spindle(const Vec3<float>& a, const Vec3<float>& b, float radius, float load, Geometry& out) {

@@ -7,6 +7,7 @@
 
 #include "scene/play.h"
 #include "scene/ties.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::scene {
 namespace {
@@ -90,7 +91,7 @@ class Runner {
         const Vec3<float> from = world_.particle(p, a).template cast<float>();
         const Vec3<float> to = world_.particle(p, b).template cast<float>();
         frame.props.push_back(
-            {{Quat<float>::FromTwoVectors(Vec3<float>::UnitZ(), to - from), 0.5f * (from + to)}});
+            {{rotation_between<float>(Vec3<float>::UnitZ(), to - from), 0.5f * (from + to)}});
       }
   }
 

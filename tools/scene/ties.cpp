@@ -8,6 +8,7 @@
 #include "sinew/effects/cloth.h"
 #include "sinew/effects/soft_tissue.h"
 #include "sinew/effects/strand.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::scene {
 namespace {
@@ -46,7 +47,7 @@ Anchor read_anchor(const json& entry, const std::string& where, const Scene& sce
   const Vec3<double> axis = in.vector("axis", Vec3<double>::UnitZ());
   if (!(axis.norm() > 0)) fail(in.inside("axis"), "must not be zero");
   anchor.frame.translation = turn * in.vector("at", Vec3<double>::Zero());
-  anchor.frame.rotation = turn * Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), axis);
+  anchor.frame.rotation = turn * rotation_between<double>(Vec3<double>::UnitZ(), axis);
   return anchor;
 }
 

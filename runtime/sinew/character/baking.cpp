@@ -1,6 +1,5 @@
 #include "sinew/character/baking.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -124,6 +123,26 @@ Pull<T> pull_of(const StepSettings<T>& settings, TreeProblem<T>& p, int i, const
   return pull;
 }
 
+/// x of m·x = b, m symmetric and positive definite, by Cholesky's factors (six rows at most: Eigen's blocked
+/// ones take longer to compile than all else here).
+template <class T>
+Column<T> solve_positive(Block<T> m, Column<T> b) {
+  const int n = static_cast<int>(b.size());
+  for (int j = 0; j < n; ++j) {
+    for (int k = 0; k < j; ++k)
+      for (int i = j; i < n; ++i) m(i, j) -= m(i, k) * m(j, k);
+    const T pivot = std::sqrt(m(j, j));
+    for (int i = j; i < n; ++i) m(i, j) /= pivot;
+    for (int k = 0; k < j; ++k) b[j] -= m(j, k) * b[k];
+    b[j] /= pivot;
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    for (int k = j + 1; k < n; ++k) b[j] -= m(k, j) * b[k];
+    b[j] /= m(j, j);
+  }
+  return b;
+}
+
 /// What joint i moves by so that what is asked becomes what is given, along those degrees of freedom where it
 /// is not; and no further than to its target.
 template <class T>
@@ -135,7 +154,7 @@ Column<T> way_to(OwnEquations<T> own, const Pull<T>& pull) {
     own.matrix.col(a).setZero();
     own.matrix(a, a) = T(1);
   }
-  Column<T> way = own.matrix.llt().solve(missing);
+  Column<T> way = solve_positive(own.matrix, missing);
   for (int a = 0; a < way.size(); ++a)
     if (pull.torque[a] != T(0) && way[a] * pull.off[a] < T(0))
       way[a] = pull.off[a] > T(0) ? std::max(way[a], -pull.off[a]) : std::min(way[a], -pull.off[a]);

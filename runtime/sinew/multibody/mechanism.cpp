@@ -1,7 +1,8 @@
 #include "sinew/multibody/mechanism.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "sinew/skeleton/principal_axes.h"
 
 namespace sinew::multibody {
 
@@ -43,8 +44,7 @@ std::string body_fault(const Body& b) {
     return who + " has a number that is not finite";
   if (b.mass < 0) return who + " has negative mass";
   if (b.mass == 0 && b.inertia.norm() > 0) return who + " has inertia but no mass";
-  const Eigen::SelfAdjointEigenSolver<Mat3<double>> principal(b.inertia);
-  const Vec3<double>& moments = principal.eigenvalues();
+  const Vec3<double> moments = principal_axes(b.inertia).values;
   const double slack = 1e-9 * std::abs(moments[2]);
   if (moments[0] < -slack) return who + " has a negative principal moment of inertia";
   if (moments[2] > moments[0] + moments[1] + 1e-6 * moments[2])

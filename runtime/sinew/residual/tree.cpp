@@ -1,21 +1,21 @@
 #include "sinew/residual/tree.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 
 #include "sinew/residual/tree_pass.h"
+#include "sinew/skeleton/principal_axes.h"
 
 namespace sinew {
 
 namespace {
 
 Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Mat3<double>> axes(inertia);
+  const auto [moments, axes] = principal_axes(inertia);
   Vec3<double> inverse = Vec3<double>::Zero();
   for (int a = 0; a < 3; ++a)
-    if (axes.eigenvalues()[a] > 1e-9 * axes.eigenvalues()[2]) inverse[a] = 1 / axes.eigenvalues()[a];
-  return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+    if (moments[a] > 1e-9 * moments[2]) inverse[a] = 1 / moments[a];
+  return axes * inverse.asDiagonal() * axes.transpose();
 }
 
 /// Columns: axes of a joint that do not move with its child, rest axes.

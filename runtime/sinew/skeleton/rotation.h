@@ -80,6 +80,22 @@ Vec3<T> rotation_log(const Quat<T>& q) {
          });
 }
 
+/// The shortest rotation that takes the direction of `from` to that of `to`, vectors of any length but zero.
+/// Opposite ones are half a turn apart about some axis across them. (Eigen's FromTwoVectors does the same and
+/// costs every file that calls it three seconds of compilation for the opposite ones.)
+template <class T>
+Quat<T> rotation_between(const Vec3<T>& from, const Vec3<T>& to) {
+  const Vec3<T> a = from.normalized(), b = to.normalized();
+  const T cosine = b.dot(a);
+  if (cosine < Eigen::NumTraits<T>::dummy_precision() - T(1)) {
+    const Vec3<T> axis = a.unitOrthogonal();
+    return Quat<T>(T(0), axis.x(), axis.y(), axis.z());
+  }
+  const T twice = std::sqrt(2 * (1 + cosine));  // of the cosine of half the angle
+  const Vec3<T> axis = a.cross(b) * (1 / twice);
+  return Quat<T>(twice / 2, axis.x(), axis.y(), axis.z());
+}
+
 /// Right Jacobian: exp(d + δ) ≈ exp(d)·exp(Jr·δ).
 template <class T>
 Mat3<T> right_jacobian(const Vec3<T>& d) {

@@ -1,7 +1,8 @@
 #include "sinew/skeleton/skeleton.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "sinew/skeleton/principal_axes.h"
 
 namespace sinew {
 
@@ -59,8 +60,7 @@ bool is_finite(const Transform<double>& x) {
 
 /// Second moment P = ½ tr(I)·1 − I positive semidefinite, up to rounding: a body with this inertia can exist.
 bool can_exist(const Mat3<double>& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(inertia, Eigen::EigenvaluesOnly);
-  const Vec3<double>& principal = eigen.eigenvalues();  // ascending
+  const Vec3<double> principal = principal_axes(inertia).values;
   const double slack = 1e-9 * principal[2];
   return principal[0] >= -slack && principal[0] + principal[1] >= principal[2] - slack;
 }

@@ -3,10 +3,10 @@
 // so can include them.
 //
 // Eigen's operators build an expression type for every formula, which the compiler instantiates and then
-// flattens again. In three dimensions that buys nothing. The operators below return values, to the bits what
-// Eigen returns (tests/skeleton), and are preferred within namespace sinew where both operands are plain: it
-// halves what the dearest files cost to compile. Whatever else Eigen offers goes on to work, and code outside
-// of the namespace sees Eigen alone.
+// flattens again. In three dimensions that buys nothing. The operators below return values. Within namespace
+// sinew they are preferred where both operands are plain, and halve what the dearest files cost to compile;
+// results are Eigen's, in float to the bit (tests/skeleton/vector_test.cpp). Whatever else Eigen offers works
+// as before, and code outside of the namespace sees Eigen alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,7 +37,7 @@ using Scaled = std::enable_if_t<kScales<S, T>, M>;
 template <class A, class T, class M>
 using Transposed = std::enable_if_t<std::is_same_v<std::remove_const_t<A>, Mat3<T>>, M>;
 
-/// In the order in which Eigen sums three terms.
+/// In the order in which Eigen sums three terms in float.
 template <class T>
 [[gnu::always_inline]] inline T sum(const T& a, const T& b, const T& c) {
   return a + (b + c);

@@ -1,11 +1,13 @@
 #include "study/effect_cost/figure.h"
 
+#include "sinew/skeleton/rotation.h"
+
 namespace sinew::study {
 
 Collider rod_capsule() {
   Collider capsule;
   capsule.shape = Shape::kCapsule;
-  capsule.local = {Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), Vec3<double>::UnitX()), {0.5, 0, 0}};
+  capsule.local = {rotation_between<double>(Vec3<double>::UnitZ(), Vec3<double>::UnitX()), {0.5, 0, 0}};
   capsule.size = {0.05, 0.05, 0.4};
   return capsule;
 }
