@@ -1,5 +1,5 @@
 // Shader sources. Every shader tone-maps its own output, so that the multisampled buffer can stay 8 bits.
-// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SHELL): llvmpipe runs both sides of an `if`.
+// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SHELL, UNDISTURBED): llvmpipe runs both sides of an `if`.
 // Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is lit like a man.
 #pragma once
 
@@ -132,8 +132,12 @@ void main() {
   float fine = max(line(g.x, 0.006), line(g.y, 0.006)) * 0.4 * exp(-0.02 * off * off);
   float coarse = max(line(g.x * 0.25, 0.0028), line(g.y * 0.25, 0.0028));
   float spot = mix(1.0, exp(-0.045 * off * off), pool);
+#ifdef UNDISTURBED // no figure near: nothing that could throw a shadow or occlude
+  float lit = 1.0, open = 1.0;
+#else
   float lit = shadow(p, vec3(0, 0, 1), 0.0030);
   float open = openness();
+#endif
   vec3 light = ground_color * (key_color * light_direction.z * mix(0.16, 1.0, lit) * mix(0.55, 1.0, open) * spot
                                + sky_color * 0.6 * mix(0.2, 1.0, open));
   light = mix(light, line_color * mix(0.45, 1.0, lit) * mix(0.35, 1.0, spot), max(fine, coarse) * 0.55);
@@ -165,6 +169,17 @@ inline constexpr const char* kScreenVertex = R"(
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0, 0.0, 1.0); }
 )";
 
+/// Over the background: the figure's samples, already multiplied by their coverage.
+inline constexpr const char* kResolveFragment = R"(
+uniform sampler2DMS figure_map;
+out vec4 result;
+void main() {
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  result = vec4(0.0);
+  for (int i = 0; i < 4; ++i) result += 0.25 * texelFetch(figure_map, here, i);
+}
+)";
+
 /// Scalable ambient obscurance (McGuire, Mara & Luebke 2012, equation 10 without the bias table): a spiral of
 /// taps around the pixel, turned by a 4x4 pattern that the blur takes out again.
 inline constexpr const char* kObscuranceFragment = R"(
@@ -189,10 +204,12 @@ void main() {
   float radius = 0.26 * unit, squared = radius * radius;
   float reach = min(radius / (slope.y * -p.z) * 0.5 * float(last.y + 1), 0.25 * float(last.y + 1)); // texels
   float turn = float((here.x & 3) * 4 + (here.y & 3)) * 0.3926991;
+  const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688); // by 2.39996 rad: no sine per tap
+  vec2 along = reach / 14.0 * vec2(cos(turn), sin(turn));
   float sum = 0.0;
   for (int i = 0; i < 14; ++i) {
-    float share = (float(i) + 0.5) / 14.0, angle = turn + 2.39996 * float(i);
-    ivec2 at = clamp(here + ivec2(reach * share * vec2(cos(angle), sin(angle))), ivec2(0), last);
+    ivec2 at = clamp(here + ivec2((float(i) + 0.5) * along), ivec2(0), last);
+    along = golden * along;
     vec3 v = position(at) - p;
     float vv = dot(v, v), f = max(squared - vv, 0.0);
     sum += f * f * f * max((dot(v, n) - 0.006 * unit) / (vv + 1e-4 * unit * unit), 0.0);

@@ -1,5 +1,6 @@
 #include "render/stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -127,6 +128,7 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
   gl.Uniform1i(gl.GetUniformLocation(made, "albedo_map"), 1);
   gl.Uniform1i(gl.GetUniformLocation(made, "occlusion_map"), 2);
   gl.Uniform1i(gl.GetUniformLocation(made, "depth_map"), 2);
+  gl.Uniform1i(gl.GetUniformLocation(made, "figure_map"), 3);
   return made;
 }
 
@@ -136,17 +138,19 @@ bool Stage::set_up(std::string& error) {
   shell_ = program(kFigureVertex, kFigureFragment, "#define SHELL\n", error);
   ground_ = program(kGroundVertex, kGroundFragment, open, error);
   sky_ = program(kSkyVertex, kSkyFragment, "", error);
+  far_ground_ = program(kGroundVertex, kGroundFragment, "#define UNDISTURBED\n", error);
+  resolve_ = program(kScreenVertex, kResolveFragment, "", error);
   depth_ = program(kDepthVertex, kDepthFragment, "", error);
-  if (!figure_ || !shell_ || !ground_ || !sky_ || !depth_) return false;
+  floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
+  if (!figure_ || !shell_ || !ground_ || !far_ground_ || !sky_ || !resolve_ || !depth_ || !floor_depth_)
+    return false;
   if (options_.fine) {
-    floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
     obscurance_ = program(kScreenVertex, kObscuranceFragment, "", error);
     blur_ = program(kScreenVertex, kBlurFragment, "", error);
-    if (!floor_depth_ || !obscurance_ || !blur_) return false;
+    if (!obscurance_ || !blur_) return false;
   }
   set_up_vertices();
-  if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) ||
-      !set_up_target(multi_target_, options_.samples) || !set_up_target(single_target_, 1)) {
+  if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) || !set_up_picture() || !set_up_figure()) {
     error = "no framebuffer of that size";
     return false;
   }
@@ -201,22 +205,45 @@ bool Stage::set_up_occlusion() {
   return complete;
 }
 
-bool Stage::set_up_target(GLuint& framebuffer, int samples) {
+GLuint Stage::depth_buffer(int samples) {
   const Gl& gl = context_->gl();
-  GLuint buffers[2];
-  gl.GenRenderbuffers(2, buffers);
-  gl.GenFramebuffers(1, &framebuffer);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  for (int k = 0; k < 2; ++k) {
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[k]);
-    const GLenum format = k == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT24;
-    if (samples > 1)
-      gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, options_.width, options_.height);
-    else
-      gl.RenderbufferStorage(GL_RENDERBUFFER, format, options_.width, options_.height);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
-                               GL_RENDERBUFFER, buffers[k]);
+  GLuint made = 0;
+  gl.GenRenderbuffers(1, &made);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, made);
+  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, options_.width,
+                                    options_.height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made);
+  return made;
+}
+
+bool Stage::set_up_picture() {
+  const Gl& gl = context_->gl();
+  GLuint color = 0;
+  gl.GenFramebuffers(1, &picture_target_);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.GenRenderbuffers(1, &color);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, color);
+  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, options_.width, options_.height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color);
+  if (options_.samples == 1) depth_buffer(0);
+  return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+/// Where the figure is drawn: a multisampled texture of its own, or the picture itself.
+bool Stage::set_up_figure() {
+  if (options_.samples == 1) {
+    figure_target_ = picture_target_;
+    return true;
   }
+  const Gl& gl = context_->gl();
+  gl.GenTextures(1, &figure_map_);
+  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_map_);
+  gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, options_.samples, GL_RGBA8, options_.width,
+                           options_.height, GL_TRUE);
+  gl.GenFramebuffers(1, &figure_target_);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE, figure_map_, 0);
+  depth_buffer(options_.samples);
   return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
@@ -309,26 +336,81 @@ void Stage::draw_depth(const Geometry& geometry, const Mat4& to_clip) {
     if (!d.skin_shell) draw_triangles(d);
 }
 
-void Stage::draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
+/// The quad of the vertex shaders that make their own vertices.
+void Stage::draw_strip() {
   const Gl& gl = context_->gl();
+  gl.BindVertexArray(empty_array_);
+  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+/// Nothing outside of the box is drawn or cleared from now on.
+void Stage::clip(const Box& box) {
+  context_->gl().Scissor(box.left, box.bottom, std::max(0, box.width()), std::max(0, box.height()));
+}
+
+void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
+  gl.Viewport(0, 0, kShadowSize, kShadowSize);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  draw_depth(geometry, m.light);
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
+}
+
+/// Openness within `box` of the picture. Every pass covers what the next one reads: the blur three texels
+/// around, the look-up in the shaders one.
+void Stage::draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                           const Box& box) {
+  const Gl& gl = context_->gl();
+  const auto around = [&](int texels) {
+    return Box{box.left / 2 - texels, box.bottom / 2 - texels, box.right / 2 + 1 + texels,
+               box.top / 2 + 1 + texels};
+  };
   gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
   gl.Viewport(0, 0, half_width(), half_height());
   gl.Clear(GL_DEPTH_BUFFER_BIT);
   draw_depth(geometry, m.view_projection);
   use(floor_depth_, m, view, ground);
-  gl.BindVertexArray(empty_array_);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  draw_strip();
 
   gl.Disable(GL_DEPTH_TEST);
+  gl.Enable(GL_SCISSOR_TEST);
   gl.ActiveTexture(GL_TEXTURE2);
   for (const int pass : {0, 1}) {
+    clip(around(pass == 0 ? 5 : 2));
     gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[pass]);
     gl.BindTexture(GL_TEXTURE_2D, pass == 0 ? half_depth_ : open_map_[0]);
     use(pass == 0 ? obscurance_ : blur_, m, view, ground);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    draw_strip();
   }
   gl.BindTexture(GL_TEXTURE_2D, open_map_[1]);
-  gl.Enable(GL_DEPTH_TEST);
+  gl.Disable(GL_SCISSOR_TEST);
+}
+
+/// Sky and floor, whose grid is antialiased by its shader: one sample is enough. Only the floor in the box
+/// `near` is asked for shadow and occlusion.
+void Stage::draw_background(const Matrices& m, const View& view, float ground, const Box& near) {
+  const Gl& gl = context_->gl();
+  const int width = options_.width, height = options_.height;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.Viewport(0, 0, width, height);
+  gl.Disable(GL_DEPTH_TEST);
+  use(sky_, m, view, ground);
+  draw_strip();
+  gl.Enable(GL_SCISSOR_TEST);
+  use(far_ground_, m, view, ground);
+  for (const Box& part :
+       {Box{0, 0, width, near.bottom}, Box{0, near.top, width, height},
+        Box{0, near.bottom, near.left, near.top}, Box{near.right, near.bottom, width, near.top}})
+    if (!part.empty()) {
+      clip(part);
+      draw_strip();
+    }
+  use(ground_, m, view, ground);
+  clip(near);
+  draw_strip();
+  gl.Disable(GL_SCISSOR_TEST);
 }
 
 void Stage::draw_triangles(const Draw& d) {
@@ -339,8 +421,18 @@ void Stage::draw_triangles(const Draw& d) {
   if (d.closed) gl.Disable(GL_CULL_FACE);
 }
 
-void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
+void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                        const Box& box) {
   const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
+  gl.Enable(GL_SCISSOR_TEST);
+  clip(box);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.Clear(options_.samples == 1 ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  use(floor_depth_, m, view, ground);
+  draw_strip();
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.BindVertexArray(array_);
   gl.ActiveTexture(GL_TEXTURE1);
   use(figure_, m, view, ground);
@@ -350,7 +442,16 @@ void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View&
       draw_triangles(d);
     }
   use(shell_, m, view, ground);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  draw_shells(geometry);
+  gl.Disable(GL_DEPTH_TEST);
+  if (options_.samples > 1) lay_over(box);
+  gl.Disable(GL_SCISSOR_TEST);
+}
+
+void Stage::draw_shells(const Geometry& geometry) {
+  const Gl& gl = context_->gl();
+  // Colour comes multiplied by its coverage, as lay_over() takes it.
+  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (const Draw& d : geometry.draws) {
     if (!d.skin_shell) continue;
     // Depth first, so that only the nearest skin is blended.
@@ -365,26 +466,41 @@ void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View&
   }
 }
 
+/// The multisampled figure over the background.
+void Stage::lay_over(const Box& box) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.ActiveTexture(GL_TEXTURE3);
+  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_map_);
+  gl.UseProgram(resolve_);
+  gl.Enable(GL_BLEND);
+  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  clip(box);
+  draw_strip();
+  gl.Disable(GL_BLEND);
+}
+
 void Stage::read(Image& out) {
   const Gl& gl = context_->gl();
   const int width = options_.width, height = options_.height;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, multi_target_);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, single_target_);
-  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, single_target_);
   const std::size_t row = std::size_t(width) * 4;
-  std::vector<std::uint8_t> bottom_up(row * std::size_t(height));
-  gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up.data());
+  bottom_up_.resize(row * std::size_t(height));
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up_.data());
   out.width = width;
   out.height = height;
-  out.pixels.resize(bottom_up.size());
+  out.pixels.resize(bottom_up_.size());
   for (std::size_t y = 0; y < std::size_t(height); ++y)
-    std::memcpy(&out.pixels[y * row], &bottom_up[(std::size_t(height) - 1 - y) * row], row);
+    std::memcpy(&out.pixels[y * row], &bottom_up_[(std::size_t(height) - 1 - y) * row], row);
 }
 
 void Stage::draw(const Geometry& geometry, const View& view, float ground, Image& out) {
   const Gl& gl = context_->gl();
   const Matrices m(view, float(options_.width) / float(options_.height));
+  const Regions regions =
+      find_regions(geometry, {m.view_projection, m.light_direction, ground, view.unit,
+                              0.5f * float(options_.height) / std::tan(view.vertical_fov / 2), options_.width,
+                              options_.height});
   gl.BindVertexArray(array_);
   gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
   gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.vertices.size() * sizeof(Vertex)),
@@ -392,27 +508,11 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
                 static_cast<GLsizeiptr>(geometry.indices.size() * sizeof(std::uint32_t)),
                 geometry.indices.data(), GL_STREAM_DRAW);
-
   gl.Enable(GL_DEPTH_TEST);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
-  gl.Viewport(0, 0, kShadowSize, kShadowSize);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_depth(geometry, m.light);
-  if (options_.fine) draw_occlusion(geometry, m, view, ground);
-
-  gl.BindFramebuffer(GL_FRAMEBUFFER, multi_target_);
-  gl.Viewport(0, 0, options_.width, options_.height);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  gl.ActiveTexture(GL_TEXTURE0);
-  gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
-  gl.BindVertexArray(empty_array_);
-  gl.Disable(GL_DEPTH_TEST);
-  use(sky_, m, view, ground);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  gl.Enable(GL_DEPTH_TEST);
-  use(ground_, m, view, ground);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  draw_figure(geometry, m, view, ground);
+  draw_shadow(geometry, m);
+  if (options_.fine) draw_occlusion(geometry, m, view, ground, regions.near);
+  draw_background(m, view, ground, regions.near);
+  if (!regions.figure.empty()) draw_figure(geometry, m, view, ground, regions.figure);
   read(out);
 }
 
