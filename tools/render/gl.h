@@ -30,6 +30,7 @@ namespace sinew::render {
   X(PFNGLDRAWARRAYSPROC, DrawArrays) \
   X(PFNGLDRAWELEMENTSPROC, DrawElements) \
   X(PFNGLDRAWBUFFERPROC, DrawBuffer) \
+  X(PFNGLDRAWBUFFERSPROC, DrawBuffers) \
   X(PFNGLENABLEPROC, Enable) \
   X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
   X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \

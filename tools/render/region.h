@@ -7,16 +7,18 @@
 namespace sinew::render {
 
 /// Pixels from (left, bottom) up to but without (right, top); rows count from the bottom, as OpenGL does.
-struct Box {
+struct Area {
   int left = 0, bottom = 0, right = 0, top = 0;
   int width() const { return right - left; }
   int height() const { return top - bottom; }
   bool empty() const { return left >= right || bottom >= top; }
 };
 
+/// Areas of whole tiles, none of which overlap.
 struct Regions {
-  Box figure;  ///< covers every triangle
-  Box near;    ///< covers the figure, its shadow on the floor, and what it occludes
+  std::vector<Area> figure;  ///< cover every triangle
+  std::vector<Area> near;    ///< cover the figure, its shadow on the floor, and what it occludes
+  std::vector<Area> rest;    ///< the picture without `near`
 };
 
 /// What `find_regions` has to know about a picture.
@@ -29,8 +31,8 @@ struct Projection {
   int width = 0, height = 0;    ///< pixels
 };
 
-/// Both boxes lie within the picture. A triangle that reaches behind the camera makes them the whole picture.
-/// Cost: one pass over the vertices.
+/// A triangle that reaches behind the camera makes figure and near the whole picture. Cost: one pass over the
+/// triangles.
 Regions find_regions(const Geometry& geometry, const Projection& projection);
 
 }  // namespace sinew::render

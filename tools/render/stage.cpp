@@ -11,6 +11,7 @@ namespace sinew::render {
 namespace {
 
 constexpr int kShadowSize = 2048;
+constexpr float kNoFigure = 9;        ///< no component of a folded normal is that large
 constexpr float kShadowReach = 3.2f;  ///< times `unit`: m around the target that the shadow map covers
 
 using Mat4 = Eigen::Matrix4f;
@@ -97,8 +98,9 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
                       std::string& error) {
   const Gl& gl = context_->gl();
   const GLuint made = gl.CreateProgram();
-  const std::string head =
-      "#version 330 core\n#define SHADOW_TAPS " + std::string(options_.fine ? "16\n" : "6\n") + defines;
+  const std::string head = "#version 330 core\n#define SHADOW_TAPS " +
+                           std::string(options_.fine ? "16" : "6") + "\n#define SAMPLES " +
+                           std::to_string(options_.samples) + "\n" + defines;
   for (const auto& [kind, source] :
        {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
     const GLuint shader = gl.CreateShader(kind);
@@ -128,26 +130,31 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
   gl.Uniform1i(gl.GetUniformLocation(made, "albedo_map"), 1);
   gl.Uniform1i(gl.GetUniformLocation(made, "occlusion_map"), 2);
   gl.Uniform1i(gl.GetUniformLocation(made, "depth_map"), 2);
-  gl.Uniform1i(gl.GetUniformLocation(made, "figure_map"), 3);
+  gl.Uniform1i(gl.GetUniformLocation(made, "surface_map"), 3);
+  gl.Uniform1i(gl.GetUniformLocation(made, "normal_map"), 4);
+  gl.Uniform1i(gl.GetUniformLocation(made, "distance_map"), 5);
   return made;
 }
 
 bool Stage::set_up(std::string& error) {
   const std::string open = options_.fine ? "#define OCCLUSION\n" : "";
-  figure_ = program(kFigureVertex, kFigureFragment, open, error);
-  shell_ = program(kFigureVertex, kFigureFragment, "#define SHELL\n", error);
+  surface_ = program(kFigureVertex, kSurfaceFragment, "", error);
+  figure_ = program(kScreenVertex, kFigureFragment, open, error);
+  shell_ = program(kFigureVertex, kShellFragment, "", error);
   ground_ = program(kGroundVertex, kGroundFragment, open, error);
   sky_ = program(kSkyVertex, kSkyFragment, "", error);
   far_ground_ = program(kGroundVertex, kGroundFragment, "#define UNDISTURBED\n", error);
   resolve_ = program(kScreenVertex, kResolveFragment, "", error);
   depth_ = program(kDepthVertex, kDepthFragment, "", error);
   floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
-  if (!figure_ || !shell_ || !ground_ || !far_ground_ || !sky_ || !resolve_ || !depth_ || !floor_depth_)
+  if (!surface_ || !figure_ || !shell_ || !ground_ || !far_ground_ || !sky_ || !resolve_ || !depth_ ||
+      !floor_depth_)
     return false;
   if (options_.fine) {
+    distance_ = program(kScreenVertex, kDistanceFragment, "", error);
     obscurance_ = program(kScreenVertex, kObscuranceFragment, "", error);
     blur_ = program(kScreenVertex, kBlurFragment, "", error);
-    if (!obscurance_ || !blur_) return false;
+    if (!distance_ || !obscurance_ || !blur_) return false;
   }
   set_up_vertices();
   if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) || !set_up_picture() || !set_up_figure()) {
@@ -187,33 +194,17 @@ bool Stage::set_up_shadow() {
 
 bool Stage::set_up_occlusion() {
   const Gl& gl = context_->gl();
-  const int width = half_width(), height = half_height();
-  half_depth_ = map(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width, height, GL_NEAREST);
-  gl.GenFramebuffers(1, &half_target_);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, half_depth_, 0);
-  gl.DrawBuffer(GL_NONE);
-  gl.ReadBuffer(GL_NONE);
-  bool complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  gl.GenFramebuffers(2, open_target_);
-  for (int k = 0; k < 2; ++k) {
-    open_map_[k] = map(GL_RG16F, GL_RG, width, height, GL_NEAREST);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[k]);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, open_map_[k], 0);
+  bool complete = true;
+  const auto target = [&](GLuint& texture, GLuint& framebuffer, GLint format, GLenum channels) {
+    texture = map(format, channels, half_width(), half_height(), GL_NEAREST);
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     complete &= gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  }
+  };
+  target(half_distance_, half_target_, GL_R32F, GL_RED);
+  for (int k = 0; k < 2; ++k) target(open_map_[k], open_target_[k], GL_RG16F, GL_RG);
   return complete;
-}
-
-GLuint Stage::depth_buffer(int samples) {
-  const Gl& gl = context_->gl();
-  GLuint made = 0;
-  gl.GenRenderbuffers(1, &made);
-  gl.BindRenderbuffer(GL_RENDERBUFFER, made);
-  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, options_.width,
-                                    options_.height);
-  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, made);
-  return made;
 }
 
 bool Stage::set_up_picture() {
@@ -223,28 +214,36 @@ bool Stage::set_up_picture() {
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
   gl.GenRenderbuffers(1, &color);
   gl.BindRenderbuffer(GL_RENDERBUFFER, color);
-  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, options_.width, options_.height);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, options_.width, options_.height);
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color);
-  if (options_.samples == 1) depth_buffer(0);
   return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-/// Where the figure is drawn: a multisampled texture of its own, or the picture itself.
+/// Multisampled textures of what the figure is, and a target that fills all of them; another for the skin
+/// around muscles, which takes over the first one's colours when they have been lit.
 bool Stage::set_up_figure() {
-  if (options_.samples == 1) {
-    figure_target_ = picture_target_;
-    return true;
-  }
   const Gl& gl = context_->gl();
-  gl.GenTextures(1, &figure_map_);
-  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_map_);
-  gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, options_.samples, GL_RGBA8, options_.width,
-                           options_.height, GL_TRUE);
+  const GLenum formats[] = {GL_RGBA8, GL_RG16F, GL_DEPTH_COMPONENT24},
+               places[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_DEPTH_ATTACHMENT};
+  gl.GenTextures(3, figure_maps_);
   gl.GenFramebuffers(1, &figure_target_);
+  gl.GenFramebuffers(1, &shell_target_);
+  for (int k = 0; k < 3; ++k) {
+    gl.ActiveTexture(static_cast<GLenum>(GL_TEXTURE3 + k));
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_maps_[k]);
+    gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, options_.samples, formats[k], options_.width,
+                             options_.height, GL_TRUE);
+    for (const GLuint target : {figure_target_, shell_target_}) {
+      if (k == 1 && target == shell_target_) continue;
+      gl.BindFramebuffer(GL_FRAMEBUFFER, target);
+      gl.FramebufferTexture2D(GL_FRAMEBUFFER, places[k], GL_TEXTURE_2D_MULTISAMPLE, figure_maps_[k], 0);
+    }
+  }
+  bool complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE, figure_map_, 0);
-  depth_buffer(options_.samples);
-  return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  gl.DrawBuffers(2, places);
+  complete &= gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  return complete;
 }
 
 void Stage::set_up_vertices() {
@@ -300,6 +299,8 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
     gl.Uniform3f(place(name), v.x(), v.y(), v.z());
   };
   gl.UniformMatrix4fv(place("view_projection"), 1, GL_FALSE, m.view_projection.data());
+  const Mat4 from_clip = m.view_projection.inverse();
+  gl.UniformMatrix4fv(place("from_clip"), 1, GL_FALSE, from_clip.data());
   gl.UniformMatrix4fv(place("light_matrix"), 1, GL_FALSE, m.light.data());
   vec("eye", view.eye);
   vec("target", view.target);
@@ -327,15 +328,6 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
                std::sin(pitch + view.vertical_fov / 2));
 }
 
-void Stage::draw_depth(const Geometry& geometry, const Mat4& to_clip) {
-  const Gl& gl = context_->gl();
-  gl.BindVertexArray(array_);
-  gl.UseProgram(depth_);
-  gl.UniformMatrix4fv(gl.GetUniformLocation(depth_, "to_clip"), 1, GL_FALSE, to_clip.data());
-  for (const Draw& d : geometry.draws)
-    if (!d.skin_shell) draw_triangles(d);
-}
-
 /// The quad of the vertex shaders that make their own vertices.
 void Stage::draw_strip() {
   const Gl& gl = context_->gl();
@@ -343,9 +335,15 @@ void Stage::draw_strip() {
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-/// Nothing outside of the box is drawn or cleared from now on.
-void Stage::clip(const Box& box) {
-  context_->gl().Scissor(box.left, box.bottom, std::max(0, box.width()), std::max(0, box.height()));
+/// Only what of it lies in the areas.
+void Stage::draw_strip(const std::vector<Area>& areas) {
+  const Gl& gl = context_->gl();
+  gl.Enable(GL_SCISSOR_TEST);
+  for (const Area& area : areas) {
+    gl.Scissor(area.left, area.bottom, area.width(), area.height());
+    draw_strip();
+  }
+  gl.Disable(GL_SCISSOR_TEST);
 }
 
 void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
@@ -353,64 +351,71 @@ void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
   gl.Viewport(0, 0, kShadowSize, kShadowSize);
   gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_depth(geometry, m.light);
+  gl.BindVertexArray(array_);
+  gl.UseProgram(depth_);
+  gl.UniformMatrix4fv(gl.GetUniformLocation(depth_, "to_clip"), 1, GL_FALSE, m.light.data());
+  for (const Draw& d : geometry.draws)
+    if (!d.skin_shell) draw_triangles(d);
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
 }
 
-/// Openness within `box` of the picture. Every pass covers what the next one reads: the blur three texels
-/// around, the look-up in the shaders one.
-void Stage::draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground,
-                           const Box& box) {
+/// What the figure is at every sample, and the floor's depth there.
+void Stage::draw_surface(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                         const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  const auto around = [&](int texels) {
-    return Box{box.left / 2 - texels, box.bottom / 2 - texels, box.right / 2 + 1 + texels,
-               box.top / 2 + 1 + texels};
-  };
-  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
-  gl.Viewport(0, 0, half_width(), half_height());
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_depth(geometry, m.view_projection);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
+  gl.Viewport(0, 0, options_.width, options_.height);
+  gl.ClearColor(kNoFigure, kNoFigure, kNoFigure, kNoFigure);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   use(floor_depth_, m, view, ground);
-  draw_strip();
-
-  gl.Disable(GL_DEPTH_TEST);
-  gl.Enable(GL_SCISSOR_TEST);
-  gl.ActiveTexture(GL_TEXTURE2);
-  for (const int pass : {0, 1}) {
-    clip(around(pass == 0 ? 5 : 2));
-    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[pass]);
-    gl.BindTexture(GL_TEXTURE_2D, pass == 0 ? half_depth_ : open_map_[0]);
-    use(pass == 0 ? obscurance_ : blur_, m, view, ground);
-    draw_strip();
+  draw_strip(areas);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.BindVertexArray(array_);
+  gl.ActiveTexture(GL_TEXTURE1);
+  use(surface_, m, view, ground);
+  for (const Draw& d : geometry.draws) {
+    if (d.skin_shell) continue;
+    gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
+    draw_triangles(d);
   }
-  gl.BindTexture(GL_TEXTURE_2D, open_map_[1]);
-  gl.Disable(GL_SCISSOR_TEST);
 }
 
-/// Sky and floor, whose grid is antialiased by its shader: one sample is enough. Only the floor in the box
-/// `near` is asked for shadow and occlusion.
-void Stage::draw_background(const Matrices& m, const View& view, float ground, const Box& near) {
+/// Openness within areas of the picture; around them nothing occludes.
+void Stage::draw_occlusion(const Matrices& m, const View& view, float ground,
+                           const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  const int width = options_.width, height = options_.height;
+  std::vector<Area> halves;
+  for (const Area& a : areas)
+    halves.push_back({a.left / 2, a.bottom / 2, (a.right + 1) / 2, (a.top + 1) / 2});
+  const GLuint targets[] = {half_target_, open_target_[0], open_target_[1]},
+               programs[] = {distance_, obscurance_, blur_},
+               results[] = {half_distance_, open_map_[0], open_map_[1]};
+  gl.Viewport(0, 0, half_width(), half_height());
+  gl.ActiveTexture(GL_TEXTURE2);
+  for (int pass = 0; pass < 3; ++pass) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, targets[pass]);
+    gl.ClearColor(pass == 0 ? m.far : 1, m.far, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    use(programs[pass], m, view, ground);
+    draw_strip(halves);
+    gl.BindTexture(GL_TEXTURE_2D, results[pass]);
+  }
+}
+
+/// Sky and floor, whose grid is antialiased by its shader: one sample is enough. Only the floor near a figure
+/// is asked for shadow and occlusion.
+void Stage::draw_background(const Matrices& m, const View& view, float ground, const Regions& regions) {
+  const Gl& gl = context_->gl();
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
-  gl.Viewport(0, 0, width, height);
-  gl.Disable(GL_DEPTH_TEST);
+  gl.Viewport(0, 0, options_.width, options_.height);
   use(sky_, m, view, ground);
   draw_strip();
-  gl.Enable(GL_SCISSOR_TEST);
   use(far_ground_, m, view, ground);
-  for (const Box& part :
-       {Box{0, 0, width, near.bottom}, Box{0, near.top, width, height},
-        Box{0, near.bottom, near.left, near.top}, Box{near.right, near.bottom, width, near.top}})
-    if (!part.empty()) {
-      clip(part);
-      draw_strip();
-    }
+  draw_strip(regions.rest);
   use(ground_, m, view, ground);
-  clip(near);
-  draw_strip();
-  gl.Disable(GL_SCISSOR_TEST);
+  draw_strip(regions.near);
 }
 
 void Stage::draw_triangles(const Draw& d) {
@@ -421,36 +426,24 @@ void Stage::draw_triangles(const Draw& d) {
   if (d.closed) gl.Disable(GL_CULL_FACE);
 }
 
-void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground,
-                        const Box& box) {
+void Stage::light_figure(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
-  gl.Enable(GL_SCISSOR_TEST);
-  clip(box);
-  gl.Enable(GL_DEPTH_TEST);
-  gl.Clear(options_.samples == 1 ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  use(floor_depth_, m, view, ground);
-  draw_strip();
-  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  gl.BindVertexArray(array_);
-  gl.ActiveTexture(GL_TEXTURE1);
+  gl.Enable(GL_BLEND);
+  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   use(figure_, m, view, ground);
-  for (const Draw& d : geometry.draws)
-    if (!d.skin_shell) {
-      gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
-      draw_triangles(d);
-    }
-  use(shell_, m, view, ground);
-  draw_shells(geometry);
-  gl.Disable(GL_DEPTH_TEST);
-  if (options_.samples > 1) lay_over(box);
-  gl.Disable(GL_SCISSOR_TEST);
+  draw_strip(areas);
+  gl.Disable(GL_BLEND);
 }
 
-void Stage::draw_shells(const Geometry& geometry) {
+void Stage::draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                        const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  // Colour comes multiplied by its coverage, as lay_over() takes it.
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shell_target_);
+  gl.ClearColor(0, 0, 0, 0);
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.BindVertexArray(array_);
+  use(shell_, m, view, ground);
   gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (const Draw& d : geometry.draws) {
     if (!d.skin_shell) continue;
@@ -462,21 +455,12 @@ void Stage::draw_shells(const Geometry& geometry) {
     gl.Enable(GL_BLEND);
     draw_triangles(d);
     gl.DepthFunc(GL_LESS);
-    gl.Disable(GL_BLEND);
   }
-}
-
-/// The multisampled figure over the background.
-void Stage::lay_over(const Box& box) {
-  const Gl& gl = context_->gl();
+  gl.Disable(GL_DEPTH_TEST);
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
-  gl.ActiveTexture(GL_TEXTURE3);
-  gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_map_);
   gl.UseProgram(resolve_);
-  gl.Enable(GL_BLEND);
   gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  clip(box);
-  draw_strip();
+  draw_strip(areas);
   gl.Disable(GL_BLEND);
 }
 
@@ -508,11 +492,18 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
                 static_cast<GLsizeiptr>(geometry.indices.size() * sizeof(std::uint32_t)),
                 geometry.indices.data(), GL_STREAM_DRAW);
+  const auto has = [&](bool shell) {
+    return std::any_of(geometry.draws.begin(), geometry.draws.end(),
+                       [&](const Draw& d) { return d.skin_shell == shell; });
+  };
   gl.Enable(GL_DEPTH_TEST);
   draw_shadow(geometry, m);
-  if (options_.fine) draw_occlusion(geometry, m, view, ground, regions.near);
-  draw_background(m, view, ground, regions.near);
-  if (!regions.figure.empty()) draw_figure(geometry, m, view, ground, regions.figure);
+  draw_surface(geometry, m, view, ground, regions.figure);
+  gl.Disable(GL_DEPTH_TEST);
+  if (options_.fine) draw_occlusion(m, view, ground, regions.near);
+  draw_background(m, view, ground, regions);
+  if (has(false)) light_figure(m, view, ground, regions.figure);
+  if (has(true)) draw_shells(geometry, m, view, ground, regions.figure);
   read(out);
 }
 
