@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sinew::render {
 namespace {
@@ -35,6 +36,12 @@ class Tiles {
       for (int x = left; x <= right; ++x) at(x, y) = 1;
   }
   void mark_all() { std::fill(marks_.begin(), marks_.end(), 1); }
+  void add(const Tiles& other) {
+    std::transform(marks_.begin(), marks_.end(), other.marks_.begin(), marks_.begin(), std::bit_or<>());
+  }
+  void take_away(const Tiles& other) {
+    std::transform(marks_.begin(), marks_.end(), other.marks_.begin(), marks_.begin(), std::greater<>());
+  }
   /// Marks what `other` has within `margin` pixels, too.
   void mark_around(const Tiles& other, float margin) {
     for (int y = 0; y < up_; ++y)
@@ -116,19 +123,23 @@ void mark_triangles(const Geometry& geometry, const Shown& shown, float margin, 
 
 Regions find_regions(const Geometry& geometry, const Projection& p) {
   constexpr float kAntialiasing = 1;  // pixels
-  Tiles figure(p), near(p);
+  Tiles figure(p), near(p), dark(p);
   const Shown seen = project(geometry, p, Vec3<float>::Zero()),
               shadow = project(geometry, p, p.light_direction / p.light_direction.z());
   const float least = 1e-3f * p.unit;
   if (!geometry.indices.empty() && (seen.nearest <= least || shadow.nearest <= least)) {
     near.mark_all();
+    dark.mark_all();
     figure.mark_all();
   } else {
     mark_triangles(geometry, seen, kAntialiasing, figure);
     near.mark_around(figure, kOcclusionReach * p.unit * p.focal / seen.nearest);
-    mark_triangles(geometry, shadow, kShadowEdge * p.unit * p.focal / shadow.nearest, near);
+    mark_triangles(geometry, shadow, kShadowEdge * p.unit * p.focal / shadow.nearest, dark);
+    near.add(dark);
   }
-  return {figure.areas(1), near.areas(1), near.areas(0)};
+  Tiles only_near = near;
+  only_near.take_away(dark);
+  return {figure.areas(1), dark.areas(1), near.areas(1), only_near.areas(1), near.areas(0)};
 }
 
 }  // namespace sinew::render

@@ -14,11 +14,13 @@ struct Area {
   bool empty() const { return left >= right || bottom >= top; }
 };
 
-/// Areas of whole tiles, none of which overlap.
+/// Lists of areas made of whole tiles; within a list none overlap.
 struct Regions {
-  std::vector<Area> figure;  ///< cover every triangle
-  std::vector<Area> near;    ///< cover the figure, its shadow on the floor, and what it occludes
-  std::vector<Area> rest;    ///< the picture without `near`
+  std::vector<Area> figure;     ///< cover every triangle
+  std::vector<Area> shadow;     ///< cover its shadow on the floor, and may cover more
+  std::vector<Area> near;       ///< cover the figure, its shadow and what it occludes
+  std::vector<Area> only_near;  ///< `near` without `shadow`
+  std::vector<Area> rest;       ///< the picture without `near`
 };
 
 /// What `find_regions` has to know about a picture.

@@ -1,5 +1,5 @@
 // Shader sources. Every shader tone-maps its own output, so that buffers can stay 8 bits.
-// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, UNDISTURBED): llvmpipe runs both sides of an `if`.
+// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, UNSHADOWED): llvmpipe runs both sides of an `if`.
 // Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is lit like a man.
 #pragma once
 
@@ -167,7 +167,7 @@ out vec4 result;
 void main() {
   vec3 v = normalize(eye - p), m = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
   float edge = pow(1.0 - max(dot(m, v), 0.0), 2.5);
-  result = vec4(mix(tone(rim_color), tone(c.rgb * 1.4), 0.8 * c.a), 0.05 + 0.62 * edge);
+  result = vec4(mix(tone(rim_color), tone(c.rgb * 1.4), 0.8 * c.a), 1.0) * (0.05 + 0.62 * edge);
 }
 )";
 
@@ -203,12 +203,12 @@ void main() {
   float fine = max(line(g.x, 0.006), line(g.y, 0.006)) * 0.4 * exp(-0.02 * off * off);
   float coarse = max(line(g.x * 0.25, 0.0028), line(g.y * 0.25, 0.0028));
   float spot = mix(1.0, exp(-0.045 * off * off), pool);
-#ifdef UNDISTURBED // no figure near: nothing that could throw a shadow or occlude
-  float lit = 1.0, open = 1.0;
+#ifdef UNSHADOWED // nothing throws a shadow here
+  float lit = 1.0;
 #else
   float lit = shadow(p, vec3(0, 0, 1), 0.0030);
-  float open = openness(1.0 / gl_FragCoord.w);
 #endif
+  float open = openness(1.0 / gl_FragCoord.w);
   vec3 light = ground_color * (key_color * light_direction.z * mix(0.16, 1.0, lit) * mix(0.55, 1.0, open) * spot
                                + sky_color * 0.6 * mix(0.2, 1.0, open));
   light = mix(light, line_color * mix(0.45, 1.0, lit) * mix(0.35, 1.0, spot), max(fine, coarse) * 0.55);

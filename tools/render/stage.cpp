@@ -143,12 +143,13 @@ bool Stage::set_up(std::string& error) {
   shell_ = program(kFigureVertex, kShellFragment, "", error);
   ground_ = program(kGroundVertex, kGroundFragment, open, error);
   sky_ = program(kSkyVertex, kSkyFragment, "", error);
-  far_ground_ = program(kGroundVertex, kGroundFragment, "#define UNDISTURBED\n", error);
+  near_ground_ = program(kGroundVertex, kGroundFragment, open + "#define UNSHADOWED\n", error);
+  far_ground_ = program(kGroundVertex, kGroundFragment, "#define UNSHADOWED\n", error);
   resolve_ = program(kScreenVertex, kResolveFragment, "", error);
   depth_ = program(kDepthVertex, kDepthFragment, "", error);
   floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
-  if (!surface_ || !figure_ || !shell_ || !ground_ || !far_ground_ || !sky_ || !resolve_ || !depth_ ||
-      !floor_depth_)
+  if (!surface_ || !figure_ || !shell_ || !ground_ || !near_ground_ || !far_ground_ || !sky_ || !resolve_ ||
+      !depth_ || !floor_depth_)
     return false;
   if (options_.fine) {
     distance_ = program(kScreenVertex, kDistanceFragment, "", error);
@@ -346,6 +347,16 @@ void Stage::draw_strip(const std::vector<Area>& areas) {
   gl.Disable(GL_SCISSOR_TEST);
 }
 
+void Stage::clear(const std::vector<Area>& areas, GLbitfield what) {
+  const Gl& gl = context_->gl();
+  gl.Enable(GL_SCISSOR_TEST);
+  for (const Area& area : areas) {
+    gl.Scissor(area.left, area.bottom, area.width(), area.height());
+    gl.Clear(what);
+  }
+  gl.Disable(GL_SCISSOR_TEST);
+}
+
 void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
   const Gl& gl = context_->gl();
   gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
@@ -362,15 +373,16 @@ void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
 
 /// What the figure is at every sample, and the floor's depth there.
 void Stage::draw_surface(const Geometry& geometry, const Matrices& m, const View& view, float ground,
-                         const std::vector<Area>& areas) {
+                         const Regions& regions) {
   const Gl& gl = context_->gl();
   gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
   gl.Viewport(0, 0, options_.width, options_.height);
   gl.ClearColor(kNoFigure, kNoFigure, kNoFigure, kNoFigure);
-  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  clear(regions.figure, GL_COLOR_BUFFER_BIT);
+  clear(regions.near, GL_DEPTH_BUFFER_BIT);  // draw_occlusion() reads it there
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   use(floor_depth_, m, view, ground);
-  draw_strip(areas);
+  draw_strip(regions.figure);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.BindVertexArray(array_);
   gl.ActiveTexture(GL_TEXTURE1);
@@ -414,8 +426,10 @@ void Stage::draw_background(const Matrices& m, const View& view, float ground, c
   draw_strip();
   use(far_ground_, m, view, ground);
   draw_strip(regions.rest);
+  use(near_ground_, m, view, ground);
+  draw_strip(regions.only_near);
   use(ground_, m, view, ground);
-  draw_strip(regions.near);
+  draw_strip(regions.shadow);
 }
 
 void Stage::draw_triangles(const Draw& d) {
@@ -435,33 +449,27 @@ void Stage::light_figure(const Matrices& m, const View& view, float ground, cons
   gl.Disable(GL_BLEND);
 }
 
+/// One skin after the other: its nearest part, over what is there.
 void Stage::draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
                         const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shell_target_);
   gl.ClearColor(0, 0, 0, 0);
-  gl.Clear(GL_COLOR_BUFFER_BIT);
-  gl.Enable(GL_DEPTH_TEST);
-  gl.BindVertexArray(array_);
-  use(shell_, m, view, ground);
-  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (const Draw& d : geometry.draws) {
     if (!d.skin_shell) continue;
-    // Depth first, so that only the nearest skin is blended.
-    gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, shell_target_);
+    clear(areas, GL_COLOR_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.BindVertexArray(array_);
+    use(shell_, m, view, ground);
     draw_triangles(d);
-    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl.DepthFunc(GL_LEQUAL);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+    gl.UseProgram(resolve_);
     gl.Enable(GL_BLEND);
-    draw_triangles(d);
-    gl.DepthFunc(GL_LESS);
+    draw_strip(areas);
+    gl.Disable(GL_BLEND);
   }
-  gl.Disable(GL_DEPTH_TEST);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
-  gl.UseProgram(resolve_);
-  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  draw_strip(areas);
-  gl.Disable(GL_BLEND);
 }
 
 void Stage::read(Image& out) {
@@ -498,7 +506,7 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   };
   gl.Enable(GL_DEPTH_TEST);
   draw_shadow(geometry, m);
-  draw_surface(geometry, m, view, ground, regions.figure);
+  draw_surface(geometry, m, view, ground, regions);
   gl.Disable(GL_DEPTH_TEST);
   if (options_.fine) draw_occlusion(m, view, ground, regions.near);
   draw_background(m, view, ground, regions);

@@ -55,20 +55,21 @@ class Stage {
   void draw_strip(const std::vector<Area>& areas);
   void draw_shadow(const Geometry& geometry, const Matrices& m);
   void draw_surface(const Geometry& geometry, const Matrices& m, const View& view, float ground,
-                    const std::vector<Area>& areas);
+                    const Regions& regions);
   void draw_occlusion(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas);
   void draw_background(const Matrices& m, const View& view, float ground, const Regions& regions);
   void light_figure(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas);
   void draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
                    const std::vector<Area>& areas);
+  void clear(const std::vector<Area>& areas, GLbitfield what);
   void read(Image& out);
   int half_width() const { return (options_.width + 1) / 2; }
   int half_height() const { return (options_.height + 1) / 2; }
 
   std::unique_ptr<Context> context_;
   StageOptions options_;
-  GLuint surface_ = 0, figure_ = 0, shell_ = 0, ground_ = 0, far_ground_ = 0, sky_ = 0, resolve_ = 0,
-         depth_ = 0, floor_depth_ = 0, distance_ = 0, obscurance_ = 0, blur_ = 0;
+  GLuint surface_ = 0, figure_ = 0, shell_ = 0, ground_ = 0, near_ground_ = 0, far_ground_ = 0, sky_ = 0,
+         resolve_ = 0, depth_ = 0, floor_depth_ = 0, distance_ = 0, obscurance_ = 0, blur_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0, picture_target_ = 0;
   GLuint figure_maps_[3] = {}, figure_target_ = 0, shell_target_ = 0;  ///< surface, normal, depth
   GLuint half_distance_ = 0, half_target_ = 0, open_map_[2] = {}, open_target_[2] = {};
