@@ -134,7 +134,7 @@ void main() {
       away[i] = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x));
       if (folded[i].x < 2.0 && away[i] > from) nearest = min(nearest, away[i]);
     }
-    float limit = nearest + 0.03 * unit, count = 0.0, far = 0.0;
+    float limit = nearest + 0.015 * unit, count = 0.0, far = 0.0;
     vec3 m = vec3(0.0);
     vec4 s = vec4(0.0);
     for (int i = 0; i < SAMPLES; ++i) {

@@ -416,6 +416,19 @@ void Stage::draw_occlusion(const Matrices& m, const View& view, float ground,
   }
 }
 
+/// The lowest row of pixels that the floor may leave to the sky.
+int Stage::sky_bottom(const Matrices& m, const View& view, float ground) const {
+  const Vec3<float> ahead(view.target.x() - view.eye.x(), view.target.y() - view.eye.y(), 0);
+  if (view.eye.z() <= ground || ahead.norm() < 1e-3f * view.unit) return 0;
+  // The floor reaches 120 units in every direction; half of it is enough for what stands aside of `ahead`.
+  Vec3<float> edge = view.eye + ahead.normalized() * (60 * view.unit);
+  edge.z() = ground;
+  const Eigen::Vector4f clip = m.view_projection * edge.homogeneous();
+  if (clip.w() <= 0) return 0;
+  const float row = (clip.y() / clip.w() + 1) * 0.5f * float(options_.height);
+  return static_cast<int>(std::clamp(row - 2, 0.f, float(options_.height)));
+}
+
 /// Sky and floor, whose grid is antialiased by its shader: one sample is enough. Only the floor near a figure
 /// is asked for shadow and occlusion.
 void Stage::draw_background(const Matrices& m, const View& view, float ground, const Regions& regions) {
@@ -423,7 +436,7 @@ void Stage::draw_background(const Matrices& m, const View& view, float ground, c
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
   gl.Viewport(0, 0, options_.width, options_.height);
   use(sky_, m, view, ground);
-  draw_strip();
+  draw_strip({{0, sky_bottom(m, view, ground), options_.width, options_.height}});
   use(far_ground_, m, view, ground);
   draw_strip(regions.rest);
   use(near_ground_, m, view, ground);

@@ -62,6 +62,7 @@ class Stage {
   void draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
                    const std::vector<Area>& areas);
   void clear(const std::vector<Area>& areas, GLbitfield what);
+  int sky_bottom(const Matrices& m, const View& view, float ground) const;
   void read(Image& out);
   int half_width() const { return (options_.width + 1) / 2; }
   int half_height() const { return (options_.height + 1) / 2; }
