@@ -1,6 +1,7 @@
 // Shader sources. Every shader tone-maps its own output, so that buffers can stay 8 bits.
-// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, UNSHADOWED): llvmpipe runs both sides of an `if`.
-// Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is lit like a man.
+// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, TEXTURED, UNSHADOWED): llvmpipe runs both
+// sides of an `if`. Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is
+// lit like a man.
 #pragma once
 
 namespace sinew::render {
@@ -83,14 +84,18 @@ void main() {
   m /= abs(m.x) + abs(m.y) + abs(m.z);
   vec2 over = (1.0 - abs(m.yx)) * vec2(m.x < 0.0 ? -1.0 : 1.0, m.y < 0.0 ? -1.0 : 1.0);
   folded = m.z < 0.0 ? over : m.xy;
-  vec3 texel = pow(texture(albedo_map, t).rgb, vec3(2.2));
-  surface = vec4(sqrt(mix(c.rgb * texel, c.rgb, c.a)), c.a);
+#ifdef TEXTURED
+  vec3 albedo = mix(c.rgb * pow(texture(albedo_map, t).rgb, vec3(2.2)), c.rgb, c.a);
+#else
+  vec3 albedo = c.rgb;
+#endif
+  surface = vec4(sqrt(albedo), c.a);
 }
 )";
 
-/// Lights the figure's samples and lays them over the background. Samples at one distance are one surface and lit
-/// together; where a nearer part ends within a pixel, two surfaces are. The loop ends in its middle, not at its head: llvmpipe runs
-/// a loop's body once more to find that no pixel of a block is left in it.
+/// Lights the figure's samples and lays them over the background. Samples at one distance are one surface and
+/// lit together; where a nearer part ends within a pixel, two surfaces are. The loop ends in its middle, not
+/// at its head: llvmpipe runs a loop's body once more to find that no pixel of a block is left in it.
 inline constexpr const char* kFigureFragment = R"(
 uniform sampler2DMS surface_map, normal_map, distance_map;
 uniform mat4 from_clip;

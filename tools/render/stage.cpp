@@ -139,6 +139,7 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
 bool Stage::set_up(std::string& error) {
   const std::string open = options_.fine ? "#define OCCLUSION\n" : "";
   surface_ = program(kFigureVertex, kSurfaceFragment, "", error);
+  textured_ = program(kFigureVertex, kSurfaceFragment, "#define TEXTURED\n", error);
   figure_ = program(kScreenVertex, kFigureFragment, open, error);
   shell_ = program(kFigureVertex, kShellFragment, "", error);
   ground_ = program(kGroundVertex, kGroundFragment, open, error);
@@ -148,8 +149,8 @@ bool Stage::set_up(std::string& error) {
   resolve_ = program(kScreenVertex, kResolveFragment, "", error);
   depth_ = program(kDepthVertex, kDepthFragment, "", error);
   floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
-  if (!surface_ || !figure_ || !shell_ || !ground_ || !near_ground_ || !far_ground_ || !sky_ || !resolve_ ||
-      !depth_ || !floor_depth_)
+  if (!surface_ || !textured_ || !figure_ || !shell_ || !ground_ || !near_ground_ || !far_ground_ || !sky_ ||
+      !resolve_ || !depth_ || !floor_depth_)
     return false;
   if (options_.fine) {
     distance_ = program(kScreenVertex, kDistanceFragment, "", error);
@@ -264,20 +265,16 @@ void Stage::set_up_vertices() {
   attribute(1, 3, offsetof(Vertex, normal));
   attribute(2, 2, offsetof(Vertex, uv));
   attribute(3, 4, offsetof(Vertex, color));
-  const std::uint8_t white[4] = {255, 255, 255, 255};
-  gl.GenTextures(1, &white_);
-  gl.BindTexture(GL_TEXTURE_2D, white_);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 }
 
+/// The material's texture; 0: it has none, or one that cannot be read.
 GLuint Stage::texture(const Material* material) {
-  if (!material || material->texture.empty()) return white_;
+  if (!material || material->texture.empty()) return 0;
   const auto found = textures_.find(material);
   if (found != textures_.end()) return found->second;
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
-  GLuint made = white_;
+  GLuint made = 0;
   if (decode_image(material->texture, width, height, rgba)) {
     const Gl& gl = context_->gl();
     gl.GenTextures(1, &made);
@@ -379,17 +376,18 @@ void Stage::draw_surface(const Geometry& geometry, const Matrices& m, const View
   gl.Viewport(0, 0, options_.width, options_.height);
   gl.ClearColor(kNoFigure, kNoFigure, kNoFigure, kNoFigure);
   clear(regions.figure, GL_COLOR_BUFFER_BIT);
-  clear(regions.near, GL_DEPTH_BUFFER_BIT);  // draw_occlusion() reads it there
+  gl.Clear(GL_DEPTH_BUFFER_BIT);  // of everything: draw_occlusion() reads it around the figure, too
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   use(floor_depth_, m, view, ground);
   draw_strip(regions.figure);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.BindVertexArray(array_);
   gl.ActiveTexture(GL_TEXTURE1);
-  use(surface_, m, view, ground);
   for (const Draw& d : geometry.draws) {
     if (d.skin_shell) continue;
-    gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
+    const GLuint albedo = texture(d.material);
+    gl.BindTexture(GL_TEXTURE_2D, albedo);
+    use(albedo == 0 ? surface_ : textured_, m, view, ground);
     draw_triangles(d);
   }
 }

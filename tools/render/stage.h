@@ -69,12 +69,12 @@ class Stage {
 
   std::unique_ptr<Context> context_;
   StageOptions options_;
-  GLuint surface_ = 0, figure_ = 0, shell_ = 0, ground_ = 0, near_ground_ = 0, far_ground_ = 0, sky_ = 0,
-         resolve_ = 0, depth_ = 0, floor_depth_ = 0, distance_ = 0, obscurance_ = 0, blur_ = 0;
+  GLuint surface_ = 0, textured_ = 0, figure_ = 0, shell_ = 0, ground_ = 0, near_ground_ = 0, far_ground_ = 0,
+         sky_ = 0, resolve_ = 0, depth_ = 0, floor_depth_ = 0, distance_ = 0, obscurance_ = 0, blur_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0, picture_target_ = 0;
   GLuint figure_maps_[3] = {}, figure_target_ = 0, shell_target_ = 0;  ///< surface, normal, depth
   GLuint half_distance_ = 0, half_target_ = 0, open_map_[2] = {}, open_target_[2] = {};
-  GLuint array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0, empty_array_ = 0, white_ = 0;
+  GLuint array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0, empty_array_ = 0;
   std::map<const Material*, GLuint> textures_;
   std::vector<std::uint8_t> bottom_up_;  ///< the picture as OpenGL hands it over
 };
