@@ -140,8 +140,7 @@ class Painter {
 };
 
 /// How many frames are drawn at a time: while llvmpipe's threads rasterise one, the next is skinned and
-/// sorted into tiles, which takes a single thread. More were no faster on two and four cores; of large
-/// pictures two would take gigabytes.
+/// sorted into tiles, which takes a single thread. Of large pictures two would take gigabytes.
 int painters_for(const Options& o, int frames) {
   constexpr int kLarge = 4096 * 2304;
   return frames < 2 || o.width * o.height > kLarge ? 1 : 2;
