@@ -1,49 +1,118 @@
 #!/usr/bin/env bash
 # Makes out/demo.mp4 (with its telemetry CSV and plot): the project's own character, or any file that Sinew can convert.
+# Says on standard error what it does; its only line on standard output is the last one.
 # Usage: tools/demo.sh [FILE]
 set -euo pipefail
+exec </dev/null # nothing below may wait for, or stumble over, what standard input is
+
+say() { printf '%s\n' "$*" >&2; }
+fail() {
+  say "demo: $*"
+  exit 1
+}
+
 source_file=${1:-}
-if [ -n "$source_file" ]; then
-  [ -f "$source_file" ] || { echo "demo: $source_file: no such file" >&2; exit 1; }
+if [ $# -gt 0 ]; then
+  [ -e "$source_file" ] || fail "$source_file: no such file"
+  [ -f "$source_file" ] && [ -r "$source_file" ] || fail "$source_file: cannot be read as a file"
   source_file=$(realpath "$source_file")
 fi
 cd "$(dirname "$0")/.."
 
+job= # the build, while it runs in the background
+work=out/.making
+clean_up() {
+  if [ -n "$job" ]; then kill "$job" 2>/dev/null || true; fi
+  rm -rf "$work"
+}
+trap clean_up EXIT
+trap 'exit 130' INT TERM
+
+shown=0
+# progress DONE TOTAL BEGIN: one line that changes on a terminal; without one, a line every ten seconds.
+progress() {
+  local done=$1 total=$2 passed=$((SECONDS - $3)) left=
+  if [ "$done" -gt 0 ] && [ "$passed" -gt 2 ]; then left=", $((passed * (total - done) / done)) s left"; fi
+  if [ -t 2 ]; then
+    printf '\rbuilding %s of %s%s\033[K' "$done" "$total" "$left" >&2
+  elif [ $((SECONDS - shown)) -ge 10 ]; then
+    say "building $done of $total$left"
+    shown=$SECONDS
+  fi
+}
+
+# The build folder is also that of tests/run.sh, which asks for tests and samples: they are left out where this is the
+# first to configure it, or the first to succeed, and never taken away.
+build() {
+  local log=build/build.log begin=$SECONDS steps
+  mkdir -p build
+  : >"$log"
+  if [ ! -f build/CMakeCache.txt ] || [ ! -f build/build.ninja ]; then
+    say "configuring …"
+    cmake -G Ninja -S . -B build -DSINEW_TESTS=OFF -DSINEW_SAMPLES=OFF >>"$log" 2>&1 || return 1
+  fi
+  NINJA_STATUS='%f of %t ' ninja -C build sinew_cli >>"$log" 2>&1 &
+  job=$!
+  shown=$SECONDS
+  while kill -0 "$job" 2>/dev/null; do
+    sleep 0.3
+    steps=$(tail -n 40 "$log" | grep -oE '^[0-9]+ of [0-9]+ ' | tail -n 1 || true)
+    # shellcheck disable=SC2086 # "137 of 160 " is three words
+    if [ -n "$steps" ]; then set -- $steps && progress "$1" "$3" "$begin"; fi
+  done
+  if [ -t 2 ]; then printf '\r\033[K' >&2; fi
+  steps=$job
+  job=
+  wait "$steps"
+}
+
 tools/setup.sh
-mkdir -p build out
-echo "building …" >&2
-if ! { cmake -G Ninja -S . -B build && ninja -C build sinew_cli; } >build/build.log 2>&1; then
+say "building …"
+if ! build; then
   tail -n 30 build/build.log >&2
-  echo "demo: the build failed (whole log: build/build.log)" >&2
-  exit 1
+  culprit=$(grep -m 1 -E '^FAILED: |CMake Error|error: ' build/build.log || true)
+  fail "the build failed${culprit:+: $culprit} (whole log: build/build.log)"
 fi
 sinew=build/sinew
 
 # Nothing changed since the last run: nothing to do.
+mkdir -p out
 stamp=$(sha256sum "$sinew" assets/character/* assets/scenes/*.json ${source_file:+"$source_file"} | sha256sum | cut -d' ' -f1)
 if [ -f out/demo.mp4 ] && [ -f out/demo.csv ] && [ -f out/demo.png ] && [ "$(cat out/.stamp 2>/dev/null)" = "$stamp" ]; then
   echo "out/demo.mp4, out/demo.csv and out/demo.png are up to date"
   exit 0
 fi
 
+convert() { # convert NAME INPUT OPTIONS…
+  say "converting $2 …"
+  "$sinew" convert "${@:2}" -o "$work/$1.sinew" >>out/convert.log || fail "$2 could not be converted"
+}
+render() { # render WHAT INPUT OPTIONS…
+  say "simulating and rendering $1 …"
+  "$sinew" render "${@:2}" >/dev/null || fail "$1 could not be rendered"
+}
+
+# Everything is made in a folder of its own: under the final names there are whole files only, and all of one run.
+rm -rf "$work"
+mkdir "$work"
+: >out/convert.log
 if [ -n "$source_file" ]; then
-  echo "converting $source_file …" >&2
-  "$sinew" convert "$source_file" -o out/demo.sinew >out/convert.log
-  echo "simulating and rendering …" >&2
-  "$sinew" render out/demo.sinew --demo --telemetry out/demo.csv -o out/demo.mp4 >/dev/null
+  convert demo "$source_file"
+  render "its video" "$work/demo.sinew" --demo --telemetry "$work/demo.csv" -o "$work/demo.mp4"
 else
-  echo "converting the project's character and Debian's motion capture …" >&2
-  "$sinew" convert assets/character/mannequin.glb --options assets/character/mannequin.json -o out/mannequin.sinew >out/convert.log
-  "$sinew" convert /usr/share/assimp/models/BVH/01_01.bvh -o out/mocap.sinew >>out/convert.log
-  cp assets/scenes/demo.json out/demo.json
-  echo "simulating and rendering …" >&2
-  "$sinew" render out/demo.json --telemetry out/demo.csv -o out/story.mp4 >/dev/null
-  "$sinew" render out/mocap.sinew --demo --mode xray --telemetry out/mocap.csv -o out/mocap.mp4 >/dev/null
+  convert mannequin assets/character/mannequin.glb --options assets/character/mannequin.json
+  convert mocap /usr/share/assimp/models/BVH/01_01.bvh
+  cp assets/scenes/demo.json "$work"
+  render "the story (1 of 2)" "$work/demo.json" --telemetry "$work/demo.csv" -o "$work/story.mp4"
+  render "motion capture (2 of 2)" "$work/mocap.sinew" --demo --mode xray --telemetry "$work/mocap.csv" -o "$work/mocap.mp4"
   # Both halves come from the same encoder: joined without encoding again.
-  printf "file '%s'\n" story.mp4 mocap.mp4 >out/halves.txt
-  ffmpeg -nostdin -loglevel error -y -f concat -i out/halves.txt -c copy -movflags +faststart out/joined.mp4
-  mv out/joined.mp4 out/demo.mp4
-  rm -f out/halves.txt out/story.mp4 out/mocap.mp4
+  printf "file '%s'\n" story.mp4 mocap.mp4 >"$work/halves.txt"
+  ffmpeg -nostdin -loglevel error -y -f concat -i "$work/halves.txt" -c copy -movflags +faststart "$work/demo.mp4" ||
+    fail "ffmpeg could not join the two halves"
+  rm "$work"/halves.txt "$work"/story.mp4 "$work"/mocap.mp4
 fi
+[ -f "$work/demo.png" ] || fail "gnuplot made no plot of the telemetry"
+rm -f out/.stamp
+mv "$work"/* out
 echo "$stamp" >out/.stamp
-echo "out/demo.mp4: video; out/demo.csv and out/demo.png: telemetry and its plot"
+echo "made out/demo.mp4 (video), out/demo.csv and out/demo.png (telemetry and its plot) in $SECONDS s"

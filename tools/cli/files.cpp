@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -58,18 +60,23 @@ convert::Error read_json(const std::string& path, nlohmann::json& out) {
   return {};
 }
 
-std::function<void(int, int)> progress_bar(const std::string& what) {
-  if (!isatty(STDERR_FILENO)) return {};
-  const auto begin = std::chrono::steady_clock::now();
-  auto shown = std::make_shared<int>(-1);
+std::function<void(int, int)> progress_line(const std::string& what) {
+  using Clock = std::chrono::steady_clock;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  // Before the first line the pace is not known; what is done sooner needs none.
+  const auto pause = terminal ? std::chrono::milliseconds(250) : std::chrono::milliseconds(10000);
+  const auto begin = Clock::now();
+  auto next = std::make_shared<Clock::time_point>(begin + std::max(pause, std::chrono::milliseconds(1000)));
+  auto shown = std::make_shared<bool>(false);
   return [=](int done, int total) {
-    if (total <= 0 || std::chrono::steady_clock::now() - begin < std::chrono::seconds(1)) return;
-    const int percent = 100 * done / total;
-    if (percent == *shown) return;
-    *shown = percent;
-    std::fprintf(stderr, "\r%s [%-40s] %3d %%%s", what.c_str(),
-                 std::string(static_cast<std::size_t>(percent * 2 / 5), '#').c_str(), percent,
-                 done >= total ? "\n" : "");
+    const auto now = Clock::now();
+    const bool last = done >= total;
+    if (total <= 0 || done <= 0 || (last ? !(terminal && *shown) : now < *next)) return;
+    *next = now + pause;
+    *shown = true;
+    const double left = std::chrono::duration<double>(now - begin).count() * (total - done) / done;
+    std::fprintf(stderr, "%s%s %d of %d, %.0f s left%s%s", terminal ? "\r" : "", what.c_str(), done, total,
+                 std::ceil(left), terminal ? "\033[K" : "", terminal && !last ? "" : "\n");
   };
 }
 

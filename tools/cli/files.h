@@ -18,8 +18,9 @@ convert::Error write_atomically(const std::string& path, const std::string& text
 
 convert::Error read_json(const std::string& path, nlohmann::json& out);
 
-/// Progress bar on a terminal once a job runs over a second; silent otherwise.
-std::function<void(int, int)> progress_bar(const std::string& what);
+/// "WHAT 210 of 900, 34 s left" on standard error: on a terminal one line that changes, from the
+/// second second on; elsewhere a line every ten seconds.
+std::function<void(int, int)> progress_line(const std::string& what);
 
 /// One line of JSON; bytes of file names that are not UTF-8 become U+FFFD.
 std::string json_text(const nlohmann::json& json);

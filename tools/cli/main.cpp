@@ -148,7 +148,8 @@ struct SimulateCommand {
     if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
-    if (Error error = sinew::scene::run_scene(scene, recording, telemetry, cli::progress_bar("simulate")))
+    if (Error error =
+            sinew::scene::run_scene(scene, recording, telemetry, cli::progress_line("simulate: frame")))
       return {scene_file + ": " + error.message};
     const json summary = sinew::scene::telemetry_summary(scene, telemetry);
     const bool as_json = std::filesystem::path(output).extension() == ".json";
@@ -216,7 +217,8 @@ struct RenderCommand {
     if (Error error = source.read(conversion)) return error;
     if (Error error = sinew::convert::open_any(input, conversion, *asset, report)) return error;
     if (demo) return render_scene(sinew::scene::demo_scene(asset));
-    if (Error error = sinew::render::render_asset(asset, options, output, cli::progress_bar("render")))
+    if (Error error =
+            sinew::render::render_asset(asset, options, output, cli::progress_line("render: frame")))
       return error;
     return done();
   }
@@ -235,7 +237,7 @@ struct RenderCommand {
         std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
     }
     if (Error error =
-            sinew::render::render_recording(recording, options, output, cli::progress_bar("render")))
+            sinew::render::render_recording(recording, options, output, cli::progress_line("render: frame")))
       return error;
     return done();
   }

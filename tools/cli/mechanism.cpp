@@ -46,7 +46,7 @@ Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& o
   if (const std::string fault = mechanism::load_mechanism(path, description); !fault.empty()) return {fault};
   const multibody::Model model(description);
   const double t_end = options.t_end > 0 ? options.t_end : description.t_end;
-  const auto bar = progress_bar("simulate");
+  const auto bar = progress_line("simulate");
   const auto progress = [&](double t) {
     if (bar) bar(static_cast<int>(1000 * std::min(t, t_end) / t_end), 1000);
   };

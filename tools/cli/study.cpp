@@ -50,9 +50,9 @@ convert::Error draw_maps(const std::string& directory, bool quick) {
     return study::draw_map(map, file + ".png");
   };
   if (convert::Error error =
-          draw(study::map_of_speeds(quick, progress_bar("joint speeds")), "failure_map_speed"))
+          draw(study::map_of_speeds(quick, progress_line("joint speeds")), "failure_map_speed"))
     return error;
-  return draw(study::map_of_masses(quick, progress_bar("mass ratios")), "failure_map_mass");
+  return draw(study::map_of_masses(quick, progress_line("mass ratios")), "failure_map_mass");
 }
 
 /// The maps of a directory, for the report.
@@ -83,7 +83,7 @@ convert::Error StabilityCommand::run() const {
     std::fflush(stdout);
   };
   const auto results =
-      study::run_stability({quick, only}, json_output ? progress_bar("stability") : nullptr, print);
+      study::run_stability({quick, only}, json_output ? progress_line("stability") : nullptr, print);
   if (results.empty()) return {"there is no hard case '" + only + "'"};
   const nlohmann::json summary = study::stability_json(results);
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))
@@ -100,7 +100,7 @@ convert::Error StabilityCommand::run() const {
 
 /// The dial's data, as the scene loader and the runtime take it.
 convert::Error AccuracyCommand::write_presets(nlohmann::json& dial) const {
-  const auto front = study::dial_front(study::measure_dial(quick, progress_bar("presets")));
+  const auto front = study::dial_front(study::measure_dial(quick, progress_line("presets")));
   char date[32];
   const std::time_t now = std::time(nullptr);
   std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
@@ -113,7 +113,7 @@ convert::Error AccuracyCommand::write_presets(nlohmann::json& dial) const {
 convert::Error AccuracyCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
   const auto results =
-      study::run_accuracy({quick, only, directory + "/accuracy_points.jsonl"}, progress_bar("accuracy"));
+      study::run_accuracy({quick, only, directory + "/accuracy_points.jsonl"}, progress_line("accuracy"));
   if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
   const std::string base = directory + "/accuracy";
   nlohmann::json dial;
@@ -147,7 +147,7 @@ convert::Error EffectsCommand::run() const {
   if (!std::filesystem::exists(program, unknown))
     return {program + ": the counting program does not stand beside sinew"};
   study::EffectStudy found;
-  if (convert::Error error = study::run_effects({program, directory, quick}, progress_bar("effects"), found))
+  if (convert::Error error = study::run_effects({program, directory, quick}, progress_line("effects"), found))
     return error;
   const std::string base = directory + "/effects";
   if (convert::Error error = write_atomically(base + ".csv", study::effects_csv(found))) return error;

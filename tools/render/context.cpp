@@ -3,9 +3,13 @@
 // glcorearb.h first: osmesa.h pulls in gl.h, whose declarations are a subset.
 #include <GL/osmesa.h>
 
+#include <mutex>
+
 namespace sinew::render {
 
 std::unique_ptr<Context> Context::create(std::string& error) {
+  static std::mutex one_at_a_time;  // OSMesa sets itself up in the first call
+  const std::lock_guard lock(one_at_a_time);
   const int attributes[] = {OSMESA_FORMAT,
                             OSMESA_RGBA,
                             OSMESA_DEPTH_BITS,

@@ -8,7 +8,8 @@
 
 namespace sinew::render {
 
-/// OSMesa, core profile 3.3, no display and no GPU needed. All drawing goes to our own framebuffers.
+/// OSMesa, core profile 3.3, no display and no GPU needed. All drawing goes to our own framebuffers. Made,
+/// used and destroyed by one thread, in which it is current.
 class Context {
  public:
   static std::unique_ptr<Context> create(std::string& error);

@@ -91,7 +91,10 @@ void append_mesh(const Asset& asset, const Mesh& mesh, const Palette& palette,
     out.vertices.push_back(made);
   }
   for (const std::uint32_t i : mesh.indices) out.indices.push_back(first_vertex + i);
-  out.close_draw(first_index, {.material = material, .skin_shell = shell});
+  const auto known = out.closed.find(&mesh);
+  const bool closed =
+      known != out.closed.end() ? known->second : (out.closed[&mesh] = is_closed(mesh));  // of the bind pose
+  out.close_draw(first_index, {.material = material, .skin_shell = shell, .closed = closed});
 }
 
 }  // namespace
@@ -107,6 +110,43 @@ void Geometry::close_draw(std::size_t first, const Draw& like) {
   draws.push_back(like);
   draws.back().first = static_cast<int>(first);
   draws.back().count = static_cast<int>(indices.size() - first);
+}
+
+bool is_closed(const Mesh& mesh) {
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  const std::size_t count = mesh.positions.size() / 3;
+  const auto position = [&](std::uint32_t v) {
+    return Vec3<float>(mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]);
+  };
+  // Vertices at one place are one, whatever their normals and texture coordinates.
+  std::map<std::array<float, 3>, std::uint32_t> places;
+  std::vector<std::uint32_t> vertex(count), part(count);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const Vec3<float> p = position(v);
+    vertex[v] = part[v] = places.emplace(std::array{p.x(), p.y(), p.z()}, v).first->second;
+  }
+  const auto root = [&](std::uint32_t v) {
+    while (part[v] != v) v = part[v] = part[part[v]];
+    return v;
+  };
+  std::vector<Edge> there, back;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = vertex[mesh.indices[i + k]], b = vertex[mesh.indices[i + (k + 1) % 3]];
+      there.emplace_back(a, b);
+      back.emplace_back(b, a);
+      part[root(a)] = root(b);
+    }
+  std::sort(there.begin(), there.end());
+  std::sort(back.begin(), back.end());
+  if (there != back || std::adjacent_find(there.begin(), there.end()) != there.end()) return false;
+  std::map<std::uint32_t, double> volumes;  // times six
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Vec3<float> a = position(mesh.indices[i]), b = position(mesh.indices[i + 1]),
+                      c = position(mesh.indices[i + 2]);
+    volumes[root(vertex[mesh.indices[i]])] += double(a.dot(b.cross(c)));
+  }
+  return std::all_of(volumes.begin(), volumes.end(), [](const auto& v) { return v.second > 0; });
 }
 
 Vec3<float> stress_color(float load) {

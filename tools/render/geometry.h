@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "scene/recording.h"
@@ -25,11 +26,16 @@ struct Geometry {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<Draw> draws;
+  std::map<const Mesh*, bool> closed;  ///< what is_closed() found; clear() keeps it
 
   void clear();
   /// Makes one draw of all indices from `first` on; none when there are none.
   void close_draw(std::size_t first, const Draw& like);
 };
+
+/// Whether every edge joins exactly two triangles that agree about what is outside, and every part has its
+/// outside where triangles wind counter-clockwise: then nothing is lost when back faces are not drawn.
+bool is_closed(const Mesh& mesh);
 
 /// Slate → teal → green → amber → red over load 0 … 1, brightness rising with it so that it reads without
 /// colour vision. Linear RGB.

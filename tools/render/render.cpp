@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <cstring>
+#include <exception>
 #include <filesystem>
+#include <mutex>
 #include <optional>
+#include <thread>
 
 #include "render/camera.h"
 #include "render/overlay.h"
@@ -135,6 +139,83 @@ class Painter {
   Image part_;
 };
 
+/// How many frames are drawn at a time: while llvmpipe's threads rasterise one, the next is skinned and
+/// sorted into tiles, which takes a single thread. Of large pictures two would take gigabytes.
+int painters_for(const Options& o, int frames) {
+  constexpr int kLarge = 4096 * 2304;
+  return frames < 2 || o.width * o.height > kLarge ? 1 : 2;
+}
+
+/// Draws frames in several threads, each with a painter of its own, and hands them to the sink in order: what
+/// a picture shows does not depend on who draws it.
+class Workshop {
+ public:
+  using Draw = std::function<void(Painter&, int, Image&)>;
+  using Progress = std::function<void(int, int)>;
+
+  Workshop(Sink& sink, int frames, Draw draw, const Progress& progress)
+      : sink_(sink), frames_(frames), draw_(std::move(draw)), progress_(progress) {}
+
+  /// `first`: of the calling thread, as its context is current here.
+  Error run(Painter& first, const Options& o, bool clear) {
+    const int count = painters_for(o, frames_);
+    std::vector<std::thread> others;
+    for (int k = 1; k < count; ++k)
+      others.emplace_back([this, k, count, &o, clear] {
+        std::unique_ptr<Painter> own;
+        if (Error error = Painter::create(o, clear, own))
+          stop(error);
+        else
+          work(*own, k, count);
+      });
+    work(first, 0, count);
+    for (std::thread& thread : others) thread.join();
+    return error_;
+  }
+
+ private:
+  void work(Painter& painter, int first, int step) {
+    try {
+      Image image;
+      for (int n = first; n < frames_ && !stopped(); n += step) {
+        draw_(painter, n, image);
+        deliver(n, image);
+      }
+    } catch (const std::exception& unexpected) {  // memory ran out
+      stop({unexpected.what()});
+    }
+  }
+
+  void deliver(int n, Image& image) {
+    std::unique_lock lock(mutex_);
+    turn_.wait(lock, [&] { return next_ == n || error_; });
+    if (error_) return;
+    if (error_ = sink_.add(image); !error_ && progress_) progress_(n + 1, frames_);
+    ++next_;
+    turn_.notify_all();
+  }
+
+  void stop(const Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = error;
+    turn_.notify_all();
+  }
+
+  bool stopped() {
+    const std::lock_guard lock(mutex_);
+    return static_cast<bool>(error_);
+  }
+
+  Sink& sink_;
+  int frames_;
+  Draw draw_;
+  const Progress& progress_;
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  int next_ = 0;  ///< frame that the sink gets next
+  Error error_;
+};
+
 /// Which recorded frame each picture shows: the nearest in time.
 std::vector<std::size_t> pick_frames(const scene::Recording& rec, const Options& o, bool single) {
   const double duration = rec.frames.back().time - rec.frames.front().time - o.start;
@@ -194,14 +275,13 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   const std::vector<View> views = plan_camera(rec, painter->aspect());
   const std::vector<std::size_t> picked = pick_frames(rec, o, sink->single());
   const float ground = rec.ground ? *rec.ground : lowest_point(rec, rec.frames.size());
-  Image image;
-  for (std::size_t n = 0; n < picked.size(); ++n) {
-    painter->paint(rec, rec.frames[picked[n]], views[picked[n]], ground, image);
-    if (o.overlay) draw_overlay(rec, picked[n], o.theme == "dark", image);
-    if (error = sink->add(image); error) return error;
-    if (progress) progress(static_cast<int>(n) + 1, static_cast<int>(picked.size()));
-  }
-  return sink->finish();
+  const auto draw = [&](Painter& by, int n, Image& image) {
+    const std::size_t at = picked[static_cast<std::size_t>(n)];
+    by.paint(rec, rec.frames[at], views[at], ground, image);
+    if (o.overlay) draw_overlay(rec, at, o.theme == "dark", image);
+  };
+  error = Workshop(*sink, static_cast<int>(picked.size()), draw, progress).run(*painter, o, o.overlay);
+  return error ? error : sink->finish();
 }
 
 Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, const std::string& output,
@@ -223,14 +303,13 @@ Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, 
   const std::vector<View> views =
       plan_turntable(rec, painter->aspect(), turning ? o.frames_per_revolution : 0);
   const float ground = lowest_point(rec, 1);
-  Image image;
-  for (std::size_t n = 0; n < views.size(); ++n) {
-    painter->paint(rec, rec.frames[n], views[n], ground, image);
+  const auto draw = [&](Painter& by, int n, Image& image) {
+    const auto at = static_cast<std::size_t>(n);
+    by.paint(rec, rec.frames[at], views[at], ground, image);
     if (o.overlay) draw_title(*asset, o.theme == "dark", image);
-    if (error = sink->add(image); error) return error;
-    if (progress) progress(static_cast<int>(n) + 1, total);
-  }
-  return sink->finish();
+  };
+  error = Workshop(*sink, total, draw, progress).run(*painter, o, false);
+  return error ? error : sink->finish();
 }
 
 }  // namespace sinew::render

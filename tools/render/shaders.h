@@ -1,6 +1,7 @@
-// Shader sources. Every shader tone-maps its own output, so that the multisampled buffer can stay 8 bits.
-// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SHELL): llvmpipe runs both sides of an `if`.
-// Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is lit like a man.
+// Shader sources. Every shader tone-maps its own output, so that buffers can stay 8 bits.
+// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, TEXTURED, UNSHADOWED): llvmpipe runs both
+// sides of an `if`. Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is
+// lit like a man.
 #pragma once
 
 namespace sinew::render {
@@ -37,11 +38,11 @@ float vignette() {
 }
 #ifdef OCCLUSION
 uniform sampler2D occlusion_map; // half resolution: openness, distance
-float openness() { // of the four nearest texels, those at the same depth
+float openness(float depth) { // of the four nearest texels, those at the same distance
   vec2 at = gl_FragCoord.xy * 0.5 - 0.5;
   ivec2 low = ivec2(floor(at)), last = textureSize(occlusion_map, 0) - 1;
   vec2 f = at - vec2(low);
-  float depth = 1.0 / gl_FragCoord.w, sum = 0.0, weight = 1e-4;
+  float weight = 1e-4;
   float open = 1e-4;
   for (int i = 0; i < 4; ++i) {
     ivec2 o = ivec2(i & 1, i >> 1);
@@ -54,7 +55,7 @@ float openness() { // of the four nearest texels, those at the same depth
   return open / weight;
 }
 #else
-float openness() { return 1.0; }
+float openness(float depth) { return 1.0; }
 #endif
 )";
 
@@ -69,22 +70,41 @@ centroid out vec4 c;
 void main() { p = position; n = normal; t = uv; c = color; gl_Position = view_projection * vec4(position, 1.0); }
 )";
 
-inline constexpr const char* kFigureFragment = R"(
-centroid in vec3 p, n;
+/// What the figure is at every sample. Its light comes afterwards, once per pixel: llvmpipe shades 4x4 pixels
+/// for every triangle that touches one of them, and triangles are smaller than that.
+inline constexpr const char* kSurfaceFragment = R"(
+centroid in vec3 n;
 centroid in vec2 t;
 centroid in vec4 c;
 uniform sampler2D albedo_map;
-out vec4 result;
+layout(location = 0) out vec4 surface; // square root of the albedo, for 8 bits; share of stress
+layout(location = 1) out vec2 folded; // normal, octahedral
 void main() {
-  vec3 v = normalize(eye - p), m = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
-  float facing = max(dot(m, v), 0.0);
-#ifdef SHELL // skin around muscles: clear where one looks straight through, an outline at the rim
-  float edge = pow(1.0 - facing, 2.5);
-  result = vec4(mix(tone(rim_color), tone(c.rgb * 1.4), 0.8 * c.a), 0.05 + 0.62 * edge);
+  vec3 m = gl_FrontFacing ? n : -n;
+  m /= abs(m.x) + abs(m.y) + abs(m.z);
+  vec2 over = (1.0 - abs(m.yx)) * vec2(m.x < 0.0 ? -1.0 : 1.0, m.y < 0.0 ? -1.0 : 1.0);
+  folded = m.z < 0.0 ? over : m.xy;
+#ifdef TEXTURED
+  vec3 albedo = mix(c.rgb * pow(texture(albedo_map, t).rgb, vec3(2.2)), c.rgb, c.a);
 #else
-  vec3 texel = pow(texture(albedo_map, t).rgb, vec3(2.2));
-  vec3 albedo = mix(c.rgb * texel, c.rgb, c.a);
-  float open = openness();
+  vec3 albedo = c.rgb;
+#endif
+  surface = vec4(sqrt(albedo), c.a);
+}
+)";
+
+/// Lights the figure's samples and lays them over the background. Samples at one distance are one surface and
+/// lit together; where a nearer part ends within a pixel, two surfaces are. The loop ends in its middle, not
+/// at its head: llvmpipe runs a loop's body once more to find that no pixel of a block is left in it.
+inline constexpr const char* kFigureFragment = R"(
+uniform sampler2DMS surface_map, normal_map, distance_map;
+uniform mat4 from_clip;
+uniform vec2 near_far; // m
+out vec4 result;
+vec3 light(vec3 p, vec3 m, vec4 s, float away) {
+  vec3 v = normalize(eye - p), albedo = s.rgb * s.rgb;
+  float facing = max(dot(m, v), 0.0);
+  float open = openness(away);
   float lit = max(dot(m, light_direction), 0.0) * shadow(p, m, 0.0016) * mix(0.6, 1.0, open);
   // Ambient from sky and floor; a surface that looks down close to the floor sees little of either.
   float near_floor = 1.0 - 0.6 * exp(-8.0 * max(p.z - ground, 0.0) / unit) * (0.5 - 0.5 * m.z);
@@ -93,10 +113,66 @@ void main() {
   float gloss = pow(max(dot(m, h), 0.0), 40.0) * 0.16 * lit;
   float back = max(dot(m, normalize(vec3(-light_direction.xy, 0.35))), 0.0);
   vec3 rim = rim_color * pow(1.0 - facing, 3.0) * (0.2 + 0.8 * back) * open;
-  vec3 light = albedo * (key_color * lit + ambient) + key_color * gloss + rim;
-  light += c.rgb * c.a * c.a * 0.35; // what is saturated glows
-  result = vec4(tone(light), 1.0);
-#endif
+  vec3 sum = albedo * (key_color * lit + ambient) + key_color * gloss + rim;
+  return tone(sum + albedo * s.a * s.a * 0.35); // what is saturated glows
+}
+vec3 unfold(vec2 f) {
+  vec3 m = vec3(f, 1.0 - abs(f.x) - abs(f.y));
+  float back = max(-m.z, 0.0);
+  m.xy -= back * vec2(m.x < 0.0 ? -1.0 : 1.0, m.y < 0.0 ? -1.0 : 1.0);
+  return normalize(m);
+}
+void main() {
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  vec2 folded[SAMPLES];
+  float covered = 0.0;
+  for (int i = 0; i < SAMPLES; ++i) {
+    folded[i] = texelFetch(normal_map, here, i).rg;
+    covered += folded[i].x < 2.0 ? 1.0 : 0.0;
+  }
+  result = vec4(0.0);
+  float taken = 0.0, from = 0.0; // samples lit; m: those up to there are
+  for (int k = 0;; ++k) {
+    float away[SAMPLES], nearest = near_far.y;
+    for (int i = 0; i < SAMPLES; ++i) {
+      float d = texelFetch(distance_map, here, i).r * 2.0 - 1.0;
+      away[i] = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x));
+      if (folded[i].x < 2.0 && away[i] > from) nearest = min(nearest, away[i]);
+    }
+    float limit = nearest + 0.015 * unit, count = 0.0, far = 0.0;
+    vec3 m = vec3(0.0);
+    vec4 s = vec4(0.0);
+    for (int i = 0; i < SAMPLES; ++i) {
+      bool own = folded[i].x < 2.0 && away[i] > from && (away[i] <= limit || k == 1);
+      float w = own ? 1.0 : 0.0;
+      count += w;
+      far += w * away[i];
+      m += w * unfold(folded[i]);
+      s += w * texelFetch(surface_map, here, i);
+    }
+    float share = count / float(SAMPLES);
+    count = max(count, 1.0);
+    far /= count;
+    float z = (near_far.y + near_far.x - 2.0 * near_far.x * near_far.y / far) / (near_far.y - near_far.x);
+    vec4 p = from_clip * vec4(gl_FragCoord.xy / viewport * 2.0 - 1.0, z, 1.0);
+    vec4 lit = vec4(light(p.xyz / p.w, normalize(m), s / count, far), 1.0);
+    if (share > 0.0) result += share * lit;
+    taken += count;
+    from = limit;
+    if (taken >= covered || k == 1) break;
+  }
+}
+)";
+
+/// Skin around muscles: clear where one looks straight through, an outline at the rim.
+inline constexpr const char* kShellFragment = R"(
+centroid in vec3 p, n;
+centroid in vec4 c;
+out vec4 result;
+void main() {
+  vec3 v = normalize(eye - p), m = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
+  float edge = pow(1.0 - max(dot(m, v), 0.0), 2.5);
+  result = vec4(mix(tone(rim_color), tone(c.rgb * 1.4), 0.8 * c.a), 1.0) * (0.05 + 0.62 * edge);
 }
 )";
 
@@ -132,8 +208,12 @@ void main() {
   float fine = max(line(g.x, 0.006), line(g.y, 0.006)) * 0.4 * exp(-0.02 * off * off);
   float coarse = max(line(g.x * 0.25, 0.0028), line(g.y * 0.25, 0.0028));
   float spot = mix(1.0, exp(-0.045 * off * off), pool);
+#ifdef UNSHADOWED // nothing throws a shadow here
+  float lit = 1.0;
+#else
   float lit = shadow(p, vec3(0, 0, 1), 0.0030);
-  float open = openness();
+#endif
+  float open = openness(1.0 / gl_FragCoord.w);
   vec3 light = ground_color * (key_color * light_direction.z * mix(0.16, 1.0, lit) * mix(0.55, 1.0, open) * spot
                                + sky_color * 0.6 * mix(0.2, 1.0, open));
   light = mix(light, line_color * mix(0.45, 1.0, lit) * mix(0.35, 1.0, spot), max(fine, coarse) * 0.55);
@@ -165,18 +245,40 @@ inline constexpr const char* kScreenVertex = R"(
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0, 0.0, 1.0); }
 )";
 
+/// The skin's samples over the picture; they come multiplied by their coverage.
+inline constexpr const char* kResolveFragment = R"(
+uniform sampler2DMS surface_map;
+out vec4 result;
+void main() {
+  result = vec4(0.0);
+  for (int i = 0; i < SAMPLES; ++i) result += texelFetch(surface_map, ivec2(gl_FragCoord.xy), i) / float(SAMPLES);
+}
+)";
+
+/// Distance along the view of figure or floor, m, at half resolution.
+inline constexpr const char* kDistanceFragment = R"(
+uniform sampler2DMS distance_map;
+uniform mat4 from_clip;
+uniform vec2 near_far; // m
+out float result;
+void main() {
+  vec2 at = 2.0 * gl_FragCoord.xy;
+  float d = texelFetch(distance_map, min(ivec2(at), ivec2(viewport) - 1), 0).r * 2.0 - 1.0;
+  vec4 end = from_clip * vec4(at / viewport * 2.0 - 1.0, 1.0, 1.0);
+  float down = (ground - eye.z) / (end.z / end.w - eye.z); // share of the view ray to the floor
+  result = min(2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x)),
+               near_far.y * (down > 0.0 ? down : 1.0));
+}
+)";
+
 /// Scalable ambient obscurance (McGuire, Mara & Luebke 2012, equation 10 without the bias table): a spiral of
 /// taps around the pixel, turned by a 4x4 pattern that the blur takes out again.
 inline constexpr const char* kObscuranceFragment = R"(
-uniform sampler2D depth_map;
-uniform vec2 slope, near_far; // half view size at distance 1; m
+uniform sampler2D depth_map; // m
+uniform vec2 slope; // half view size at distance 1
 out vec2 result;
-float distance_at(ivec2 at) {
-  float d = texelFetch(depth_map, at, 0).r * 2.0 - 1.0;
-  return 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x));
-}
 vec3 position(ivec2 at) {
-  float z = distance_at(at);
+  float z = texelFetch(depth_map, at, 0).r;
   return vec3(((vec2(at) + 0.5) / vec2(textureSize(depth_map, 0)) * 2.0 - 1.0 - vec2(shift, 0.0)) * slope * z, -z);
 }
 vec3 smaller(vec3 a, vec3 b) { return abs(a.z) < abs(b.z) ? a : b; }
@@ -189,10 +291,12 @@ void main() {
   float radius = 0.26 * unit, squared = radius * radius;
   float reach = min(radius / (slope.y * -p.z) * 0.5 * float(last.y + 1), 0.25 * float(last.y + 1)); // texels
   float turn = float((here.x & 3) * 4 + (here.y & 3)) * 0.3926991;
+  const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688); // by 2.39996 rad: no sine per tap
+  vec2 along = reach / 14.0 * vec2(cos(turn), sin(turn));
   float sum = 0.0;
   for (int i = 0; i < 14; ++i) {
-    float share = (float(i) + 0.5) / 14.0, angle = turn + 2.39996 * float(i);
-    ivec2 at = clamp(here + ivec2(reach * share * vec2(cos(angle), sin(angle))), ivec2(0), last);
+    ivec2 at = clamp(here + ivec2((float(i) + 0.5) * along), ivec2(0), last);
+    along = golden * along;
     vec3 v = position(at) - p;
     float vv = dot(v, v), f = max(squared - vv, 0.0);
     sum += f * f * f * max((dot(v, n) - 0.006 * unit) / (vv + 1e-4 * unit * unit), 0.0);

@@ -1,5 +1,6 @@
 #include "render/stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -10,6 +11,7 @@ namespace sinew::render {
 namespace {
 
 constexpr int kShadowSize = 2048;
+constexpr float kNoFigure = 9;        ///< no component of a folded normal is that large
 constexpr float kShadowReach = 3.2f;  ///< times `unit`: m around the target that the shadow map covers
 
 using Mat4 = Eigen::Matrix4f;
@@ -96,8 +98,9 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
                       std::string& error) {
   const Gl& gl = context_->gl();
   const GLuint made = gl.CreateProgram();
-  const std::string head =
-      "#version 330 core\n#define SHADOW_TAPS " + std::string(options_.fine ? "16\n" : "6\n") + defines;
+  const std::string head = "#version 330 core\n#define SHADOW_TAPS " +
+                           std::string(options_.fine ? "16" : "6") + "\n#define SAMPLES " +
+                           std::to_string(options_.samples) + "\n" + defines;
   for (const auto& [kind, source] :
        {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
     const GLuint shader = gl.CreateShader(kind);
@@ -127,26 +130,36 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
   gl.Uniform1i(gl.GetUniformLocation(made, "albedo_map"), 1);
   gl.Uniform1i(gl.GetUniformLocation(made, "occlusion_map"), 2);
   gl.Uniform1i(gl.GetUniformLocation(made, "depth_map"), 2);
+  gl.Uniform1i(gl.GetUniformLocation(made, "surface_map"), 3);
+  gl.Uniform1i(gl.GetUniformLocation(made, "normal_map"), 4);
+  gl.Uniform1i(gl.GetUniformLocation(made, "distance_map"), 5);
   return made;
 }
 
 bool Stage::set_up(std::string& error) {
   const std::string open = options_.fine ? "#define OCCLUSION\n" : "";
-  figure_ = program(kFigureVertex, kFigureFragment, open, error);
-  shell_ = program(kFigureVertex, kFigureFragment, "#define SHELL\n", error);
+  surface_ = program(kFigureVertex, kSurfaceFragment, "", error);
+  textured_ = program(kFigureVertex, kSurfaceFragment, "#define TEXTURED\n", error);
+  figure_ = program(kScreenVertex, kFigureFragment, open, error);
+  shell_ = program(kFigureVertex, kShellFragment, "", error);
   ground_ = program(kGroundVertex, kGroundFragment, open, error);
   sky_ = program(kSkyVertex, kSkyFragment, "", error);
+  near_ground_ = program(kGroundVertex, kGroundFragment, open + "#define UNSHADOWED\n", error);
+  far_ground_ = program(kGroundVertex, kGroundFragment, "#define UNSHADOWED\n", error);
+  resolve_ = program(kScreenVertex, kResolveFragment, "", error);
   depth_ = program(kDepthVertex, kDepthFragment, "", error);
-  if (!figure_ || !shell_ || !ground_ || !sky_ || !depth_) return false;
+  floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
+  if (!surface_ || !textured_ || !figure_ || !shell_ || !ground_ || !near_ground_ || !far_ground_ || !sky_ ||
+      !resolve_ || !depth_ || !floor_depth_)
+    return false;
   if (options_.fine) {
-    floor_depth_ = program(kGroundVertex, kDepthFragment, "", error);
+    distance_ = program(kScreenVertex, kDistanceFragment, "", error);
     obscurance_ = program(kScreenVertex, kObscuranceFragment, "", error);
     blur_ = program(kScreenVertex, kBlurFragment, "", error);
-    if (!floor_depth_ || !obscurance_ || !blur_) return false;
+    if (!distance_ || !obscurance_ || !blur_) return false;
   }
   set_up_vertices();
-  if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) ||
-      !set_up_target(multi_target_, options_.samples) || !set_up_target(single_target_, 1)) {
+  if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) || !set_up_picture() || !set_up_figure()) {
     error = "no framebuffer of that size";
     return false;
   }
@@ -183,41 +196,56 @@ bool Stage::set_up_shadow() {
 
 bool Stage::set_up_occlusion() {
   const Gl& gl = context_->gl();
-  const int width = half_width(), height = half_height();
-  half_depth_ = map(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width, height, GL_NEAREST);
-  gl.GenFramebuffers(1, &half_target_);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, half_depth_, 0);
-  gl.DrawBuffer(GL_NONE);
-  gl.ReadBuffer(GL_NONE);
-  bool complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  gl.GenFramebuffers(2, open_target_);
-  for (int k = 0; k < 2; ++k) {
-    open_map_[k] = map(GL_RG16F, GL_RG, width, height, GL_NEAREST);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[k]);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, open_map_[k], 0);
+  bool complete = true;
+  const auto target = [&](GLuint& texture, GLuint& framebuffer, GLint format, GLenum channels) {
+    texture = map(format, channels, half_width(), half_height(), GL_NEAREST);
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     complete &= gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  }
+  };
+  target(half_distance_, half_target_, GL_R32F, GL_RED);
+  for (int k = 0; k < 2; ++k) target(open_map_[k], open_target_[k], GL_RG16F, GL_RG);
   return complete;
 }
 
-bool Stage::set_up_target(GLuint& framebuffer, int samples) {
+bool Stage::set_up_picture() {
   const Gl& gl = context_->gl();
-  GLuint buffers[2];
-  gl.GenRenderbuffers(2, buffers);
-  gl.GenFramebuffers(1, &framebuffer);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  for (int k = 0; k < 2; ++k) {
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[k]);
-    const GLenum format = k == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT24;
-    if (samples > 1)
-      gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, options_.width, options_.height);
-    else
-      gl.RenderbufferStorage(GL_RENDERBUFFER, format, options_.width, options_.height);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, k == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
-                               GL_RENDERBUFFER, buffers[k]);
-  }
+  GLuint color = 0;
+  gl.GenFramebuffers(1, &picture_target_);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.GenRenderbuffers(1, &color);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, color);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, options_.width, options_.height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color);
   return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+/// Multisampled textures of what the figure is, and a target that fills all of them; another for the skin
+/// around muscles, which takes over the first one's colours when they have been lit.
+bool Stage::set_up_figure() {
+  const Gl& gl = context_->gl();
+  const GLenum formats[] = {GL_RGBA8, GL_RG16F, GL_DEPTH_COMPONENT24},
+               places[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_DEPTH_ATTACHMENT};
+  gl.GenTextures(3, figure_maps_);
+  gl.GenFramebuffers(1, &figure_target_);
+  gl.GenFramebuffers(1, &shell_target_);
+  for (int k = 0; k < 3; ++k) {
+    gl.ActiveTexture(static_cast<GLenum>(GL_TEXTURE3 + k));
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, figure_maps_[k]);
+    gl.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, options_.samples, formats[k], options_.width,
+                             options_.height, GL_TRUE);
+    for (const GLuint target : {figure_target_, shell_target_}) {
+      if (k == 1 && target == shell_target_) continue;
+      gl.BindFramebuffer(GL_FRAMEBUFFER, target);
+      gl.FramebufferTexture2D(GL_FRAMEBUFFER, places[k], GL_TEXTURE_2D_MULTISAMPLE, figure_maps_[k], 0);
+    }
+  }
+  bool complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
+  gl.DrawBuffers(2, places);
+  complete &= gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  return complete;
 }
 
 void Stage::set_up_vertices() {
@@ -237,20 +265,16 @@ void Stage::set_up_vertices() {
   attribute(1, 3, offsetof(Vertex, normal));
   attribute(2, 2, offsetof(Vertex, uv));
   attribute(3, 4, offsetof(Vertex, color));
-  const std::uint8_t white[4] = {255, 255, 255, 255};
-  gl.GenTextures(1, &white_);
-  gl.BindTexture(GL_TEXTURE_2D, white_);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 }
 
+/// The material's texture; 0: it has none, or one that cannot be read.
 GLuint Stage::texture(const Material* material) {
-  if (!material || material->texture.empty()) return white_;
+  if (!material || material->texture.empty()) return 0;
   const auto found = textures_.find(material);
   if (found != textures_.end()) return found->second;
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
-  GLuint made = white_;
+  GLuint made = 0;
   if (decode_image(material->texture, width, height, rgba)) {
     const Gl& gl = context_->gl();
     gl.GenTextures(1, &made);
@@ -273,6 +297,8 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
     gl.Uniform3f(place(name), v.x(), v.y(), v.z());
   };
   gl.UniformMatrix4fv(place("view_projection"), 1, GL_FALSE, m.view_projection.data());
+  const Mat4 from_clip = m.view_projection.inverse();
+  gl.UniformMatrix4fv(place("from_clip"), 1, GL_FALSE, from_clip.data());
   gl.UniformMatrix4fv(place("light_matrix"), 1, GL_FALSE, m.light.data());
   vec("eye", view.eye);
   vec("target", view.target);
@@ -300,35 +326,121 @@ void Stage::use(GLuint program, const Matrices& m, const View& view, float groun
                std::sin(pitch + view.vertical_fov / 2));
 }
 
-void Stage::draw_depth(const Geometry& geometry, const Mat4& to_clip) {
+/// The quad of the vertex shaders that make their own vertices.
+void Stage::draw_strip() {
   const Gl& gl = context_->gl();
-  gl.BindVertexArray(array_);
-  gl.UseProgram(depth_);
-  gl.UniformMatrix4fv(gl.GetUniformLocation(depth_, "to_clip"), 1, GL_FALSE, to_clip.data());
-  for (const Draw& d : geometry.draws)
-    if (!d.skin_shell) draw_triangles(d);
-}
-
-void Stage::draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
-  const Gl& gl = context_->gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, half_target_);
-  gl.Viewport(0, 0, half_width(), half_height());
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_depth(geometry, m.view_projection);
-  use(floor_depth_, m, view, ground);
   gl.BindVertexArray(empty_array_);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
 
-  gl.Disable(GL_DEPTH_TEST);
-  gl.ActiveTexture(GL_TEXTURE2);
-  for (const int pass : {0, 1}) {
-    gl.BindFramebuffer(GL_FRAMEBUFFER, open_target_[pass]);
-    gl.BindTexture(GL_TEXTURE_2D, pass == 0 ? half_depth_ : open_map_[0]);
-    use(pass == 0 ? obscurance_ : blur_, m, view, ground);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+/// Only what of it lies in the areas.
+void Stage::draw_strip(const std::vector<Area>& areas) {
+  const Gl& gl = context_->gl();
+  gl.Enable(GL_SCISSOR_TEST);
+  for (const Area& area : areas) {
+    gl.Scissor(area.left, area.bottom, area.width(), area.height());
+    draw_strip();
   }
-  gl.BindTexture(GL_TEXTURE_2D, open_map_[1]);
-  gl.Enable(GL_DEPTH_TEST);
+  gl.Disable(GL_SCISSOR_TEST);
+}
+
+void Stage::clear(const std::vector<Area>& areas, GLbitfield what) {
+  const Gl& gl = context_->gl();
+  gl.Enable(GL_SCISSOR_TEST);
+  for (const Area& area : areas) {
+    gl.Scissor(area.left, area.bottom, area.width(), area.height());
+    gl.Clear(what);
+  }
+  gl.Disable(GL_SCISSOR_TEST);
+}
+
+void Stage::draw_shadow(const Geometry& geometry, const Matrices& m) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
+  gl.Viewport(0, 0, kShadowSize, kShadowSize);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  gl.BindVertexArray(array_);
+  gl.UseProgram(depth_);
+  gl.UniformMatrix4fv(gl.GetUniformLocation(depth_, "to_clip"), 1, GL_FALSE, m.light.data());
+  for (const Draw& d : geometry.draws)
+    if (!d.skin_shell) draw_triangles(d);
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
+}
+
+/// What the figure is at every sample, and the floor's depth there.
+void Stage::draw_surface(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                         const Regions& regions) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, figure_target_);
+  gl.Viewport(0, 0, options_.width, options_.height);
+  gl.ClearColor(kNoFigure, kNoFigure, kNoFigure, kNoFigure);
+  clear(regions.figure, GL_COLOR_BUFFER_BIT);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);  // of everything: draw_occlusion() reads it around the figure, too
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  use(floor_depth_, m, view, ground);
+  draw_strip(regions.figure);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.BindVertexArray(array_);
+  gl.ActiveTexture(GL_TEXTURE1);
+  for (const Draw& d : geometry.draws) {
+    if (d.skin_shell) continue;
+    const GLuint albedo = texture(d.material);
+    gl.BindTexture(GL_TEXTURE_2D, albedo);
+    use(albedo == 0 ? surface_ : textured_, m, view, ground);
+    draw_triangles(d);
+  }
+}
+
+/// Openness within areas of the picture; around them nothing occludes.
+void Stage::draw_occlusion(const Matrices& m, const View& view, float ground,
+                           const std::vector<Area>& areas) {
+  const Gl& gl = context_->gl();
+  std::vector<Area> halves;
+  for (const Area& a : areas)
+    halves.push_back({a.left / 2, a.bottom / 2, (a.right + 1) / 2, (a.top + 1) / 2});
+  const GLuint targets[] = {half_target_, open_target_[0], open_target_[1]},
+               programs[] = {distance_, obscurance_, blur_},
+               results[] = {half_distance_, open_map_[0], open_map_[1]};
+  gl.Viewport(0, 0, half_width(), half_height());
+  gl.ActiveTexture(GL_TEXTURE2);
+  for (int pass = 0; pass < 3; ++pass) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, targets[pass]);
+    gl.ClearColor(pass == 0 ? m.far : 1, m.far, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    use(programs[pass], m, view, ground);
+    draw_strip(halves);
+    gl.BindTexture(GL_TEXTURE_2D, results[pass]);
+  }
+}
+
+/// The lowest row of pixels that the floor may leave to the sky.
+int Stage::sky_bottom(const Matrices& m, const View& view, float ground) const {
+  const Vec3<float> ahead(view.target.x() - view.eye.x(), view.target.y() - view.eye.y(), 0);
+  if (view.eye.z() <= ground || ahead.norm() < 1e-3f * view.unit) return 0;
+  // The floor reaches 120 units in every direction; half of it is enough for what stands aside of `ahead`.
+  Vec3<float> edge = view.eye + ahead.normalized() * (60 * view.unit);
+  edge.z() = ground;
+  const Eigen::Vector4f clip = m.view_projection * edge.homogeneous();
+  if (clip.w() <= 0) return 0;
+  const float row = (clip.y() / clip.w() + 1) * 0.5f * float(options_.height);
+  return static_cast<int>(std::clamp(row - 2, 0.f, float(options_.height)));
+}
+
+/// Sky and floor, whose grid is antialiased by its shader: one sample is enough. Only the floor near a figure
+/// is asked for shadow and occlusion.
+void Stage::draw_background(const Matrices& m, const View& view, float ground, const Regions& regions) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.Viewport(0, 0, options_.width, options_.height);
+  use(sky_, m, view, ground);
+  draw_strip({{0, sky_bottom(m, view, ground), options_.width, options_.height}});
+  use(far_ground_, m, view, ground);
+  draw_strip(regions.rest);
+  use(near_ground_, m, view, ground);
+  draw_strip(regions.only_near);
+  use(ground_, m, view, ground);
+  draw_strip(regions.shadow);
 }
 
 void Stage::draw_triangles(const Draw& d) {
@@ -339,28 +451,34 @@ void Stage::draw_triangles(const Draw& d) {
   if (d.closed) gl.Disable(GL_CULL_FACE);
 }
 
-void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground) {
+void Stage::light_figure(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas) {
   const Gl& gl = context_->gl();
-  gl.BindVertexArray(array_);
-  gl.ActiveTexture(GL_TEXTURE1);
+  gl.Enable(GL_BLEND);
+  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   use(figure_, m, view, ground);
-  for (const Draw& d : geometry.draws)
-    if (!d.skin_shell) {
-      gl.BindTexture(GL_TEXTURE_2D, texture(d.material));
-      draw_triangles(d);
-    }
-  use(shell_, m, view, ground);
-  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  draw_strip(areas);
+  gl.Disable(GL_BLEND);
+}
+
+/// One skin after the other: its nearest part, over what is there.
+void Stage::draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                        const std::vector<Area>& areas) {
+  const Gl& gl = context_->gl();
+  gl.ClearColor(0, 0, 0, 0);
+  gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (const Draw& d : geometry.draws) {
     if (!d.skin_shell) continue;
-    // Depth first, so that only the nearest skin is blended.
-    gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, shell_target_);
+    clear(areas, GL_COLOR_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.BindVertexArray(array_);
+    use(shell_, m, view, ground);
     draw_triangles(d);
-    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl.DepthFunc(GL_LEQUAL);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+    gl.UseProgram(resolve_);
     gl.Enable(GL_BLEND);
-    draw_triangles(d);
-    gl.DepthFunc(GL_LESS);
+    draw_strip(areas);
     gl.Disable(GL_BLEND);
   }
 }
@@ -368,23 +486,24 @@ void Stage::draw_figure(const Geometry& geometry, const Matrices& m, const View&
 void Stage::read(Image& out) {
   const Gl& gl = context_->gl();
   const int width = options_.width, height = options_.height;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, multi_target_);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, single_target_);
-  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, single_target_);
   const std::size_t row = std::size_t(width) * 4;
-  std::vector<std::uint8_t> bottom_up(row * std::size_t(height));
-  gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up.data());
+  bottom_up_.resize(row * std::size_t(height));
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up_.data());
   out.width = width;
   out.height = height;
-  out.pixels.resize(bottom_up.size());
+  out.pixels.resize(bottom_up_.size());
   for (std::size_t y = 0; y < std::size_t(height); ++y)
-    std::memcpy(&out.pixels[y * row], &bottom_up[(std::size_t(height) - 1 - y) * row], row);
+    std::memcpy(&out.pixels[y * row], &bottom_up_[(std::size_t(height) - 1 - y) * row], row);
 }
 
 void Stage::draw(const Geometry& geometry, const View& view, float ground, Image& out) {
   const Gl& gl = context_->gl();
   const Matrices m(view, float(options_.width) / float(options_.height));
+  const Regions regions =
+      find_regions(geometry, {m.view_projection, m.light_direction, ground, view.unit,
+                              0.5f * float(options_.height) / std::tan(view.vertical_fov / 2), options_.width,
+                              options_.height});
   gl.BindVertexArray(array_);
   gl.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
   gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(geometry.vertices.size() * sizeof(Vertex)),
@@ -392,27 +511,18 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
                 static_cast<GLsizeiptr>(geometry.indices.size() * sizeof(std::uint32_t)),
                 geometry.indices.data(), GL_STREAM_DRAW);
-
+  const auto has = [&](bool shell) {
+    return std::any_of(geometry.draws.begin(), geometry.draws.end(),
+                       [&](const Draw& d) { return d.skin_shell == shell; });
+  };
   gl.Enable(GL_DEPTH_TEST);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_);
-  gl.Viewport(0, 0, kShadowSize, kShadowSize);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  draw_depth(geometry, m.light);
-  if (options_.fine) draw_occlusion(geometry, m, view, ground);
-
-  gl.BindFramebuffer(GL_FRAMEBUFFER, multi_target_);
-  gl.Viewport(0, 0, options_.width, options_.height);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
-  gl.ActiveTexture(GL_TEXTURE0);
-  gl.BindTexture(GL_TEXTURE_2D, shadow_map_);
-  gl.BindVertexArray(empty_array_);
+  draw_shadow(geometry, m);
+  draw_surface(geometry, m, view, ground, regions);
   gl.Disable(GL_DEPTH_TEST);
-  use(sky_, m, view, ground);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  gl.Enable(GL_DEPTH_TEST);
-  use(ground_, m, view, ground);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  draw_figure(geometry, m, view, ground);
+  if (options_.fine) draw_occlusion(m, view, ground, regions.near);
+  draw_background(m, view, ground, regions);
+  if (has(false)) light_figure(m, view, ground, regions.figure);
+  if (has(true)) draw_shells(geometry, m, view, ground, regions.figure);
   read(out);
 }
 

@@ -1,5 +1,5 @@
-// Draws one frame of geometry: sky, ground grid, soft shadow, ambient occlusion, lit figure; multisampled,
-// tone-mapped, read back.
+// Draws one frame of geometry: sky, ground grid, soft shadow, ambient occlusion, lit figure; multisampled
+// where the figure is, tone-mapped, read back.
 #pragma once
 
 #include <map>
@@ -10,6 +10,7 @@
 #include "render/context.h"
 #include "render/geometry.h"
 #include "render/image.h"
+#include "render/region.h"
 
 namespace sinew::render {
 
@@ -41,7 +42,8 @@ class Stage {
   bool set_up(std::string& error);
   bool set_up_shadow();
   bool set_up_occlusion();
-  bool set_up_target(GLuint& framebuffer, int samples);
+  bool set_up_picture();
+  bool set_up_figure();
   void set_up_vertices();
   GLuint program(const char* vertex, const char* fragment, const std::string& defines, std::string& error);
   /// A texture to draw into; bound afterwards.
@@ -49,21 +51,32 @@ class Stage {
   GLuint texture(const Material* material);
   void use(GLuint program, const Matrices& m, const View& view, float ground);
   void draw_triangles(const Draw& d);
-  void draw_depth(const Geometry& geometry, const Eigen::Matrix4f& to_clip);
-  void draw_occlusion(const Geometry& geometry, const Matrices& m, const View& view, float ground);
-  void draw_figure(const Geometry& geometry, const Matrices& m, const View& view, float ground);
+  void draw_strip();
+  void draw_strip(const std::vector<Area>& areas);
+  void draw_shadow(const Geometry& geometry, const Matrices& m);
+  void draw_surface(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                    const Regions& regions);
+  void draw_occlusion(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas);
+  void draw_background(const Matrices& m, const View& view, float ground, const Regions& regions);
+  void light_figure(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas);
+  void draw_shells(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                   const std::vector<Area>& areas);
+  void clear(const std::vector<Area>& areas, GLbitfield what);
+  int sky_bottom(const Matrices& m, const View& view, float ground) const;
   void read(Image& out);
   int half_width() const { return (options_.width + 1) / 2; }
   int half_height() const { return (options_.height + 1) / 2; }
 
   std::unique_ptr<Context> context_;
   StageOptions options_;
-  GLuint figure_ = 0, shell_ = 0, ground_ = 0, sky_ = 0, depth_ = 0, floor_depth_ = 0, obscurance_ = 0,
-         blur_ = 0;
-  GLuint shadow_map_ = 0, shadow_target_ = 0, multi_target_ = 0, single_target_ = 0;
-  GLuint half_depth_ = 0, half_target_ = 0, open_map_[2] = {}, open_target_[2] = {};
-  GLuint array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0, empty_array_ = 0, white_ = 0;
+  GLuint surface_ = 0, textured_ = 0, figure_ = 0, shell_ = 0, ground_ = 0, near_ground_ = 0, far_ground_ = 0,
+         sky_ = 0, resolve_ = 0, depth_ = 0, floor_depth_ = 0, distance_ = 0, obscurance_ = 0, blur_ = 0;
+  GLuint shadow_map_ = 0, shadow_target_ = 0, picture_target_ = 0;
+  GLuint figure_maps_[3] = {}, figure_target_ = 0, shell_target_ = 0;  ///< surface, normal, depth
+  GLuint half_distance_ = 0, half_target_ = 0, open_map_[2] = {}, open_target_[2] = {};
+  GLuint array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0, empty_array_ = 0;
   std::map<const Material*, GLuint> textures_;
+  std::vector<std::uint8_t> bottom_up_;  ///< the picture as OpenGL hands it over
 };
 
 }  // namespace sinew::render
