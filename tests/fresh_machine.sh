@@ -106,6 +106,7 @@ make_root() {  # make_root USER
     chroot "$root" useradd -m -s /bin/bash "$1"
     echo "$1 ALL=(ALL) NOPASSWD: ALL" >"$root/etc/sudoers.d/$1"
   fi
+  echo "127.0.0.1 localhost $(hostname)" >"$root/etc/hosts"
   git clone -q . "$root/sinew"
   chroot "$root" chown -R "$1" /sinew
 }
@@ -119,7 +120,7 @@ inside() {  # inside USER COMMAND
     environment+=(HOME="/home/$1" LANG=C.UTF-8 CCACHE_READONLY=1 CCACHE_TEMPDIR=/tmp/ccache)
   fi
   unshare --pid --fork --kill-child --mount-proc="$root/proc" \
-    chroot "$root" setpriv --reuid "$1" --regid "$1" --init-groups --reset-env \
+    chroot "$root" setpriv --reuid "$1" --regid "$1" --init-groups \
     env -i "${environment[@]}" sh -c "cd /sinew && $2" </dev/null
 }
 
