@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs, builds and tests. Says how far it is; ends with one line (and, with CI set, ctest's own summary last).
-# Usage: tests/run.sh [--all]     --all adds the format check, clang-tidy (.clang-tidy), the address and
-# undefined-behaviour sanitizers, 2000 random trees, two minutes of soak and the accuracy study's report
-# (build/study/accuracy.html), and a line with the seconds of each stage. tests/README.md says more.
+# Usage: tests/run.sh [--all | --format | --tidy | --sanitizers]
+#   --all adds the format check, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
+#   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
+#   each stage; the others run that stage alone. tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/progress.sh
@@ -83,8 +84,8 @@ tidy() {
 sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
-  stage "sanitizers, build" build build-asan "building build-asan"
-  stage "sanitizers, tests" run build-asan
+  stage "sanitizers: build" build build-asan "building build-asan"
+  stage "sanitizers: tests" run build-asan
   [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
 }
 
@@ -116,10 +117,20 @@ summary() {
   if [ -n "${CI:-}" ]; then grep -E 'tests passed|Total Test time' build/test.log; fi
 }
 
+one_stage() {  # one_stage NAME COMMAND
+  all=yes
+  stage "set-up" tools/setup.sh --tests
+  stage "$@"
+  exit 0
+}
+
 case ${1:-} in
   '') all= ;;
   --all) all=yes ;;
-  *) echo "tests: no such option: $1 (there is --all; for one test or folder: tests/README.md)" >&2; exit 2 ;;
+  --format) one_stage "format" format ;;
+  --tidy) one_stage "clang-tidy" tidy ;;
+  --sanitizers) one_stage "sanitizers" sanitizers ;;
+  *) echo "tests: no such option: $1 (tests/README.md lists them, and says how to run one test)" >&2; exit 2 ;;
 esac
 stage "set-up" tools/setup.sh --tests
 [ -z "$all" ] || stage "format" format
@@ -127,7 +138,7 @@ stage "build" build_tests
 stage "tests" run build
 if [ -n "$all" ]; then
   stage "clang-tidy" tidy
-  sanitizers
+  stage "sanitizers" sanitizers
   stage "at length" at_length
 fi
 summary
