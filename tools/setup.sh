@@ -52,33 +52,6 @@ progress_of_apt() {  # progress_of_apt LOG: apt's own words count what it fetche
   progress_end
 }
 
-install() {  # may_install PACKAGE…: a password is asked for here, while nothing hides the question
-  [ "$(id -u)" -eq 0 ] && return
-  if ! command -v sudo >/dev/null; then
-    echo "setup: this needs root or sudo, and there is neither; to be installed by someone who may: apt-get install $*" >&2
-    exit 1
-  fi
-  if ! sudo true; then
-    echo "setup: sudo refused; to be installed by someone who may: apt-get install $*" >&2
-    exit 1
-  fi
-}
-
-progress_of_apt() {  # progress_of_apt LOG: apt's own words count what it fetched, unpacked and set up
-  local line all='?' fetched=0 done=0 progress_pause=10
-  while IFS= read -r line; do
-    printf '%s\n' "$line"
-    case $line in
-      *' newly installed, '*) [[ $line =~ ([0-9]+)\ upgraded,\ ([0-9]+)\ newly ]] && all=$((BASH_REMATCH[1] + BASH_REMATCH[2])) ;;
-      'Get:'*) [ "$all" = '?' ] || fetched=$((fetched + 1)) ;;
-      'Setting up '*) done=$((done + 1)) ;;
-    esac
-    if [ $done -gt 0 ]; then progress_line "set up $done of $all packages"
-    elif [ $fetched -gt 0 ]; then progress_line "fetched $fetched of $all packages"; fi
-  done >"$1"
-  progress_end
-}
-
 install() {  # install PACKAGE…
   local log
   log=$(mktemp)
