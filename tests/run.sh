@@ -80,7 +80,7 @@ tidy() {
   build build-tidy "clang-tidy" -k 20 "${objects[@]}"
 }
 
-# -O1: tests run nearly as fast as with -O2, and instrumented code compiles in half the time.
+# -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
 sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
