@@ -1,33 +1,92 @@
 #!/usr/bin/env bash
-# Installs, builds and tests. Quiet; ends with one line (and, with CI set, ctest's own summary last).
-# Usage: tests/run.sh [--all]     --all adds the address and undefined-behaviour sanitizers, the format check and
-# clang-tidy (.clang-tidy), which runs inside a build of its own: the next run looks at changed files only; then
-# 2000 random trees, two minutes of soak and the accuracy study's report (build/study/accuracy.html).
+# Installs, builds and tests. Says how far it is; ends with one line (and, with CI set, ctest's own summary last).
+# Usage: tests/run.sh [--all | --format | --tidy | --sanitizers]
+#   --all adds the format check, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
+#   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
+#   each stage; the others run that stage alone. tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-
-tools/setup.sh --tests
+. tools/progress.sh
 jobs=$(nproc)
 
-build() {  # build DIRECTORY CMAKE-OPTIONS…
-  local directory=$1 log
+stage() {  # stage NAME COMMAND…: says how long it took
+  local name=$1 start=$SECONDS
+  shift
+  "$@"
+  [ -z "$all" ] || echo "stage: $name: $((SECONDS - start)) s"
+}
+
+configure() {  # configure DIRECTORY CMAKE-OPTIONS…
+  local directory=$1 log=$1/configure.log
   shift
   mkdir -p "$directory"
-  log=$directory/build.log
-  echo "building $directory …" >&2
-  if ! { cmake -G Ninja -S . -B "$directory" "$@" && ninja -C "$directory" -j "$jobs"; } >"$log" 2>&1; then
+  if ! cmake -G Ninja -S . -B "$directory" "$@" >"$log" 2>&1; then
+    grep -A5 'CMake Error' "$log" | head -n 40 >&2
+    echo "tests: $directory could not be configured (whole log: $log)" >&2
+    exit 1
+  fi
+}
+
+build() {  # build DIRECTORY WHAT NINJA-ARGUMENTS…
+  local directory=$1 what=$2 log=$1/build.log
+  shift 2
+  echo "$what …" >&2
+  if ! ninja -C "$directory" -j "$jobs" "$@" 2>&1 | progress_of_ninja "$log" "$what"; then
     grep -E -A3 'error|FAILED|Error' "$log" | head -n 40 >&2
-    echo "tests: the build failed (whole log: $log)" >&2
+    echo "tests: $what failed (whole log: $log)" >&2
     exit 1
   fi
 }
 
 run() {  # run DIRECTORY
-  ctest --test-dir "$1" -j "$jobs" --output-on-failure --no-tests=error >"$1/test.log" 2>&1 || {
+  echo "testing in $1 …" >&2
+  ctest --test-dir "$1" -j "$jobs" --output-on-failure --no-tests=error 2>&1 | progress_of_ctest "$1/test.log" "testing in $1" || {
     tail -n 80 "$1/test.log" >&2
     echo "tests: failed (whole log: $1/test.log)" >&2
     exit 1
   }
+}
+
+build_tests() {  # in the demo's folder: what the demo built is not built again
+  configure build -DSINEW_TESTS=ON -DSINEW_SAMPLES=ON
+  build build "building build"
+}
+
+format() {
+  git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+}
+
+# A change of what follows makes clang-tidy look at every file again.
+tidy_settings() {
+  cat .clang-tidy tests/tidy/own_declarations.cpp tests/tidy/instead_of_compiler.sh tests/run.sh
+  clang-tidy --version
+}
+
+# Looks at every file, the next time at those that changed or include what changed. Nothing is compiled or linked: ninja
+# and CMake only know who includes what. Without precompiled headers: an #include that is missing is found here.
+tidy() {
+  local settings plugin=build-tidy/own_declarations.so instead=$PWD/tests/tidy/instead_of_compiler.sh
+  settings=$(tidy_settings | sha256sum)
+  if [ "$settings" != "$(cat build-tidy/settings 2>/dev/null)" ]; then
+    rm -rf build-tidy
+    mkdir build-tidy
+    g++ -std=c++17 -O1 -fno-rtti -fPIC -shared -isystem "$(llvm-config --includedir)" tests/tidy/own_declarations.cpp -o $plugin
+    echo "$settings" >build-tidy/settings
+  fi
+  configure build-tidy -DCCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
+    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+    -DCMAKE_CXX_CLANG_TIDY="clang-tidy;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
+  mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
+  build build-tidy "clang-tidy" -k 20 "${objects[@]}"
+}
+
+# -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
+sanitizers() {
+  export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
+  configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
+  stage "sanitizers: build" build build-asan "building build-asan"
+  stage "sanitizers: tests" run build-asan
+  [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
 }
 
 long() {  # long NAME: a hard-cases test at the length that the environment asks for
@@ -39,22 +98,47 @@ long() {  # long NAME: a hard-cases test at the length that the environment asks
   }
 }
 
-if [ "${1:-}" = --all ]; then
-  git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
-  build build-tidy -DCMAKE_CXX_CLANG_TIDY=clang-tidy
-  export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
-  build build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo
-  run build-asan
-fi
-build build
-run build
-if [ "${1:-}" = --all ]; then
+at_length() {
   SINEW_RANDOM_TREES=2000 long random_trees
   SINEW_SOAK_SECONDS=120 long soak
-  build/sinew study accuracy --quick -o build/study >build/accuracy.log
+  echo "accuracy study …" >&2
+  build/sinew study accuracy --quick -o build/study >build/accuracy.log || {
+    tail -n 30 build/accuracy.log >&2
+    echo "tests: the accuracy study failed (whole log: build/accuracy.log)" >&2
+    exit 1
+  }
+}
+
+summary() {
+  tail -n 8 build/test.log
+  # What the tests of passing conversions print stays in ctest's own log.
+  sed -n '/^file .*error mm$/,/^\[/{/^\[/!p}' build/Testing/Temporary/LastTest.log | tee -a build/test.log
+  echo "tests: $(grep -c 'Passed' build/test.log) passed, build/test.log holds the details"
+  if [ -n "${CI:-}" ]; then grep -E 'tests passed|Total Test time' build/test.log; fi
+}
+
+one_stage() {  # one_stage NAME COMMAND
+  all=yes
+  stage "set-up" tools/setup.sh --tests
+  stage "$@"
+  exit 0
+}
+
+case ${1:-} in
+  '') all= ;;
+  --all) all=yes ;;
+  --format) one_stage "format" format ;;
+  --tidy) one_stage "clang-tidy" tidy ;;
+  --sanitizers) one_stage "sanitizers" sanitizers ;;
+  *) echo "tests: no such option: $1 (tests/README.md lists them, and says how to run one test)" >&2; exit 2 ;;
+esac
+stage "set-up" tools/setup.sh --tests
+[ -z "$all" ] || stage "format" format
+stage "build" build_tests
+stage "tests" run build
+if [ -n "$all" ]; then
+  stage "clang-tidy" tidy
+  stage "sanitizers" sanitizers
+  stage "at length" at_length
 fi
-tail -n 8 build/test.log
-# What the tests of passing conversions print stays in ctest's own log.
-sed -n '/^file .*error mm$/,/^\[/{/^\[/!p}' build/Testing/Temporary/LastTest.log | tee -a build/test.log
-echo "tests: $(grep -c 'Passed' build/test.log) passed, build/test.log holds the details"
-if [ -n "${CI:-}" ]; then grep -E 'tests passed|Total Test time' build/test.log; fi
+summary
