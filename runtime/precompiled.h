@@ -1,5 +1,6 @@
-// What nearly every file of the runtime reads first, parsed once (CMake's target_precompile_headers). It saves two seconds a
-// file and hides nothing: clang-tidy reads each file without it, and so do games that include our headers.
+// What nearly every file of the runtime reads first, parsed once (CMake's target_precompile_headers). It
+// saves two seconds a file and hides nothing: clang-tidy reads each file without it, and so do games that
+// include our headers.
 #pragma once
 
 #include <Eigen/Core>

@@ -73,7 +73,7 @@ tidy() {
     g++ -std=c++17 -O1 -fno-rtti -fPIC -shared -isystem "$(llvm-config --includedir)" tests/tidy/own_declarations.cpp -o $plugin
     echo "$settings" >build-tidy/settings
   fi
-  configure build-tidy -DCCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
+  configure build-tidy -DSINEW_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
     -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
     -DCMAKE_CXX_CLANG_TIDY="clang-tidy;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
   mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
@@ -119,7 +119,7 @@ summary() {
 
 one_stage() {  # one_stage NAME COMMAND
   all=yes
-  stage "set-up" tools/setup.sh --tests
+  stage "set-up" tools/setup.sh --tests --lint
   stage "$@"
   exit 0
 }
@@ -132,7 +132,7 @@ case ${1:-} in
   --sanitizers) one_stage "sanitizers" sanitizers ;;
   *) echo "tests: no such option: $1 (tests/README.md lists them, and says how to run one test)" >&2; exit 2 ;;
 esac
-stage "set-up" tools/setup.sh --tests
+stage "set-up" tools/setup.sh --tests ${all:+--lint}
 [ -z "$all" ] || stage "format" format
 stage "build" build_tests
 stage "tests" run build

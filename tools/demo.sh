@@ -18,56 +18,26 @@ if [ $# -gt 0 ]; then
   source_file=$(realpath "$source_file")
 fi
 cd "$(dirname "$0")/.."
+. tools/progress.sh
 
-job= # the build, while it runs in the background
 work=out/.making
-clean_up() {
-  if [ -n "$job" ]; then kill "$job" 2>/dev/null || true; fi
-  rm -rf "$work"
-}
-trap clean_up EXIT
+trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
-
-shown=0
-# progress DONE TOTAL BEGIN: one line that changes on a terminal; without one, a line every ten seconds.
-progress() {
-  local done=$1 total=$2 passed=$((SECONDS - $3)) left=
-  if [ "$done" -gt 0 ] && [ "$passed" -gt 2 ]; then left=", $((passed * (total - done) / done)) s left"; fi
-  if [ -t 2 ]; then
-    printf '\rbuilding %s of %s%s\033[K' "$done" "$total" "$left" >&2
-  elif [ $((SECONDS - shown)) -ge 10 ]; then
-    say "building $done of $total$left"
-    shown=$SECONDS
-  fi
-}
 
 # The build folder is also that of tests/run.sh, which asks for tests and samples: they are left out where this is the
 # first to configure it, or the first to succeed, and never taken away.
 build() {
-  local log=build/build.log begin=$SECONDS steps
   mkdir -p build
-  : >"$log"
   if [ ! -f build/CMakeCache.txt ] || [ ! -f build/build.ninja ]; then
     say "configuring …"
-    cmake -G Ninja -S . -B build -DSINEW_TESTS=OFF -DSINEW_SAMPLES=OFF >>"$log" 2>&1 || return 1
+    cmake -G Ninja -S . -B build -DSINEW_TESTS=OFF -DSINEW_SAMPLES=OFF >build/build.log 2>&1 || return 1
   fi
-  NINJA_STATUS='%f of %t ' ninja -C build sinew_cli >>"$log" 2>&1 &
-  job=$!
-  shown=$SECONDS
-  while kill -0 "$job" 2>/dev/null; do
-    sleep 0.3
-    steps=$(tail -n 40 "$log" | grep -oE '^[0-9]+ of [0-9]+ ' | tail -n 1 || true)
-    # shellcheck disable=SC2086 # "137 of 160 " is three words
-    if [ -n "$steps" ]; then set -- $steps && progress "$1" "$3" "$begin"; fi
-  done
-  if [ -t 2 ]; then printf '\r\033[K' >&2; fi
-  steps=$job
-  job=
-  wait "$steps"
+  say "building …"
+  progress_pause=10
+  ninja -C build sinew_cli 2>&1 | progress_of_ninja build/build.log "building"
 }
 
 tools/setup.sh
-say "building …"
 if ! build; then
   tail -n 30 build/build.log >&2
   culprit=$(grep -m 1 -E '^FAILED: |CMake Error|error: ' build/build.log || true)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
-# Usage: tools/setup.sh [--tests] [--peers]
-#   --tests: what the tests, clang-tidy and the sanitizers need     --peers: for -DSINEW_PEERS=ON, several hundred MB
+# Usage: tools/setup.sh [--tests] [--lint] [--peers]
+#   --tests: what the tests need     --lint: clang-format and clang-tidy
+#   --peers: for -DSINEW_PEERS=ON, several hundred MB
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
 
@@ -12,8 +13,8 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
-tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev clang-format clang-tidy libclang-dev llvm-dev chromium
-  valgrind)
+tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind)
+lint=(clang-format clang-tidy libclang-dev llvm-dev)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 
 missing() {  # missing PACKAGE…: those that are not installed
@@ -69,8 +70,9 @@ install() {  # install PACKAGE…
 for option in "$@"; do
   case $option in
     --tests) packages+=("${tests[@]}") ;;
+    --lint) packages+=("${lint[@]}") ;;
     --peers) packages+=("${peers[@]}") ;;
-    *) echo "setup: no such option: $option (there are --tests and --peers)" >&2; exit 2 ;;
+    *) echo "setup: no such option: $option (there are --tests, --lint and --peers)" >&2; exit 2 ;;
   esac
 done
 mapfile -t wanted < <(missing "${packages[@]}")

@@ -71,7 +71,7 @@ struct Grid {
       out += " |\n";
       if (r > 0) continue;
       for (std::size_t c = 0; c < widths.size(); ++c)
-        out += "|" + std::string(widths[c] + 1, '-') + (c == 0 ? "-" : ":");
+        out.append("|").append(widths[c] + 1, '-').append(c == 0 ? "-" : ":");
       out += "|\n";
     }
     return out + "\n";
