@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "breeze.h"
+#include "fixtures/paths.h"
 #include "scene/effect_registry.h"
 #include "scene/run.h"
 
@@ -18,7 +19,6 @@ std::vector<EffectRow> with_the_readmes_line() {
   std::vector<EffectRow> rows(effect_registry().begin(), effect_registry().end());
   rows.insert(rows.end(), {
 #include "breeze_row.inc"
-#include "fixtures/paths.h"
                           });
   return rows;
 }
