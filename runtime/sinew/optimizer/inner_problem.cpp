@@ -463,20 +463,20 @@ T InnerProblem<T>::displacement(std::span<const T> direction) const {
   bool finite = true;
   for (const TreeProblem<T>* p : trees_) {
     const Tree<T>& tree = *p->tree;
-    turn_.assign(tree.bodies, Vec3<T>::Zero());
-    slide_.assign(tree.bodies, Vec3<T>::Zero());
+    turn_.resize(tree.bodies);
+    slide_.resize(tree.bodies);
     for (int i = 0; i < tree.bodies; ++i) {
-      Vec3<T>&w = turn_[i], &v = slide_[i];
-      if (const int parent = tree.parent[i]; parent >= 0) {
-        w = turn_[parent];
-        v = slide_[parent];
-      }
+      const int parent = tree.parent[i];
+      Vec3<T> w = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : turn_[parent];
+      Vec3<T> v = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : slide_[parent];
       for (int dof = tree.first_dof[i]; dof < tree.first_dof[i + 1]; ++dof) {
         const int k = unknown(*p, dof);
         if (k < 0) continue;
         w += p->kinematics.w[dof] * direction[k];
         v += p->kinematics.v[dof] * direction[k];
       }
+      turn_[i] = w;
+      slide_[i] = v;
       if (tree.mass[i] <= T(0)) continue;  // nobody sees where a massless link spins between ball joints
       const T moved = (v + w.cross(p->kinematics.center[i])).norm() + T(kRotationArm) * w.norm();
       finite = finite && std::isfinite(moved);

@@ -18,7 +18,7 @@ void inertial_wrenches(const Tree<T>& tree, std::span<const JointJet<T>> jets, c
       m.origin_velocity[i] = jet.velocity;
     } else {
       const Mat3<T>& rp = k.rotation[p];
-      k.rotation[i].noalias() = rp * body.turn;
+      k.rotation[i].noalias() = rp.lazyProduct(body.turn);
       const Vec3<T> arm = rp * jet.translation;
       k.origin[i] = k.origin[p] + arm;
       m.origin_velocity[i] = m.origin_velocity[p] + m.omega[p].cross(arm) + rp * jet.velocity;

@@ -109,7 +109,7 @@ void place_body(const Tree<Number<T>>& tree, int i, const Transform<T>& local, c
     out.rotation[i] = relative;
     out.origin[i] = local.translation - common_origin;
   } else {
-    out.rotation[i].noalias() = out.rotation[p] * relative;
+    out.rotation[i].noalias() = out.rotation[p].lazyProduct(relative);
     out.origin[i] = out.origin[p] + out.rotation[p] * local.translation;
   }
   out.center[i] = out.origin[i] + out.rotation[i] * tree.center_of_mass[i].template cast<T>();
