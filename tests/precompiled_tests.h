@@ -1,4 +1,4 @@
-// As runtime/precompiled.h, for the tests.
+// As runtime/precompiled_runtime.h, for the tests.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -10,4 +10,4 @@
 #include <set>
 #include <sstream>
 
-#include "../runtime/precompiled.h"
+#include "../runtime/precompiled_runtime.h"

@@ -1,4 +1,4 @@
-// As runtime/precompiled.h, for the tools.
+// As runtime/precompiled_runtime.h, for the tools.
 #pragma once
 
 #include <filesystem>
@@ -10,4 +10,4 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "../runtime/precompiled.h"
+#include "../runtime/precompiled_runtime.h"
