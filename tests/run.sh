@@ -49,7 +49,7 @@ run() {  # run DIRECTORY
 
 build_tests() {  # in the demo's folder: what the demo built is not built again
   configure build -DSINEW_TESTS=ON -DSINEW_SAMPLES=ON
-  build build "building build"
+  build build "building"
 }
 
 format() {
@@ -84,7 +84,7 @@ tidy() {
 sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
-  stage "sanitizers: build" build build-asan "building build-asan"
+  stage "sanitizers: build" build build-asan "building with sanitizers"
   stage "sanitizers: tests" run build-asan
   [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
 }
