@@ -6,7 +6,7 @@
 #   --order: only the one that begins with this command     --keep: leave the last root in place, to look around in it
 # As root: it makes a root file system. Where it cannot, it says so and is skipped; with CI set, that fails.
 # Debian's packages come from the mirror of this machine's own apt sources and are kept for the next root; the compiler
-# cache of this machine is lent, which changes no result. Logs: build-fresh/logs.
+# cache of this machine is shared with the root, which changes no result. Logs: build-fresh/logs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 work=$PWD/build-fresh root=$PWD/build-fresh/root
@@ -116,7 +116,7 @@ inside() {  # inside USER COMMAND
   local environment=(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin CCACHE_DIR=/ccache)
   if [ "$1" = root ]; then
     environment+=(HOME=/root)
-  else  # reads the lent cache, which is not its own, and writes nowhere
+  else  # reads the shared cache, which is not its own, and writes nowhere
     environment+=(HOME="/home/$1" LANG=C.UTF-8 CCACHE_READONLY=1 CCACHE_TEMPDIR=/tmp/ccache)
   fi
   unshare --pid --fork --kill-child --mount-proc="$root/proc" \
