@@ -10,4 +10,8 @@
 #include <set>
 #include <sstream>
 
+#if __has_include(<nlohmann/json.hpp>)  // where the tools are built
+#include "../tools/precompiled_tools.h"
+#else
 #include "../runtime/precompiled_runtime.h"
+#endif

@@ -166,6 +166,15 @@ TEST(Command, InfoReportsMemoryPerRigAndCharacter) {
   EXPECT_GT(bytes["character"], 2 * bytes["snapshot"].get<int>());
 }
 
+TEST(Command, SaysWhichProgramStudiesNeedWhereItIsMissing) {
+  const std::string moved = own_directory() + "sinew";
+  fs::copy_file(SINEW_COMMAND, moved, fs::copy_options::overwrite_existing);
+  const Outcome run = run_program(moved, "study stability --quick");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_NE(run.out.find("sinew: " + own_directory() + "sinew-study cannot be run"), std::string::npos)
+      << run.out;
+}
+
 TEST(Command, RendersAPictureOfAnAsset) {
   const std::string out = own_directory() + "picture.png";
   const Outcome run = sinew("render " + kAsset + " --size 320x180 -o " + out);

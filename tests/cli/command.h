@@ -18,13 +18,17 @@ struct Outcome {
   std::string out;  ///< standard output and error
 };
 
-inline Outcome sinew(const std::string& arguments) {
+inline Outcome run_program(const std::string& program, const std::string& arguments) {
   Outcome run;
-  FILE* pipe = popen((std::string(SINEW_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = popen((program + " " + arguments + " 2>&1").c_str(), "r");
   char buffer[4096];
   for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
   run.code = WEXITSTATUS(pclose(pipe));
   return run;
+}
+
+inline Outcome sinew(const std::string& arguments) {
+  return run_program(SINEW_COMMAND, arguments);
 }
 
 /// A directory of this process: ctest runs the cases side by side.

@@ -7,10 +7,8 @@
 
 #include "cli/evaluate.h"
 #include "cli/files.h"
-#include "cli/mechanism.h"
 #include "cli/memory.h"
-#include "cli/study.h"
-#include "cli/tables.h"
+#include "cli/study_program.h"
 #include "convert/convert.h"
 #include "render/render.h"
 #include "scene/presets.h"
@@ -138,11 +136,8 @@ struct EvaluateCommand {
 struct SimulateCommand {
   std::string scene_file, output, preset, max_error, budget;
   bool json_output = false, plot = false;
-  sinew::mechanism::SimulateOptions mechanism;
 
   Error run() const {
-    if (cli::is_mechanism_file(scene_file))
-      return cli::run_mechanism(scene_file, mechanism, output, json_output);
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
@@ -253,6 +248,7 @@ struct RenderCommand {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  if (cli::is_for_study_program(argc, argv)) return cli::run_study_program(argv);
   CLI::App app{
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
@@ -300,7 +296,7 @@ int main(int argc, char** argv) try {
                                "most accurate measured setting per character and 1/60 s, such as 20us");
   preset->excludes(within)->excludes(budget);
   within->excludes(budget);
-  cli::add_mechanism_options(*s, simulate.mechanism);
+  s->footer("Mechanisms have options of their own: sinew simulate MECHANISM.json --help");
 
   RenderCommand render;
   auto* r = app.add_subcommand(
@@ -328,35 +324,8 @@ int main(int argc, char** argv) try {
   r->add_flag("--json", render.json_output);
   render.source.add(*r);
 
-  cli::StabilityCommand stability;
-  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
-  study->require_subcommand(1);
-  auto* hard = study->add_subcommand(
-      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
-  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
-  hard->add_option("--case", stability.only, "run one case");
-  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
-  hard->add_flag("--json", stability.json_output);
-  cli::TablesCommand tables;
-  auto* paper = study->add_subcommand("tables",
-                                      "formulations and integrators of the reference family\nExample: sinew "
-                                      "study tables --quick -o out/study");
-  cli::add_options(*paper, tables);
-  cli::AccuracyCommand accuracy;
-  auto* cost = study->add_subcommand(
-      "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
-  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
-  cost->add_option("--scene", accuracy.only,
-                   "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver");
-  cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
-  cost->add_flag("--json", accuracy.json_output);
-  cli::EffectsCommand effects;
-  auto* each = study->add_subcommand(
-      "effects",
-      "what every effect costs, in instructions and time\nExample: sinew study effects -o out/study");
-  each->add_option("-o,--output", effects.directory, "directory for CSV and pictures (out/study)");
-  each->add_flag("--quick", effects.quick, "fewer timed steps");
-  each->add_flag("--json", effects.json_output);
+  app.add_subcommand("study",
+                     "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
   try {
     app.parse(argc, argv);
@@ -374,14 +343,6 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (s->parsed())
     error = simulate.run();
-  else if (hard->parsed())
-    error = stability.run();
-  else if (paper->parsed())
-    error = tables.run();
-  else if (cost->parsed())
-    error = accuracy.run();
-  else if (each->parsed())
-    error = effects.run();
   else
     error = render.run();
   if (!error) return 0;

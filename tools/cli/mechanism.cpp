@@ -35,11 +35,6 @@ void add_mechanism_options(CLI::App& app, mechanism::SimulateOptions& o) {
   app.add_option("--at", o.instants, "instants of the rows instead, s")->group(group);
 }
 
-bool is_mechanism_file(const std::string& path) {
-  nlohmann::json file;
-  return !read_json(path, file) && mechanism::is_mechanism(file);
-}
-
 Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& options,
                     const std::string& output, bool json_output) {
   multibody::Mechanism description;

@@ -11,9 +11,6 @@ namespace sinew::cli {
 /// Adds --formulation, --integrator, … to `sinew simulate`.
 void add_mechanism_options(CLI::App& simulate, mechanism::SimulateOptions& options);
 
-/// True if the file is JSON that declares itself a mechanism.
-bool is_mechanism_file(const std::string& path);
-
 /// Runs the file and writes its table: `output` .csv (samples) or .json (telemetry). What was computed is
 /// written also when the integration stops early, and the error then says when and why.
 convert::Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& options,

@@ -267,10 +267,6 @@ void read(const json& file, Mechanism& out) {
 
 }  // namespace
 
-bool is_mechanism(const json& file) {
-  return file.is_object() && file.contains("format") && file.at("format") == "sinew-mechanism";
-}
-
 std::string from_json(const json& file, Mechanism& out) {
   out = {};
   try {

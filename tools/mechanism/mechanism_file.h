@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mechanism/format.h"
 #include "sinew/multibody/simulation.h"
 
 namespace sinew::mechanism {
@@ -11,9 +12,6 @@ namespace sinew::mechanism {
 /// Reads a parsed file. "" or what is wrong with which element. Unknown keys are ignored where the schema
 /// allows notes, unknown types and names are not.
 std::string from_json(const nlohmann::json& file, multibody::Mechanism& out);
-
-/// True if the JSON declares itself a mechanism.
-bool is_mechanism(const nlohmann::json& file);
 
 /// Reads a file. "" or "FILE: what is wrong".
 std::string load_mechanism(const std::string& path, multibody::Mechanism& out);

@@ -1,0 +1,92 @@
+// The `sinew-study` command, which `sinew` becomes for studies and mechanisms. Exit codes as its own.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/mechanism.h"
+#include "cli/study.h"
+#include "cli/tables.h"
+
+namespace {
+
+using sinew::convert::Error;
+namespace cli = sinew::cli;
+
+struct MechanismCommand {
+  std::string file, output;
+  bool json_output = false;
+  sinew::mechanism::SimulateOptions options;
+
+  void add(CLI::App& app) {
+    app.add_option("mechanism", file)->required();
+    app.add_option("-o,--output", output, "coordinates and points: .csv, or .json for the summary")
+        ->required();
+    app.add_flag("--json", json_output);
+    cli::add_mechanism_options(app, options);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app{
+      "Sinew's studies, and mechanisms of the reference family: what `sinew study` and `sinew simulate` "
+      "run."};
+  app.require_subcommand(1);
+  MechanismCommand mechanism;
+  auto* simulate = app.add_subcommand(
+      "simulate", "run a mechanism\nExample: sinew simulate chain.json --integrator DASSL -o chain.csv");
+  mechanism.add(*simulate);
+
+  cli::StabilityCommand stability;
+  auto* study = app.add_subcommand("study", "the evidence, as tables, CSV and pictures");
+  study->require_subcommand(1);
+  auto* hard = study->add_subcommand(
+      "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
+  hard->add_option("--case", stability.only, "run one case");
+  hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
+  hard->add_flag("--json", stability.json_output);
+  cli::TablesCommand tables;
+  auto* paper = study->add_subcommand("tables",
+                                      "formulations and integrators of the reference family\nExample: sinew "
+                                      "study tables --quick -o out/study");
+  cli::add_options(*paper, tables);
+  cli::AccuracyCommand accuracy;
+  auto* cost = study->add_subcommand(
+      "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
+  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
+  cost->add_option("--scene", accuracy.only,
+                   "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver");
+  cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
+  cost->add_flag("--json", accuracy.json_output);
+  cli::EffectsCommand effects;
+  auto* each = study->add_subcommand(
+      "effects",
+      "what every effect costs, in instructions and time\nExample: sinew study effects -o out/study");
+  each->add_option("-o,--output", effects.directory, "directory for CSV and pictures (out/study)");
+  each->add_flag("--quick", effects.quick, "fewer timed steps");
+  each->add_flag("--json", effects.json_output);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  Error error;
+  if (simulate->parsed())
+    error = cli::run_mechanism(mechanism.file, mechanism.options, mechanism.output, mechanism.json_output);
+  else if (hard->parsed())
+    error = stability.run();
+  else if (paper->parsed())
+    error = tables.run();
+  else if (cost->parsed())
+    error = accuracy.run();
+  else
+    error = effects.run();
+  if (!error) return 0;
+  std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+  return 1;
+} catch (const std::exception& unexpected) {
+  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
+  return 1;
+}
