@@ -81,6 +81,25 @@ TEST(Region, WhatReachesBehindTheCameraMayBeAnywhere) {
   EXPECT_EQ(pixels(found.shadow), 640 * 360);
 }
 
+TEST(Region, WhatIsBehindTheCameraIsNotInThePicture) {
+  const Projection p = straight_ahead();
+  Geometry geometry = ball({0, 0, 1});
+  const int alone = pixels(find_regions(geometry, p).near);
+  append_shape(Shape::kSphere, Vec3<float>::Constant(0.2f), {Quat<float>::Identity(), {0, -14, 2}}, kClay,
+               geometry);
+  const Regions found = find_regions(geometry, p);
+  EXPECT_EQ(pixels(found.near), alone);
+  EXPECT_TRUE(covered(found.figure, shown(p, {0, 0, 1}).x(), shown(p, {0, 0, 1}).y()));
+}
+
+TEST(Region, WhatIsCloseButBesideThePictureMakesNothingElseNearer) {
+  Geometry geometry = ball({0, 0, 1});
+  const int alone = pixels(find_regions(geometry, straight_ahead()).near);
+  append_shape(Shape::kSphere, Vec3<float>::Constant(0.2f), {Quat<float>::Identity(), {5, -9, 2}}, kClay,
+               geometry);
+  EXPECT_LE(pixels(find_regions(geometry, straight_ahead()).near), alone);
+}
+
 /// A tetrahedron, seen from outside counter-clockwise.
 Mesh tetrahedron() {
   Mesh mesh;

@@ -92,8 +92,8 @@ class Tiles {
 
 /// Vertices on the screen.
 struct Shown {
-  std::vector<Eigen::Vector2f> at;  ///< pixels
-  float nearest = 1e30f;            ///< m, of all along the view
+  std::vector<Vec3<float>>
+      at;  ///< x, y in pixels, distance along the view in m; where that is small, x and y say nothing
 };
 
 Shown project(const Geometry& geometry, const Projection& p, const Vec3<float>& slant) {
@@ -103,40 +103,53 @@ Shown project(const Geometry& geometry, const Projection& p, const Vec3<float>& 
     Vec3<float> place(vertex.position[0], vertex.position[1], vertex.position[2]);
     place -= (place.z() - p.ground) * slant;
     const Eigen::Vector4f clip = p.view_projection * place.homogeneous();
-    shown.nearest = std::min(shown.nearest, clip.w());
     shown.at.emplace_back((clip.x() / clip.w() + 1) * 0.5f * float(p.width),
-                          (clip.y() / clip.w() + 1) * 0.5f * float(p.height));
+                          (clip.y() / clip.w() + 1) * 0.5f * float(p.height), clip.w());
   }
   return shown;
 }
 
-void mark_triangles(const Geometry& geometry, const Shown& shown, float margin, Tiles& tiles) {
+/// What marking triangles has found.
+struct Marked {
+  bool anywhere = false;  ///< one reaches from before the camera to behind it
+  float nearest = 1e30f;  ///< m, of what is in the picture
+};
+
+/// Marks triangles, but not those behind the camera, with `wide` (m) and a pixel for antialiasing around
+/// them.
+Marked mark_triangles(const Geometry& geometry, const Shown& shown, const Projection& p, float wide,
+                      Tiles& tiles) {
+  const float least = 1e-3f * p.unit;
+  Marked marked;
   for (std::size_t i = 0; i + 2 < geometry.indices.size(); i += 3) {
-    const Eigen::Vector2f &a = shown.at[geometry.indices[i]], &b = shown.at[geometry.indices[i + 1]],
-                          &c = shown.at[geometry.indices[i + 2]];
-    const Eigen::Vector2f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const Vec3<float>&a = shown.at[geometry.indices[i]], &b = shown.at[geometry.indices[i + 1]],
+          &c = shown.at[geometry.indices[i + 2]];
+    const float nearest = std::min({a.z(), b.z(), c.z()});
+    if (nearest <= least) {
+      marked.anywhere = marked.anywhere || std::max({a.z(), b.z(), c.z()}) > least;
+      continue;
+    }
+    const Vec3<float> low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const float margin = 1 + wide * p.focal / nearest;
     tiles.mark({low.x() - margin, low.y() - margin, high.x() + margin, high.y() + margin});
+    if (high.x() >= -margin && low.x() <= float(p.width) + margin && high.y() >= -margin &&
+        low.y() <= float(p.height) + margin)
+      marked.nearest = std::min(marked.nearest, nearest);
   }
+  return marked;
 }
 
 }  // namespace
 
 Regions find_regions(const Geometry& geometry, const Projection& p) {
-  constexpr float kAntialiasing = 1;  // pixels
   Tiles figure(p), near(p), dark(p);
-  const Shown seen = project(geometry, p, Vec3<float>::Zero()),
-              shadow = project(geometry, p, p.light_direction / p.light_direction.z());
-  const float least = 1e-3f * p.unit;
-  if (!geometry.indices.empty() && (seen.nearest <= least || shadow.nearest <= least)) {
-    near.mark_all();
-    dark.mark_all();
-    figure.mark_all();
-  } else {
-    mark_triangles(geometry, seen, kAntialiasing, figure);
-    near.mark_around(figure, kOcclusionReach * p.unit * p.focal / seen.nearest);
-    mark_triangles(geometry, shadow, kShadowEdge * p.unit * p.focal / shadow.nearest, dark);
-    near.add(dark);
-  }
+  const Vec3<float> slant = p.light_direction / p.light_direction.z();
+  const Marked seen = mark_triangles(geometry, project(geometry, p, Vec3<float>::Zero()), p, 0, figure);
+  const Marked shadow = mark_triangles(geometry, project(geometry, p, slant), p, kShadowEdge * p.unit, dark);
+  if (seen.anywhere) figure.mark_all();
+  if (shadow.anywhere) dark.mark_all();
+  near.mark_around(figure, kOcclusionReach * p.unit * p.focal / seen.nearest);
+  near.add(dark);
   Tiles only_near = near;
   only_near.take_away(dark);
   return {figure.areas(1), dark.areas(1), near.areas(1), only_near.areas(1), near.areas(0)};

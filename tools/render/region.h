@@ -33,8 +33,8 @@ struct Projection {
   int width = 0, height = 0;    ///< pixels
 };
 
-/// A triangle that reaches behind the camera makes figure and near the whole picture. Cost: one pass over the
-/// triangles.
+/// What is behind the camera is in no list; a triangle that reaches there from before it makes `figure` and
+/// `near`, its shadow `shadow`, the whole picture. Cost: one pass over the triangles.
 Regions find_regions(const Geometry& geometry, const Projection& projection);
 
 }  // namespace sinew::render
