@@ -10,6 +10,7 @@
 #include "study/accuracy.h"
 #include "study/accuracy_dial.h"
 #include "study/effects.h"
+#include "study/ensembles.h"
 #include "study/maps.h"
 #include "study/study.h"
 
@@ -110,8 +111,27 @@ convert::Error AccuracyCommand::write_presets(nlohmann::json& dial) const {
   return write_atomically(directory + "/presets.h", study::dial_header(dial));
 }
 
+convert::Error AccuracyCommand::run_ensembles() const {
+  const std::vector<study::Ensemble> all = study::run_ensembles(quick, progress_line("ensembles"));
+  const nlohmann::json json = study::ensembles_json(all);
+  if (convert::Error error = write_atomically(directory + "/ensembles.json", json.dump() + "\n"))
+    return error;
+  for (const study::EnsembleScene& scene : study::ensemble_scenes())
+    for (const int hz : {60, 30})
+      for (const char* ending : {".svg", ".png"}) {
+        const std::string file = directory + "/ensemble_" + scene.name + "_" + std::to_string(hz) + ending;
+        if (convert::Error error = study::draw_ensembles(all, scene, hz, file)) return error;
+      }
+  if (json_output)
+    std::puts(json.dump().c_str());
+  else
+    std::printf("%s%s/ensembles.json\n", study::ensembles_table(all).c_str(), directory.c_str());
+  return {};
+}
+
 convert::Error AccuracyCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
+  if (ensembles) return run_ensembles();
   const auto results =
       study::run_accuracy({quick, only, directory + "/accuracy_points.jsonl"}, progress_line("accuracy"));
   if (results.empty()) return {"there is no accuracy scene '" + only + "'"};

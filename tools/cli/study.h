@@ -18,11 +18,12 @@ struct StabilityCommand {
 
 struct AccuracyCommand {
   std::string directory = "out/study", only;
-  bool quick = false, json_output = false;
+  bool quick = false, json_output = false, ensembles = false;
 
   convert::Error run() const;
 
  private:
+  convert::Error run_ensembles() const;
   convert::Error write_presets(nlohmann::json& dial) const;
 };
 

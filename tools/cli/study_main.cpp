@@ -57,6 +57,8 @@ int main(int argc, char** argv) try {
   cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
   cost->add_option("--scene", accuracy.only,
                    "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver");
+  cost->add_flag("--ensembles", accuracy.ensembles,
+                 "mean energies of many limp falls instead: JSON, pictures");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
   cli::EffectsCommand effects;

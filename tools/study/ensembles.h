@@ -1,0 +1,66 @@
+// Falls judged as a crowd: the mean kinetic energy of many starts beside that of the same engine's finest
+// steps. A single fall is chaotic (after a second the finest runs are decimetres apart), while the means of
+// finest runs agree.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convert/convert.h"
+#include "study/engine.h"
+
+namespace sinew::study {
+
+/// A fall whose start is drawn anew for every seed.
+struct EnsembleScene {
+  std::string name, title;
+  EngineScene (*start)(unsigned seed);
+};
+
+/// Limp humanoids (37 degrees of freedom): "fall", joints at 3 rad/s rms, feet 0.3 m up; "tumbling_fall",
+/// turning as a whole at 10 rad/s, feet 0.8 m up.
+const std::vector<EnsembleScene>& ensemble_scenes();
+
+/// Over the seeds, J.
+struct EnergyCurve {
+  std::vector<double> mean, deviation;  ///< [time]; standard deviation
+};
+
+struct Ensemble {
+  std::string engine, option, scene;
+  double hz = 0;
+  int seeds = 0;          ///< that were run to the end, with these steps and with the finest
+  int lost = 0;           ///< others
+  std::vector<double> t;  ///< s: every step but the first and the last
+  EnergyCurve energy, truth;
+
+  /// Mean over true mean, at the sample next to a time.
+  double share(double time) const;
+};
+
+/// Kinetic energy (J) halfway between two poses (joint frames in the world) that are `span` seconds apart,
+/// from nothing but them: mean velocities of the centres of mass, and the rotation from one to the other.
+double kinetic_energy(const Skeleton& skeleton, const std::vector<Transform<double>>& before,
+                      const std::vector<Transform<double>>& after, double span);
+
+/// `scene` by `with` at 1/hz s, and at steps of 1/finest s; both are judged by poses 2/hz s apart. `finest`
+/// must be a multiple of hz. Seeds 1 to `seeds`, on all processors.
+Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, double hz, double finest,
+                      int seeds, double seconds);
+
+/// Every scene at 60 and 30 Hz, by our schemes and the peers that take any step. `quick`: 24 seeds instead of
+/// 96, finest steps of 1/960 s instead of 1/3840.
+std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress);
+
+/// {"ensembles": [{"engine", "scene", "hz", "scheme", "scalar", "seeds", "lost", "t", "energy",
+/// "energy_deviation", "truth", "truth_deviation"}]}, energies in J.
+nlohmann::json ensembles_json(const std::vector<Ensemble>& all);
+/// Share of the true mean at 0.5, 0.75, 1 and 1.5 s.
+std::string ensembles_table(const std::vector<Ensemble>& all);
+/// Curves of one scene and step, .png or .svg.
+convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz,
+                              const std::string& file);
+
+}  // namespace sinew::study
