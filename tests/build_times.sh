@@ -9,6 +9,10 @@ if [ "${1:-}" = -j ]; then
   jobs=$2
   shift 2
 fi
+if [[ ${1:-} == -* && ${1:-} != -D* ]]; then
+  echo "build_times: no such option: $1 (build_times.sh [-j N] [DIRECTORY] [CMAKE-OPTION…])" >&2
+  exit 2
+fi
 cd "$(dirname "$0")/.."
 directory=${1:-build-times}
 shift || true

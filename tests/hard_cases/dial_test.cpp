@@ -34,7 +34,7 @@ Outcome on_unseen_scenes(const scene::MeasuredAccuracy& m) {
   static std::map<std::string, Track> truths;
   Outcome worst;
   for (const AccuracyScene& s : unseen_scenes()) {
-    if (!truths.count(s.name)) truths[s.name] = converged(s, sinew_options()[3], true);
+    if (!truths.count(s.name)) truths[s.name] = converged(s, most_accurate_option(), true);
     const Trip trip = travel(s, engine_of(m), kFrame, m.accuracy, true);
     EXPECT_TRUE(trip.survived) << s.name;
     const double error = apart(s, trip.track, truths[s.name]);

@@ -31,8 +31,13 @@ EngineOption ours() {
   return sinew_options()[0];
 }
 
+Ensemble run(int scene, double hz, double finest, int seeds, double seconds) {
+  const EnsembleScene& fall = ensemble_scenes()[scene];
+  return run_ensemble(fall, ours(), hz, true_falls(fall, ours(), finest, seeds, seconds));
+}
+
 TEST(Ensembles, FinestStepsAreTheirOwnTruth) {
-  const Ensemble e = run_ensemble(ensemble_scenes()[0], ours(), 60, 60, 3, 0.5);
+  const Ensemble e = run(0, 60, 60, 3, 0.5);
   ASSERT_EQ(e.seeds, 3);
   EXPECT_EQ(e.lost, 0);
   ASSERT_EQ(e.t.size(), 30u);
@@ -41,7 +46,7 @@ TEST(Ensembles, FinestStepsAreTheirOwnTruth) {
 }
 
 TEST(Ensembles, FallingFiguresGainWhatGravityGives) {
-  const Ensemble e = run_ensemble(ensemble_scenes()[1], ours(), 60, 240, 4, 0.3);
+  const Ensemble e = run(1, 60, 240, 4, 0.3);
   ASSERT_EQ(e.seeds, 4);
   // 75 kg, in the air for the first 0.2 s at least: the means before contact are those of the start and of a
   // free fall.
@@ -52,7 +57,7 @@ TEST(Ensembles, FallingFiguresGainWhatGravityGives) {
 }
 
 TEST(Ensembles, JsonHasACurveForEveryRun) {
-  const Ensemble e = run_ensemble(ensemble_scenes()[0], ours(), 30, 60, 2, 0.3);
+  const Ensemble e = run(0, 30, 60, 2, 0.3);
   const nlohmann::json json = ensembles_json({e});
   const nlohmann::json& first = json.at("ensembles").at(0);
   EXPECT_EQ(first.at("engine"), "sinew");

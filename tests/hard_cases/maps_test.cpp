@@ -93,7 +93,7 @@ TEST(Peers, FlyAsOursDoInFineSteps) {
   std::vector<EngineOption> peers = peer_options();
   if (peers.empty()) GTEST_SKIP() << "built without SINEW_PEERS: no other engine was compared";
   for (const EngineOption& peer : controlled_options()) peers.push_back(peer);
-  const std::vector<Transform<double>> ours = flown(sinew_options()[3]);
+  const std::vector<Transform<double>> ours = flown(most_accurate_option());
   for (const EngineOption& peer : peers) {
     const std::vector<Transform<double>> theirs = flown(peer);
     ASSERT_EQ(theirs.size(), ours.size());
@@ -122,7 +122,7 @@ double apart_from_ours(const AccuracyScene& s, const EngineOption& peer, double 
   const Trip theirs = travel(s, peer, h, asked, true);
   EXPECT_EQ(theirs.refusal, "") << peer.label();
   if (!theirs.survived) return INFINITY;
-  return apart(s, travel(s, sinew_options()[3], 1.0 / 960, Accuracy{}, true).track, theirs.track);
+  return apart(s, travel(s, most_accurate_option(), 1.0 / 960, Accuracy{}, true).track, theirs.track);
 }
 
 TEST(Peers, CollapseAsOursDoInFineSteps) {

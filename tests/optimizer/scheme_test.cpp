@@ -48,7 +48,7 @@ struct FreeBody {
     std::vector<V> force(1), moment(1);
     inertial_wrenches<double>(tree, {&jet, 1}, V::Zero(), V::Zero(), problem.kinematics, motion, force,
                               moment);
-    advance_exactly<double>(tree, problem.kinematics, motion, 0.0, V::Zero(), history);
+    advance_exactly<double>(tree, problem.kinematics, motion, 0.0, V::Zero(), V::Zero(), history);
   }
   void step(double h, Scheme scheme = Scheme::kBdf2) {
     settings.h = h;

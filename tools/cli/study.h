@@ -9,11 +9,9 @@ namespace sinew::cli {
 
 struct StabilityCommand {
   std::string directory = "out/study", only;
-  bool quick = false, json_output = false;
+  bool quick = false, json_output = false, one_step = false;
 
   convert::Error run() const;
-
- private:
 };
 
 struct AccuracyCommand {

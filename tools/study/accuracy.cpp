@@ -74,7 +74,7 @@ class Sweep {
   const Track& reference(const std::string& engine) {
     const auto found = references_.find(engine);
     if (found != references_.end()) return found->second;
-    EngineOption best = sinew_options()[3];
+    EngineOption best = most_accurate_option();
     for (const auto& peers : {peer_options(), controlled_options()})
       for (const EngineOption& peer : peers)
         if (peer.engine == engine) best = peer;
@@ -126,10 +126,8 @@ class Sweep {
     for (const EngineOption& option : scene_.settles ? std::vector<EngineOption>() : sinew_options()) {
       if (option.option.find("double") == std::string::npos) continue;
       const bool smooth = !scene_.contacts && !scene_.drive;
-      Slope slope{option.engine, option.option, 0,
-                  !smooth                             ? 0.0
-                  : option.option.starts_with("bdf2") ? 2.0
-                                                      : 1.0};
+      const bool first = option.option.starts_with("bdf1") || option.option.starts_with("momentum");
+      Slope slope{option.engine, option.option, 0, !smooth ? 0.0 : first ? 1.0 : 2.0};
       const std::string name = key("slope " + option.option);
       if (const nlohmann::json* kept = store_.find(name))
         slope.found = kept->get<double>();
@@ -159,7 +157,7 @@ class Sweep {
     const std::string name = key("estimates");
     if (!store_.find(name)) {
       nlohmann::json frames = nlohmann::json::array();
-      for (const EstimatedFrame& f : estimated_frames(scene_, sinew_options()[3], kFrame))
+      for (const EstimatedFrame& f : estimated_frames(scene_, most_accurate_option(), kFrame))
         frames.push_back({f.time, f.estimated, f.truth});
       store_.keep(name, frames);
     }
@@ -187,10 +185,10 @@ class Sweep {
       double between = -1, uncertain = -1;
       if (smooth && !peers.empty()) between = apart(scene_, reference("Sinew"), reference(peers[0].engine));
       if (!scene_.settles)
-        uncertain = apart(
-            scene_, reference("Sinew"),
-            travel(scene_, sinew_options()[3], quick_ ? 1.0 / 1920 : 1.0 / 3840, {.tolerance = 1e-9}, true)
-                .track);
+        uncertain = apart(scene_, reference("Sinew"),
+                          travel(scene_, most_accurate_option(), quick_ ? 1.0 / 1920 : 1.0 / 3840,
+                                 {.tolerance = 1e-9}, true)
+                              .track);
       store_.keep(name, {between, uncertain});
     }
     result.references_apart = (*store_.find(name))[0];

@@ -61,6 +61,8 @@ struct EngineOption {
 
 /// Sinew's schemes in float and double; `accuracy.scheme` is overridden by the option.
 std::vector<EngineOption> sinew_options();
+/// Of these, the one whose finest steps the others are judged by.
+EngineOption most_accurate_option();
 /// Ours at rising distance: every frame, every second and fourth, residual only (alone and in batches of 8
 /// and 16), playback only.
 std::vector<EngineOption> policy_options();

@@ -127,11 +127,17 @@ Figure resting(const Skeleton& skeleton) {
 
 std::vector<EngineOption> sinew_options() {
   return {{"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
+          {"Sinew", "bossak float", make<float, Scheme::kBossak>},
           {"Sinew", "bdf1 float", make<float, Scheme::kBdf1>},
           {"Sinew", "momentum float", make<float, Scheme::kMomentum>},
           {"Sinew", "bdf2 double", make<double, Scheme::kBdf2>},
           {"Sinew", "bdf1 double", make<double, Scheme::kBdf1>},
+          {"Sinew", "bossak double", make<double, Scheme::kBossak>},
           {"Sinew", "momentum double", make<double, Scheme::kMomentum>}};
+}
+
+EngineOption most_accurate_option() {
+  return {"Sinew", "bdf2 double", make<double, Scheme::kBdf2>};
 }
 
 std::vector<EngineOption> peer_options() {

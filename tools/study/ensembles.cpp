@@ -128,17 +128,35 @@ double kinetic_energy(const Skeleton& skeleton, const Pose& before, const Pose& 
   return sum;
 }
 
-Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, double hz, double finest,
-                      int seeds, double seconds) {
-  const int count = static_cast<int>(std::lround(seconds * hz)) + 1;
+TrueFalls true_falls(const EnsembleScene& scene, const EngineOption& with, double finest, int seeds,
+                     double seconds) {
+  TrueFalls out;
+  out.seconds = seconds;
+  out.poses.resize(seeds);
+  const int count = static_cast<int>(std::lround(seconds * kTrueHz)) + 2;  // a pose more than 30 Hz asks for
+  Accuracy tight;
+  tight.tolerance = 1e-6;
+  on_all_processors(seeds, [&](int n) {
+    out.poses[n] = poses(scene.start(static_cast<unsigned>(n) + 1), with, kTrueHz, finest, count, tight);
+  });
+  return out;
+}
+
+Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, double hz,
+                      const TrueFalls& truth) {
+  const int count = static_cast<int>(std::lround(truth.seconds * hz)) + 1;
+  const int seeds = static_cast<int>(truth.poses.size());
+  const auto every = static_cast<std::size_t>(std::lround(kTrueHz / hz));
   std::vector<std::vector<double>> coarse(seeds), fine(seeds);
   on_all_processors(seeds, [&](int n) {
     const EngineScene start = scene.start(static_cast<unsigned>(n) + 1);
     const Skeleton& skeleton = start.figures[0].skeleton;
-    Accuracy tight;
-    tight.tolerance = 1e-7;
     coarse[n] = energies(skeleton, poses(start, with, hz, hz, count, {}), hz, count);
-    fine[n] = energies(skeleton, poses(start, with, hz, finest, count, tight), hz, count);
+    std::vector<Pose> thinned;
+    for (std::size_t k = 0; k < truth.poses[n].size() && static_cast<int>(thinned.size()) <= count;
+         k += every)
+      thinned.push_back(truth.poses[n][k]);
+    fine[n] = energies(skeleton, thinned, hz, count);
   });
   Ensemble out;
   out.engine = with.engine;
@@ -160,19 +178,26 @@ Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, doub
 }
 
 std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress) {
-  std::vector<EngineOption> options;
+  const double finest = quick ? 960 : 3840;
+  const int seeds = quick ? 96 : 384;
+  std::vector<EngineOption> ours, peers;
   for (const EngineOption& option : sinew_options())
-    if (!option.option.starts_with("momentum")) options.push_back(option);  // no energy, and it explodes
+    if (!option.option.starts_with("momentum")) ours.push_back(option);  // no energy, and it explodes
   for (const EngineOption& option : peer_options())
-    if (option.step == 0) options.push_back(option);
+    if (option.step == 0) peers.push_back(option);
   std::vector<Ensemble> all;
-  const int total = static_cast<int>(2 * ensemble_scenes().size() * options.size());
-  for (const EnsembleScene& scene : ensemble_scenes())
-    for (const double hz : {60.0, 30.0})
-      for (const EngineOption& option : options) {
-        all.push_back(run_ensemble(scene, option, hz, quick ? 960 : 3840, quick ? 24 : 96, kSeconds));
+  const int total = static_cast<int>(2 * ensemble_scenes().size() * (ours.size() + peers.size()));
+  for (const EnsembleScene& scene : ensemble_scenes()) {
+    const auto run = [&](const EngineOption& with, const TrueFalls& truth) {
+      for (const double hz : {60.0, 30.0}) {
+        all.push_back(run_ensemble(scene, with, hz, truth));
         if (progress) progress(static_cast<int>(all.size()), total);
       }
+    };
+    const TrueFalls truth = true_falls(scene, most_accurate_option(), finest, seeds, kSeconds);
+    for (const EngineOption& option : ours) run(option, truth);
+    for (const EngineOption& option : peers) run(option, true_falls(scene, option, finest, seeds, kSeconds));
+  }
   return all;
 }
 

@@ -45,13 +45,25 @@ struct Ensemble {
 double kinetic_energy(const Skeleton& skeleton, const std::vector<Transform<double>>& before,
                       const std::vector<Transform<double>>& after, double span);
 
-/// `scene` by `with` at 1/hz s, and at steps of 1/finest s; both are judged by poses 2/hz s apart. `finest`
-/// must be a multiple of hz. Seeds 1 to `seeds`, on all processors.
-Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, double hz, double finest,
-                      int seeds, double seconds);
+/// Falls of a scene at an engine's finest steps.
+struct TrueFalls {
+  double seconds = 0;
+  /// [seed − 1][n] poses (joint frames in the world) at n/kTrueHz s; fewer where the engine gave up.
+  std::vector<std::vector<std::vector<Transform<double>>>> poses;
+};
+constexpr double kTrueHz = 60;
 
-/// Every scene at 60 and 30 Hz, by our schemes and the peers that take any step. `quick`: 24 seeds instead of
-/// 96, finest steps of 1/960 s instead of 1/3840.
+/// Steps of 1/finest s, a multiple of kTrueHz. Seeds 1 to `seeds`, on all processors.
+TrueFalls true_falls(const EnsembleScene& scene, const EngineOption& with, double finest, int seeds,
+                     double seconds);
+
+/// The same falls at steps of 1/hz s, of which kTrueHz is a multiple; both are judged by poses 2/hz s apart.
+Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, double hz,
+                      const TrueFalls& truth);
+
+/// Every scene at 60 and 30 Hz, by our schemes and the peers that take any step. All of ours are judged by
+/// the most accurate of them at the finest steps, a peer by itself. `quick`: 96 seeds instead of 384, finest
+/// steps of 1/960 s instead of 1/3840.
 std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress);
 
 /// {"ensembles": [{"engine", "scene", "hz", "scheme", "scalar", "seeds", "lost", "t", "energy",

@@ -12,6 +12,7 @@ namespace {
 constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
                                {0.80, 0.47, 0.65}, {0.90, 0.62, 0.00}, {0.34, 0.71, 0.91},
                                {0.40, 0.40, 0.40}, {0.60, 0.25, 0.25}};
+constexpr Colour kOurTruth{0, 0, 0};
 constexpr Colour kGrid{0.88, 0.88, 0.88};
 constexpr double kLeft = 64, kTop = 62, kWide = 470, kHigh = 300, kLegend = 250, kFoot = 48;
 
@@ -43,6 +44,7 @@ void draw_curve(const Canvas& canvas, const Axes& axes, const std::vector<double
   cairo_set_line_width(pen, dashed ? 1.2 : 2);
   const double dash[] = {4, 3};
   cairo_set_dash(pen, dash, dashed ? 2 : 0, 0);
+  cairo_new_path(pen);
   for (std::size_t n = 0; n < t.size(); ++n) cairo_line_to(pen, axes.x(t[n]), axes.y(energy[n]));
   cairo_stroke(pen);
   cairo_set_dash(pen, nullptr, 0, 0);
@@ -63,19 +65,24 @@ convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleSc
   char text[96];
   std::snprintf(text, sizeof text, "%s: steps of 1/%.0f s", scene.title.c_str(), hz);
   canvas.text(text, kLeft, 26, 16, 0, true);
-  canvas.text("mean kinetic energy over the seeds; dashed: the same engine's finest steps", kLeft, 44, 12);
+  canvas.text("mean kinetic energy over the seeds; dashed: the same engine's finest steps (black: ours)", kLeft, 44, 12);
   draw_grid(canvas, axes);
   std::size_t index = 0;
   for (const Ensemble& e : all) {
     if (e.scene != scene.name || e.hz != hz || e.t.empty()) continue;
     const Colour& colour = kColours[index % std::size(kColours)];
-    draw_curve(canvas, axes, e.t, e.truth.mean, colour, true);
     draw_curve(canvas, axes, e.t, e.energy.mean, colour, false);
     const double y = kTop + 12 + 19 * double(index);
     canvas.fill(colour, kLeft + kWide + 16, y - 6, 18, 4);
     std::snprintf(text, sizeof text, "%s %s, %d seeds", e.engine.c_str(), e.option.c_str(), e.seeds);
     canvas.text(text, kLeft + kWide + 40, y, 11);
     ++index;
+  }
+  index = 0;
+  for (const Ensemble& e : all) {
+    if (e.scene != scene.name || e.hz != hz || e.t.empty()) continue;
+    const Colour& own = kColours[index++ % std::size(kColours)];
+    draw_curve(canvas, axes, e.t, e.truth.mean, e.engine == "Sinew" ? kOurTruth : own, true);
   }
   return canvas.finish();
 }

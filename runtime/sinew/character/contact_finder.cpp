@@ -118,6 +118,9 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   if (found == lagged_.end() || found->id != c.id) return;
   c.fresh = false;
   c.lagged_normal_force = found->force;
+  c.lasting_last = found->lasting;
+  c.lasting_before = found->before;
+  c.smooth_before = found->smooth;
   c.offset = found->offset;
   c.gap += c.offset;
   bring_back(c, found->stiffness, T(kLeftInside));
@@ -141,7 +144,9 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   }
   thickness = std::min(thickness, c.half_thickness());
   c.approach = -closing.dot(c.normal);
-  if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (h_ * thickness));
+  // Bossak's scheme moves a body by at least h²/4 per unit of what stops it.
+  const T span = world_->accuracy.scheme == Scheme::kBossak ? h_ / 4 : h_;
+  if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (span * thickness));
 }
 
 template <class T>

@@ -13,9 +13,11 @@ namespace sinew {
 template <class T>
 struct LaggedForce {
   std::uint64_t id = 0;
-  T force = T(0);      ///< N
-  T stiffness = T(0);  ///< N/m
-  T offset = T(0);     ///< m, see Contact::offset
+  T force = T(0);                   ///< N
+  T stiffness = T(0);               ///< N/m
+  T offset = T(0);                  ///< m, see Contact::offset
+  T smooth = T(0);                  ///< N, see Contact::smooth_before
+  T lasting = T(0), before = T(0);  ///< N, see Contact::lasting_last
 };
 
 /// Identities of the contacts of a world's nth tree begin here and end where the next one's begin.

@@ -57,7 +57,7 @@ void slow(CharacterState<T>& s, double factor, bool about_center) {
   RigidMotion kept;
   if (about_center) kept.velocity = s.report.momentum / s.total_mass;
   change(s, kept, T(factor));
-  if (factor > kSmall || s.report.contacts == 0) return;
+  if (factor > kSmall || s.report.contacts == 0 || s.history.scheme == Scheme::kBossak) return;
   s.history.step_before = T(0);
   s.steps_unchanged = 0;
 }

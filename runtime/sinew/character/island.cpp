@@ -30,6 +30,14 @@ bool flies(const CharacterState<T>& s) {
          std::none_of(p.rows.begin(), p.rows.end(), [](const JointRow<T>& row) { return row.dof < 6; });
 }
 
+/// Of a limp tree that was played the accelerations are not known; nor, of any, what rows exerted.
+template <class T>
+void begin_one_step(CharacterState<T>& s) {
+  if (s.rate_step > T(0)) return;
+  s.history.accelerates = s.history.accelerates && !s.limp();  // else it is the animation's
+  for (auto* v : {&s.smooth, &s.lasting, &s.lasting_before}) std::fill(v->begin(), v->end(), T(0));
+}
+
 /// Whose step may be divided; else it is halved once where it must be.
 template <class T>
 bool gets_substeps(const CharacterState<T>* s) {
@@ -50,12 +58,24 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
+  set_.reserve(room.trees);
+  radius_.reserve(room.trees);
+  lasts_.reserve(room.trees);
+  loose_.reserve(room.dofs);
+  for (auto* v : {&jump_force_, &constant_, &kinks_, &others_}) v->reserve(room.dofs);
+  for (auto* v : {&moved_, &turned_, &sped_, &spun_}) v->reserve(room.bodies);
+  held_rates_.reserve(room.bodies);
+  momenta_.reserve(room.trees);
+  ends_.reserve(room);
+  struck_.reserve(room.trees);
 }
 
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
-  std::size_t sum =
-      (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
+  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * 2 * sizeof(T) +
+                    room.bodies * (2 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+                    (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
+                    room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
 }
@@ -88,6 +108,10 @@ bool IslandStepper<T>::touching_changed() const {
 
 template <class T>
 void IslandStepper<T>::predict_all(Scheme scheme, T h) {
+  if (scheme == Scheme::kBossak) return predict_bossak_all(h);
+  for (CharacterState<T>* s : states_)
+    for (std::size_t j = 0; j < s->problem.pushes.size(); ++j)
+      s->problem.pushes[j].force = s->impulses[j].force / frame_;
   for (CharacterState<T>* s : states_) {
     predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
     if (couplings_.empty() && s->contact_signature == 0)
@@ -96,9 +120,10 @@ void IslandStepper<T>::predict_all(Scheme scheme, T h) {
 }
 
 template <class T>
-void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSettings& world, T h) {
+void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
+  const WorldSettings& world = *world_;
   TreeProblem<T>& p = s.problem;
-  read_torques(s);
+  read_torques(s, h);
   const bool falls = s.only_falls();
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.rate_before[i] = s.rate[i];
@@ -126,31 +151,51 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step_before = s.rate_step;
   s.rate_step = h;
-  const double error_before = parts_ > 1 ? s.report.estimated_error : 0;
-  const std::uint64_t signature = touching<T>(contacts_, tree), limits = bearing(p);
-  const double error = world.accuracy.estimate_error && !(p.prediction.exact && signature == 0)
-                           ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
-                           : 0;
   const bool touched = std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
   s.left_to_gravity = !touched && !is_held_[tree] && couplings_.empty() && flies(s);
-  Vec3<double> momentum;
-  if (s.left_to_gravity)
-    momentum = carried_momentum<T>(s.tree, s.history, p.prediction, h) +
-               double(p.prediction.first ? h : p.prediction.momentum_step) * s.total_mass * world.gravity;
-  advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
-  if (s.left_to_gravity) set_momentum<T>(s.tree, momentum, s.history);
-  if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
-  s.pose_changed();
+  const bool exact = p.prediction.exact && touching<T>(contacts_, tree) == 0;
+  s.report.estimated_error = (parts_ > 1 ? s.report.estimated_error : 0) +
+                             (world.accuracy.estimate_error && !exact
+                                  ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
+                                  : 0);
+}
 
+/// Moves all trees' histories on to the solution.
+template <class T>
+void IslandStepper<T>::advance_all(T h) {
+  momenta_.clear();
+  for (const CharacterState<T>* s : states_) {
+    const Prediction<T>& p = s->problem.prediction;
+    const T falls = p.first || one_step() ? h : p.momentum_step;
+    momenta_.push_back(carried_momentum<T>(s->tree, s->history, p, h) +
+                       double(falls) * s->total_mass * world_->gravity);
+  }
+  if (one_step()) advance_one_step(h);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    const TreeProblem<T>& p = s.problem;
+    if (!one_step())
+      advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
+    if (s.left_to_gravity) set_momentum<T>(s.tree, momenta_[n], s.history);
+    if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
+    s.pose_changed();
+  }
+}
+
+template <class T>
+void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
+  const TreeProblem<T>& p = s.problem;
+  const std::uint64_t signature = touching<T>(contacts_, tree), limits = bearing(p);
+  const double error = s.report.estimated_error;
   CharacterReport& r = s.report;
   r = {};
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
   r.baked = static_cast<int>(std::count(s.baked.begin(), s.baked.end(), 1));
-  r.estimated_error = error_before + error;
-  r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2;
+  r.estimated_error = error;
+  r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2 || p.prediction.scheme == Scheme::kBossak;
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
@@ -162,11 +207,11 @@ void IslandStepper<T>::finish(CharacterState<T>& s, int tree, const WorldSetting
   r.elastic_energy += elastic_of<T>(couplings_, tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
-  s.settling = s.impulses.empty() ? std::max(s.settling - 1, 0) : kSettling;
+  s.settling = s.impulses.empty() || one_step() ? std::max(s.settling - 1, 0) : kSettling;
   if (!is_held_[tree] && s.passing > 0) --s.passing;
   s.contact_signature = signature;
   s.limit_signature = limits;
-  s.report_totals(world.gravity);
+  s.report_totals(world_->gravity);
 }
 
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
@@ -200,6 +245,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
+  settings_.constant_muscles = one_step();
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = kink_width<T>(h, T(world.accuracy.tolerance));
@@ -217,9 +263,11 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
+    if (one_step() && s->limp()) continue;  // see strike()
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
+  if (one_step()) drop_played();
   find_contacts(h);
 }
 
@@ -231,6 +279,16 @@ void IslandStepper<T>::begin_solve() {
   for (CharacterState<T>* s : states_)
     for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
   if (!effects_.empty()) limit_guess(h);
+  if (one_step()) {
+    expect_to_last(h);
+    second_ = std::all_of(states_.begin(), states_.end(),
+                          [](const CharacterState<T>* s) { return s->history.accelerates; });
+    predict_all(second_ ? Scheme::kBossak : Scheme::kBdf1, h);
+    for (std::size_t n = 0; n < states_.size(); ++n)
+      move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+    if (strikes_deep(h)) choose_guess(h);
+    return;
+  }
   second_ = world.accuracy.scheme == Scheme::kBdf2;
   for (std::size_t n = 0; n < states_.size() && second_; ++n)
     second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
@@ -260,7 +318,7 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
   mispredicted_ = false;
   SolveReport total = first_solve();
   for (int round = 1;; ++round) {
-    if (second_ && (touching_changed() || lifted())) {
+    if (second_ && !one_step() && (touching_changed() || lifted())) {
       // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
       second_ = false;
       mispredicted_ = true;
@@ -270,7 +328,7 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
     if (may_split && !total.converged) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
-      released = release_overloaded(*s) || released;
+      released = release_overloaded(*s, h) || released;
       released = release_baked(*s, settings_) || released;
     }
     if (!released || round == kReleaseRounds) return total;
@@ -318,10 +376,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
     budget_ = ledger_.open(states_, world_->gravity);
   hold_lost(!solved.converged && closed && excess() > standing());
-  for (std::size_t n = 0; n < states_.size(); ++n) {
-    CharacterState<T>& s = *states_[n];
-    finish(s, static_cast<int>(n), *world_, h);
-  }
+  for (std::size_t n = 0; n < states_.size(); ++n) settle_pose(*states_[n], static_cast<int>(n), h);
+  advance_all(h);
+  for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   for (const auto& effect : effects_) {
     if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;
     for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
@@ -336,7 +393,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (const Contact<T>& c : contacts_) {
     const T force = normal_force(c);
     const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
-    if (force > T(0) || unloaded) lagged_.push_back({c.id, force, c.stiffness, c.offset});
+    if (force > T(0) || unloaded)
+      lagged_.push_back(
+          {c.id, force, c.stiffness, c.offset, c.smooth_force, c.lasting_force, c.lasting_last});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
@@ -388,14 +447,19 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
                              std::span<Coupling<T>* const> couplings,
                              std::span<const LaggedForce<T>> lagged) {
   world_ = &world;
+  scheme_ = world.accuracy.scheme;
   surroundings_ = surroundings;
   frame_ = h;
   reset(states, indices, couplings, lagged);
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   settings_.limit_damping = T(world.accuracy.limit_damping);
-  for (CharacterState<T>* s : states_)
+  for (CharacterState<T>* s : states_) {
     if (!s->is_prop) meet_cuts(*s, h);
+    if (!one_step()) continue;
+    begin_one_step(*s);
+    if (s->limp() && !s->impulses.empty()) strike(*s);
+  }
   begin_couplings<T>(couplings_, states_, indices_);
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
   const bool alone = states.size() == 1 && couplings.empty();
@@ -412,6 +476,7 @@ void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T
   reset(begun.states, begun.indices, {}, lagged);
   settings_ = begun.settings;
   second_ = begun.second;
+  lasts_.assign(1, begun.lasts ? 1 : 0);
   problems_.assign(1, &states_[0]->problem);
   contacts_ = {};
   part_begun_ = solve_begun_ = true;

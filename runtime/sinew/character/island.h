@@ -7,6 +7,8 @@
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/energy_ledger.h"
 #include "sinew/effects/island_effect.h"
+#include "sinew/optimizer/bossak.h"
+#include "sinew/optimizer/end_velocities.h"
 #include "sinew/optimizer/newton.h"
 
 namespace sinew {
@@ -43,14 +45,16 @@ class IslandStepper {
     std::span<CharacterState<T>* const> states;
     std::span<const int> indices;
     StepSettings<T> settings;
-    bool second = false;
+    bool second = false, lasts = false;
   };
   /// Up to the first solve of a step in one part. True where that solve is of one tree that nothing is near
   /// and nothing is tied to: put_aside() then, and others may be begun before take_up(). Else end().
   bool begin(const WorldSettings& world, const Surroundings& surroundings, T h,
              std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
-  Begun put_aside() const { return {states_, indices_, settings_, second_}; }
+  Begun put_aside() const {
+    return {states_, indices_, settings_, second_, !lasts_.empty() && lasts_[0] != 0};
+  }
   /// `begun` by the last world and time step that begin() was given.
   void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
   /// The rest. `first`: what the first solve reported, whose solution the tree's problem holds; null: there
@@ -64,6 +68,7 @@ class IslandStepper {
   void start(T end, int splits);
   bool starts_whole() const;
   bool begin_whole();
+  void begin_loaded(T h);
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);
@@ -87,9 +92,26 @@ class IslandStepper {
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
   void predict_all(Scheme scheme, T h);
+  bool one_step() const { return scheme_ == Scheme::kBossak; }
+  void find_sets();
+  void predict_bossak_all(T h);
+  void expect_to_last(T h);
+  void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
+  void drop_played();
+  void strike(CharacterState<T>& state);
+  void drop_trial(CharacterState<T>& state, int tree);
+  void begin_ends();
+  void split_contacts(T h);
+  Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
+  void measure_held(const CharacterState<T>& state, int tree, T h);
+  bool choose_loose();
+  void advance_one_step(T h);
+  void press(T h);
   bool touching_changed() const;
   bool lifted() const;
-  void finish(CharacterState<T>& state, int tree, const WorldSettings& world, T h);
+  void settle_pose(CharacterState<T>& state, int tree, T h);
+  void advance_all(T h);
+  void report(CharacterState<T>& state, int tree);
 
   const WorldSettings* world_ = nullptr;
   Surroundings surroundings_;
@@ -103,6 +125,7 @@ class IslandStepper {
   bool closed_ = false;  ///< nothing can do work on the trees in this part
   double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
+  Scheme scheme_ = Scheme::kBdf2;                  ///< of the world's accuracy
   bool second_ = false;                            ///< bdf2 is used
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
   const SolveReport* first_ = nullptr;             ///< see end()
@@ -118,6 +141,17 @@ class IslandStepper {
   std::vector<T> free_share_;  ///< [tree] see IslandEffect::limit_guess
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
+  // Bossak's scheme
+  std::vector<int> set_;              ///< [tree] see find_sets
+  std::vector<T> radius_;             ///< [set] ρ
+  std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
+  std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last
+  std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
+  std::vector<T> jump_force_, constant_, kinks_, others_;  ///< [dof] of one tree
+  std::vector<Vec3<T>> moved_, turned_, sped_, spun_;      ///< [body] the same
+  std::vector<Twist<T>> held_rates_;                       ///< [body]
+  EndVelocities<T> ends_;
+  std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts
 };
 
 extern template class IslandStepper<float>;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "sinew/character/island.h"
+#include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/residual/residual_pass.h"
 
@@ -23,12 +24,11 @@ Mat3<T> spin_matrix(const CharacterState<T>& s, int i) {
 /// were set.
 template <class T>
 bool is_free_and_set(const CharacterState<T>& s) {
-  const TreeProblem<T>& p = s.problem;
   if (s.history.step_before != T(0) || s.contact_signature != 0 || s.limit_signature != 0 ||
-      !p.effects.empty() ||
-      std::any_of(s.baked.begin(), s.baked.end(), [](auto baked) { return baked != 0; }))
+      !s.problem.effects.empty() ||
+      std::any_of(s.baked.begin(), s.baked.end(), [](auto baked) { return baked != 0; }) ||
+      std::any_of(s.problem.free.begin(), s.problem.free.end(), [](auto free) { return free == 0; }))
     return false;
-  if (std::any_of(p.free.begin(), p.free.end(), [](auto free) { return free == 0; })) return false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Mat3<T> spin = spin_matrix(s, i);
     const T size = spin.norm(), rounded = T(1e-4) * size;
@@ -75,15 +75,27 @@ JointJet<T> coasting_jet(const CharacterState<T>& s, int i) {
   return jet;
 }
 
+/// Whether what damps a joint stops its body within a step: then how it decelerates at the start tells
+/// nothing of the step.
+template <class T>
+bool stops_at_once(const TreeProblem<T>& p, int i, T h) {
+  const T inertia = p.tree->inertia_at_joint[i].trace() / 3;
+  for (int dof = p.tree->first_dof[i]; dof < p.tree->first_dof[i + 1]; ++dof)
+    if (p.law.damping[dof] * h > inertia) return true;
+  return false;
+}
+
 /// What the bodies' motion asks for were no joint accelerated: forces and, about the centres of mass, couples
 /// (world axes) into the problem's room for wrenches.
 template <class T>
-void measure_coasting(CharacterState<T>& s) {
+void measure_coasting(CharacterState<T>& s, bool one_step) {
   TreeProblem<T>& p = s.problem;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int parent = s.tree.parent[i];
     BodyMotion<T>& body = s.motion.body[i];
-    move_body<T>(s.tree, i, coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
+    const int first = s.tree.first_dof[i];
+    const bool held = one_step && (s.tree.dof_count(i) == 0 || !p.free[first]);
+    move_body<T>(s.tree, i, held ? s.target[i] : coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
                  parent < 0 ? nullptr : &s.motion.body[parent], body);
     const Mat3<T>& r = p.kinematics.rotation[i];
     p.force[i] = r * body.force;
@@ -96,6 +108,9 @@ void measure_coasting(CharacterState<T>& s) {
 /// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
 template <class T>
 bool IslandStepper<T>::starts() const {
+  if (one_step())
+    return std::any_of(states_.begin(), states_.end(),
+                       [](const CharacterState<T>* s) { return !s->history.accelerates; });
   const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
     return s->history.step_before == T(0) && s->contact_signature == 0;
   });
@@ -119,10 +134,13 @@ bool IslandStepper<T>::begin_whole() {
     for (int i = 0; i < s->tree.bodies; ++i)
       fastest = std::max(fastest, spin_matrix(*s, i).squaredNorm() / 2);
     const T span = std::min(h * h / 2, T(kTrialTurn) / std::max(fastest, std::numeric_limits<T>::min()));
-    measure_coasting(*s);
+    measure_coasting(*s, one_step());
+    if (one_step())
+      for (Effect<T>* effect : p.effects) effect->begin_step(effect_pose(settings_, p));
     predict_at_rest<T>(s->tree, s->history, p.force, p.moment, span, settings_.common_origin, p.prediction);
     p.local = p.start;
-    if (s->tree.bodies == 1) {  // nothing to find out
+    if (one_step()) p.pushes.clear();                // forces of the step to come
+    if (s->tree.bodies == 1 && contacts_.empty()) {  // nothing to find out
       p.kinematics.center[0] = p.prediction.center[0] + span * settings_.gravity;
       p.couple[0].setZero();
       continue;
@@ -130,25 +148,69 @@ bool IslandStepper<T>::begin_whole() {
     // What rubs goes by how far a joint has come since the start.
     for (int i = 0; i < s->tree.bodies; ++i) {
       std::array<T, 6> back = s->rate[i];
+      if (one_step() && stops_at_once(p, i, h)) continue;
       for (T& r : back) r *= -h;
       p.start[i] = at_offset<T>(s->tree, i, p.start[i], back);
     }
   }
   SolveReport trial;
   trial.converged = true;
-  if (std::any_of(states_.begin(), states_.end(), [](const auto* s) { return s->tree.bodies > 1; })) {
+  if (!contacts_.empty() ||
+      std::any_of(states_.begin(), states_.end(), [](const auto* s) { return s->tree.bodies > 1; })) {
     trial = solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
     total_.add(trial);
   }
-  for (CharacterState<T>* s : states_) {
+  if (one_step()) begin_ends();
+  for (CharacterState<T>* const& s : states_) {
     TreeProblem<T>& p = s->problem;
-    predict_first<T>(s->tree, s->history, p.kinematics, p.couple, h, settings_.common_origin, p.prediction);
-    predict_free_flight<T>(s->tree, s->history, h, p.prediction);
+    if (one_step()) {
+      if (!s->history.accelerates) {
+        accelerate<T>(s->tree, p.kinematics, p.prediction, p.couple, s->history);
+        drop_trial(*s, static_cast<int>(&s - states_.data()));
+      }
+    } else {
+      predict_first<T>(s->tree, s->history, p.kinematics, p.couple, h, settings_.common_origin, p.prediction);
+      predict_free_flight<T>(s->tree, s->history, h, p.prediction);
+    }
     std::copy_n(s->local.begin(), s->tree.bodies, p.start.begin());
     if (s->floats) p.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
     first_guess(*s, h);
+    if (!one_step()) continue;
+    forward_kinematics<T>(s->tree, p.start, p.common_origin, p.kinematics);
+    s->history.accelerates = trial.converged;
+    if (s->limp()) continue;
+    for (const ExternalForce<T>& j : s->impulses) p.pushes.push_back({j.body, j.local, j.force / frame_});
   }
+  if (one_step() && trial.converged) begin_loaded(h);
   return trial.converged;
+}
+
+/// What rests on something from the start on bears it like that since long: what the trial at rest found.
+template <class T>
+void IslandStepper<T>::begin_loaded(T h) {
+  constexpr T kResting = T(0.05);  // m/s
+  lagged_.clear();
+  std::vector<std::uint8_t>& loaded = struck_;
+  loaded.assign(states_.size(), 1);
+  for (const Contact<T>& c : contacts_) {
+    const T force = normal_force(c);
+    if (!(force > T(0))) continue;
+    if (std::abs(c.approach) < kResting) {
+      lagged_.push_back({c.id, force, c.stiffness, c.offset, force, force, force});
+      continue;
+    }
+    loaded[c.tree_a] = 0;
+    if (c.tree_b >= 0) loaded[c.tree_b] = 0;
+  }
+  std::sort(lagged_.begin(), lagged_.end(),
+            [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    if (!loaded[n] || states_[n]->steps_unchanged > 0) continue;
+    states_[n]->contact_signature = touching<T>(contacts_, static_cast<int>(n));
+    states_[n]->limit_signature = bearing(states_[n]->problem);
+    states_[n]->steps_unchanged = kUnchangedSteps;
+  }
+  find_contacts(h);  // measured anew, at the start
 }
 
 /// The first part of a step from a reset, up to the fraction `end`. Whole where nothing is near; else in
@@ -159,6 +221,11 @@ template <class T>
 void IslandStepper<T>::start(T end, int splits) {
   const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostStartParts);
   begin_part(end * frame_, end);
+  if (one_step()) {
+    (void)begin_whole();
+    part_begun_ = true;
+    return advance_part(T(0), end, splits);
+  }
   if (parts > 1 && starts_whole() && begin_whole()) {
     part_begun_ = solve_begun_ = second_ = true;
     advance_part(T(0), end, splits);
@@ -178,6 +245,7 @@ void IslandStepper<T>::start(T end, int splits) {
   template bool IslandStepper<T>::starts() const;       \
   template bool IslandStepper<T>::starts_whole() const; \
   template bool IslandStepper<T>::begin_whole();        \
+  template void IslandStepper<T>::begin_loaded(T);      \
   template void IslandStepper<T>::start(T, int);
 SINEW_START_INSTANCES(float)
 SINEW_START_INSTANCES(double)

@@ -35,8 +35,8 @@ std::size_t bytes_of(const CharacterState<T>& s) {
   const Motion<T>& m = s.motion;
   return sizeof s +
          held(s.target, s.target_before, s.local, s.model_pose, s.played_from, s.rate, s.rate_before,
-              s.deviation, s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.unknown,
-              s.impulses, s.baked, s.wanted, s.standing) +
+              s.deviation, s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.smooth,
+              s.lasting, s.lasting_before, s.unknown, s.impulses, s.baked, s.wanted, s.standing) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
               law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal) +
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum, p.prediction.start) +
@@ -44,7 +44,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
               p.gradient, p.rows, p.ellipsoids, p.composite, p.joint_curvature) +
          held_by(p.kinematics) + held_by(s.guessed) +
          held(h.center, h.center_before, h.velocity, h.velocity_before, h.rotation, h.rotation_before,
-              h.rotation_rate, h.momentum, h.momentum_before) +
+              h.rotation_rate, h.momentum, h.momentum_before, h.acceleration, h.torque) +
          held(m.body, m.omega, m.velocity, m.origin_velocity);
 }
 

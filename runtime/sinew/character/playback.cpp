@@ -135,7 +135,8 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
   const Vec3<T>& origin = s.local[0].translation;
   inertial_wrenches<T>(s.tree, jets, Vec3<T>::Zero(), origin, s.problem.kinematics, s.motion, s.problem.force,
                        s.problem.moment);
-  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), origin.template cast<double>(), s.history);
+  advance_exactly<T>(s.tree, s.problem.kinematics, s.motion, T(0), Vec3<T>::Zero(),
+                     origin.template cast<double>(), s.history);
   s.history.step_before = T(0);
 }
 

@@ -267,8 +267,8 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
-  // Two halves of 44 bits, three numbers and at most two bytes more each.
-  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 3 * (sizeof(T) + 2)));
+  // Two halves of 44 bits, six numbers and at most two bytes more each.
+  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 6 * (sizeof(T) + 2)));
   {
     ResidualCoder<std::uint32_t> coder("contact", stream, true);
     std::uint32_t high = 0, low = 0;
@@ -286,16 +286,20 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
     ResidualCoder<T> coder(name, stream, true);
     T before = T(0);
     for (LaggedForce<T>& contact : lagged) {
-      auto& [id, force, stiffness, offset] = contact;  // all of it: a new member will not compile here
-      visit_contact(coder, force, stiffness, offset, before);
+      [[maybe_unused]] auto& [id, force, stiffness, offset, smooth, lasting, earlier] =
+          contact;  // a new member will not compile here
+      visit_contact(coder, contact, before);
     }
   };
-  visit("contact force", [](auto& coder, T& force, T&, T&, T&) { coder.value(force, T(0)); });
-  visit("contact stiffness", [](auto& coder, T&, T& stiffness, T&, T& before) {
-    coder.value(stiffness, before);
-    before = stiffness;
+  visit("contact force", [](auto& coder, auto& c, T&) { coder.value(c.force, T(0)); });
+  visit("contact stiffness", [](auto& coder, auto& c, T& before) {
+    coder.value(c.stiffness, before);
+    before = c.stiffness;
   });
-  visit("contact offset", [](auto& coder, T&, T&, T& offset, T&) { coder.value(offset, T(0)); });
+  visit("contact offset", [](auto& coder, auto& c, T&) { coder.value(c.offset, T(0)); });
+  visit("contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.force); });
+  visit("lasting contact force", [](auto& coder, auto& c, T&) { coder.value(c.lasting, c.force); });
+  visit("smooth contact force", [](auto& coder, auto& c, T&) { coder.value(c.smooth, c.force); });
 }
 
 void visit_budget(BudgetState& budget, ByteStream& stream) {

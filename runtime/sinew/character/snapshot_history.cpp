@@ -113,6 +113,44 @@ void visit_velocities(CharacterState<T>& s, bool known, ByteStream& stream) {
     coder.values(h.momentum[i], momentum_of(s.tree.inertia[i], h.rotation[i], h.rotation_rate[i]));
 }
 
+/// What Bossak's scheme carries: velocities as the joints' rates have them, accelerations, and what of the
+/// joints' rows has lasted.
+template <class T>
+void visit_one_step(CharacterState<T>& s, ByteStream& stream) {
+  History<T>& h = s.history;
+  std::uint8_t known = h.accelerates ? 1 : 0;
+  stream.value("accelerations are known", known);
+  if (stream.reading()) h.accelerates = known != 0;
+  std::vector<Vec3<T>>&w = s.guessed.w, &v = s.guessed.v;  // motion axes, at the pose that visit_places left
+  const auto visit = [&](const char* name, auto visit_body) {
+    ResidualCoder<T> coder(name, stream);
+    for (int i = 0; i < s.tree.bodies; ++i) visit_body(coder, i);
+  };
+  visit("velocity", [&](auto& coder, int i) {
+    Vec3<T> spin = Vec3<T>::Zero(), slide = spin;
+    for (int dof = s.tree.first_dof[i + 1] - 1; dof >= 0; dof = s.tree.dof_parent[dof]) {
+      const int body = s.tree.dof_body[dof];
+      const T rate = s.rate[body][dof - s.tree.first_dof[body]];
+      spin += rate * w[dof];
+      slide += rate * v[dof];
+    }
+    const Vec3<T> velocity = slide + spin.cross(h.center[i]) + h.changed.push;
+    coder.values(h.velocity[i], Vec3<T>(velocity + h.changed.faster(h.center[i], velocity)));
+    coder.values(h.rotation_rate[i], Mat3<T>(skew<T>(spin) * h.rotation[i]));
+    coder.values(h.momentum[i], momentum_of(s.tree.inertia[i], h.rotation[i], h.rotation_rate[i]));
+  });
+  visit("acceleration", [&](auto& coder, int i) {
+    coder.values(h.acceleration[i], i > 0 ? h.acceleration[i - 1] : Vec3<T>(Vec3<T>::Zero()));
+    coder.values(h.torque[i], Vec3<T>(Vec3<T>::Zero()));
+  });
+  ResidualCoder<T> coder("what of a joint's rows lasts", stream);
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    coder.value(s.smooth[dof], T(0));
+    coder.value(s.lasting[dof], s.smooth[dof]);
+    coder.value(s.lasting_before[dof], s.lasting[dof]);
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -126,7 +164,8 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
   stream.value("span of the history", h.step_before);
   std::uint8_t scheme = static_cast<std::uint8_t>(h.scheme);
   stream.value("scheme", scheme);
-  if (stream.reading()) h.scheme = static_cast<Scheme>(std::min(scheme, std::uint8_t{2}));
+  if (stream.reading())
+    h.scheme = static_cast<Scheme>(std::min(scheme, static_cast<std::uint8_t>(Scheme::kBossak)));
   if (stream.part("changed after the solve", !h.changed.none())) {
     MotionChange<T>& c = h.changed;
     stream.value("what it was scaled by", c.factor);
@@ -136,6 +175,10 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
     h.changed = {};
   }
   visit_places(s, stream);
+  const bool one_step = stream.part("accelerations are carried", s.one_step);
+  if (stream.reading()) s.one_step = one_step;
+  if (one_step) visit_one_step(s, stream);
+  if (one_step && !stream.bounding()) return;
   step_back<T>(s, s.rate, s.rate_step / h.changed.factor, s.wanted, s.guessed);
   const bool known = stream.part("contacts have been the same", s.steps_unchanged > 0);
   if (known) {

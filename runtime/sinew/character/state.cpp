@@ -96,6 +96,9 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       torque(tree.dofs, T(0)),
       load(tree.dofs, T(0)),
       limit(tree.dofs, T(0)),
+      smooth(tree.dofs, T(0)),
+      lasting(tree.dofs, T(0)),
+      lasting_before(tree.dofs, T(0)),
       unknown(tree.dofs, 0),
       problem(tree, skeleton),
       guessed(tree),
@@ -240,7 +243,8 @@ void CharacterState<T>::keep_record() {
   const Vec3<T>& origin = last_target()[0].translation;
   inertial_wrenches<T>(tree, last_target(), Vec3<T>::Zero(), origin, problem.kinematics, motion,
                        problem.force, problem.moment);
-  advance_exactly<T>(tree, problem.kinematics, motion, owed.h, origin.template cast<double>(), history);
+  advance_exactly<T>(tree, problem.kinematics, motion, owed.h, Vec3<T>::Zero(),
+                     origin.template cast<double>(), history);
 }
 
 template <class T>
@@ -302,8 +306,10 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   const Vec3<T>& origin = target[0].translation;
   inertial_wrenches<T>(tree, target, gravity, origin, problem.kinematics, motion, problem.force,
                        problem.moment);
-  advance_exactly<T>(tree, problem.kinematics, motion, T(0), origin.template cast<double>(), history);
+  advance_exactly<T>(tree, problem.kinematics, motion, T(0), gravity, origin.template cast<double>(),
+                     history);
   history.step_before = T(0);
+  history.accelerates = false;
   for (int i = 0; i < tree.bodies; ++i) {
     deviation[i] = {};
     const Vec3<T>& w = target[i].omega;
@@ -350,6 +356,7 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& from_ani
   Deviation<T>& d = deviation[i];
   const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);
+  d.on_path = true;
   for (int k = 0; k < tree.dof_count(i); ++k) {
     // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
     // would start the next part of the path too fast or too slow by an error of first order.
@@ -359,6 +366,7 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& from_ani
     d.rate[k] =
         on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
     d.offset[k] = from_animation[k];
+    d.on_path = d.on_path && on_path;
     offset = std::max(offset, std::abs(d.offset[k]));
     speed = std::max(speed, std::abs(d.rate[k]));
   }

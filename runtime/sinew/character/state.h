@@ -21,6 +21,7 @@ struct Deviation {
   std::array<T, 6> rate{};    ///< 1/s
   bool on_animation = true;   ///< exactly where the clip wants it
   bool released = false;      ///< was an unknown in the last step
+  bool on_path = false;       ///< went along the way back in the last step: `rate` is that path's
 };
 
 /// What a played step leaves undone until somebody asks: mostly nobody does. See keep_record(), catch_up().
@@ -104,6 +105,7 @@ struct CharacterState {
   bool carried = false;  ///< in this step, see carry_over()
   bool calm = true;      ///< no joint deviates: see settle_deviations
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
+  bool one_step = false;         ///< the world's scheme is Bossak's: accelerations are carried
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target;         ///< [joint] what the animation wants at the end of the next step
@@ -112,18 +114,19 @@ struct CharacterState {
   std::vector<Transform<T>> local;         ///< [joint]
   std::vector<Transform<T>> model_pose;    ///< [joint] see model()
   bool model_owed = false;
-  std::vector<Transform<T>> played_from;      ///< [joint] `local` before the last played step
-  Owed<T> owed;                               ///< by that step
-  std::vector<std::array<T, 6>> rate;         ///< [body] joint speed over the last step, as joint_offset
-  std::vector<std::array<T, 6>> rate_before;  ///< [body] over the step before
-  T rate_step = T(0);                         ///< s, that `rate` was measured over; 0: unknown
-  T rate_step_before = T(0);                  ///< s, the same of `rate_before`
-  std::vector<Deviation<T>> deviation;        ///< [body]
-  std::vector<T> joint_strength;              ///< [body]
-  std::vector<T> muscle_strength;             ///< [muscle of the skeleton]
-  std::vector<T> torque, load, limit;         ///< [dof]
-  std::vector<std::uint8_t> unknown;          ///< [dof]
-  std::vector<ExternalForce<T>> impulses;     ///< N·s, waiting for the next step
+  std::vector<Transform<T>> played_from;           ///< [joint] `local` before the last played step
+  Owed<T> owed;                                    ///< by that step
+  std::vector<std::array<T, 6>> rate;              ///< [body] joint speed over the last step, as joint_offset
+  std::vector<std::array<T, 6>> rate_before;       ///< [body] over the step before
+  T rate_step = T(0);                              ///< s, that `rate` was measured over; 0: unknown
+  T rate_step_before = T(0);                       ///< s, the same of `rate_before`
+  std::vector<Deviation<T>> deviation;             ///< [body]
+  std::vector<T> joint_strength;                   ///< [body]
+  std::vector<T> muscle_strength;                  ///< [muscle of the skeleton]
+  std::vector<T> torque, load, limit;              ///< [dof]
+  std::vector<T> smooth, lasting, lasting_before;  ///< [dof] of limits, dampings and effects: see Contact
+  std::vector<std::uint8_t> unknown;               ///< [dof]
+  std::vector<ExternalForce<T>> impulses;          ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
   std::vector<std::unique_ptr<Effect<T>>> effects;  ///< declared for this tree, in the plan or not

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "sinew/optimizer/bossak.h"
+
 namespace sinew {
 
 template <class T>
@@ -21,16 +23,24 @@ void choose_unknowns(CharacterState<T>& s) {
 }
 
 template <class T>
-bool release_overloaded(CharacterState<T>& s) {
+T led_torque(const CharacterState<T>& s, int dof, T h) {
+  const T asked = s.problem.gradient[dof];
+  if (s.problem.prediction.scheme != Scheme::kBossak) return asked;
+  return asked / constant_emphasis(s.problem.prediction.weight, h);
+}
+
+template <class T>
+bool release_overloaded(CharacterState<T>& s, T h) {
   if (s.levels.allowed < Level::kPartial) return false;
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     if (count == 0 || s.problem.free[first] || s.baked[i]) continue;
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
+    for (int dof = first; dof < first + count; ++dof) s.torque[dof] = led_torque(s, dof, h);
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
-      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.problem.gradient));
+      load = std::max(load, s.problem.law.load(s.tree, i, dof, s.torque));
     if (load <= T(1)) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
@@ -55,7 +65,10 @@ void first_guess(CharacterState<T>& s, T h, T share) {
       continue;
     }
     std::array<T, 6> moved{};
-    const T steady = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0) ? h / s.rate_step : T(0);
+    // Rates are those at the end of the last step, or their mean over it.
+    const T mean = s.history.scheme == Scheme::kBossak ? T(0.5) : T(1);
+    const bool goes_on = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0);
+    const T steady = goes_on ? mean * h / s.rate_step : T(0);
     for (int k = 0; k < count; ++k)
       moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, p.start[i]), moved);
@@ -63,11 +76,11 @@ void first_guess(CharacterState<T>& s, T h, T share) {
 }
 
 template <class T>
-void read_torques(CharacterState<T>& s) {
+void read_torques(CharacterState<T>& s, T h) {
   const TreeProblem<T>& p = s.problem;
   std::fill(s.torque.begin(), s.torque.end(), T(0));
   for (int dof = 0; dof < s.tree.dofs; ++dof)
-    if (!p.free[dof]) s.torque[dof] = p.gradient[dof];
+    if (!p.free[dof]) s.torque[dof] = led_torque(s, dof, h);
   for (const JointRow<T>& row : p.rows) {
     if (!row.muscle) continue;
     const T slope = row.slope(row.value);
@@ -77,7 +90,10 @@ void read_torques(CharacterState<T>& s) {
     const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
     for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
   }
+  const T emphasis =
+      p.prediction.scheme == Scheme::kBossak ? constant_emphasis(p.prediction.weight, h) : T(1);
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    if (p.free[dof]) s.torque[dof] /= emphasis;
     s.unknown[dof] = p.free[dof];
     s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }

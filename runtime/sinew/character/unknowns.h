@@ -2,6 +2,8 @@
 // Internal to the character layer.
 #pragma once
 
+#include <algorithm>
+
 #include "sinew/character/state.h"
 
 namespace sinew {
@@ -17,7 +19,7 @@ void choose_unknowns(CharacterState<T>& state);
 /// Hands joints whose needed torque (`problem.gradient`) exceeds their muscles' limit to the solve. True if
 /// there were any.
 template <class T>
-bool release_overloaded(CharacterState<T>& state);
+bool release_overloaded(CharacterState<T>& state, T h);
 
 /// Where the solve of h seconds starts: driven joints at their target, the others go on as they moved; where
 /// contacts stay as they are, with the change of their speed too (flight: 2.4 passes instead of 3.4); by a
@@ -25,15 +27,21 @@ bool release_overloaded(CharacterState<T>& state);
 template <class T>
 void first_guess(CharacterState<T>& state, T h, T share = T(1));
 
-/// After a solve: what every joint's target or muscles exert (`torque`, `limit`), and which were unknowns.
+/// After a solve of h seconds: what every joint's target or muscles exert (`torque`, `limit`), and which were
+/// unknowns.
 template <class T>
-void read_torques(CharacterState<T>& state);
+void read_torques(CharacterState<T>& state, T h);
 
-#define SINEW_UNKNOWNS_INSTANCES(prefix, T)              \
-  prefix void choose_unknowns<T>(CharacterState<T>&);    \
-  prefix bool release_overloaded<T>(CharacterState<T>&); \
-  prefix void first_guess<T>(CharacterState<T>&, T, T);  \
-  prefix void read_torques<T>(CharacterState<T>&);
+/// Torque over the step of a joint that is led, of which `problem.gradient` holds what keeps it there.
+template <class T>
+T led_torque(const CharacterState<T>& state, int dof, T h);
+
+#define SINEW_UNKNOWNS_INSTANCES(prefix, T)                 \
+  prefix void choose_unknowns<T>(CharacterState<T>&);       \
+  prefix bool release_overloaded<T>(CharacterState<T>&, T); \
+  prefix T led_torque<T>(const CharacterState<T>&, int, T); \
+  prefix void first_guess<T>(CharacterState<T>&, T, T);     \
+  prefix void read_torques<T>(CharacterState<T>&, T);
 SINEW_UNKNOWNS_INSTANCES(extern template, float)
 SINEW_UNKNOWNS_INSTANCES(extern template, double)
 

@@ -74,7 +74,10 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
-  for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
+  for (CharacterState<T>* s : worker.members) {
+    s->levels.allowed = allowed_level(*s);
+    s->one_step = settings.accuracy.scheme == Scheme::kBossak;
+  }
   lagged_count[island] = 0;
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);

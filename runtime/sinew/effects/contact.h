@@ -89,18 +89,23 @@ struct Contact {
   T plane_height = T(0);                      ///< from the common origin
   Transform<T> shape_pose;                    ///< shape → body_b (or → common origin when static)
   Vec3<T> size = Vec3<T>::Zero();
-  T stiffness = T(1e5);          ///< N/m
-  T friction = T(0.8);           ///< μ
-  T lagged_normal_force = T(0);  ///< λ, N
-  T expected_force = T(0);       ///< N, along the normal at the end: what a solve knows of it so far
-  T restitution = T(0);          ///< of a bounce: impulse of the release by that of the compression
-  T offset = T(0);               ///< m, added to the gap: stiffening a loaded contact keeps its force
-  T lent = T(0);                 ///< J, that it stores more because the offset shrank when the step began
-  bool fresh = true;             ///< bore nothing after the last step
-  T start_gap = T(0);            ///< when the step began, m
-  T stretch = T(1);              ///< 1 + τ/h: change of the damped gap by the gap
-  T lag = T(0);                  ///< m; the damped gap where the gap is 0, ≥ 0
-  T approach = T(0);             ///< closing speed then (fresh ones only), m/s
+  T stiffness = T(1e5);                          ///< N/m
+  T friction = T(0.8);                           ///< μ
+  T lagged_normal_force = T(0);                  ///< λ, N
+  T lasting_last = T(0), lasting_before = T(0);  ///< N; see lasting(): of the last step and the one before
+  T lasting_force = T(0);                        ///< N; at the end of this one
+  T smooth_before = T(0);                        ///< N; what of λ no impulse was: see split()
+  T smooth_force = T(0);                         ///< N; of the normal force at the end
+  T smooth_friction = T(1);                      ///< share of the friction at the end
+  T expected_force = T(0);  ///< N, along the normal at the end: what a solve knows of it so far
+  T restitution = T(0);     ///< of a bounce: impulse of the release by that of the compression
+  T offset = T(0);          ///< m, added to the gap: stiffening a loaded contact keeps its force
+  T lent = T(0);            ///< J, that it stores more because the offset shrank when the step began
+  bool fresh = true;        ///< bore nothing after the last step
+  T start_gap = T(0);       ///< when the step began, m
+  T stretch = T(1);         ///< 1 + τ/h: change of the damped gap by the gap
+  T lag = T(0);             ///< m; the damped gap where the gap is 0, ≥ 0
+  T approach = T(0);        ///< closing speed then (fresh ones only), m/s
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
           material_b = Vec3<T>::Zero();  ///< body axes (static: from common origin)
@@ -194,6 +199,30 @@ T contact_energy(const Contact<T>& c, T stick) {
   if (grip > T(0))
     energy += grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
   return energy;
+}
+
+/// A force that has just come acts on a body by κh² of its acceleration in the step, not by ½h² as one that
+/// was there: it is as much larger. What it would be if it lasted; `share` = 2κ (bossak.h), `carried` what of
+/// it the accelerations held when the step began.
+template <class T>
+T lasting(T force, T carried, T share) {
+  return share * force + (1 - share) * carried;
+}
+/// The lesser of what is and twice what was in each of two steps, where all have its sign: a limiter, as of
+/// slopes in finite volumes. What it takes away has just come, or goes.
+template <class T>
+T limited(T now, T last, T before) {
+  if (now < T(0)) return -limited(-now, -last, -before);
+  return std::clamp(2 * std::min(last, before), T(0), now);
+}
+/// Of the forces at the end of a step, those that may be taken for smooth in time: all, where the same
+/// contacts `last`; else as far as they have lasted. Friction goes by the normal force that it had.
+template <class T>
+void split(bool last, T share, Contact<T>& c) {
+  const T now = normal_force(c), lagged = c.lagged_normal_force;
+  c.lasting_force = lasting(now, c.smooth_before, share);
+  c.smooth_force = last ? now : std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
+  c.smooth_friction = last ? T(1) : lagged > T(0) ? std::min(c.smooth_before / lagged, T(1)) : T(0);
 }
 
 /// Gradient of the normal energy by the contact point of body a (N, pointing into the obstacle).

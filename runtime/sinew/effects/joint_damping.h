@@ -23,7 +23,7 @@ struct JointDampingRows {
     const auto always = T(0) <= T(0);
     if (const Number<T> friction = joint.law.dry_friction[dof]; friction > 0) {
       JointRow<T> row = joint.row(from_start, RowScalar::kFromStart, k);
-      row.minus = row.plus = friction;
+      row.minus = row.plus = joint.emphasis * friction;
       row.width = 10 * joint.kink_width;
       rows.add_row(row, always);
     }

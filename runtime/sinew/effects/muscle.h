@@ -26,8 +26,8 @@ struct MuscleRows {
     const auto pulls = joint.law.has_muscle(dof);
     if (!any(pulls)) return;
     JointRow<T> row = joint.row(from_target, RowScalar::kFromTarget, k);
-    row.minus = joint.law.torque_minus[dof];
-    row.plus = joint.law.torque_plus[dof];
+    row.minus = joint.emphasis * joint.law.torque_minus[dof];
+    row.plus = joint.emphasis * joint.law.torque_plus[dof];
     row.width = joint.kink_width;
     row.muscle = true;
     rows.add_row(row, pulls);
@@ -42,8 +42,8 @@ struct MuscleRows {
     row.width = joint.kink_width;
     for (int a = 0; a < 3; ++a) {
       row.value[a] = from_target.value[a];
-      row.minus[a] = joint.law.torque_minus[row.dof + a];
-      row.plus[a] = joint.law.torque_plus[row.dof + a];
+      row.minus[a] = joint.emphasis * joint.law.torque_minus[row.dof + a];
+      row.plus[a] = joint.emphasis * joint.law.torque_plus[row.dof + a];
     }
     return row;
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sinew/optimizer/bossak.h"
+
 namespace sinew {
 namespace {
 
@@ -24,11 +26,30 @@ bool carried_by_integration(const TreeProblem<T>& p, std::span<const T> load, in
   return body >= 0;
 }
 
+template <class T>
+double bossak_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load, T h) {
+  const Tree<T>& tree = *problem.tree;
+  const Prediction<T>& p = problem.prediction;
+  const BossakWeights<T> w(p.rho);
+  T sum = T(0), mass = T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += tree.mass[i];
+    if (!carried_by_integration(problem, load, i)) continue;
+    const Vec3<T> force = p.weight * (problem.kinematics.center[i] - p.center[i]);
+    const Vec3<T> change = (force - history.acceleration[i]) / (1 - w.alpha_m);
+    const Mat3<T>& r = problem.kinematics.rotation[i];
+    const Vec3<T> twist = r.transpose() * Vec3<T>(problem.couple[i] - history.torque[i]) / (1 - w.alpha_m);
+    sum += tree.mass[i] * change.squaredNorm() + twist.dot(tree.inverse_inertia[i] * twist);
+  }
+  return mass > T(0) ? double((w.kappa - T(1) / 6) * h * h * std::sqrt(sum / mass)) : 0;
+}
+
 }  // namespace
 
 template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
                          T h, const Vec3<double>& common_origin) {
+  if (problem.prediction.scheme == Scheme::kBossak) return bossak_error(problem, history, load, h);
   const Tree<T>& tree = *problem.tree;
   const bool second = problem.prediction.scheme == Scheme::kBdf2;
   const bool first = problem.prediction.first;

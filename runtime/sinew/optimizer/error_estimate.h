@@ -1,10 +1,10 @@
 // How far one step goes astray because it is finite: an embedded estimate, from what the step leaves behind.
 //
-// Both schemes are the first terms of a family: the formula of one order higher, on the same states, differs
-// by
+// The formula of one order higher, on the same states, differs by
 //
 //   bdf1   h/2 · (v₁ − v₀)                              from the trapezoidal rule
 //   bdf2   βh/3 · ((v₁ − v₀) − w (v₀ − v₋₁))            from the third-order difference, w = h/h₋₁
+//   Bossak (κ − 1/6) h² (a₁ − a₀)                       where accelerations change as t³/6 has it
 //
 // with v the velocity of a body's centre, or its angular velocity. No second solve: about 60 flops per body.
 // Step doubling was not taken, since it costs two more solves. What it cannot see: a solve that stopped short

@@ -11,6 +11,12 @@
 
 namespace sinew {
 
+/// See StepSettings::constant_muscles.
+template <class T, class Settings>
+T emphasis(const Settings& settings, const T& weight) {
+  return settings.constant_muscles ? largest(T(weight * (settings.h * settings.h / 2)), T(1)) : T(1);
+}
+
 /// Joint i of a tree as the effects see it.
 template <class T, class Problem>
 auto joint_step(const StepSettings<Number<T>>& settings, const Problem& p, int i) {
@@ -23,7 +29,8 @@ auto joint_step(const StepSettings<Number<T>>& settings, const Problem& p, int i
                                                             settings.h,
                                                             settings.kink_width,
                                                             settings.limit_stiffness,
-                                                            settings.limit_damping};
+                                                            settings.limit_damping,
+                                                            emphasis<T>(settings, p.prediction.weight)};
 }
 
 /// See measure_joint_rows. `terms`: JointTerms of the problem's law and rows.

@@ -58,6 +58,9 @@ struct StepSettings {
   T limit_stiffness = T(2000);                        ///< N·m/rad
   T limit_damping = T(0.02);                          ///< s
   T stick = T(0.01) / 60;                             ///< m per step
+  /// Muscles and dry friction are constant over the step: see constant_emphasis in bossak.h. With other
+  /// schemes they act as all forces do.
+  bool constant_muscles = false;
   T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
 };
 

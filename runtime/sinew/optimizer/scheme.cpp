@@ -21,14 +21,17 @@ History<T>::History(int bodies)
       rotation_before(rotation),
       rotation_rate(bodies, Mat3<T>::Zero()),
       momentum(center),
-      momentum_before(center) {}
+      momentum_before(center),
+      acceleration(center),
+      torque(center) {}
 
 template <class T>
 void History<T>::stop() {
-  for (auto* v : {&velocity, &velocity_before, &momentum, &momentum_before})
+  for (auto* v : {&velocity, &velocity_before, &momentum, &momentum_before, &acceleration, &torque})
     std::fill(v->begin(), v->end(), Vec3<T>(Vec3<T>::Zero()));
   std::fill(rotation_rate.begin(), rotation_rate.end(), Mat3<T>(Mat3<T>::Zero()));
   step_before = T(0);
+  accelerates = false;
 }
 
 template <class T>
@@ -108,8 +111,8 @@ Mat3<T> locked_inertia(const Tree<T>& tree, const History<T>& history, const Vec
   return sum;
 }
 
-/// Where a free body that is at `start` with the angular momentum L (world) is after h seconds, which may be
-/// negative: q̇ = ½ωq, ω = R I⁻¹ Rᵀ L, by Runge and Kutta's fourth order in parts of a tenth of a radian.
+}  // namespace
+
 template <class T>
 Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, const Vec3<T>& momentum, T h) {
   using Vec4 = Eigen::Matrix<T, 4, 1>;
@@ -134,7 +137,9 @@ Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, cons
   return Quat<T>(q);
 }
 
-}  // namespace
+template Quat<float> free_rotation<float>(const Mat3<float>&, const Quat<float>&, const Vec3<float>&, float);
+template Quat<double> free_rotation<double>(const Mat3<double>&, const Quat<double>&, const Vec3<double>&,
+                                            double);
 
 template <class T>
 void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
@@ -268,17 +273,12 @@ void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Pr
   }
 }
 
-namespace {
-
-/// Moves a history's place on to the root of `kinematics`; returns by how much.
 template <class T>
 Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history) {
   const Vec3<T> before = (history.place - common_origin).template cast<T>();
   history.place = common_origin + kinematics.origin[0].template cast<double>();
   return kinematics.origin[0] - before;
 }
-
-}  // namespace
 
 template <class T>
 void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
@@ -345,7 +345,7 @@ void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>&
 
 template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
-                     const Vec3<double>& common_origin, History<T>& history) {
+                     const Vec3<T>& gravity, const Vec3<double>& common_origin, History<T>& history) {
   const Vec3<T> moved = follow_root(kinematics, common_origin, history);
   for (int i = 0; i < tree.bodies; ++i) {
     const Mat3<T>& r = kinematics.rotation[i];
@@ -358,7 +358,12 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
     history.rotation_rate[i] = skew<T>(motion.omega[i]) * r;
     history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = r * (tree.inertia[i] * (r.transpose() * motion.omega[i]));
+    const BodyMotion<T>& body = motion.body[i];
+    history.acceleration[i] =
+        tree.mass[i] > T(0) ? Vec3<T>(gravity + r * body.force / tree.mass[i]) : Vec3<T>(Vec3<T>::Zero());
+    history.torque[i] = r * Vec3<T>(body.moment - tree.center_of_mass[i].cross(body.force));
   }
+  history.accelerates = true;
   history.scheme = Scheme::kBdf2;
   history.step_before = h;
   history.changed = {};

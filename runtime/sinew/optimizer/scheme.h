@@ -57,6 +57,9 @@ struct History {
   std::vector<Mat3<T>> rotation, rotation_before;
   std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
   std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
+  std::vector<Vec3<T>> acceleration;               ///< Bossak's scheme: of the centre of mass, m/s²
+  std::vector<Vec3<T>> torque;                     ///< the same: change of the angular momentum, N·m
+  bool accelerates = false;                        ///< these two are known
   Scheme scheme = Scheme::kBdf2;                   ///< that led here
   MotionChange<T> changed;                         ///< by the last step, after it was solved
   T step_before = T(0);                            ///< s between before and now; 0: no earlier state
@@ -105,6 +108,7 @@ struct Prediction {
   std::vector<Mat3<T>> start;     ///< R₀ (momentum scheme)
   T weight = T(0);                ///< α, 1/s²
   T momentum_step = T(0);         ///< βh, s
+  T rho = T(0);                   ///< Bossak's scheme: see BossakWeights
   T k1 = T(1), k2 = T(0);  ///< of the backward difference: rate at the end = (k1 (x₁ − x₀) − k2 (x₀ − x₋₁))/h
   Scheme scheme = Scheme::kBdf1;
   bool exact = false;  ///< where nothing touches the tree: see predict_free_flight
@@ -156,16 +160,30 @@ Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, co
 template <class T>
 void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history);
 
-/// Moves the history on to a pose whose velocities are known exactly (playback).
+/// Moves the history on to a pose whose velocities and accelerations are known exactly (playback). `gravity`
+/// (m/s²): that `motion` was measured under.
 template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
-                     const Vec3<double>& common_origin, History<T>& history);
+                     const Vec3<T>& gravity, const Vec3<double>& common_origin, History<T>& history);
 
 /// The kinetic energy is the one that the scheme dissipates. bdf2: ½m|ċ|² + ½L·I⁻¹L of the carried momentum,
 /// which torque-free flight keeps; a difference of rotations would wobble by h²|ω|² around it. bdf1: ½ṘP:Ṙ
 /// of the difference of rotations.
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
+
+/// Where a free body that is at `start` with the angular momentum L (world) is after h seconds, which may be
+/// negative: q̇ = ½ωq, ω = R I⁻¹ Rᵀ L, by Runge and Kutta's fourth order in parts of a tenth of a radian.
+template <class T>
+Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, const Vec3<T>& momentum, T h);
+extern template Quat<float> free_rotation<float>(const Mat3<float>&, const Quat<float>&, const Vec3<float>&,
+                                                 float);
+extern template Quat<double> free_rotation<double>(const Mat3<double>&, const Quat<double>&,
+                                                   const Vec3<double>&, double);
+
+/// Moves a history's place on to the root of `kinematics`; returns by how much.
+template <class T>
+Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history);
 
 #define SINEW_SCHEME_INSTANCES(prefix, T)                                                                    \
   prefix struct History<T>;                                                                                  \
@@ -183,8 +201,9 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
   prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
   prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
   prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);     \
-  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T,                  \
-                                 const Vec3<double>&, History<T>&);
+  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&,  \
+                                 const Vec3<double>&, History<T>&);                                          \
+  prefix Vec3<T> follow_root<T>(const Kinematics<T>&, const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)
 SINEW_SCHEME_INSTANCES(extern template, double)
 

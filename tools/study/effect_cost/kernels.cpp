@@ -55,7 +55,8 @@ struct Solving {
     }
     forward_kinematics<float>(tree, problem.start, Vec3<float>::Zero(), problem.kinematics);
     const Motion<float> still(tree);
-    advance_exactly<float>(tree, problem.kinematics, still, kStep, Vec3<double>::Zero(), history);
+    advance_exactly<float>(tree, problem.kinematics, still, kStep, Vec3<float>::Zero(), Vec3<double>::Zero(),
+                           history);
     history.stop();
     predict<float>(tree, history, Scheme::kBdf1, kStep, Vec3<double>::Zero(), problem.prediction);
   }

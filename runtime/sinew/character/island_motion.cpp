@@ -1,0 +1,378 @@
+// Bossak's scheme in IslandStepper: what a step predicts, and the motion that it leaves (bossak.h).
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/character/island.h"
+#include "sinew/character/touch_digest.h"
+#include "sinew/character/unknowns.h"
+
+namespace sinew {
+namespace {
+
+/// Generalised forces [dof] of a tree's rows: of muscles and dry friction, and of the others.
+template <class T>
+void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) {
+  for (const JointRow<T>& row : p.rows) {
+    const T slope = row.slope(row.value);
+    const std::span<T> out = row.kind == RowKind::kKink ? kinks : others;
+    for (int a = 0; a < row.count; ++a) out[row.dof + a] -= slope * row.gradient[a];
+  }
+  for (const EllipsoidRow<T>& row : p.ellipsoids) {
+    const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
+    for (int a = 0; a < 3; ++a) kinks[row.dof + a] -= torque[a];
+  }
+}
+
+/// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes. `foreign`
+/// rates, that do not belong to the motion of the step, are left out: see on_the_way in way_back.cpp.
+template <class T>
+Vec3<T> rate_at_end(const Vec3<T>& moved, const Vec3<T>& leaving, const Vec3<T>& arriving, T h) {
+  const Vec3<T> mean = moved / h;
+  const T foreign = (mean - (leaving + arriving) / 2).norm();
+  const T most = std::max(mean.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3);
+  return foreign > most ? mean : arriving;
+}
+
+}  // namespace
+
+/// The set that each tree belongs to: those that may touch in this step, or are tied. Numbered by their first
+/// trees.
+template <class T>
+void IslandStepper<T>::find_sets() {
+  const int count = static_cast<int>(states_.size());
+  set_.resize(count);
+  for (int n = 0; n < count; ++n) set_[n] = n;
+  const auto first_of = [&](int n) {
+    while (set_[n] != n) n = set_[n];
+    return n;
+  };
+  const auto join = [&](int a, int b) {
+    a = first_of(a), b = first_of(b);
+    set_[std::max(a, b)] = std::min(a, b);
+  };
+  for (const Contact<T>& c : contacts_)
+    if (c.tree_b >= 0) join(c.tree_a, c.tree_b);
+  if (!couplings_.empty())
+    for (int n = 1; n < count; ++n) join(0, n);
+  for (int n = 0; n < count; ++n) set_[n] = first_of(n);
+}
+
+/// Targets of Bossak's scheme, with one spectral radius for all that may touch: contact forces are equal and
+/// opposite in the momentum that they give only then.
+template <class T>
+void IslandStepper<T>::predict_bossak_all(T h) {
+  find_sets();
+  radius_.assign(states_.size(), T(1));
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    T& radius = radius_[set_[n]];
+    radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
+  }
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    TreeProblem<T>& p = s.problem;
+    predict_bossak<T>(s.tree, s.history, radius_[set_[n]], h, settings_.common_origin, p.prediction);
+    const T emphasis = constant_emphasis(p.prediction.weight, h);
+    for (std::size_t j = 0; j < p.pushes.size(); ++j)
+      p.pushes[j].force = emphasis / frame_ * s.impulses[j].force;
+  }
+}
+
+/// Impulses on what no muscle holds change its velocities where it is, before the step: over the step they
+/// would act on what has moved by then, and on which they have more effect.
+template <class T>
+void IslandStepper<T>::strike(CharacterState<T>& s) {
+  TreeProblem<T>& p = s.problem;
+  const Vec3<T> origin = s.floats ? s.local[0].translation : Vec3<T>(Vec3<T>::Zero());
+  forward_kinematics<T>(s.tree, std::span<const Transform<T>>(s.local).first(s.tree.bodies), origin,
+                        p.kinematics);
+  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+  for (const ExternalForce<T>& impulse : s.impulses) {
+    const Vec3<T> at =
+        p.kinematics.origin[impulse.body] + p.kinematics.rotation[impulse.body] * impulse.local;
+    p.force[impulse.body] += impulse.force;
+    p.moment[impulse.body] += at.cross(impulse.force);
+  }
+  jump_force_.assign(s.tree.dofs, T(0));
+  project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
+  loose_.assign(s.tree.dofs, 1);
+  TreeProblem<T>* const struck = &p;
+  ends_.begin({&struck, 1}, loose_);
+  for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
+  ends_.respond(0, jump_force_, moved_, turned_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = p.kinematics.rotation[i];
+    s.history.velocity[i] += moved_[i];
+    s.history.momentum[i] += r * (s.tree.inertia[i] * (r.transpose() * turned_[i]));
+    s.history.rotation_rate[i] += skew<T>(turned_[i]) * r;
+  }
+}
+
+/// Takes what the constant forces [dof] of a tree make of its accelerations out of these, at the kinematics
+/// that the problems hold.
+template <class T>
+void IslandStepper<T>::drop_constant(CharacterState<T>& s, int tree, std::span<const T> force) {
+  for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
+  ends_.respond(tree, force, moved_, turned_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = s.problem.kinematics.rotation[i];
+    s.history.acceleration[i] -= moved_[i];
+    s.history.torque[i] -= r * (s.tree.inertia[i] * (r.transpose() * turned_[i]));
+  }
+}
+
+/// The same of all that played animations took but gravity.
+template <class T>
+void IslandStepper<T>::drop_played() {
+  bool begun = false;
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    if (s.rate_step > T(0) || !s.history.accelerates) continue;
+    if (!begun) begin_ends();
+    begun = true;
+    TreeProblem<T>& p = s.problem;
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      p.force[i] = s.tree.mass[i] * (s.history.acceleration[i] - settings_.gravity);
+      p.moment[i] = p.kinematics.center[i].cross(p.force[i]) + s.history.torque[i];
+    }
+    constant_.assign(s.tree.dofs, T(0));
+    project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, constant_);
+    drop_constant(s, static_cast<int>(n), constant_);
+  }
+}
+
+/// The same of what leads and pulls in a trial at rest.
+template <class T>
+void IslandStepper<T>::drop_trial(CharacterState<T>& s, int tree) {
+  const TreeProblem<T>& p = s.problem;
+  constant_.assign(s.tree.dofs, T(0));
+  others_.assign(s.tree.dofs, T(0));
+  add_rows<T>(p, constant_, others_);
+  for (int dof = 0; dof < s.tree.dofs; ++dof)
+    constant_[dof] += p.gradient[dof];  // nor is what is left unbalanced one
+  drop_constant(s, tree, constant_);
+}
+
+/// Every degree of freedom loose.
+template <class T>
+void IslandStepper<T>::begin_ends() {
+  loose_.clear();
+  for (const CharacterState<T>* s : states_) loose_.insert(loose_.end(), s->tree.dofs, 1);
+  ends_.begin(problems_, loose_);
+}
+
+/// Whether the same contacts and limits as in the steps before are expected at the end of this one.
+template <class T>
+void IslandStepper<T>::expect_to_last(T h) {
+  lasts_.resize(states_.size());
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    lasts_[n] = states_[n]->steps_unchanged >= kUnchangedSteps &&
+                touching_soon<T>(contacts_, static_cast<int>(n), states_, world_->gravity, h) ==
+                    states_[n]->contact_signature;
+}
+
+/// After a solve: splits the contacts' forces into smooth ones and impulses.
+template <class T>
+void IslandStepper<T>::split_contacts(T h) {
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    lasts_[n] = lasts_[n] && touching<T>(contacts_, static_cast<int>(n)) == states_[n]->contact_signature &&
+                bearing<T>(*problems_[n]) == states_[n]->limit_signature;
+  for (Contact<T>& c : contacts_) {
+    const T share = lasting_share(problems_[c.tree_a]->prediction.weight, h);
+    split<T>(lasts_[c.tree_a] && (c.tree_b < 0 || lasts_[c.tree_b]), share, c);
+  }
+}
+
+/// What impulses have moved in this step: of contacts, of rows with kinks, and pushes.
+template <class T>
+Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
+  TreeProblem<T>& p = s.problem;
+  bool any = false;
+  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+  const auto act = [&](int body, const Vec3<T>& at, const Vec3<T>& force) {
+    any = true;
+    p.force[body] += force;
+    p.moment[body] += at.cross(force);
+  };
+  for (const Contact<T>& c : contacts_) {
+    if (c.tree_a != tree && c.tree_b != tree) continue;
+    const T left = normal_force(c) - c.smooth_force, rubs = 1 - c.smooth_friction;
+    const Vec3<T> friction = -rubs * friction_gradient(c, settings_.stick), normal = left * c.normal;
+    if (left == T(0) && friction.isZero(T(0))) continue;
+    if (c.tree_a == tree) {
+      act(c.body_a, c.point, normal);
+      act(c.body_a, c.material_point, friction);
+    }
+    if (c.tree_b == tree) {
+      act(c.body_b, c.point, Vec3<T>(-normal));
+      act(c.body_b, c.material_point_b, Vec3<T>(-friction));
+    }
+  }
+  jump_force_.assign(s.tree.dofs, T(0));
+  if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
+  constant_.assign(s.tree.dofs, T(0));
+  if (!p.pushes.empty()) {
+    std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
+    std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+    for (const ExternalForce<T>& push : p.pushes)
+      act(push.body, p.kinematics.origin[push.body] + p.kinematics.rotation[push.body] * push.local,
+          push.force);
+    project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, constant_);
+  }
+  kinks_.assign(s.tree.dofs, T(0));
+  others_.assign(s.tree.dofs, T(0));
+  add_rows<T>(p, kinks_, others_);
+  const T share = lasting_share(p.prediction.weight, h);
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    if (p.free[dof]) {
+      const T now = others_[dof], lasts = lasting(now, s.smooth[dof], share);
+      T smooth = limited(lasts, s.lasting[dof], s.lasting_before[dof]);
+      smooth = std::clamp(smooth, std::min(now, T(0)), std::max(now, T(0)));
+      // And what the solve has left unbalanced is no force that goes on.
+      jump_force_[dof] += now - smooth + p.gradient[dof];
+      constant_[dof] += kinks_[dof];
+      s.smooth[dof] = smooth;
+      s.lasting_before[dof] = s.lasting[dof];
+      s.lasting[dof] = lasts;
+    } else {
+      constant_[dof] += p.gradient[dof];  // what leads it
+      s.smooth[dof] = s.lasting_before[dof] = s.lasting[dof] = T(0);
+    }
+  }
+  for (auto* v : {&moved_, &turned_, &sped_, &spun_}) v->resize(s.tree.bodies);
+  bool any_constant = false;
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    any_constant = any_constant || constant_[dof] != T(0);
+    jump_force_[dof] = (jump_force_[dof] + constant_[dof]) / p.prediction.weight;
+  }
+  ends_.respond(tree, jump_force_, moved_, turned_);
+  const bool at_once = p.prediction.scheme != Scheme::kBossak;  // a step of bdf1 has all forces act like that
+  if (at_once || !any_constant) return {moved_, turned_, moved_, turned_};
+  for (int dof = 0; dof < s.tree.dofs; ++dof) jump_force_[dof] += constant_[dof] / p.prediction.weight;
+  ends_.respond(tree, jump_force_, sped_, spun_);
+  return {moved_, turned_, sped_, spun_};
+}
+
+/// How joints move at the end of the part that are led: as the animation does, or on their way back to it.
+template <class T>
+void IslandStepper<T>::measure_held(const CharacterState<T>& s, int tree, T h) {
+  const TreeProblem<T>& p = s.problem;
+  held_rates_.assign(s.tree.bodies, {});
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
+    if (count > 0 ? ends_.loose(tree, first) : parent < 0) continue;
+    const Mat3<T> outer = parent < 0 ? Mat3<T>(Mat3<T>::Identity()) : p.kinematics.rotation[parent];
+    Twist<T>& held = held_rates_[i];
+    const auto lead = [&](const Mat3<T>& turned, const Vec3<T>& omega, const Vec3<T>& velocity) {
+      held.w = outer * (turned * omega);
+      held.v = outer * velocity - held.w.cross(p.kinematics.origin[i]);
+    };
+    const Quat<T>& start = p.start[i].rotation;
+    const Vec3<T> moved = p.local[i].translation - p.start[i].translation;
+    if (s.baked[i]) {
+      lead(start.toRotationMatrix(), rotation_log<T>(start.conjugate() * p.local[i].rotation) / h, moved / h);
+      continue;
+    }
+    const JointJet<T>&jet = s.target[i], &before = s.last_target()[i];
+    const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * jet.rotation);
+    const Vec3<T> leaving = jet.omega - frame_ * jet.alpha,
+                  sliding = jet.velocity - frame_ * jet.acceleration;
+    lead(s.wanted[i].rotation.toRotationMatrix(), rate_at_end<T>(turned, leaving, jet.omega, frame_),
+         rate_at_end<T>(jet.translation - before.translation, sliding, jet.velocity, frame_));
+    const Deviation<T>& d = s.deviation[i];
+    if (d.on_animation) continue;
+    std::array<T, 6> rate = d.rate;
+    if (s.tree.type[i] == JointType::kFree) {
+      const Vec3<T> world = p.local[i].rotation * Vec3<T>(rate[3], rate[4], rate[5]);
+      for (int a = 0; a < 3; ++a) rate[3 + a] = world[a];
+    }
+    for (int k = 0; k < count; ++k) {
+      held.w += rate[k] * p.kinematics.w[first + k];
+      held.v += rate[k] * p.kinematics.v[first + k];
+    }
+  }
+}
+
+/// The degrees of freedom whose speed the step has to find: unknowns whose muscles do not hold them where
+/// they shall be. False where that is all of them.
+template <class T>
+bool IslandStepper<T>::choose_loose() {
+  loose_.clear();
+  bool led = false;
+  for (const CharacterState<T>* s : states_)
+    for (int dof = 0; dof < s->tree.dofs; ++dof) {
+      const int i = s->tree.dof_body[dof];
+      const bool met = !s->deviation[i].released && s->joint_is_driven(i);
+      loose_.push_back(s->problem.free[dof] && !met);
+      led = led || !loose_.back();
+    }
+  return led;
+}
+
+/// Moves all trees' histories on to the solution.
+template <class T>
+void IslandStepper<T>::advance_one_step(T h) {
+  split_contacts(h);
+  begin_ends();
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    TreeProblem<T>& p = s.problem;
+    const Jumps<T> jumps = measure_jumps(s, static_cast<int>(n), h);
+    advance_bossak<T>(s.tree, p.kinematics, p.prediction, p.couple, jumps, h, settings_.common_origin,
+                      s.history);
+  }
+  if (choose_loose()) ends_.begin(problems_, loose_);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    measure_held(s, static_cast<int>(n), h);
+    // Mean rates over the step, those before it: with both what is near to those at the end.
+    for (int i = 0; s.rate_step_before > T(0) && i < s.tree.bodies; ++i)
+      for (int k = 0; k < s.tree.dof_count(i) && ends_.loose(static_cast<int>(n), s.tree.first_dof[i]); ++k)
+        s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
+    ends_.project(static_cast<int>(n), held_rates_, s.rate, s.history);
+  }
+  press(h);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    ends_.write(static_cast<int>(n), s.history, s.rate);
+  }
+}
+
+/// What bears at the end of the step, where something has just begun or ceased to, goes no deeper.
+template <class T>
+void IslandStepper<T>::press(T h) {
+  find_sets();
+  struck_.assign(states_.size(), 0);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (!lasts_[n]) struck_[set_[n]] = 1;
+  for (const Contact<T>& c : contacts_)
+    if (struck_[set_[c.tree_a]] && normal_force(c) > T(0)) ends_.add(c, h);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    if (!struck_[set_[n]]) continue;
+    for (const JointRow<T>& row : problems_[n]->rows)
+      if (row.kind == RowKind::kOneSided && row.slope(row.value) > T(0))
+        ends_.add(static_cast<int>(n), row, h);
+  }
+  ends_.press();
+}
+
+#define SINEW_MOTION_INSTANCES(T)                                                             \
+  template void IslandStepper<T>::find_sets();                                                \
+  template void IslandStepper<T>::predict_bossak_all(T);                                      \
+  template void IslandStepper<T>::strike(CharacterState<T>&);                                 \
+  template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>); \
+  template void IslandStepper<T>::drop_played();                                              \
+  template void IslandStepper<T>::begin_ends();                                               \
+  template void IslandStepper<T>::drop_trial(CharacterState<T>&, int);                        \
+  template void IslandStepper<T>::expect_to_last(T);                                          \
+  template void IslandStepper<T>::split_contacts(T);                                          \
+  template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);              \
+  template void IslandStepper<T>::measure_held(const CharacterState<T>&, int, T);             \
+  template bool IslandStepper<T>::choose_loose();                                             \
+  template void IslandStepper<T>::advance_one_step(T);                                        \
+  template void IslandStepper<T>::press(T);
+SINEW_MOTION_INSTANCES(float)
+SINEW_MOTION_INSTANCES(double)
+
+}  // namespace sinew

@@ -1,0 +1,119 @@
+#include "sinew/optimizer/bossak.h"
+
+#include <algorithm>
+
+namespace sinew {
+namespace {
+
+constexpr double kLooseRadius = 0.8, kTightRadius = 0.5;  ///< ρ of small turns and of large ones
+constexpr double kSmallTurn = 0.3, kLargeTurn = 0.8;      ///< rad: up to and from where
+constexpr double kMostFreeTurn = 2;                       ///< rad; beyond, the target is affine
+
+template <class T>
+Vec3<T> spin_of(const Tree<T>& tree, int i, const Mat3<T>& rotation, const Vec3<T>& momentum) {
+  return rotation * (tree.inverse_inertia[i] * (rotation.transpose() * momentum));
+}
+
+}  // namespace
+
+template <class T>
+T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
+  T fastest = T(0);
+  for (int i = 0; i < tree.bodies; ++i)
+    fastest = std::max(fastest, spin_of<T>(tree, i, history.rotation[i], history.momentum[i]).squaredNorm());
+  return h * std::sqrt(fastest);
+}
+
+template <class T>
+T spectral_radius(T turn) {
+  const T share = std::clamp((turn - T(kSmallTurn)) / T(kLargeTurn - kSmallTurn), T(0), T(1));
+  return T(kLooseRadius) + share * T(kTightRadius - kLooseRadius);
+}
+
+template <class T>
+void predict_bossak(const Tree<T>& tree, const History<T>& history, T rho, T h,
+                    const Vec3<double>& common_origin, Prediction<T>& out) {
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
+  const BossakWeights<T> w(rho);
+  const T ahead = h * (T(0.5) - w.kappa);
+  out.exact = out.first = false;
+  out.scheme = Scheme::kBossak;
+  out.rho = rho;
+  out.weight = 1 / (w.kappa * h * h);
+  out.momentum_step = h * w.gamma / (1 - w.alpha_m);
+  const T of_torque = h * ((1 - w.gamma) - w.gamma * w.alpha_m / (1 - w.alpha_m));
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Mat3<T>& r0 = history.rotation[i];
+    out.center[i] = place + history.center[i] + h * (history.velocity[i] + ahead * history.acceleration[i]);
+    out.momentum[i] = history.momentum[i] + of_torque * history.torque[i];
+    const Vec3<T> momentum = history.momentum[i] + ahead * history.torque[i];
+    const Vec3<T> spin = tree.inverse_inertia[i] * (r0.transpose() * momentum);
+    if (h * spin.norm() < T(kMostFreeTurn))
+      out.rotation[i] =
+          free_rotation<T>(tree.inverse_inertia[i], Quat<T>(r0), momentum, h).toRotationMatrix();
+    else
+      out.rotation[i] = r0 + h * skew<T>(r0 * spin) * r0;
+  }
+}
+
+template <class T>
+void accelerate(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& at_rest,
+                std::span<const Vec3<T>> torque, History<T>& history) {
+  for (int i = 0; i < tree.bodies; ++i) {
+    history.acceleration[i] = at_rest.weight * (kinematics.center[i] - at_rest.center[i]);
+    history.torque[i] = torque[i];
+  }
+}
+
+template <class T>
+void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
+                    std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,
+                    const Vec3<double>& common_origin, History<T>& history) {
+  const Vec3<T> moved = follow_root(kinematics, common_origin, history);
+  const bool second = prediction.scheme == Scheme::kBossak;
+  const BossakWeights<T> w(second ? prediction.rho : T(1));
+  const T alpha = prediction.weight;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> c1 = kinematics.center[i] - kinematics.origin[0], c0 = history.center[i] - moved;
+    const Mat3<T>& r = kinematics.rotation[i];
+    Vec3<T> force = alpha * (kinematics.center[i] - prediction.center[i]), couple = torque[i];  // by mass
+    const auto momentum_of = [&](const Vec3<T>& spin) {
+      return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * spin)));
+    };
+    Vec3<T> dc = Vec3<T>::Zero(), dl = dc;
+    if (!jumps.moved.empty()) {
+      force -= alpha * jumps.moved[i];
+      couple -= alpha * momentum_of(jumps.turned[i]);
+      dc = jumps.sped[i];
+      dl = momentum_of(jumps.spun[i]);
+    }
+    history.center_before[i] = c0;
+    history.rotation_before[i] = history.rotation[i];
+    history.velocity_before[i] = history.velocity[i];
+    history.momentum_before[i] = history.momentum[i];
+    history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * couple + dl / h;
+    if (second) {
+      const Vec3<T> a0 = history.acceleration[i];
+      const Vec3<T> a1 = (force - w.alpha_m * a0) / (1 - w.alpha_m);
+      history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1) + dc / h;
+      history.acceleration[i] = a1;
+      history.torque[i] = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
+    } else {
+      history.velocity[i] = (c1 - c0) / h;
+      history.acceleration[i] = force;
+      history.torque[i] = couple;
+    }
+    history.center[i] = c1;
+    history.rotation[i] = r;
+    history.rotation_rate[i] = skew<T>(spin_of<T>(tree, i, r, history.momentum[i])) * r;
+  }
+  history.scheme = Scheme::kBossak;
+  history.step_before = h;
+  history.accelerates = true;
+  history.changed = {};
+}
+
+SINEW_BOSSAK_INSTANCES(template, float)
+SINEW_BOSSAK_INSTANCES(template, double)
+
+}  // namespace sinew

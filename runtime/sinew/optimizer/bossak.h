@@ -1,0 +1,99 @@
+// The step's scheme in time: Bossak's, of second order from one step back, through changes of contact.
+//
+// State: places, velocities v₀, angular momenta L₀ and, of each body, the acceleration a₀ and torque τ₀ that
+// the forces at the end of the last step have left. With the spectral radius ρ that the fastest motions keep,
+//
+//   α_m = (ρ − 1)/(ρ + 1),  γ = ½ − α_m,  κ = (1 − α_m)/4
+//   ĉ = c₀ + h v₀ + h²(½ − κ) a₀      R̂ = R₀ turned freely for h under L₀ + h(½ − κ) τ₀      α = 1/(κh²)
+//
+// The step minimises the incremental potential of scheme.h: all forces are those at its end. What they have
+// done to a body there, f = α(c₁ − ĉ) and likewise g, holds two parts. Impulses w (the force of a contact
+// that has just closed) moved it by (Δc, Δφ) = J M⁻¹Jᵀ w/α in this step and will not act in the next one:
+//
+//   f ← f − αΔc,  g ← g − αIΔφ
+//   a₁ = (f − α_m a₀)/(1 − α_m)                 τ₁ likewise
+//   v* = v₀ + h[(1 − γ)a₀ + γa₁] + Δc/h         L* likewise, with IΔφ/h
+//
+// The velocities are then those of the joints: u₁ = M⁻¹Jᵀ(m v*, L*) (end_velocities.h). Sources: Wood, Bossak
+// and Zienkiewicz, "An alpha modification of Newmark's method", 1980; the split into smooth forces and
+// impulses after Acary, "Projected event-capturing time-stepping schemes for nonsmooth mechanical systems",
+// 2013.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "sinew/optimizer/scheme.h"
+
+namespace sinew {
+
+template <class T>
+struct BossakWeights {
+  T alpha_m, gamma, kappa;
+  explicit BossakWeights(T rho)
+      : alpha_m((rho - 1) / (rho + 1)), gamma(T(0.5) - alpha_m), kappa(T(0.25) * (1 - alpha_m)) {}
+};
+
+/// By what a force that is constant over a step of h seconds is larger in the potential: it moves a body by
+/// ½h² of its acceleration, not by κh², and leaves twice that over h as speed.
+template <class T>
+T constant_emphasis(T weight, T h) {
+  return std::max(weight * h * h / 2, T(1));
+}
+
+/// 2κ of a step of h seconds with the weight α; 1 for bdf1. See lasting() in contact.h.
+template <class T>
+T lasting_share(T weight, T h) {
+  return std::min(2 / (weight * h * h), T(1));
+}
+
+/// rad: the furthest that a body of the tree turns in a step of h seconds, going by its angular momentum.
+template <class T>
+T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
+
+/// ρ for bodies that turn so far in a step: 0.8 for small turns; far ones need damping, for the axes that
+/// forces act along turn with them.
+template <class T>
+T spectral_radius(T largest_turn);
+
+/// Targets of inertia for one step. The history must know its accelerations. O(bodies).
+template <class T>
+void predict_bossak(const Tree<T>& tree, const History<T>& history, T rho, T h,
+                    const Vec3<double>& common_origin, Prediction<T>& out);
+
+/// How the bodies accelerate where a solve that began and ended at rest has led them (predict_at_rest), into
+/// the history.
+template <class T>
+void accelerate(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& at_rest,
+                std::span<const Vec3<T>> torque, History<T>& history);
+
+/// What impulses have done to the bodies of a tree within a step.
+template <class T>
+struct Jumps {
+  std::span<const Vec3<T>> moved;       ///< [body] Δc, m; empty: nothing
+  std::span<const Vec3<T>> turned;      ///< [body] Δφ, rad, world axes
+  std::span<const Vec3<T>> sped, spun;  ///< [body] h times the speeds that they leave, m, rad
+};
+
+/// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
+/// gradient there (about each centre of mass). From a prediction of bdf1, accelerations are those of its
+/// smooth forces.
+template <class T>
+void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
+                    std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,
+                    const Vec3<double>& common_origin, History<T>& history);
+
+#define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
+  prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
+  prefix T spectral_radius<T>(T);                                                                  \
+  prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, T, T, const Vec3<double>&,      \
+                                Prediction<T>&);                                                   \
+  prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
+                            std::span<const Vec3<T>>, History<T>&);                                \
+  prefix void advance_bossak<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,        \
+                                std::span<const Vec3<T>>, const Jumps<T>&, T, const Vec3<double>&, \
+                                History<T>&);
+SINEW_BOSSAK_INSTANCES(extern template, float)
+SINEW_BOSSAK_INSTANCES(extern template, double)
+
+}  // namespace sinew

@@ -1,0 +1,104 @@
+// Velocities at the end of a step: those that joints and contacts allow.
+//
+// The scheme leaves every body a momentum of its own (bossak.h). Of all velocities that the joints allow,
+// those with these momenta in the joints' freedom are the nearest by the mass matrix: u = M⁻¹Jᵀ(m v*, L*).
+// Where an impulse has just closed a contact or a joint's limit, it may not close further either: impulses p
+// ≥ 0 take out what of u does, projected Gauss-Seidel over (n·J) u ≥ 0 (Acary, "Projected event-capturing
+// time-stepping schemes for nonsmooth mechanical systems", 2013). Both are projections: neither adds energy.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sinew/optimizer/problem.h"
+#include "sinew/residual/articulated_matrix.h"
+
+namespace sinew {
+
+/// Velocity of a body relative to its parent, as tree.h has spatial motions.
+template <class T>
+struct Twist {
+  Vec3<T> w = Vec3<T>::Zero();  ///< rad/s, world axes
+  Vec3<T> v = Vec3<T>::Zero();  ///< of the material point at the common origin, m/s
+
+  Vec3<T> at(const Vec3<T>& point) const { return v + w.cross(point); }
+};
+
+template <class T>
+class EndVelocities {
+ public:
+  void reserve(const SolveRoom& room);
+  /// That reserve() takes.
+  static std::size_t bytes(const SolveRoom& room);
+
+  /// Factorises the mass matrices of the trees over their `loose` degrees of freedom [dof, trees one after
+  /// the other] at the problems' kinematics, as if every other joint were locked. Uses the problems'
+  /// composites. O(bodies + unknowns).
+  void begin(std::span<TreeProblem<T>* const> problems, std::span<const std::uint8_t> loose);
+  /// Whether a degree of freedom of a tree is.
+  bool loose(int tree, int dof) const { return of_dof_[parts_[tree].first_dof + dof] >= 0; }
+
+  /// J M⁻¹ q: how far the generalised forces `force` [dof] (N·m, N) move a tree's bodies, per unit of mass
+  /// matrix. `moved` and `turned` [body] are written. O(bodies).
+  void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
+
+  /// Finds the rates of a tree's unknowns from the momenta of its history. Joints that no unknown moves have
+  /// the velocities `held` [body]. It solves for the change of `rate` [body], near to the answer, for the
+  /// matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
+  void project(int tree, std::span<const Twist<T>> held, std::span<const std::array<T, 6>> rate,
+               const History<T>& history);
+
+  /// A contact may not close, as far as the force that it bears can see to that in a step of h seconds.
+  void add(const Contact<T>& contact, T h);
+  /// Nor may the scalar of a tree's joint row grow.
+  void add(int tree, const JointRow<T>& row, T h);
+  /// Impulses that see to that. O(those that act · bodies).
+  void press();
+
+  /// The velocities into a tree's history, and those of its unknowns into `rate` [body].
+  void write(int tree, History<T>& history, std::span<std::array<T, 6>> rate);
+
+ private:
+  static constexpr std::size_t kMost = 64;  ///< that may not close
+
+  struct Part {
+    int first_body = 0, first_dof = 0, first = 0, count = 0;  ///< unknowns
+    ArticulatedParts<T> matrix;
+  };
+  struct Row {
+    int tree[2] = {-1, -1};
+    int entry = 0;                  ///< in `rows_` and `answers_`: first side, then second
+    T given = T(0);                 ///< m/s or rad/s, of joints that no unknown moves
+    T mobility = T(0);              ///< 1/kg; 0: not known yet
+    T impulse = T(0), most = T(0);  ///< N·s, N·m·s
+    bool solved = false;
+  };
+
+  void move(int tree);
+  void read_near(int tree, std::span<const std::array<T, 6>> rate);
+  std::span<T> rates(int tree) { return std::span(rates_).subspan(parts_[tree].first, parts_[tree].count); }
+  Row* open_row(int tree, int other);
+  std::span<T> side(const Row& row, int n, std::vector<T>& of);
+  void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign,
+                     std::span<T> row) const;
+
+  std::span<TreeProblem<T>* const> problems_;
+  std::vector<Part> parts_;  ///< [tree]
+  Unknowns unknowns_;        ///< of one tree
+  std::vector<int> of_dof_, dof_;
+  std::vector<JointBlock> blocks_;
+  std::vector<int> first_;
+  std::vector<SpatialVector<T>> axes_, moved_, reduced_, force_, motion_;
+  std::vector<JointBlockRow<T>> own_, factor_;
+  std::vector<SpatialForm<T>> eliminated_;
+  std::vector<T> rates_, near_, projection_;
+  std::vector<Twist<T>> held_, twist_;  ///< [body] of the joint alone; of the body
+  std::vector<Row> pressed_;
+  std::vector<T> rows_, answers_;
+};
+
+extern template class EndVelocities<float>;
+extern template class EndVelocities<double>;
+
+}  // namespace sinew

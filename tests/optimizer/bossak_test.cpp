@@ -1,0 +1,180 @@
+// Bossak's scheme on one free body, and what it takes for smooth in time.
+#include "sinew/optimizer/bossak.h"
+
+#include <gtest/gtest.h>
+
+#include "fixtures/standard_plan.h"
+#include "sinew/optimizer/end_velocities.h"
+#include "sinew/optimizer/newton.h"
+
+namespace sinew {
+namespace {
+
+using V = Vec3<double>;
+
+const V kPrincipal(0.02, 0.05, 0.06);  // kg·m², unsymmetric: spin about the middle axis tumbles
+
+Skeleton one_body() {
+  Skeleton s;
+  s.body_count = 1;
+  Joint& joint = s.joints.emplace_back();
+  joint.type = JointType::kFree;
+  joint.mass = 2;
+  joint.center_of_mass = {0.1, -0.05, 0.02};
+  joint.inertia = kPrincipal.asDiagonal();
+  return s;
+}
+
+/// Stepped as a world steps it, with the acceleration that gravity gives it from the start.
+struct FreeBody {
+  Skeleton skeleton = one_body();
+  Tree<double> tree{skeleton};
+  TreeProblem<double> problem{tree, skeleton};
+  History<double> history{1};
+  NewtonSolver<double> solver;
+  EndVelocities<double> ends;
+  StepSettings<double> settings;
+  Accuracy accuracy;
+
+  FreeBody(const V& omega, const V& velocity, const V& gravity) {
+    accuracy.tolerance = 1e-10;
+    settings.plan = &standard_plan<double>();
+    settings.gravity = gravity;
+    solver.declare(*settings.plan);
+    solver.reserve(problem.room);
+    ends.reserve(problem.room);
+    problem.free.assign(6, 1);
+    Motion<double> motion(tree);
+    JointJet<double> jet;
+    jet.omega = omega;
+    jet.velocity = velocity;
+    std::vector<V> force(1), moment(1);
+    inertial_wrenches<double>(tree, {&jet, 1}, V::Zero(), V::Zero(), problem.kinematics, motion, force,
+                              moment);
+    advance_exactly<double>(tree, problem.kinematics, motion, 0.0, V::Zero(), V::Zero(), history);
+    history.acceleration[0] = gravity;
+    history.torque[0].setZero();
+  }
+  void step(double h, double rho) {
+    settings.h = h;
+    problem.start = problem.local;
+    predict_bossak<double>(tree, history, rho, h, V::Zero(), problem.prediction);
+    TreeProblem<double>* const trees[] = {&problem};
+    EXPECT_TRUE(solver.solve(settings, accuracy, trees, {}).converged);
+    advance_bossak<double>(tree, problem.kinematics, problem.prediction, problem.couple, {}, h, V::Zero(),
+                           history);
+  }
+};
+
+TEST(Bossak, FallsAlongTheParabolaWithUnequalStepsAndRadii) {
+  const V gravity(0, 0, -9.81), velocity(3, 0, 2);
+  FreeBody body(V::Zero(), velocity, gravity);
+  const V start = body.history.center[0];
+  double time = 0;
+  for (const double h : {0.01, 0.02, 0.005, 1 / 60.0}) {
+    body.step(h, h > 0.015 ? 0.8 : 0.3);
+    time += h;
+  }
+  const V place = body.history.place + body.history.center[0];
+  EXPECT_LT((place - (start + time * velocity + time * time / 2 * gravity)).norm(), 1e-9);
+  EXPECT_LT((body.history.velocity[0] - (velocity + time * gravity)).norm(), 1e-7);
+}
+
+TEST(Bossak, KeepsTheMomentumAndTurnOfABodyThatTumbles) {
+  const V spin(0.5, 9, 0.3);
+  FreeBody body(spin, V::Zero(), V::Zero());
+  const V before = body.history.momentum[0];
+  for (int n = 0; n < 60; ++n) body.step(1 / 60.0, 0.8);
+  EXPECT_LT((body.history.momentum[0] - before).norm(), 1e-6 * before.norm());
+  const Quat<double> exact =
+      free_rotation<double>(kPrincipal.cwiseInverse().asDiagonal(), Quat<double>::Identity(), before, 1.0);
+  EXPECT_LT(exact.angularDistance(Quat<double>(body.history.rotation[0])), 1e-4);
+}
+
+TEST(Bossak, SpectralRadiusFallsWithTheTurn) {
+  EXPECT_DOUBLE_EQ(spectral_radius(0.0), spectral_radius(0.2));
+  EXPECT_LT(spectral_radius(0.5), spectral_radius(0.3));
+  EXPECT_DOUBLE_EQ(spectral_radius(5.0), spectral_radius(50.0));
+  EXPECT_GT(spectral_radius(50.0), 0.0);
+}
+
+TEST(Bossak, ALimiterTakesAwayWhatHasJustComeOrTurned) {
+  EXPECT_EQ(limited(5.0, 0.0, 0.0), 0);
+  EXPECT_EQ(limited(5.0, 5.0, 0.0), 0);
+  EXPECT_EQ(limited(5.0, 5.0, 5.0), 5);
+  EXPECT_EQ(limited(5.0, 2.0, 3.0), 4);
+  EXPECT_EQ(limited(5.0, -5.0, 5.0), 0);
+  EXPECT_EQ(limited(-5.0, -2.0, -3.0), -4);
+}
+
+/// A contact that bears `force` (N) now.
+Contact<double> bearing(double force, double last, double before, double smooth) {
+  Contact<double> c;
+  c.stiffness = 1e5;
+  c.gap = -ContactLaw<double>::depth(c.stiffness, force);
+  c.lagged_normal_force = c.lasting_last = last;
+  c.lasting_before = before;
+  c.smooth_before = smooth;
+  return c;
+}
+
+TEST(Bossak, AContactThatHasJustClosedIsAnImpulse) {
+  Contact<double> fresh = bearing(100, 0, 0, 0);
+  split<double>(false, 0.6, fresh);
+  EXPECT_EQ(fresh.smooth_force, 0);
+  EXPECT_EQ(fresh.smooth_friction, 0);
+  Contact<double> old = bearing(100, 100, 100, 100);
+  split<double>(false, 0.6, old);
+  EXPECT_NEAR(old.smooth_force, 100, 1e-9);
+  EXPECT_EQ(old.smooth_friction, 1);
+  Contact<double> lasts = bearing(100, 20, 0, 0);
+  split<double>(true, 0.6, lasts);
+  EXPECT_NEAR(lasts.smooth_force, 100, 1e-9);
+}
+
+TEST(EndVelocities, AreWhatTheyWereWhereJointsAllowThem) {
+  FreeBody body(V(1, 2, 3), V(3, -1, 2), V::Zero());
+  TreeProblem<double>* const trees[] = {&body.problem};
+  const std::vector<std::uint8_t> loose(6, 1);
+  const std::vector<Twist<double>> held(1);
+  std::vector<std::array<double, 6>> rate(1);
+  body.ends.begin(trees, loose);
+  const V velocity = body.history.velocity[0], momentum = body.history.momentum[0];
+  body.ends.project(0, held, rate, body.history);
+  body.ends.write(0, body.history, rate);
+  // The matrix' floor takes some 1e-6 of what is not in `rate` yet.
+  EXPECT_LT((body.history.velocity[0] - velocity).norm(), 1e-4 * velocity.norm());
+  EXPECT_LT((body.history.momentum[0] - momentum).norm(), 1e-4 * momentum.norm());
+  const V once = body.history.velocity[0];
+  body.ends.project(0, held, rate, body.history);
+  body.ends.write(0, body.history, rate);
+  EXPECT_LT((body.history.velocity[0] - once).norm(), 1e-9 * velocity.norm());
+}
+
+/// Speed along the normal (m/s) of a body's contact point after it was pressed, that came with `speed`.
+double pressed(double speed, double force, double h) {
+  FreeBody body(V::Zero(), V(0, 0, speed), V::Zero());
+  TreeProblem<double>* const trees[] = {&body.problem};
+  const std::vector<std::uint8_t> loose(6, 1);
+  const std::vector<Twist<double>> held(1);
+  std::vector<std::array<double, 6>> rate(1);
+  rate[0][2] = speed;
+  body.ends.begin(trees, loose);
+  body.ends.project(0, held, rate, body.history);
+  Contact<double> c = bearing(force, 0, 0, 0);
+  c.point = body.history.center[0];
+  body.ends.add(c, h);
+  body.ends.press();
+  body.ends.write(0, body.history, rate);
+  return body.history.velocity[0].z();
+}
+
+TEST(EndVelocities, AContactTakesOutWhatClosesAndNothingElse) {
+  EXPECT_NEAR(pressed(-1, 1e6, 0.01), 0, 1e-4);
+  EXPECT_NEAR(pressed(1, 1e6, 0.01), 1, 1e-9);
+  const double hardly = pressed(-1, 10, 0.01);  // two steps of 10 N on 2 kg
+  EXPECT_NEAR(hardly, -1 + 2 * 10 * 0.01 / 2, 1e-4);
+}
+
+}  // namespace
+}  // namespace sinew
