@@ -65,7 +65,8 @@ convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleSc
   char text[96];
   std::snprintf(text, sizeof text, "%s: steps of 1/%.0f s", scene.title.c_str(), hz);
   canvas.text(text, kLeft, 26, 16, 0, true);
-  canvas.text("mean kinetic energy over the seeds; dashed: the same engine's finest steps (black: ours)", kLeft, 44, 12);
+  canvas.text("mean kinetic energy over the seeds; dashed: the same engine's finest steps (black: ours)",
+              kLeft, 44, 12);
   draw_grid(canvas, axes);
   std::size_t index = 0;
   for (const Ensemble& e : all) {
