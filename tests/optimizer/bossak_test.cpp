@@ -3,64 +3,29 @@
 
 #include <gtest/gtest.h>
 
-#include "fixtures/standard_plan.h"
+#include "optimizer/free_body.h"
 #include "sinew/optimizer/end_velocities.h"
-#include "sinew/optimizer/newton.h"
 
 namespace sinew {
 namespace {
 
-using V = Vec3<double>;
-
-const V kPrincipal(0.02, 0.05, 0.06);  // kg·m², unsymmetric: spin about the middle axis tumbles
-
-Skeleton one_body() {
-  Skeleton s;
-  s.body_count = 1;
-  Joint& joint = s.joints.emplace_back();
-  joint.type = JointType::kFree;
-  joint.mass = 2;
-  joint.center_of_mass = {0.1, -0.05, 0.02};
-  joint.inertia = kPrincipal.asDiagonal();
-  return s;
-}
+using fixtures::kPrincipal;
+using fixtures::V;
 
 /// Stepped as a world steps it, with the acceleration that gravity gives it from the start.
-struct FreeBody {
-  Skeleton skeleton = one_body();
-  Tree<double> tree{skeleton};
-  TreeProblem<double> problem{tree, skeleton};
-  History<double> history{1};
-  NewtonSolver<double> solver;
+struct FreeBody : fixtures::FreeBody {
   EndVelocities<double> ends;
-  StepSettings<double> settings;
-  Accuracy accuracy;
 
-  FreeBody(const V& omega, const V& velocity, const V& gravity) {
-    accuracy.tolerance = 1e-10;
-    settings.plan = &standard_plan<double>();
-    settings.gravity = gravity;
-    solver.declare(*settings.plan);
-    solver.reserve(problem.room);
+  FreeBody(const V& omega, const V& velocity, const V& gravity)
+      : fixtures::FreeBody(omega, velocity, gravity) {
     ends.reserve(problem.room);
-    problem.free.assign(6, 1);
-    Motion<double> motion(tree);
-    JointJet<double> jet;
-    jet.omega = omega;
-    jet.velocity = velocity;
-    std::vector<V> force(1), moment(1);
-    inertial_wrenches<double>(tree, {&jet, 1}, V::Zero(), V::Zero(), problem.kinematics, motion, force,
-                              moment);
-    advance_exactly<double>(tree, problem.kinematics, motion, 0.0, V::Zero(), V::Zero(), history);
     history.acceleration[0] = gravity;
     history.torque[0].setZero();
   }
   void step(double h, double rho) {
-    settings.h = h;
     problem.start = problem.local;
     predict_bossak<double>(tree, history, rho, h, V::Zero(), problem.prediction);
-    TreeProblem<double>* const trees[] = {&problem};
-    EXPECT_TRUE(solver.solve(settings, accuracy, trees, {}).converged);
+    minimise(h);
     advance_bossak<double>(tree, problem.kinematics, problem.prediction, problem.couple, {}, h, V::Zero(),
                            history);
   }
@@ -136,17 +101,17 @@ TEST(EndVelocities, AreWhatTheyWereWhereJointsAllowThem) {
   FreeBody body(V(1, 2, 3), V(3, -1, 2), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};
   const std::vector<std::uint8_t> loose(6, 1);
-  const std::vector<Twist<double>> held(1);
+  const std::vector<Twist<double>> led(1);
   std::vector<std::array<double, 6>> rate(1);
   body.ends.begin(trees, loose);
   const V velocity = body.history.velocity[0], momentum = body.history.momentum[0];
-  body.ends.project(0, held, rate, body.history);
+  body.ends.project(0, led, rate, body.history);
   body.ends.write(0, body.history, rate);
   // The matrix' floor takes some 1e-6 of what is not in `rate` yet.
   EXPECT_LT((body.history.velocity[0] - velocity).norm(), 1e-4 * velocity.norm());
   EXPECT_LT((body.history.momentum[0] - momentum).norm(), 1e-4 * momentum.norm());
   const V once = body.history.velocity[0];
-  body.ends.project(0, held, rate, body.history);
+  body.ends.project(0, led, rate, body.history);
   body.ends.write(0, body.history, rate);
   EXPECT_LT((body.history.velocity[0] - once).norm(), 1e-9 * velocity.norm());
 }
@@ -156,11 +121,11 @@ double pressed(double speed, double force, double h) {
   FreeBody body(V::Zero(), V(0, 0, speed), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};
   const std::vector<std::uint8_t> loose(6, 1);
-  const std::vector<Twist<double>> held(1);
+  const std::vector<Twist<double>> led(1);
   std::vector<std::array<double, 6>> rate(1);
   rate[0][2] = speed;
   body.ends.begin(trees, loose);
-  body.ends.project(0, held, rate, body.history);
+  body.ends.project(0, led, rate, body.history);
   Contact<double> c = bearing(force, 0, 0, 0);
   c.point = body.history.center[0];
   body.ends.add(c, h);

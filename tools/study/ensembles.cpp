@@ -135,7 +135,7 @@ TrueFalls true_falls(const EnsembleScene& scene, const EngineOption& with, doubl
   out.poses.resize(seeds);
   const int count = static_cast<int>(std::lround(seconds * kTrueHz)) + 2;  // a pose more than 30 Hz asks for
   Accuracy tight;
-  tight.tolerance = 1e-6;
+  tight.tolerance = 1e-7;
   on_all_processors(seeds, [&](int n) {
     out.poses[n] = poses(scene.start(static_cast<unsigned>(n) + 1), with, kTrueHz, finest, count, tight);
   });

@@ -64,7 +64,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   loose_.reserve(room.dofs);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_}) v->reserve(room.dofs);
   for (auto* v : {&moved_, &turned_, &sped_, &spun_}) v->reserve(room.bodies);
-  held_rates_.reserve(room.bodies);
+  led_rates_.reserve(room.bodies);
   momenta_.reserve(room.trees);
   ends_.reserve(room);
   struck_.reserve(room.trees);
@@ -72,8 +72,8 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
-  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * 2 * sizeof(T) +
-                    room.bodies * (2 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (4 * sizeof(T) + 1) +
+                    room.bodies * (4 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
                     (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
                     room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
@@ -167,10 +167,12 @@ template <class T>
 void IslandStepper<T>::advance_all(T h) {
   momenta_.clear();
   for (const CharacterState<T>* s : states_) {
+    Vec3<double>& momentum = momenta_.emplace_back(Vec3<double>::Zero());
+    if (!s->left_to_gravity) continue;
     const Prediction<T>& p = s->problem.prediction;
     const T falls = p.first || one_step() ? h : p.momentum_step;
-    momenta_.push_back(carried_momentum<T>(s->tree, s->history, p, h) +
-                       double(falls) * s->total_mass * world_->gravity);
+    momentum =
+        carried_momentum<T>(s->tree, s->history, p, h) + double(falls) * s->total_mass * world_->gravity;
   }
   if (one_step()) advance_one_step(h);
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -283,19 +285,14 @@ void IslandStepper<T>::begin_solve() {
     expect_to_last(h);
     second_ = std::all_of(states_.begin(), states_.end(),
                           [](const CharacterState<T>* s) { return s->history.accelerates; });
-    predict_all(second_ ? Scheme::kBossak : Scheme::kBdf1, h);
-    for (std::size_t n = 0; n < states_.size(); ++n)
-      move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
-    if (strikes_deep(h)) choose_guess(h);
-    return;
+  } else {
+    second_ = world.accuracy.scheme == Scheme::kBdf2;
+    for (std::size_t n = 0; n < states_.size() && second_; ++n)
+      second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
+                touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
+                    states_[n]->contact_signature;
   }
-  second_ = world.accuracy.scheme == Scheme::kBdf2;
-  for (std::size_t n = 0; n < states_.size() && second_; ++n)
-    second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
-              touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
-                  states_[n]->contact_signature;
-  predict_all(second_ || world.accuracy.scheme == Scheme::kMomentum ? world.accuracy.scheme : Scheme::kBdf1,
-              h);
+  predict_all(second_ || scheme_ == Scheme::kMomentum ? scheme_ : Scheme::kBdf1, h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
   if (strikes_deep(h)) choose_guess(h);

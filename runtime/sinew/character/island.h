@@ -103,7 +103,7 @@ class IslandStepper {
   void begin_ends();
   void split_contacts(T h);
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
-  void measure_held(const CharacterState<T>& state, int tree, T h);
+  void measure_led(const CharacterState<T>& state, int tree, T h);
   bool choose_loose();
   void advance_one_step(T h);
   void press(T h);
@@ -149,7 +149,7 @@ class IslandStepper {
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
   std::vector<T> jump_force_, constant_, kinks_, others_;  ///< [dof] of one tree
   std::vector<Vec3<T>> moved_, turned_, sped_, spun_;      ///< [body] the same
-  std::vector<Twist<T>> held_rates_;                       ///< [body]
+  std::vector<Twist<T>> led_rates_;                        ///< [body]
   EndVelocities<T> ends_;
   std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts
 };

@@ -5,6 +5,7 @@
 #include "sinew/character/island.h"
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
+#include "sinew/character/way_back.h"
 
 namespace sinew {
 namespace {
@@ -23,14 +24,11 @@ void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) 
   }
 }
 
-/// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes. `foreign`
-/// rates, that do not belong to the motion of the step, are left out: see on_the_way in way_back.cpp.
+/// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
 template <class T>
 Vec3<T> rate_at_end(const Vec3<T>& moved, const Vec3<T>& leaving, const Vec3<T>& arriving, T h) {
   const Vec3<T> mean = moved / h;
-  const T foreign = (mean - (leaving + arriving) / 2).norm();
-  const T most = std::max(mean.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3);
-  return foreign > most ? mean : arriving;
+  return are_foreign(mean, leaving, arriving) ? mean : arriving;
 }
 
 }  // namespace
@@ -183,7 +181,8 @@ void IslandStepper<T>::split_contacts(T h) {
   }
 }
 
-/// What impulses have moved in this step: of contacts, of rows with kinks, and pushes.
+/// What has moved in this step and is not carried on: impulses of contacts and rows, and forces that are
+/// constant over it, of muscles, pushes and what leads joints.
 template <class T>
 Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   TreeProblem<T>& p = s.problem;
@@ -256,14 +255,14 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
 
 /// How joints move at the end of the part that are led: as the animation does, or on their way back to it.
 template <class T>
-void IslandStepper<T>::measure_held(const CharacterState<T>& s, int tree, T h) {
+void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
   const TreeProblem<T>& p = s.problem;
-  held_rates_.assign(s.tree.bodies, {});
+  led_rates_.assign(s.tree.bodies, {});
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
     if (count > 0 ? ends_.loose(tree, first) : parent < 0) continue;
     const Mat3<T> outer = parent < 0 ? Mat3<T>(Mat3<T>::Identity()) : p.kinematics.rotation[parent];
-    Twist<T>& held = held_rates_[i];
+    Twist<T>& held = led_rates_[i];
     const auto lead = [&](const Mat3<T>& turned, const Vec3<T>& omega, const Vec3<T>& velocity) {
       held.w = outer * (turned * omega);
       held.v = outer * velocity - held.w.cross(p.kinematics.origin[i]);
@@ -325,12 +324,12 @@ void IslandStepper<T>::advance_one_step(T h) {
   if (choose_loose()) ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    measure_held(s, static_cast<int>(n), h);
+    measure_led(s, static_cast<int>(n), h);
     // Mean rates over the step, those before it: with both what is near to those at the end.
     for (int i = 0; s.rate_step_before > T(0) && i < s.tree.bodies; ++i)
       for (int k = 0; k < s.tree.dof_count(i) && ends_.loose(static_cast<int>(n), s.tree.first_dof[i]); ++k)
         s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
-    ends_.project(static_cast<int>(n), held_rates_, s.rate, s.history);
+    ends_.project(static_cast<int>(n), led_rates_, s.rate, s.history);
   }
   press(h);
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -368,7 +367,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::expect_to_last(T);                                          \
   template void IslandStepper<T>::split_contacts(T);                                          \
   template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);              \
-  template void IslandStepper<T>::measure_held(const CharacterState<T>&, int, T);             \
+  template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);              \
   template bool IslandStepper<T>::choose_loose();                                             \
   template void IslandStepper<T>::advance_one_step(T);                                        \
   template void IslandStepper<T>::press(T);

@@ -7,6 +7,15 @@
 #include "sinew/optimizer/bossak.h"
 
 namespace sinew {
+namespace {
+
+/// By which torques in the potential of a step of h seconds are larger than those that act.
+template <class T>
+T emphasis_of(const TreeProblem<T>& p, T h) {
+  return p.prediction.scheme == Scheme::kBossak ? constant_emphasis(p.prediction.weight, h) : T(1);
+}
+
+}  // namespace
 
 template <class T>
 void choose_unknowns(CharacterState<T>& s) {
@@ -23,21 +32,15 @@ void choose_unknowns(CharacterState<T>& s) {
 }
 
 template <class T>
-T led_torque(const CharacterState<T>& s, int dof, T h) {
-  const T asked = s.problem.gradient[dof];
-  if (s.problem.prediction.scheme != Scheme::kBossak) return asked;
-  return asked / constant_emphasis(s.problem.prediction.weight, h);
-}
-
-template <class T>
 bool release_overloaded(CharacterState<T>& s, T h) {
   if (s.levels.allowed < Level::kPartial) return false;
+  const T emphasis = emphasis_of(s.problem, h);
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     if (count == 0 || s.problem.free[first] || s.baked[i]) continue;
     if (s.root_is_kinematic() && s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0) continue;
-    for (int dof = first; dof < first + count; ++dof) s.torque[dof] = led_torque(s, dof, h);
+    for (int dof = first; dof < first + count; ++dof) s.torque[dof] = s.problem.gradient[dof] / emphasis;
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
       load = std::max(load, s.problem.law.load(s.tree, i, dof, s.torque));
@@ -80,7 +83,7 @@ void read_torques(CharacterState<T>& s, T h) {
   const TreeProblem<T>& p = s.problem;
   std::fill(s.torque.begin(), s.torque.end(), T(0));
   for (int dof = 0; dof < s.tree.dofs; ++dof)
-    if (!p.free[dof]) s.torque[dof] = led_torque(s, dof, h);
+    if (!p.free[dof]) s.torque[dof] = p.gradient[dof];
   for (const JointRow<T>& row : p.rows) {
     if (!row.muscle) continue;
     const T slope = row.slope(row.value);
@@ -90,10 +93,9 @@ void read_torques(CharacterState<T>& s, T h) {
     const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
     for (int a = 0; a < 3; ++a) s.torque[row.dof + a] -= torque[a];
   }
-  const T emphasis =
-      p.prediction.scheme == Scheme::kBossak ? constant_emphasis(p.prediction.weight, h) : T(1);
+  const T emphasis = emphasis_of(p, h);
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    if (p.free[dof]) s.torque[dof] /= emphasis;
+    s.torque[dof] /= emphasis;
     s.unknown[dof] = p.free[dof];
     s.limit[dof] = p.law.limit(dof, s.torque[dof]);
   }

@@ -2,8 +2,6 @@
 // Internal to the character layer.
 #pragma once
 
-#include <algorithm>
-
 #include "sinew/character/state.h"
 
 namespace sinew {
@@ -32,14 +30,9 @@ void first_guess(CharacterState<T>& state, T h, T share = T(1));
 template <class T>
 void read_torques(CharacterState<T>& state, T h);
 
-/// Torque over the step of a joint that is led, of which `problem.gradient` holds what keeps it there.
-template <class T>
-T led_torque(const CharacterState<T>& state, int dof, T h);
-
 #define SINEW_UNKNOWNS_INSTANCES(prefix, T)                 \
   prefix void choose_unknowns<T>(CharacterState<T>&);       \
   prefix bool release_overloaded<T>(CharacterState<T>&, T); \
-  prefix T led_torque<T>(const CharacterState<T>&, int, T); \
   prefix void first_guess<T>(CharacterState<T>&, T, T);     \
   prefix void read_torques<T>(CharacterState<T>&, T);
 SINEW_UNKNOWNS_INSTANCES(extern template, float)

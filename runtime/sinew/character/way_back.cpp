@@ -39,12 +39,10 @@ T stoppable(T offset, T deceleration, T h) {
 
 /// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
 /// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
-/// meet. Rates that do not belong to the motion (a host that stopped its clip, or knows none) are left out; a
-/// motion that turns back within the frame has rates that are larger than what they lead to.
+/// meet. Foreign rates are left out.
 template <class T>
 Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
-  const T foreign = (whole - (leaving + arriving) / 2).norm();
-  if (foreign > std::max(whole.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3)) return u * whole;
+  if (are_foreign(whole, leaving, arriving)) return u * whole;
   return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
 }
 

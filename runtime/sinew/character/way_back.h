@@ -1,6 +1,8 @@
 // The muscles' targets: the animation, or the way back to it of a joint that was thrown off.
 #pragma once
 
+#include <algorithm>
+
 #include "sinew/character/state.h"
 
 namespace sinew {
@@ -11,6 +13,15 @@ namespace sinew {
 /// below the step would fling the joint across. `problem.kinematics` must be those at `problem.start`.
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T h);
+
+/// Whether the rates (per frame) at both ends of a frame do not belong to the motion `whole` in it: a host
+/// that stopped its clip, or knows none. A motion that turns back has rates that are larger than what they
+/// lead to.
+template <class T>
+bool are_foreign(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving) {
+  const T off = (whole - (leaving + arriving) / 2).norm();
+  return off > std::max(whole.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3);
+}
 
 /// The animation at a fraction of a frame of `frame` seconds between two targets: the cubic with the
 /// velocities at both ends.

@@ -23,8 +23,6 @@ struct EllipsoidRow {
   Vec3<T> plus = Vec3<T>::Zero();      ///< N·m; where s < 0
   T width = T(1e-5);                   ///< rad, rounding along the strongest axis
 
-  /// Whether its torque is on the ellipsoid.
-  bool saturated() const { return sides(value).cwiseProduct(value).norm() >= rounding(); }
   T energy(const Vec3<T>& s) const {
     const T r = sides(s).cwiseProduct(s).norm(), rounding = this->rounding();
     return r < rounding ? r * r / (2 * rounding) : r - rounding / 2;

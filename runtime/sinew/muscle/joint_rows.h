@@ -71,8 +71,6 @@ struct JointRow {
         a < width, [&] { return T(limit * a * a / (2 * width)); },
         [&] { return T(limit * (a - width / 2)); });
   }
-  /// Whether its force is one that no displacement changes: a muscle's or friction's at its limit.
-  bool saturated() const { return kind == RowKind::kKink && std::abs(value) >= width; }
   T slope(const T& s) const {
     const T zero = T(0);
     switch (kind) {

@@ -87,10 +87,6 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
       dc = jumps.sped[i];
       dl = momentum_of(jumps.spun[i]);
     }
-    history.center_before[i] = c0;
-    history.rotation_before[i] = history.rotation[i];
-    history.velocity_before[i] = history.velocity[i];
-    history.momentum_before[i] = history.momentum[i];
     history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * couple + dl / h;
     if (second) {
       const Vec3<T> a0 = history.acceleration[i];

@@ -7,12 +7,13 @@
 //   ĉ = c₀ + h v₀ + h²(½ − κ) a₀      R̂ = R₀ turned freely for h under L₀ + h(½ − κ) τ₀      α = 1/(κh²)
 //
 // The step minimises the incremental potential of scheme.h: all forces are those at its end. What they have
-// done to a body there, f = α(c₁ − ĉ) and likewise g, holds two parts. Impulses w (the force of a contact
-// that has just closed) moved it by (Δc, Δφ) = J M⁻¹Jᵀ w/α in this step and will not act in the next one:
+// done to a body there, f = α(c₁ − ĉ) and likewise g, is the smooth forces' and that of w, which moved it by
+// (Δc, Δφ) = J M⁻¹Jᵀ w/α in this step and is not carried into the next one: impulses (a contact that has just
+// closed), and forces that are constant over the step (muscles, pushes, what leads joints):
 //
 //   f ← f − αΔc,  g ← g − αIΔφ
 //   a₁ = (f − α_m a₀)/(1 − α_m)                 τ₁ likewise
-//   v* = v₀ + h[(1 − γ)a₀ + γa₁] + Δc/h         L* likewise, with IΔφ/h
+//   v* = v₀ + h[(1 − γ)a₀ + γa₁] + sΔc/h        L* likewise, with sIΔφ/h; s = 1 for impulses, 2 for constants
 //
 // The velocities are then those of the joints: u₁ = M⁻¹Jᵀ(m v*, L*) (end_velocities.h). Sources: Wood, Bossak
 // and Zienkiewicz, "An alpha modification of Newmark's method", 1980; the split into smooth forces and
@@ -24,9 +25,11 @@
 #include <span>
 
 #include "sinew/optimizer/scheme.h"
+#include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 
+/// As above.
 template <class T>
 struct BossakWeights {
   T alpha_m, gamma, kappa;
@@ -36,9 +39,10 @@ struct BossakWeights {
 
 /// By what a force that is constant over a step of h seconds is larger in the potential: it moves a body by
 /// ½h² of its acceleration, not by κh², and leaves twice that over h as speed.
+/// T may be a pack.
 template <class T>
-T constant_emphasis(T weight, T h) {
-  return std::max(weight * h * h / 2, T(1));
+T constant_emphasis(const T& weight, Number<T> h) {
+  return largest(T(weight * (h * h / 2)), T(1));
 }
 
 /// 2κ of a step of h seconds with the weight α; 1 for bdf1. See lasting() in contact.h.
@@ -67,7 +71,7 @@ template <class T>
 void accelerate(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& at_rest,
                 std::span<const Vec3<T>> torque, History<T>& history);
 
-/// What impulses have done to the bodies of a tree within a step.
+/// What impulses and constant forces have done to the bodies of a tree within a step.
 template <class T>
 struct Jumps {
   std::span<const Vec3<T>> moved;       ///< [body] Δc, m; empty: nothing

@@ -25,7 +25,7 @@ void EndVelocities<T>::reserve(const SolveRoom& room) {
   for (auto* v : {&axes_, &moved_, &reduced_}) v->resize(room.dofs);
   for (auto* v : {&own_, &factor_}) v->resize(room.dofs);
   for (auto* v : {&rates_, &near_, &projection_}) v->resize(room.dofs);
-  for (auto* v : {&held_, &twist_}) v->resize(room.bodies);
+  for (auto* v : {&led_, &twist_}) v->resize(room.bodies);
   pressed_.reserve(kMost);
   for (auto* v : {&rows_, &answers_}) v->reserve(kMost * room.dofs);
 }
@@ -82,17 +82,17 @@ void EndVelocities<T>::begin(std::span<TreeProblem<T>* const> problems, std::spa
   }
 }
 
-/// Twists of a tree's bodies: what joints are held at and the motion of the unknowns at their rates.
+/// Twists of a tree's bodies: what leads joints and the motion of the unknowns at their rates.
 template <class T>
 void EndVelocities<T>::move(int n) {
   const Part& part = parts_[n];
   const Tree<T>& tree = *problems_[n]->tree;
   const Kinematics<T>& k = problems_[n]->kinematics;
   Twist<T>* const twists = twist_.data() + part.first_body;
-  const Twist<T>* const held = held_.data() + part.first_body;
+  const Twist<T>* const led = led_.data() + part.first_body;
   for (int i = 0; i < tree.bodies; ++i) {
     Twist<T>& twist = twists[i];
-    twist = held[i];
+    twist = led[i];
     if (const int parent = tree.parent[i]; parent >= 0) {
       twist.w += twists[parent].w;
       twist.v += twists[parent].v;
@@ -114,7 +114,7 @@ void EndVelocities<T>::respond(int n, std::span<const T> force, std::span<Vec3<T
   const int bodies = problems_[n]->tree->bodies;
   for (int u = 0; u < part.count; ++u) rates(n)[u] = force[dof_[part.first + u]];
   solve_by_joints<T>(part.matrix, rates(n));
-  std::fill_n(held_.begin() + part.first_body, bodies, Twist<T>());
+  std::fill_n(led_.begin() + part.first_body, bodies, Twist<T>());
   move(n);
   for (int i = 0; i < bodies; ++i) {
     const Twist<T>& twist = twist_[part.first_body + i];
@@ -139,13 +139,13 @@ void EndVelocities<T>::read_near(int n, std::span<const std::array<T, 6>> rate) 
 }
 
 template <class T>
-void EndVelocities<T>::project(int n, std::span<const Twist<T>> held, std::span<const std::array<T, 6>> rate,
+void EndVelocities<T>::project(int n, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
                                const History<T>& history) {
   const Part& part = parts_[n];
   TreeProblem<T>& p = *problems_[n];
   const Tree<T>& tree = *p.tree;
   const Kinematics<T>& k = p.kinematics;
-  std::copy_n(held.begin(), tree.bodies, held_.begin() + part.first_body);
+  std::copy_n(led.begin(), tree.bodies, led_.begin() + part.first_body);
   read_near(n, rate);
   std::copy_n(near_.begin() + part.first, part.count, rates(n).begin());
   move(n);
@@ -207,7 +207,7 @@ void EndVelocities<T>::add(const Contact<T>& c, T h) {
   const auto given = [&](int n, int body) {
     const Tree<T>& tree = *problems_[n]->tree;
     Vec3<T> sum = Vec3<T>::Zero();
-    for (; body >= 0; body = tree.parent[body]) sum += held_[parts_[n].first_body + body].at(c.point);
+    for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(c.point);
     return sum.dot(c.normal);
   };
   project_point(c.tree_a, c.body_a, c.point, c.normal, T(1), side(*row, 0, rows_));

@@ -44,9 +44,9 @@ class EndVelocities {
   void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
 
   /// Finds the rates of a tree's unknowns from the momenta of its history. Joints that no unknown moves have
-  /// the velocities `held` [body]. It solves for the change of `rate` [body], near to the answer, for the
+  /// the velocities `led` [body]. It solves for the change of `rate` [body], near to the answer, for the
   /// matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
-  void project(int tree, std::span<const Twist<T>> held, std::span<const std::array<T, 6>> rate,
+  void project(int tree, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
                const History<T>& history);
 
   /// A contact may not close, as far as the force that it bears can see to that in a step of h seconds.
@@ -93,7 +93,7 @@ class EndVelocities {
   std::vector<JointBlockRow<T>> own_, factor_;
   std::vector<SpatialForm<T>> eliminated_;
   std::vector<T> rates_, near_, projection_;
-  std::vector<Twist<T>> held_, twist_;  ///< [body] of the joint alone; of the body
+  std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
   std::vector<T> rows_, answers_;
 };

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "sinew/effects/joint_step.h"
+#include "sinew/optimizer/bossak.h"
 #include "sinew/optimizer/problem.h"
 
 namespace sinew {
@@ -14,7 +15,7 @@ namespace sinew {
 /// See StepSettings::constant_muscles.
 template <class T, class Settings>
 T emphasis(const Settings& settings, const T& weight) {
-  return settings.constant_muscles ? largest(T(weight * (settings.h * settings.h / 2)), T(1)) : T(1);
+  return settings.constant_muscles ? constant_emphasis<T>(weight, settings.h) : T(1);
 }
 
 /// Joint i of a tree as the effects see it.
