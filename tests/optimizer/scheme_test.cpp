@@ -9,7 +9,6 @@ namespace sinew {
 namespace {
 
 using fixtures::kPrincipal;
-using fixtures::one_body;
 using fixtures::V;
 
 /// Stepped as a world steps it: predict, minimise, advance.
