@@ -24,7 +24,7 @@ struct FreeBody : fixtures::FreeBody {
   }
   void step(double h, double rho) {
     problem.start = problem.local;
-    predict_bossak<double>(tree, history, rho, h, V::Zero(), problem.prediction);
+    predict_bossak<double>(tree, history, {}, rho, h, V::Zero(), problem.prediction);
     minimise(h);
     advance_bossak<double>(tree, problem.kinematics, problem.prediction, problem.couple, {}, h, V::Zero(),
                            history);

@@ -130,7 +130,9 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
     c.gap = gap;
   }
   c.stiffness = std::max(c.stiffness, found->stiffness);
-  c.lagged_normal_force = std::min(c.lagged_normal_force, most_sunk_ * c.stiffness);
+  // With Bossak's scheme friction of impulses is theirs (end_velocities.h).
+  const T bore = world_->accuracy.scheme == Scheme::kBossak ? c.smooth_before : c.lagged_normal_force;
+  c.grip = c.friction * std::min(bore, most_sunk_ * c.stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.

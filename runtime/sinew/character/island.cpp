@@ -65,6 +65,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_}) v->reserve(room.dofs);
   for (auto* v : {&moved_, &turned_, &sped_, &spun_}) v->reserve(room.bodies);
   led_rates_.reserve(room.bodies);
+  for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(room.bodies);
   momenta_.reserve(room.trees);
   ends_.reserve(room);
   struck_.reserve(room.trees);
@@ -73,7 +74,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (4 * sizeof(T) + 1) +
-                    room.bodies * (4 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+                    room.bodies * (6 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
                     (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
                     room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
@@ -293,6 +294,7 @@ void IslandStepper<T>::begin_solve() {
                     states_[n]->contact_signature;
   }
   predict_all(second_ || scheme_ == Scheme::kMomentum ? scheme_ : Scheme::kBdf1, h);
+  emphasise_friction(h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
   if (strikes_deep(h)) choose_guess(h);
@@ -333,6 +335,7 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
     for (CharacterState<T>* s : states_)
       forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     find_contacts(h);
+    emphasise_friction(h);
     total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
   }
 }
@@ -455,8 +458,8 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
     if (!s->is_prop) meet_cuts(*s, h);
     if (!one_step()) continue;
     begin_one_step(*s);
-    if (s->limp() && !s->impulses.empty()) strike(*s);
   }
+  if (one_step()) strike_all();
   begin_couplings<T>(couplings_, states_, indices_);
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
   const bool alone = states.size() == 1 && couplings.empty();

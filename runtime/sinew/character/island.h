@@ -98,14 +98,18 @@ class IslandStepper {
   void expect_to_last(T h);
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   void drop_played();
-  void strike(CharacterState<T>& state);
+  void strike_all();
+  void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
+  void take_over(Contact<T>& contact) const;
+  bool is_level(const Contact<T>& contact) const;
   void split_contacts(T h);
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
   void measure_led(const CharacterState<T>& state, int tree, T h);
   bool choose_loose();
   void advance_one_step(T h);
+  void emphasise_friction(T h);
   void press(T h);
   bool touching_changed() const;
   bool lifted() const;
@@ -149,6 +153,7 @@ class IslandStepper {
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
   std::vector<T> jump_force_, constant_, kinks_, others_;  ///< [dof] of one tree
   std::vector<Vec3<T>> moved_, turned_, sped_, spun_;      ///< [body] the same
+  std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                        ///< [body]
   EndVelocities<T> ends_;
   std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts

@@ -92,11 +92,11 @@ struct Contact {
   T stiffness = T(1e5);                          ///< N/m
   T friction = T(0.8);                           ///< μ
   T lagged_normal_force = T(0);                  ///< λ, N
+  T grip = T(0);                                 ///< N, most that friction can do: μλ
   T lasting_last = T(0), lasting_before = T(0);  ///< N; see lasting(): of the last step and the one before
   T lasting_force = T(0);                        ///< N; at the end of this one
   T smooth_before = T(0);                        ///< N; what of λ no impulse was: see split()
   T smooth_force = T(0);                         ///< N; of the normal force at the end
-  T smooth_friction = T(1);                      ///< share of the friction at the end
   T expected_force = T(0);  ///< N, along the normal at the end: what a solve knows of it so far
   T restitution = T(0);     ///< of a bounce: impulse of the release by that of the compression
   T offset = T(0);          ///< m, added to the gap: stiffening a loaded contact keeps its force
@@ -125,7 +125,7 @@ struct Contact {
   /// gap + τ·gap', m: what the normal force is a function of. Above the gap where the contact opens.
   T damped_gap() const { return stretch * gap + lag; }
   /// Whether it bears or rubs.
-  bool acts() const { return damped_gap() < T(0) || friction * lagged_normal_force > T(0); }
+  bool acts() const { return damped_gap() < T(0) || grip > T(0); }
   /// Half the thickness of what is met, m.
   T half_thickness() const;
 
@@ -194,11 +194,25 @@ T normal_force(const Contact<T>& c) {
 /// Normal and friction potential of the step at the present gap and slip (J).
 template <class T>
 T contact_energy(const Contact<T>& c, T stick) {
-  const T grip = c.friction * c.lagged_normal_force;
   T energy = ContactLaw<T>::energy(c.stiffness, c.damped_gap()) / c.stretch;
-  if (grip > T(0))
-    energy += grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
+  if (c.grip > T(0))
+    energy += c.grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
   return energy;
+}
+
+/// Gradient of the normal energy by the contact point of body a (N, pointing into the obstacle).
+template <class T>
+Vec3<T> normal_gradient(const Contact<T>& c) {
+  return -normal_force(c) * c.normal;
+}
+
+/// Gradient of the friction energy by the material point of body a (N).
+template <class T>
+Vec3<T> friction_gradient(const Contact<T>& c, T stick) {
+  if (c.grip <= T(0)) return Vec3<T>::Zero();
+  const T slip = std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]);
+  const T scale = c.grip * FrictionLaw<T>::slope_over_slip(slip, stick);
+  return scale * (c.slip[0] * c.frame.col(0) + c.slip[1] * c.frame.col(1));
 }
 
 /// A force that has just come acts on a body by κh² of its acceleration in the step, not by ½h² as one that
@@ -216,29 +230,12 @@ T limited(T now, T last, T before) {
   return std::clamp(2 * std::min(last, before), T(0), now);
 }
 /// Of the forces at the end of a step, those that may be taken for smooth in time: all, where the same
-/// contacts `last`; else as far as they have lasted. Friction goes by the normal force that it had.
+/// contacts `last`; else as far as they have lasted.
 template <class T>
 void split(bool last, T share, Contact<T>& c) {
-  const T now = normal_force(c), lagged = c.lagged_normal_force;
+  const T now = normal_force(c);
   c.lasting_force = lasting(now, c.smooth_before, share);
   c.smooth_force = last ? now : std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
-  c.smooth_friction = last ? T(1) : lagged > T(0) ? std::min(c.smooth_before / lagged, T(1)) : T(0);
-}
-
-/// Gradient of the normal energy by the contact point of body a (N, pointing into the obstacle).
-template <class T>
-Vec3<T> normal_gradient(const Contact<T>& c) {
-  return -normal_force(c) * c.normal;
-}
-
-/// Gradient of the friction energy by the material point of body a (N).
-template <class T>
-Vec3<T> friction_gradient(const Contact<T>& c, T stick) {
-  const T grip = c.friction * c.lagged_normal_force;
-  if (grip <= T(0)) return Vec3<T>::Zero();
-  const T slip = std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]);
-  const T scale = grip * FrictionLaw<T>::slope_over_slip(slip, stick);
-  return scale * (c.slip[0] * c.frame.col(0) + c.slip[1] * c.frame.col(1));
 }
 
 /// Re-measures gap, normal, points and slips at the present kinematics of the two bodies (`b` ignored when

@@ -31,7 +31,7 @@ T spectral_radius(T turn) {
 }
 
 template <class T>
-void predict_bossak(const Tree<T>& tree, const History<T>& history, T rho, T h,
+void predict_bossak(const Tree<T>& tree, const History<T>& history, const Strike<T>& strike, T rho, T h,
                     const Vec3<double>& common_origin, Prediction<T>& out) {
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const BossakWeights<T> w(rho);
@@ -46,7 +46,11 @@ void predict_bossak(const Tree<T>& tree, const History<T>& history, T rho, T h,
     const Mat3<T>& r0 = history.rotation[i];
     out.center[i] = place + history.center[i] + h * (history.velocity[i] + ahead * history.acceleration[i]);
     out.momentum[i] = history.momentum[i] + of_torque * history.torque[i];
-    const Vec3<T> momentum = history.momentum[i] + ahead * history.torque[i];
+    Vec3<T> momentum = history.momentum[i] + ahead * history.torque[i];
+    if (!strike.velocity.empty()) {  // half of what it will have made of the speed
+      out.center[i] -= h / 2 * strike.velocity[i];
+      momentum -= strike.momentum[i] / 2;
+    }
     const Vec3<T> spin = tree.inverse_inertia[i] * (r0.transpose() * momentum);
     if (h * spin.norm() < T(kMostFreeTurn))
       out.rotation[i] =

@@ -60,9 +60,16 @@ T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
 template <class T>
 T spectral_radius(T largest_turn);
 
+/// What impulses have added to a tree's history just before a step, of which they act all along.
+template <class T>
+struct Strike {
+  std::span<const Vec3<T>> velocity;  ///< [body] m/s; empty: nothing
+  std::span<const Vec3<T>> momentum;  ///< [body] angular, kg·m²/s
+};
+
 /// Targets of inertia for one step. The history must know its accelerations. O(bodies).
 template <class T>
-void predict_bossak(const Tree<T>& tree, const History<T>& history, T rho, T h,
+void predict_bossak(const Tree<T>& tree, const History<T>& history, const Strike<T>& strike, T rho, T h,
                     const Vec3<double>& common_origin, Prediction<T>& out);
 
 /// How the bodies accelerate where a solve that began and ended at rest has led them (predict_at_rest), into
@@ -90,8 +97,8 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
 #define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix T spectral_radius<T>(T);                                                                  \
-  prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, T, T, const Vec3<double>&,      \
-                                Prediction<T>&);                                                   \
+  prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
+                                const Vec3<double>&, Prediction<T>&);                              \
   prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
                             std::span<const Vec3<T>>, History<T>&);                                \
   prefix void advance_bossak<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,        \

@@ -119,8 +119,7 @@ void ContactRows<T>::evaluate(Trees trees, std::span<Contact<T>> contacts, T sti
 template <class T>
 void ContactRows<T>::add_forces(Trees trees, std::span<const Contact<T>> contacts, T stick) const {
   for (const Contact<T>& c : contacts) {
-    const bool rubs = c.friction * c.lagged_normal_force > T(0);
-    if (!rubs && c.expected_force <= T(0)) continue;
+    if (!(c.grip > T(0)) && c.expected_force <= T(0)) continue;
     const Vec3<T> normal = -c.expected_force * c.normal, tangent = friction_gradient(c, stick);
     Composite<T>& a = trees[c.tree_a]->composite[c.body_a];
     a.add_force(c.point, normal);
@@ -185,7 +184,7 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
     Row row;
     row.contact = static_cast<int>(n);
     row.stiffness = c.stiffness;
-    row.grip = c.friction * c.lagged_normal_force;
+    row.grip = c.grip;
     row.stretch = c.stretch;
     row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];

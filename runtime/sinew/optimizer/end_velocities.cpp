@@ -6,10 +6,7 @@ namespace sinew {
 namespace {
 
 constexpr int kSweeps = 30;
-/// That a contact's force would take to do what it does to velocities at most: one that has hardly begun to
-/// bear is no wall yet. Of energies of falls, 1 leaves 0.85 after 0.75 s, 2 leaves 0.92, 4 leaves 0.96 and
-/// lifts sliding boxes.
-constexpr double kMostSteps = 2;
+constexpr double kUsed = 0.98;  ///< of friction: all
 constexpr double kLeft = 1e-5;  ///< m/s, rad/s: of what closes
 
 }  // namespace
@@ -178,7 +175,8 @@ typename EndVelocities<T>::Row* EndVelocities<T>::open_row(int tree, int other) 
 }
 
 template <class T>
-std::span<T> EndVelocities<T>::side(const Row& row, int n, std::vector<T>& of) {
+template <class V>
+auto EndVelocities<T>::side(const Row& row, int n, V& of) const {
   const int begin = row.entry + (n == 0 ? 0 : parts_[row.tree[0]].count);
   return std::span(of).subspan(begin, parts_[row.tree[n]].count);
 }
@@ -199,30 +197,50 @@ void EndVelocities<T>::project_point(int n, int body, const Vec3<T>& point, cons
   }
 }
 
+/// How a contact's first side moves against its second at `point` along `direction`.
 template <class T>
-void EndVelocities<T>::add(const Contact<T>& c, T h) {
+typename EndVelocities<T>::Row* EndVelocities<T>::add_point(const Contact<T>& c, const Vec3<T>& point,
+                                                            const Vec3<T>& direction) {
   Row* row = open_row(c.tree_a, c.tree_b);
-  if (!row) return;
-  row->most = T(kMostSteps) * h * normal_force(c);
+  if (!row) return nullptr;
   const auto given = [&](int n, int body) {
     const Tree<T>& tree = *problems_[n]->tree;
     Vec3<T> sum = Vec3<T>::Zero();
-    for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(c.point);
-    return sum.dot(c.normal);
+    for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(point);
+    return sum.dot(direction);
   };
-  project_point(c.tree_a, c.body_a, c.point, c.normal, T(1), side(*row, 0, rows_));
+  project_point(c.tree_a, c.body_a, point, direction, T(1), side(*row, 0, rows_));
   row->given = given(c.tree_a, c.body_a);
-  if (c.tree_b < 0) return;
+  if (c.tree_b < 0) return row;
   const int second = c.tree_b == c.tree_a ? 0 : 1;
-  project_point(c.tree_b, c.body_b, c.point, c.normal, T(-1), side(*row, second, rows_));
+  project_point(c.tree_b, c.body_b, point, direction, T(-1), side(*row, second, rows_));
   row->given -= given(c.tree_b, c.body_b);
+  return row;
 }
 
 template <class T>
-void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T h) {
+void EndVelocities<T>::add(const Contact<T>& c, T most, T cone, const Vec3<T>& rubbed) {
+  Row* normal = add_point(c, c.point, c.normal);
+  if (!normal) return;
+  normal->most = most;
+  normal->friction = c.friction;
+  normal->cone = cone;
+  if (!(c.friction > T(0)) || pressed_.size() + 2 > kMost) return;
+  const std::size_t at = pressed_.size() - 1;
+  const Vec3<T> touch = c.point - (c.radius + (c.gap - c.offset) / 2) * c.normal;
+  const Vec3<T> tangent = c.normal.unitOrthogonal();
+  for (const Vec3<T>& direction : {tangent, Vec3<T>(c.normal.cross(tangent))})
+    if (Row* row = add_point(c, touch, direction)) {
+      row->impulse = rubbed.dot(direction);
+      ++pressed_[at].grips;
+    }
+}
+
+template <class T>
+void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   Row* row = open_row(tree, -1);
   if (!row) return;
-  row->most = T(kMostSteps) * h * joint.slope(joint.value);
+  row->most = most;
   const std::span<T> entries = side(*row, 0, rows_);
   for (int a = 0; a < joint.count; ++a) {
     const int unknown = of_dof_[parts_[tree].first_dof + joint.dof + a];
@@ -230,40 +248,73 @@ void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T h) {
   }
 }
 
+/// Speed along a row.
+template <class T>
+T EndVelocities<T>::opening(const Row& row) const {
+  T sum = row.given;
+  for (int n = 0; n < row.sides(); ++n) {
+    const auto entries = side(row, n, rows_);
+    const T* const rate = rates_.data() + parts_[row.tree[n]].first;
+    for (std::size_t k = 0; k < entries.size(); ++k) sum += entries[k] * rate[k];
+  }
+  return sum;
+}
+
+/// What an impulse along a row does, worked out when it is first asked for. False: nothing.
+template <class T>
+bool EndVelocities<T>::know(Row& row) {
+  if (row.solved) return row.mobility > T(0);
+  row.solved = true;
+  for (int n = 0; n < row.sides(); ++n) {
+    const auto entries = side(row, n, rows_), answer = side(row, n, answers_);
+    std::copy(entries.begin(), entries.end(), answer.begin());
+    solve_by_joints<T>(parts_[row.tree[n]].matrix, answer);
+    for (std::size_t k = 0; k < entries.size(); ++k) row.mobility += entries[k] * answer[k];
+  }
+  return row.mobility > T(0);
+}
+
+template <class T>
+void EndVelocities<T>::push(Row& row, T change) {
+  row.impulse += change;
+  for (int n = 0; n < row.sides(); ++n) {
+    const auto answer = side(row, n, answers_);
+    const std::span<T> rate = rates(row.tree[n]);
+    for (std::size_t k = 0; k < rate.size(); ++k) rate[k] += change * answer[k];
+  }
+}
+
 template <class T>
 void EndVelocities<T>::press() {
   if (pressed_.empty()) return;
   answers_.resize(rows_.size());
-  const auto dot = [](std::span<const T> a, std::span<const T> b) {
-    T sum = T(0);
-    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-    return sum;
-  };
-  const auto sides = [](const Row& row) { return row.tree[1] < 0 ? 1 : 2; };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     T most = T(0);
-    for (Row& row : pressed_) {
-      T opens = row.given;
-      for (int n = 0; n < sides(row); ++n) opens += dot(side(row, n, rows_), rates(row.tree[n]));
-      if (!(opens < T(-kLeft)) && row.impulse == T(0)) continue;
-      if (!row.solved) {
-        row.solved = true;
-        for (int n = 0; n < sides(row); ++n) {
-          const std::span<T> entries = side(row, n, rows_), answer = side(row, n, answers_);
-          std::copy(entries.begin(), entries.end(), answer.begin());
-          solve_by_joints<T>(parts_[row.tree[n]].matrix, answer);
-          row.mobility += dot(entries, answer);
-        }
+    for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
+      Row& row = pressed_[at];
+      const T opens = opening(row);
+      if (row.most > T(0) && (opens < T(-kLeft) || row.impulse != T(0)) && know(row)) {
+        const T change = std::clamp(row.impulse - opens / row.mobility, T(0), row.most) - row.impulse;
+        push(row, change);
+        most = std::max(most, std::abs(change * row.mobility));
       }
-      if (!(row.mobility > T(0))) continue;
-      const T wanted = row.impulse - opens / row.mobility;
-      const T change = std::clamp(wanted, T(0), row.most) - row.impulse;
-      row.impulse += change;
-      most = std::max(most, std::abs(change * row.mobility));
-      for (int n = 0; n < sides(row); ++n) {
-        const std::span<const T> answer = side(row, n, answers_);
-        const std::span<T> rate = rates(row.tree[n]);
-        for (std::size_t k = 0; k < rate.size(); ++k) rate[k] += change * answer[k];
+      const T grip = row.friction * row.impulse + row.cone;
+      if (row.grips < 2 || !(grip > T(0))) continue;
+      Row* const rubs = &row + 1;
+      const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
+      if (std::hypot(slides[0], slides[1]) < T(kLeft)) continue;
+      // Already as much as it can be, and against the motion.
+      const T used = std::hypot(rubs[0].impulse, rubs[1].impulse),
+              against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
+      if (used > T(kUsed) * grip && against > T(kUsed) * used * std::hypot(slides[0], slides[1])) continue;
+      T wanted[2];
+      for (int a = 0; a < 2; ++a)
+        wanted[a] = know(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
+      const T size = std::hypot(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
+      for (int a = 0; a < 2; ++a) {
+        const T change = share * wanted[a] - rubs[a].impulse;
+        push(rubs[a], change);
+        most = std::max(most, std::abs(change * rubs[a].mobility));
       }
     }
     if (most < T(kLeft)) return;

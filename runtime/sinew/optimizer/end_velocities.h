@@ -4,7 +4,9 @@
 // those with these momenta in the joints' freedom are the nearest by the mass matrix: u = M⁻¹Jᵀ(m v*, L*).
 // Where an impulse has just closed a contact or a joint's limit, it may not close further either: impulses p
 // ≥ 0 take out what of u does, projected Gauss-Seidel over (n·J) u ≥ 0 (Acary, "Projected event-capturing
-// time-stepping schemes for nonsmooth mechanical systems", 2013). Both are projections: neither adds energy.
+// time-stepping schemes for nonsmooth mechanical systems", 2013). Nor may it slide, as far as Coulomb's cone
+// of that impulse allows: friction in the step itself goes by the smooth force that there was when it began.
+// All are projections: none adds energy.
 #pragma once
 
 #include <array>
@@ -49,10 +51,12 @@ class EndVelocities {
   void project(int tree, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
                const History<T>& history);
 
-  /// A contact may not close, as far as the force that it bears can see to that in a step of h seconds.
-  void add(const Contact<T>& contact, T h);
+  /// A contact may not close, as far as an impulse of `most` (N·s) can see to that; nor slide, as far as
+  /// friction by that impulse and `cone` beside it (N·s) can, of which `rubbed` (on body a, world axes) has
+  /// been done.
+  void add(const Contact<T>& contact, T most, T cone, const Vec3<T>& rubbed);
   /// Nor may the scalar of a tree's joint row grow.
-  void add(int tree, const JointRow<T>& row, T h);
+  void add(int tree, const JointRow<T>& row, T most);
   /// Impulses that see to that. O(those that act · bodies).
   void press();
 
@@ -60,7 +64,7 @@ class EndVelocities {
   void write(int tree, History<T>& history, std::span<std::array<T, 6>> rate);
 
  private:
-  static constexpr std::size_t kMost = 64;  ///< that may not close
+  static constexpr std::size_t kMost = 3 * 64;  ///< rows: that may not close, or slide
 
   struct Part {
     int first_body = 0, first_dof = 0, first = 0, count = 0;  ///< unknowns
@@ -69,17 +73,25 @@ class EndVelocities {
   struct Row {
     int tree[2] = {-1, -1};
     int entry = 0;                  ///< in `rows_` and `answers_`: first side, then second
+    int grips = 0;                  ///< 2: the next two rows are those of its friction
+    T friction = T(0), cone = T(0); ///< μ; N·s, beside what its own impulse allows
     T given = T(0);                 ///< m/s or rad/s, of joints that no unknown moves
     T mobility = T(0);              ///< 1/kg; 0: not known yet
     T impulse = T(0), most = T(0);  ///< N·s, N·m·s
     bool solved = false;
+    int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
 
   void move(int tree);
   void read_near(int tree, std::span<const std::array<T, 6>> rate);
   std::span<T> rates(int tree) { return std::span(rates_).subspan(parts_[tree].first, parts_[tree].count); }
   Row* open_row(int tree, int other);
-  std::span<T> side(const Row& row, int n, std::vector<T>& of);
+  Row* add_point(const Contact<T>& contact, const Vec3<T>& point, const Vec3<T>& direction);
+  T opening(const Row& row) const;
+  bool know(Row& row);
+  void push(Row& row, T change);
+  template <class V>
+  auto side(const Row& row, int n, V& of) const;
   void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign,
                      std::span<T> row) const;
 

@@ -121,6 +121,7 @@ struct OnePass : Work, private Solving {
     c.local_a = {1, 0, 0};
     c.radius = 0.05f;
     c.lagged_normal_force = 5;
+    c.grip = c.friction * c.lagged_normal_force;
     if (name == "ground") {
       c.plane = true;
       c.plane_height = -0.049f;
