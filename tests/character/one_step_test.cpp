@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "character/scenes.h"
+#include "sinew/effects/restitution.h"
 
 namespace sinew {
 namespace {
@@ -94,6 +95,64 @@ TEST(OneStep, ABoxThatBeginsOnTheFloorStaysThere) {
   }
   EXPECT_LT(highest, 0.1005f);
   EXPECT_LT(fastest, 1e-3f);
+}
+
+PropSettings thrown(Shape shape, double height, double speed) {
+  PropSettings prop;
+  prop.shape = shape;
+  prop.size = shape == Shape::kBox ? Vec3<double>(0.15, 0.15, 0.05) : Vec3<double>(0.1, 0, 0);
+  prop.mass = 5;
+  prop.pose.translation = {0, 0, height};
+  prop.velocity = {speed, 0, -speed};
+  return prop;
+}
+
+/// m: how far a crate slides that comes down on the floor at 45 degrees, over heights that it falls from.
+double slid(double h) {
+  constexpr int kHeights = 16;  // so that steps fall differently on the impact
+  double sum = 0;
+  for (int n = 0; n < kHeights; ++n) {
+    World<double> world(one_step());
+    Status status;
+    EXPECT_EQ(world.add_prop(thrown(Shape::kBox, 0.25 + 0.004 * n, 3.5), status), 0) << status.reason;
+    for (int k = 0; k < std::lround(1 / h); ++k) EXPECT_TRUE(world.step(h).ok());
+    sum += world.prop_pose(0).translation.x() / kHeights;
+  }
+  return sum;
+}
+
+TEST(OneStep, AThrownCrateIsStoppedByFrictionAtTheImpact) {
+  const double exact = slid(1 / 960.0);
+  EXPECT_NEAR(slid(1 / 60.0) / exact, 1, 0.2);
+  EXPECT_NEAR(slid(1 / 120.0) / exact, 1, 0.1);
+}
+
+TEST(OneStep, ABallThatBouncesLeavesRolling) {
+  for (const double hz : {30, 60, 120})
+    for (int n = 0; n < 4; ++n) {
+      WorldSettings settings = one_step();
+      settings.ground_friction = 1;
+      World<double> world(settings);
+      ASSERT_TRUE(world.declare<Restitution>().ok());
+      PropSettings ball = thrown(Shape::kSphere, 0.35 + 0.01 * n, 3);
+      ball.friction = 1;
+      ball.restitution = 0.8;
+      Status status;
+      ASSERT_EQ(world.add_prop(ball, status), 0) << status.reason;
+      bool down = false;
+      for (int k = 0; k < hz; ++k) {
+        ASSERT_TRUE(world.step(1 / hz).ok());
+        const bool falls = world.prop_velocity(0).z() < 0;
+        if (down && !falls) break;
+        down = down || falls;
+      }
+      const Quat<double> before = world.prop_pose(0).rotation;
+      ASSERT_TRUE(world.step(1 / hz).ok());
+      const Vec3<double> speed = world.prop_velocity(0),
+                         spin = hz * rotation_log<double>(world.prop_pose(0).rotation * before.conjugate());
+      EXPECT_NEAR(speed.x(), 3 * 5 / 7.0, 0.03 * 3) << hz << " Hz";
+      EXPECT_NEAR(spin.y() * 0.1, speed.x(), 0.03 * 3) << hz << " Hz";
+    }
 }
 
 /// J: the most that a limp fall stands above the energy that it starts with.

@@ -87,11 +87,9 @@ TEST(Bossak, AContactThatHasJustClosedIsAnImpulse) {
   Contact<double> fresh = bearing(100, 0, 0, 0);
   split<double>(false, 0.6, fresh);
   EXPECT_EQ(fresh.smooth_force, 0);
-  EXPECT_EQ(fresh.smooth_friction, 0);
   Contact<double> old = bearing(100, 100, 100, 100);
   split<double>(false, 0.6, old);
   EXPECT_NEAR(old.smooth_force, 100, 1e-9);
-  EXPECT_EQ(old.smooth_friction, 1);
   Contact<double> lasts = bearing(100, 20, 0, 0);
   split<double>(true, 0.6, lasts);
   EXPECT_NEAR(lasts.smooth_force, 100, 1e-9);
@@ -128,10 +126,37 @@ double pressed(double speed, double force, double h) {
   body.ends.project(0, led, rate, body.history);
   Contact<double> c = bearing(force, 0, 0, 0);
   c.point = body.history.center[0];
-  body.ends.add(c, h);
+  body.ends.add(c, 2 * h * force, 0, V::Zero());
   body.ends.press();
   body.ends.write(0, body.history, rate);
   return body.history.velocity[0].z();
+}
+
+/// Speed (m/s) along x that friction leaves of 1 m/s, where it may do `cone` (N·s) and `rubbed` of it was done
+/// to a body of 2 kg whose contact is at its centre.
+double rubbed(double cone, double rubbed) {
+  FreeBody body(V::Zero(), V(1, 0, 0), V::Zero());
+  TreeProblem<double>* const trees[] = {&body.problem};
+  const std::vector<std::uint8_t> loose(6, 1);
+  const std::vector<Twist<double>> led(1);
+  std::vector<std::array<double, 6>> rate(1);
+  rate[0][0] = 1;
+  body.ends.begin(trees, loose);
+  body.ends.project(0, led, rate, body.history);
+  Contact<double> c = bearing(100, 0, 0, 0);
+  c.point = body.history.center[0];
+  body.ends.add(c, 0, cone, V(-rubbed, 0, 0));
+  body.ends.press();
+  body.ends.write(0, body.history, rate);
+  return body.history.velocity[0].x();
+}
+
+TEST(EndVelocities, FrictionStopsWhatSlidesAsFarAsItsConeAllows) {
+  EXPECT_NEAR(rubbed(10, 0), 0, 1e-4);
+  EXPECT_NEAR(rubbed(1, 0), 0.5, 1e-4);
+  EXPECT_NEAR(rubbed(1, 1), 1, 1e-9);  // all was done
+  EXPECT_NEAR(rubbed(0, 0), 1, 1e-9);
+  EXPECT_NEAR(rubbed(3, 0.5), 0, 1e-4);
 }
 
 TEST(EndVelocities, AContactTakesOutWhatClosesAndNothingElse) {

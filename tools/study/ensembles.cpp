@@ -178,7 +178,7 @@ Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, doub
 }
 
 std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress) {
-  const double finest = quick ? 960 : 3840;
+  const double finest = quick ? 1920 : 3840;
   const int seeds = quick ? 96 : 384;
   std::vector<EngineOption> ours, peers;
   for (const EngineOption& option : sinew_options())

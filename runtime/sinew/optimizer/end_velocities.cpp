@@ -227,7 +227,7 @@ void EndVelocities<T>::add(const Contact<T>& c, T most, T cone, const Vec3<T>& r
   normal->cone = cone;
   if (!(c.friction > T(0)) || pressed_.size() + 2 > kMost) return;
   const std::size_t at = pressed_.size() - 1;
-  const Vec3<T> touch = c.point - (c.radius + (c.gap - c.offset) / 2) * c.normal;
+  const Vec3<T> touch = c.point - c.radius * c.normal;  // however deep: what rolls has its own radius
   const Vec3<T> tangent = c.normal.unitOrthogonal();
   for (const Vec3<T>& direction : {tangent, Vec3<T>(c.normal.cross(tangent))})
     if (Row* row = add_point(c, touch, direction)) {
@@ -302,11 +302,11 @@ void EndVelocities<T>::press() {
       if (row.grips < 2 || !(grip > T(0))) continue;
       Row* const rubs = &row + 1;
       const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
-      if (std::hypot(slides[0], slides[1]) < T(kLeft)) continue;
       // Already as much as it can be, and against the motion.
       const T used = std::hypot(rubs[0].impulse, rubs[1].impulse),
               against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
-      if (used > T(kUsed) * grip && against > T(kUsed) * used * std::hypot(slides[0], slides[1])) continue;
+      const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
+      if (all && against > T(kUsed) * used * std::hypot(slides[0], slides[1])) continue;
       T wanted[2];
       for (int a = 0; a < 2; ++a)
         wanted[a] = know(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
