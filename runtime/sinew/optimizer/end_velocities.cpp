@@ -25,13 +25,15 @@ void EndVelocities<T>::reserve(const SolveRoom& room) {
   for (auto* v : {&led_, &twist_}) v->resize(room.bodies);
   pressed_.reserve(kMost);
   for (auto* v : {&rows_, &answers_}) v->reserve(kMost * room.dofs);
+  of_entry_.reserve(kMost * room.dofs);
+  row_.reserve(room.dofs);
 }
 
 template <class T>
 std::size_t EndVelocities<T>::bytes(const SolveRoom& room) {
   return room.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs) +
-         room.dofs * (3 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
-         kMost * (sizeof(Row) + 2 * sizeof(T) * room.dofs);
+         room.dofs * (4 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
+         kMost * (sizeof(Row) + (2 * sizeof(T) + sizeof(int)) * room.dofs);
 }
 
 template <class T>
@@ -41,6 +43,7 @@ void EndVelocities<T>::begin(std::span<TreeProblem<T>* const> problems, std::spa
   pressed_.clear();
   rows_.clear();
   answers_.clear();
+  of_entry_.clear();
   Part next;
   for (TreeProblem<T>* problem : problems) {
     TreeProblem<T>& p = *problem;
@@ -166,19 +169,26 @@ typename EndVelocities<T>::Row* EndVelocities<T>::open_row(int tree, int other) 
   Row row;
   row.tree[0] = tree;
   row.tree[1] = other == tree ? -1 : other;
-  row.entry = static_cast<int>(rows_.size());
-  const std::size_t entries = parts_[tree].count + (row.tree[1] < 0 ? 0 : parts_[other].count);
-  if (rows_.size() + entries > rows_.capacity()) return nullptr;
-  rows_.resize(rows_.size() + entries, T(0));
   pressed_.push_back(row);
   return &pressed_.back();
 }
 
+/// `entries` [unknown of its tree] of a side, those that are not 0. False where there is no room.
 template <class T>
-template <class V>
-auto EndVelocities<T>::side(const Row& row, int n, V& of) const {
-  const int begin = row.entry + (n == 0 ? 0 : parts_[row.tree[0]].count);
-  return std::span(of).subspan(begin, parts_[row.tree[n]].count);
+bool EndVelocities<T>::add_side(Row& row, int n, std::span<const T> entries) {
+  row.entry[n] = static_cast<int>(rows_.size());
+  row.answer[n] = static_cast<int>(answers_.size());
+  if (rows_.size() + entries.size() > rows_.capacity() ||
+      answers_.size() + entries.size() > answers_.capacity())
+    return false;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (entries[k] == T(0)) continue;
+    rows_.push_back(entries[k]);
+    of_entry_.push_back(static_cast<int>(k));
+    ++row.count[n];
+  }
+  answers_.resize(answers_.size() + entries.size());
+  return true;
 }
 
 /// Adds the speed of a body's point along `normal` per unit of each unknown's rate.
@@ -209,13 +219,19 @@ typename EndVelocities<T>::Row* EndVelocities<T>::add_point(const Contact<T>& c,
     for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(point);
     return sum.dot(direction);
   };
-  project_point(c.tree_a, c.body_a, point, direction, T(1), side(*row, 0, rows_));
+  row_.assign(parts_[c.tree_a].count, T(0));
+  project_point(c.tree_a, c.body_a, point, direction, T(1), row_);
   row->given = given(c.tree_a, c.body_a);
-  if (c.tree_b < 0) return row;
-  const int second = c.tree_b == c.tree_a ? 0 : 1;
-  project_point(c.tree_b, c.body_b, point, direction, T(-1), side(*row, second, rows_));
-  row->given -= given(c.tree_b, c.body_b);
-  return row;
+  if (c.tree_b == c.tree_a) project_point(c.tree_b, c.body_b, point, direction, T(-1), row_);
+  bool room = add_side(*row, 0, row_);
+  if (row->tree[1] >= 0) {
+    row_.assign(parts_[c.tree_b].count, T(0));
+    project_point(c.tree_b, c.body_b, point, direction, T(-1), row_);
+    room = room && add_side(*row, 1, row_);
+  }
+  if (c.tree_b >= 0) row->given -= given(c.tree_b, c.body_b);
+  if (!room) pressed_.pop_back();
+  return room ? row : nullptr;
 }
 
 template <class T>
@@ -241,11 +257,12 @@ void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   Row* row = open_row(tree, -1);
   if (!row) return;
   row->most = most;
-  const std::span<T> entries = side(*row, 0, rows_);
+  row_.assign(parts_[tree].count, T(0));
   for (int a = 0; a < joint.count; ++a) {
     const int unknown = of_dof_[parts_[tree].first_dof + joint.dof + a];
-    if (unknown >= 0) entries[unknown] -= joint.gradient[a];
+    if (unknown >= 0) row_[unknown] -= joint.gradient[a];
   }
+  if (!add_side(*row, 0, row_)) pressed_.pop_back();
 }
 
 /// Speed along a row.
@@ -253,9 +270,8 @@ template <class T>
 T EndVelocities<T>::opening(const Row& row) const {
   T sum = row.given;
   for (int n = 0; n < row.sides(); ++n) {
-    const auto entries = side(row, n, rows_);
     const T* const rate = rates_.data() + parts_[row.tree[n]].first;
-    for (std::size_t k = 0; k < entries.size(); ++k) sum += entries[k] * rate[k];
+    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) sum += rows_[k] * rate[of_entry_[k]];
   }
   return sum;
 }
@@ -266,10 +282,13 @@ bool EndVelocities<T>::know(Row& row) {
   if (row.solved) return row.mobility > T(0);
   row.solved = true;
   for (int n = 0; n < row.sides(); ++n) {
-    const auto entries = side(row, n, rows_), answer = side(row, n, answers_);
-    std::copy(entries.begin(), entries.end(), answer.begin());
-    solve_by_joints<T>(parts_[row.tree[n]].matrix, answer);
-    for (std::size_t k = 0; k < entries.size(); ++k) row.mobility += entries[k] * answer[k];
+    const Part& part = parts_[row.tree[n]];
+    const std::span<T> answer = std::span(answers_).subspan(row.answer[n], part.count);
+    std::fill(answer.begin(), answer.end(), T(0));
+    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) answer[of_entry_[k]] = rows_[k];
+    solve_by_joints<T>(part.matrix, answer);
+    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k)
+      row.mobility += rows_[k] * answer[of_entry_[k]];
   }
   return row.mobility > T(0);
 }
@@ -278,8 +297,8 @@ template <class T>
 void EndVelocities<T>::push(Row& row, T change) {
   row.impulse += change;
   for (int n = 0; n < row.sides(); ++n) {
-    const auto answer = side(row, n, answers_);
     const std::span<T> rate = rates(row.tree[n]);
+    const T* const answer = answers_.data() + row.answer[n];
     for (std::size_t k = 0; k < rate.size(); ++k) rate[k] += change * answer[k];
   }
 }
@@ -287,7 +306,6 @@ void EndVelocities<T>::push(Row& row, T change) {
 template <class T>
 void EndVelocities<T>::press() {
   if (pressed_.empty()) return;
-  answers_.resize(rows_.size());
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     T most = T(0);
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
@@ -303,14 +321,16 @@ void EndVelocities<T>::press() {
       Row* const rubs = &row + 1;
       const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
       // Already as much as it can be, and against the motion.
-      const T used = std::hypot(rubs[0].impulse, rubs[1].impulse),
+      const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
+      const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
               against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
+      if (speed < T(kLeft) && used <= grip) continue;
       const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
-      if (all && against > T(kUsed) * used * std::hypot(slides[0], slides[1])) continue;
+      if (all && against > T(kUsed) * used * speed) continue;
       T wanted[2];
       for (int a = 0; a < 2; ++a)
         wanted[a] = know(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
-      const T size = std::hypot(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
+      const T size = length(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
       for (int a = 0; a < 2; ++a) {
         const T change = share * wanted[a] - rubs[a].impulse;
         push(rubs[a], change);

@@ -72,7 +72,8 @@ class EndVelocities {
   };
   struct Row {
     int tree[2] = {-1, -1};
-    int entry = 0;                  ///< in `rows_` and `answers_`: first side, then second
+    int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_` and `of_entry_`
+    int answer[2] = {0, 0};         ///< of a side in `answers_`: all its tree's unknowns
     int grips = 0;                  ///< 2: the next two rows are those of its friction
     T friction = T(0), cone = T(0); ///< μ; N·s, beside what its own impulse allows
     T given = T(0);                 ///< m/s or rad/s, of joints that no unknown moves
@@ -86,12 +87,11 @@ class EndVelocities {
   void read_near(int tree, std::span<const std::array<T, 6>> rate);
   std::span<T> rates(int tree) { return std::span(rates_).subspan(parts_[tree].first, parts_[tree].count); }
   Row* open_row(int tree, int other);
+  bool add_side(Row& row, int n, std::span<const T> entries);
   Row* add_point(const Contact<T>& contact, const Vec3<T>& point, const Vec3<T>& direction);
   T opening(const Row& row) const;
   bool know(Row& row);
   void push(Row& row, T change);
-  template <class V>
-  auto side(const Row& row, int n, V& of) const;
   void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign,
                      std::span<T> row) const;
 
@@ -107,7 +107,8 @@ class EndVelocities {
   std::vector<T> rates_, near_, projection_;
   std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
-  std::vector<T> rows_, answers_;
+  std::vector<int> of_entry_;  ///< unknown of its tree
+  std::vector<T> rows_, answers_, row_;
 };
 
 extern template class EndVelocities<float>;
