@@ -132,8 +132,8 @@ double pressed(double speed, double force, double h) {
   return body.history.velocity[0].z();
 }
 
-/// Speed (m/s) along x that friction leaves of 1 m/s, where it may do `cone` (N·s) and `rubbed` of it was done
-/// to a body of 2 kg whose contact is at its centre.
+/// Speed (m/s) along x that friction leaves of 1 m/s, where it may do `cone` (N·s) and `rubbed` of it was
+/// done to a body of 2 kg whose contact is at its centre.
 double rubbed(double cone, double rubbed) {
   FreeBody body(V::Zero(), V(1, 0, 0), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};

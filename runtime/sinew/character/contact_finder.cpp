@@ -131,7 +131,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   }
   c.stiffness = std::max(c.stiffness, found->stiffness);
   // With Bossak's scheme friction of impulses is theirs (end_velocities.h).
-  const T bore = world_->accuracy.scheme == Scheme::kBossak ? c.smooth_before: c.lagged_normal_force;
+  const T bore = world_->accuracy.scheme == Scheme::kBossak ? c.smooth_before : c.lagged_normal_force;
   c.grip = c.friction * std::min(bore, most_sunk_ * c.stiffness);
 }
 

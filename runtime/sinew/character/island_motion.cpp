@@ -431,24 +431,24 @@ void IslandStepper<T>::press(T h) {
   ends_.press();
 }
 
-#define SINEW_MOTION_INSTANCES(T)                                                             \
-  template void IslandStepper<T>::find_sets();                                                \
-  template void IslandStepper<T>::predict_bossak_all(T);                                      \
+#define SINEW_MOTION_INSTANCES(T)                                                                     \
+  template void IslandStepper<T>::find_sets();                                                        \
+  template void IslandStepper<T>::predict_bossak_all(T);                                              \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
-  template void IslandStepper<T>::strike_all(); \
-  template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>); \
-  template void IslandStepper<T>::drop_played();                                              \
-  template void IslandStepper<T>::begin_ends();                                               \
-  template void IslandStepper<T>::drop_trial(CharacterState<T>&, int);                        \
-  template void IslandStepper<T>::expect_to_last(T);                                          \
-  template void IslandStepper<T>::take_over(Contact<T>&) const;                               \
-  template bool IslandStepper<T>::is_level(const Contact<T>&) const;                          \
-  template void IslandStepper<T>::split_contacts(T);                                          \
-  template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);              \
-  template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);              \
-  template bool IslandStepper<T>::choose_loose();                                             \
-  template void IslandStepper<T>::advance_one_step(T);                                        \
-  template void IslandStepper<T>::emphasise_friction(T);                                      \
+  template void IslandStepper<T>::strike_all();                                                       \
+  template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \
+  template void IslandStepper<T>::drop_played();                                                      \
+  template void IslandStepper<T>::begin_ends();                                                       \
+  template void IslandStepper<T>::drop_trial(CharacterState<T>&, int);                                \
+  template void IslandStepper<T>::expect_to_last(T);                                                  \
+  template void IslandStepper<T>::take_over(Contact<T>&) const;                                       \
+  template bool IslandStepper<T>::is_level(const Contact<T>&) const;                                  \
+  template void IslandStepper<T>::split_contacts(T);                                                  \
+  template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);                      \
+  template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                      \
+  template bool IslandStepper<T>::choose_loose();                                                     \
+  template void IslandStepper<T>::advance_one_step(T);                                                \
+  template void IslandStepper<T>::emphasise_friction(T);                                              \
   template void IslandStepper<T>::press(T);
 SINEW_MOTION_INSTANCES(float)
 SINEW_MOTION_INSTANCES(double)

@@ -196,7 +196,8 @@ template <class T>
 T contact_energy(const Contact<T>& c, T stick) {
   T energy = ContactLaw<T>::energy(c.stiffness, c.damped_gap()) / c.stretch;
   if (c.grip > T(0))
-    energy += c.grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
+    energy +=
+        c.grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
   return energy;
 }
 

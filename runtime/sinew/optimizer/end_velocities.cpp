@@ -6,8 +6,9 @@ namespace sinew {
 namespace {
 
 constexpr int kSweeps = 30;
-constexpr double kUsed = 0.98;  ///< of friction: all
-constexpr double kLeft = 1e-5;  ///< m/s, rad/s: of what closes
+constexpr double kUsed = 0.98;   ///< of friction: all
+constexpr double kStill = 1e-4;  ///< m/s: what slides as slowly is held by the next step's friction
+constexpr double kLeft = 1e-5;   ///< m/s, rad/s: of what closes
 
 }  // namespace
 
@@ -324,7 +325,7 @@ void EndVelocities<T>::press() {
       const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
       const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
               against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
-      if (speed < T(kLeft) && used <= grip) continue;
+      if (speed < T(kStill) && used <= grip) continue;
       const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
       if (all && against > T(kUsed) * used * speed) continue;
       T wanted[2];

@@ -73,12 +73,12 @@ class EndVelocities {
   struct Row {
     int tree[2] = {-1, -1};
     int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_` and `of_entry_`
-    int answer[2] = {0, 0};         ///< of a side in `answers_`: all its tree's unknowns
-    int grips = 0;                  ///< 2: the next two rows are those of its friction
-    T friction = T(0), cone = T(0); ///< μ; N·s, beside what its own impulse allows
-    T given = T(0);                 ///< m/s or rad/s, of joints that no unknown moves
-    T mobility = T(0);              ///< 1/kg; 0: not known yet
-    T impulse = T(0), most = T(0);  ///< N·s, N·m·s
+    int answer[2] = {0, 0};                    ///< of a side in `answers_`: all its tree's unknowns
+    int grips = 0;                             ///< 2: the next two rows are those of its friction
+    T friction = T(0), cone = T(0);            ///< μ; N·s, beside what its own impulse allows
+    T given = T(0);                            ///< m/s or rad/s, of joints that no unknown moves
+    T mobility = T(0);                         ///< 1/kg; 0: not known yet
+    T impulse = T(0), most = T(0);             ///< N·s, N·m·s
     bool solved = false;
     int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
