@@ -13,7 +13,8 @@ namespace {
 /// That a contact's force would take to do what it does to velocities at most: one that has hardly begun to
 /// bear is no wall yet. Falls keep as much energy with 2 as without a bound, and less with a half.
 constexpr double kMostSteps = 2;
-constexpr double kSamePlane = 0.99;  ///< cosine
+constexpr double kSamePlane = 0.99;    ///< cosine
+constexpr double kSaturated = 0.9999;  ///< of a muscle's limit
 
 /// Generalised forces [dof] of a tree's rows: of muscles and dry friction, and of the others.
 template <class T>
@@ -27,6 +28,14 @@ void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) 
     const Vec3<T> torque = row.gradient.transpose() * row.slope(row.value);
     for (int a = 0; a < 3; ++a) kinks[row.dof + a] -= torque[a];
   }
+}
+
+/// Whether a joint's muscles had strength to spare in the step: then it is where they shall bring it, and
+/// moves as that does. Found from their torque, its speed would alternate about that from step to step.
+template <class T>
+bool holds(const CharacterState<T>& s, int i) {
+  const auto first = s.load.begin() + s.tree.first_dof[i], end = s.load.begin() + s.tree.first_dof[i + 1];
+  return s.joint_is_driven(i) && std::all_of(first, end, [](T load) { return load < T(kSaturated); });
 }
 
 /// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
@@ -358,8 +367,8 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
   }
 }
 
-/// The degrees of freedom whose speed the step has to find: unknowns whose muscles do not hold them where
-/// they shall be. False where that is all of them.
+/// The degrees of freedom whose speed the step has to find: unknowns that no muscles hold. False where that
+/// is all of them.
 template <class T>
 bool IslandStepper<T>::choose_loose() {
   loose_.clear();
@@ -367,8 +376,7 @@ bool IslandStepper<T>::choose_loose() {
   for (const CharacterState<T>* s : states_)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
       const int i = s->tree.dof_body[dof];
-      const bool met = !s->deviation[i].released && s->joint_is_driven(i);
-      loose_.push_back(s->problem.free[dof] && !met);
+      loose_.push_back(s->problem.free[dof] && !holds(*s, i));
       led = led || !loose_.back();
     }
   return led;
