@@ -151,8 +151,8 @@ class IslandStepper {
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
   std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
-  std::vector<T> jump_force_, constant_, kinks_, others_;   ///< [dof] of one tree
-  std::vector<Vec3<T>> moved_, turned_, sped_, spun_;       ///< [body] the same
+  std::vector<T> jump_force_, constant_, kinks_, others_, speed_share_;  ///< [dof] of one tree
+  std::vector<Vec3<T>> moved_, turned_, sped_, spun_;                    ///< [body] the same
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;

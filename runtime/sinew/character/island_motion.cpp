@@ -16,12 +16,18 @@ constexpr double kMostSteps = 2;
 constexpr double kSamePlane = 0.99;    ///< cosine
 constexpr double kSaturated = 0.9999;  ///< of a muscle's limit
 
-/// Generalised forces [dof] of a tree's rows: of muscles and dry friction, and of the others.
+/// Muscles, dry friction and damping: forces that answer what happens in a step at once.
+template <class T>
+bool answers(const JointRow<T>& row) {
+  return row.kind == RowKind::kKink || (row.kind == RowKind::kSpring && row.scalar == RowScalar::kFromStart);
+}
+
+/// Generalised forces [dof] of a tree's rows: of those that answer, and of the others.
 template <class T>
 void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) {
   for (const JointRow<T>& row : p.rows) {
     const T slope = row.slope(row.value);
-    const std::span<T> out = row.kind == RowKind::kKink ? kinks : others;
+    const std::span<T> out = answers(row) ? kinks : others;
     for (int a = 0; a < row.count; ++a) out[row.dof + a] -= slope * row.gradient[a];
   }
   for (const EllipsoidRow<T>& row : p.ellipsoids) {
@@ -36,6 +42,21 @@ template <class T>
 bool holds(const CharacterState<T>& s, int i) {
   const auto first = s.load.begin() + s.tree.first_dof[i], end = s.load.begin() + s.tree.first_dof[i + 1];
   return s.joint_is_driven(i) && std::all_of(first, end, [](T load) { return load < T(kSaturated); });
+}
+
+/// Speed that constant forces leave [dof], by how far they move a body in the step: 2; less where damping
+/// would turn the speed around.
+template <class T>
+void speed_shares(const TreeProblem<T>& p, T h, std::span<T> out) {
+  std::fill(out.begin(), out.end(), T(0));
+  const T damps = h * h / constant_emphasis(p.prediction.weight, h);  // kg·m² by N·m/rad
+  for (const JointRow<T>& row : p.rows)
+    for (int a = 0; a < row.count && row.kind == RowKind::kSpring && answers(row); ++a)
+      out[row.dof + a] += damps * row.stiffness * row.gradient[a] * row.gradient[a];
+  for (std::size_t dof = 0; dof < out.size(); ++dof) {
+    const T inertia = p.tree->inertia_at_joint[p.tree->dof_body[dof]].trace() / 3;
+    out[dof] = out[dof] > 2 * inertia ? 1 + 2 * inertia / out[dof] : T(2);
+  }
 }
 
 /// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
@@ -322,7 +343,10 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   ends_.respond(tree, jump_force_, moved_, turned_);
   const bool at_once = p.prediction.scheme != Scheme::kBossak;  // a step of bdf1 has all forces act like that
   if (at_once || !any_constant) return {moved_, turned_, moved_, turned_};
-  for (int dof = 0; dof < s.tree.dofs; ++dof) jump_force_[dof] += constant_[dof] / p.prediction.weight;
+  speed_share_.resize(s.tree.dofs);
+  speed_shares<T>(p, h, speed_share_);
+  for (int dof = 0; dof < s.tree.dofs; ++dof)
+    jump_force_[dof] += (speed_share_[dof] - 1) * constant_[dof] / p.prediction.weight;
   ends_.respond(tree, jump_force_, sped_, spun_);
   return {moved_, turned_, sped_, spun_};
 }

@@ -30,7 +30,7 @@ struct JointDampingRows {
     if (const Number<T> damping = joint.law.damping[dof]; damping > 0) {
       JointRow<T> row = joint.row(from_start, RowScalar::kFromStart, k);
       row.kind = RowKind::kSpring;
-      row.stiffness = damping / joint.h;
+      row.stiffness = joint.emphasis * damping / joint.h;
       rows.add_row(row, always);
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/optimizer/bossak.h"
 #include "sinew/optimizer/joint_terms.h"
 #include "sinew/optimizer/problem_pass.h"
 
@@ -44,6 +45,10 @@ template <class T>
 void measure_effect_rows(const StepSettings<T>& settings, TreeProblem<T>& p) {
   p.effect_rows.clear();
   for (const Effect<T>* effect : p.effects) effect->add_rows(effect_pose(settings, p), p.effect_rows);
+  if (!settings.constant_muscles) return;
+  const T emphasis = constant_emphasis(p.prediction.weight, settings.h);
+  for (JointRow<T>& row : p.effect_rows)
+    if (row.scalar == RowScalar::kFromStart) row.stiffness *= emphasis;  // as joint_damping.h
 }
 
 template <class T>
