@@ -26,7 +26,7 @@ struct JointStep {
   Number<T> kink_width = 0;                   ///< rad: muscles and dry friction are rounded over it
   Number<T> limit_stiffness = 0;              ///< N·m/rad
   Number<T> limit_damping = 0;                ///< s
-  T emphasis = T(1);                          ///< that muscles, friction and damping act with: see StepSettings
+  T emphasis = T(1);                          ///< of muscles, friction and damping: see StepSettings
 
   int first_dof() const { return tree.first_dof[body]; }
   int dofs() const { return tree.dof_count(body); }
