@@ -155,6 +155,48 @@ TEST(OneStep, ABallThatBouncesLeavesRolling) {
     }
 }
 
+/// Where limp figures that start at the given places (m, along x) are after half a second, thirty steps, one
+/// of which was struck in flight: [figure] place of its head.
+std::vector<Vec3<float>> struck_in_flight(const std::vector<double>& places, double struck) {
+  World<float> world(one_step());
+  const Skeleton body = fixtures::humanoid();
+  CharacterSettings limp;
+  limp.root = RootDrive::kFree;
+  limp.strength = 0;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    Status status;
+    EXPECT_EQ(world.add_character(body, limp, status), static_cast<int>(n)) << status.reason;
+    std::vector<JointJet<float>> jets(body.joints.size());
+    for (std::size_t i = 0; i < jets.size(); ++i)
+      jets[i].translation = body.joints[i].rest.translation.cast<float>();
+    jets[0].translation += Vec3<float>(float(places[n]), 0, 3);
+    EXPECT_TRUE(world.character(static_cast<int>(n)).set_target(jets).ok());
+    world.character(static_cast<int>(n)).reset();
+  }
+  for (int k = 0; k < 30; ++k) {
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      Character<float> figure = world.character(static_cast<int>(n));
+      if (k == 5 && places[n] == struck) {
+        EXPECT_TRUE(figure.apply_impulse(3, figure.model()[3].translation, Vec3<float>(60, 20, 30)).ok());
+      }
+    }
+    EXPECT_TRUE(world.step(1 / 60.0f).ok());
+  }
+  std::vector<Vec3<float>> out;
+  for (std::size_t n = 0; n < places.size(); ++n)
+    out.push_back(world.character(static_cast<int>(n)).model().back().translation);
+  return out;
+}
+
+TEST(OneStep, AStrikeIsThatOfTheOneWhoWasStruck) {
+  const std::vector<double> places{0, 20, 40, 60};
+  for (const double struck : places) {
+    const std::vector<Vec3<float>> together = struck_in_flight(places, struck);
+    for (std::size_t n = 0; n < places.size(); ++n)
+      EXPECT_EQ(together[n], struck_in_flight({places[n]}, struck)[0]) << struck << ", " << places[n];
+  }
+}
+
 /// J: the most that a limp fall stands above the energy that it starts with.
 template <class T>
 double gain(double h, unsigned seed) {

@@ -462,7 +462,8 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   if (one_step()) strike_all();
   begin_couplings<T>(couplings_, states_, indices_);
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
-  const bool alone = states.size() == 1 && couplings.empty();
+  // What was struck is not put aside: who is begun next would take its strike for its own.
+  const bool alone = states.size() == 1 && couplings.empty() && struck_velocity_.empty();
   if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
   begin_part(h, T(1));
   part_begun_ = true;

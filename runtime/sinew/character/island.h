@@ -110,6 +110,7 @@ class IslandStepper {
   bool choose_loose();
   void advance_one_step(T h);
   void emphasise_friction(T h);
+  void relax_friction(T h);
   void press(T h);
   bool touching_changed() const;
   bool lifted() const;

@@ -79,6 +79,7 @@ SolveReport IslandStepper<T>::solve_from_start() {
   mispredicted_ = mispredicted_ || second_;
   second_ = false;
   for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));
+  relax_friction(settings_.h);
   predict_all(Scheme::kBdf1, settings_.h);
   return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
 }

@@ -171,6 +171,13 @@ void IslandStepper<T>::emphasise_friction(T h) {
   for (Contact<T>& c : contacts_) c.grip *= constant_emphasis(problems_[c.tree_a]->prediction.weight, h);
 }
 
+/// Undoes that, before another prediction: bdf1's forces are what they are.
+template <class T>
+void IslandStepper<T>::relax_friction(T h) {
+  if (!one_step()) return;
+  for (Contact<T>& c : contacts_) c.grip /= constant_emphasis(problems_[c.tree_a]->prediction.weight, h);
+}
+
 /// Takes what the constant forces [dof] of a tree make of its accelerations out of these, at the kinematics
 /// that the problems hold.
 template <class T>
@@ -480,6 +487,7 @@ void IslandStepper<T>::press(T h) {
   template bool IslandStepper<T>::choose_loose();                                                     \
   template void IslandStepper<T>::advance_one_step(T);                                                \
   template void IslandStepper<T>::emphasise_friction(T);                                              \
+  template void IslandStepper<T>::relax_friction(T);                                                  \
   template void IslandStepper<T>::press(T);
 SINEW_MOTION_INSTANCES(float)
 SINEW_MOTION_INSTANCES(double)

@@ -75,16 +75,6 @@ JointJet<T> coasting_jet(const CharacterState<T>& s, int i) {
   return jet;
 }
 
-/// Whether what damps a joint stops its body within a step: then how it decelerates at the start tells
-/// nothing of the step.
-template <class T>
-bool stops_at_once(const TreeProblem<T>& p, int i, T h) {
-  const T inertia = p.tree->inertia_at_joint[i].trace() / 3;
-  for (int dof = p.tree->first_dof[i]; dof < p.tree->first_dof[i + 1]; ++dof)
-    if (p.law.damping[dof] * h > inertia) return true;
-  return false;
-}
-
 /// What the bodies' motion asks for were no joint accelerated: forces and, about the centres of mass, couples
 /// (world axes) into the problem's room for wrenches.
 template <class T>
@@ -145,10 +135,10 @@ bool IslandStepper<T>::begin_whole() {
       p.couple[0].setZero();
       continue;
     }
+    if (one_step()) continue;  // what rubs is none of the forces that it carries
     // What rubs goes by how far a joint has come since the start.
     for (int i = 0; i < s->tree.bodies; ++i) {
       std::array<T, 6> back = s->rate[i];
-      if (one_step() && stops_at_once(p, i, h)) continue;
       for (T& r : back) r *= -h;
       p.start[i] = at_offset<T>(s->tree, i, p.start[i], back);
     }

@@ -124,7 +124,7 @@ struct CharacterState {
   std::vector<T> joint_strength;                   ///< [body]
   std::vector<T> muscle_strength;                  ///< [muscle of the skeleton]
   std::vector<T> torque, load, limit;              ///< [dof]
-  std::vector<T> smooth, lasting, lasting_before;  ///< [dof] of limits, dampings and effects: see Contact
+  std::vector<T> smooth, lasting, lasting_before;  ///< [dof] of limits and springs: see Contact
   std::vector<std::uint8_t> unknown;               ///< [dof]
   std::vector<ExternalForce<T>> impulses;          ///< N·s, waiting for the next step
 
