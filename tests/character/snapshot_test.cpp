@@ -217,7 +217,7 @@ TEST(Recording, ReplaysToTheBitFromTheRecordedStart) {
   const Status status = replay(again.world, recorder.bytes(), report);
   ASSERT_TRUE(status.ok()) << status.reason;
   EXPECT_EQ(report.steps, 200);
-  EXPECT_TRUE(report.same);
+  EXPECT_TRUE(report.same) << report.field.name << ", byte " << report.byte;
   EXPECT_TRUE(same_pose(story.world, again.world));
 }
 

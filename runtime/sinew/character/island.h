@@ -105,9 +105,12 @@ class IslandStepper {
   void take_over(Contact<T>& contact) const;
   bool is_level(const Contact<T>& contact) const;
   void split_contacts(T h);
+  void measure_constant(const CharacterState<T>& state, TreeProblem<T>& problem, int tree,
+                        const Kinematics<T>& kinematics);
+  void measure_constant_at_start(CharacterState<T>& state, int tree, T h);
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
   void measure_led(const CharacterState<T>& state, int tree, T h);
-  bool choose_loose();
+  bool choose_loose(std::span<CharacterState<T>* const> states);
   void advance_one_step(T h);
   void emphasise_friction(T h);
   void relax_friction(T h);
@@ -152,8 +155,10 @@ class IslandStepper {
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
   std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
-  std::vector<T> jump_force_, constant_, kinks_, others_, speed_share_;  ///< [dof] of one tree
-  std::vector<Vec3<T>> moved_, turned_, sped_, spun_;                    ///< [body] the same
+  std::vector<T> jump_force_, constant_, kinks_, others_, speed_share_;                ///< [dof] of one tree
+  std::vector<Vec3<T>> moved_, turned_, sped_, spun_, constant_sped_, constant_spun_;  ///< [body] the same
+  std::vector<Vec3<T>> start_sped_, start_spun_;            ///< [body, trees one after the other] the same
+  std::vector<int> first_body_;                             ///< [tree] in these
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;

@@ -1,6 +1,7 @@
 // Bossak's scheme in IslandStepper: what a step predicts, and the motion that it leaves (bossak.h).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/character/island.h"
 #include "sinew/character/touch_digest.h"
@@ -13,8 +14,9 @@ namespace {
 /// That a contact's force would take to do what it does to velocities at most: one that has hardly begun to
 /// bear is no wall yet. Falls keep as much energy with 2 as without a bound, and less with a half.
 constexpr double kMostSteps = 2;
-constexpr double kSamePlane = 0.99;    ///< cosine
-constexpr double kSaturated = 0.9999;  ///< of a muscle's limit
+constexpr double kSamePlane = 0.99;                    ///< cosine
+constexpr double kSaturated = 0.9999;                  ///< of a muscle's limit
+constexpr double kTurnsLittle = 0.1, kTurnsAll = 0.3;  ///< of what constant forces do: its change in a step
 
 /// Muscles, dry friction and damping: forces that answer what happens in a step at once.
 template <class T>
@@ -57,6 +59,25 @@ void speed_shares(const TreeProblem<T>& p, T h, std::span<T> out) {
     const T inertia = p.tree->inertia_at_joint[p.tree->dof_body[dof]].trace() / 3;
     out[dof] = out[dof] > 2 * inertia ? 1 + 2 * inertia / out[dof] : T(2);
   }
+}
+
+/// Of the speed that constant forces leave: how much is that which they make where the step began. A half,
+/// which is that at its middle; nothing where they turn with what they move (a stiff pendulum), for all at
+/// the end damps.
+template <class T>
+T share_of_start(const Tree<T>& tree, std::span<const Vec3<T>> sped_start,
+                 std::span<const Vec3<T>> spun_start, std::span<const Vec3<T>> sped_end,
+                 std::span<const Vec3<T>> spun_end) {
+  T changes = T(0), sum = T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    const T mass = tree.mass[i], inertia = tree.inertia[i].trace() / 3;
+    changes += mass * (sped_end[i] - sped_start[i]).squaredNorm() +
+               inertia * (spun_end[i] - spun_start[i]).squaredNorm();
+    sum += mass * (sped_end[i] + sped_start[i]).squaredNorm() +
+           inertia * (spun_end[i] + spun_start[i]).squaredNorm();
+  }
+  const T change = 2 * std::sqrt(changes / std::max(sum, std::numeric_limits<T>::min()));
+  return std::clamp((T(kTurnsAll) - change) / T(kTurnsAll - kTurnsLittle), T(0), T(1)) / 2;
 }
 
 /// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
@@ -282,6 +303,55 @@ void IslandStepper<T>::split_contacts(T h) {
   }
 }
 
+/// Forces that are constant over the step, at a pose of a tree, into `constant_` and others of its rows into
+/// `others_` [dof]: of muscles, friction, pushes and what leads joints. Uses the problem's wrenches.
+template <class T>
+void IslandStepper<T>::measure_constant(const CharacterState<T>& s, TreeProblem<T>& p, int tree,
+                                        const Kinematics<T>& k) {
+  bool any = false;
+  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+  const auto act = [&](int body, const Vec3<T>& local, const Vec3<T>& force) {
+    any = true;
+    p.force[body] += force;
+    p.moment[body] += Vec3<T>(k.origin[body] + k.rotation[body] * local).cross(force);
+  };
+  for (const ExternalForce<T>& push : p.pushes) act(push.body, push.local, push.force);
+  for (const Contact<T>& c : contacts_) {
+    if ((c.tree_a != tree && c.tree_b != tree) || !(c.grip > T(0))) continue;
+    const Vec3<T> friction = -friction_gradient(c, settings_.stick);
+    if (c.tree_a == tree) act(c.body_a, c.material_a, friction);
+    if (c.tree_b == tree) act(c.body_b, c.material_b, Vec3<T>(-friction));
+  }
+  for (auto* v : {&constant_, &kinks_, &others_}) v->assign(s.tree.dofs, T(0));
+  if (any) project_wrenches<T>(s.tree, k, p.force, p.moment, constant_);
+  add_rows<T>(p, kinks_, others_);
+  for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] += p.free[dof] ? kinks_[dof] : p.gradient[dof];
+}
+
+/// The speed that constant forces leave, times h, as where the step began.
+template <class T>
+void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree, T h) {
+  TreeProblem<T>& p = s.problem;
+  const std::span<Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
+                           spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
+  std::fill(sped.begin(), sped.end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(spun.begin(), spun.end(), Vec3<T>(Vec3<T>::Zero()));
+  if (p.prediction.scheme != Scheme::kBossak) return;
+  forward_kinematics<T>(s.tree, p.start, p.common_origin, s.guessed);
+  measure_constant(s, p, tree, s.guessed);
+  if (std::all_of(constant_.begin(), constant_.end(), [](T x) { return x == T(0); })) return;
+  speed_share_.resize(s.tree.dofs);
+  speed_shares<T>(p, h, speed_share_);
+  for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof] / p.prediction.weight;
+  loose_.assign(s.tree.dofs, 1);
+  TreeProblem<T>* const problem = &p;
+  std::swap(p.kinematics, s.guessed);
+  ends_.begin({&problem, 1}, loose_);
+  ends_.respond(0, constant_, sped, spun);
+  std::swap(p.kinematics, s.guessed);
+}
+
 /// What has moved in this step and is not carried on: impulses of contacts and rows, and forces that are
 /// constant over it, of muscles, pushes and what leads joints.
 template <class T>
@@ -305,25 +375,7 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   }
   jump_force_.assign(s.tree.dofs, T(0));
   if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
-  constant_.assign(s.tree.dofs, T(0));
-  if (any) {
-    std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
-    std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
-  }
-  any = false;
-  for (const ExternalForce<T>& push : p.pushes)
-    act(push.body, p.kinematics.origin[push.body] + p.kinematics.rotation[push.body] * push.local,
-        push.force);
-  for (const Contact<T>& c : contacts_) {
-    if ((c.tree_a != tree && c.tree_b != tree) || !(c.grip > T(0))) continue;
-    const Vec3<T> friction = -friction_gradient(c, settings_.stick);
-    if (c.tree_a == tree) act(c.body_a, c.material_point, friction);
-    if (c.tree_b == tree) act(c.body_b, c.material_point_b, Vec3<T>(-friction));
-  }
-  if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, constant_);
-  kinks_.assign(s.tree.dofs, T(0));
-  others_.assign(s.tree.dofs, T(0));
-  add_rows<T>(p, kinks_, others_);
+  measure_constant(s, p, tree, p.kinematics);
   const T share = lasting_share(p.prediction.weight, h);
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     if (p.free[dof]) {
@@ -332,29 +384,38 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
       smooth = std::clamp(smooth, std::min(now, T(0)), std::max(now, T(0)));
       // And what the solve has left unbalanced is no force that goes on.
       jump_force_[dof] += now - smooth + p.gradient[dof];
-      constant_[dof] += kinks_[dof];
       s.smooth[dof] = smooth;
       s.lasting_before[dof] = s.lasting[dof];
       s.lasting[dof] = lasts;
     } else {
-      constant_[dof] += p.gradient[dof];  // what leads it
       s.smooth[dof] = s.lasting_before[dof] = s.lasting[dof] = T(0);
     }
   }
-  for (auto* v : {&moved_, &turned_, &sped_, &spun_}) v->resize(s.tree.bodies);
+  for (auto* v : {&moved_, &turned_, &sped_, &spun_, &constant_sped_, &constant_spun_})
+    v->resize(s.tree.bodies);
   bool any_constant = false;
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     any_constant = any_constant || constant_[dof] != T(0);
-    jump_force_[dof] = (jump_force_[dof] + constant_[dof]) / p.prediction.weight;
+    jump_force_[dof] /= p.prediction.weight;
+    constant_[dof] /= p.prediction.weight;
   }
+  ends_.respond(tree, jump_force_, sped_, spun_);
+  if (!any_constant) return {sped_, spun_, sped_, spun_};
+  for (int dof = 0; dof < s.tree.dofs; ++dof) jump_force_[dof] += constant_[dof];
   ends_.respond(tree, jump_force_, moved_, turned_);
-  const bool at_once = p.prediction.scheme != Scheme::kBossak;  // a step of bdf1 has all forces act like that
-  if (at_once || !any_constant) return {moved_, turned_, moved_, turned_};
+  // A step of bdf1 has all forces act at once.
+  if (p.prediction.scheme != Scheme::kBossak) return {moved_, turned_, moved_, turned_};
   speed_share_.resize(s.tree.dofs);
   speed_shares<T>(p, h, speed_share_);
-  for (int dof = 0; dof < s.tree.dofs; ++dof)
-    jump_force_[dof] += (speed_share_[dof] - 1) * constant_[dof] / p.prediction.weight;
-  ends_.respond(tree, jump_force_, sped_, spun_);
+  for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
+  ends_.respond(tree, constant_, constant_sped_, constant_spun_);
+  const std::span<const Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
+                                 spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
+  const T started = share_of_start<T>(s.tree, sped, spun, constant_sped_, constant_spun_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    sped_[i] += (1 - started) * constant_sped_[i] + started * sped[i];
+    spun_[i] += (1 - started) * constant_spun_[i] + started * spun[i];
+  }
   return {moved_, turned_, sped_, spun_};
 }
 
@@ -401,10 +462,10 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
 /// The degrees of freedom whose speed the step has to find: unknowns that no muscles hold. False where that
 /// is all of them.
 template <class T>
-bool IslandStepper<T>::choose_loose() {
+bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const> states) {
   loose_.clear();
   bool led = false;
-  for (const CharacterState<T>* s : states_)
+  for (const CharacterState<T>* s : states)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
       const int i = s->tree.dof_body[dof];
       loose_.push_back(s->problem.free[dof] && !holds(*s, i));
@@ -417,6 +478,15 @@ bool IslandStepper<T>::choose_loose() {
 template <class T>
 void IslandStepper<T>::advance_one_step(T h) {
   split_contacts(h);
+  first_body_.clear();
+  int bodies = 0;
+  for (const CharacterState<T>* s : states_) {
+    first_body_.push_back(bodies);
+    bodies += s->tree.bodies;
+  }
+  for (auto* v : {&start_sped_, &start_spun_}) v->resize(bodies);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    measure_constant_at_start(*states_[n], static_cast<int>(n), h);
   begin_ends();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
@@ -425,7 +495,7 @@ void IslandStepper<T>::advance_one_step(T h) {
     advance_bossak<T>(s.tree, p.kinematics, p.prediction, p.couple, jumps, h, settings_.common_origin,
                       s.history);
   }
-  if (choose_loose()) ends_.begin(problems_, loose_);
+  if (choose_loose(states_)) ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     measure_led(s, static_cast<int>(n), h);
@@ -482,9 +552,12 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::take_over(Contact<T>&) const;                                       \
   template bool IslandStepper<T>::is_level(const Contact<T>&) const;                                  \
   template void IslandStepper<T>::split_contacts(T);                                                  \
+  template void IslandStepper<T>::measure_constant(const CharacterState<T>&, TreeProblem<T>&, int,    \
+                                                   const Kinematics<T>&);                             \
+  template void IslandStepper<T>::measure_constant_at_start(CharacterState<T>&, int, T);              \
   template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);                      \
   template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                      \
-  template bool IslandStepper<T>::choose_loose();                                                     \
+  template bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const>);                  \
   template void IslandStepper<T>::advance_one_step(T);                                                \
   template void IslandStepper<T>::emphasise_friction(T);                                              \
   template void IslandStepper<T>::relax_friction(T);                                                  \

@@ -16,7 +16,7 @@ enum class Scheme : std::uint8_t {
 
 /// Lengths in metres, angles in radians, speeds in m/s.
 struct Accuracy {
-  Scheme scheme = Scheme::kBdf2;
+  Scheme scheme = Scheme::kBossak;
   double tolerance = 3e-5;  ///< stop when the last correction moves no body by more (m)
   int max_iterations = 60;  ///< outer passes; the mean is 1.7, hard impacts at 1/30 s need the tail
   int substeps = 1;         ///< every step in so many equal parts

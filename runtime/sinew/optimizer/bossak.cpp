@@ -25,9 +25,13 @@ T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
 }
 
 template <class T>
+T steadiness(T turn) {
+  return std::clamp((T(kLargeTurn) - turn) / T(kLargeTurn - kSmallTurn), T(0), T(1));
+}
+
+template <class T>
 T spectral_radius(T turn) {
-  const T share = std::clamp((turn - T(kSmallTurn)) / T(kLargeTurn - kSmallTurn), T(0), T(1));
-  return T(kLooseRadius) + share * T(kTightRadius - kLooseRadius);
+  return T(kTightRadius) + steadiness(turn) * T(kLooseRadius - kTightRadius);
 }
 
 template <class T>

@@ -60,6 +60,11 @@ T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
 template <class T>
 T spectral_radius(T largest_turn);
 
+/// 1 where a tree turns little in a step, 0 where it turns far: then forces act along axes of the step's end,
+/// which damps.
+template <class T>
+T steadiness(T largest_turn);
+
 /// What impulses have added to a tree's history just before a step, of which they act all along.
 template <class T>
 struct Strike {
@@ -97,6 +102,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
 #define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix T spectral_radius<T>(T);                                                                  \
+  prefix T steadiness<T>(T);                                                                       \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
                                 const Vec3<double>&, Prediction<T>&);                              \
   prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
