@@ -39,11 +39,16 @@ void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) 
 }
 
 /// Whether a joint's muscles had strength to spare in the step: then it is where they shall bring it, and
-/// moves as that does. Found from their torque, its speed would alternate about that from step to step.
+/// moves as that does. Found from their torque, its speed would alternate about that from step to step. Of a
+/// ball joint, about each of its axes.
 template <class T>
-bool holds(const CharacterState<T>& s, int i) {
-  const auto first = s.load.begin() + s.tree.first_dof[i], end = s.load.begin() + s.tree.first_dof[i + 1];
-  return s.joint_is_driven(i) && std::all_of(first, end, [](T load) { return load < T(kSaturated); });
+bool holds(const CharacterState<T>& s, int dof) {
+  const int i = s.tree.dof_body[dof];
+  const bool each = s.tree.type[i] == JointType::kBall && !s.problem.law.ellipsoidal[i];
+  const auto load = s.load.begin();
+  const auto first = load + (each ? dof : s.tree.first_dof[i]),
+             end = load + (each ? dof + 1 : s.tree.first_dof[i + 1]);
+  return s.joint_is_driven(i) && std::all_of(first, end, [](T x) { return x < T(kSaturated); });
 }
 
 /// Speed that constant forces leave [dof], by how far they move a body in the step: 2; less where damping
@@ -426,7 +431,9 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
   led_rates_.assign(s.tree.bodies, {});
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
-    if (count > 0 ? ends_.loose(tree, first) : parent < 0) continue;
+    int loose = 0;
+    for (int k = 0; k < count; ++k) loose += ends_.loose(tree, first + k);
+    if (count > 0 ? loose == count : parent < 0) continue;
     const Mat3<T> outer = parent < 0 ? Mat3<T>(Mat3<T>::Identity()) : p.kinematics.rotation[parent];
     Twist<T>& held = led_rates_[i];
     const auto lead = [&](const Mat3<T>& turned, const Vec3<T>& omega, const Vec3<T>& velocity) {
@@ -446,8 +453,12 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
     lead(s.wanted[i].rotation.toRotationMatrix(), rate_at_end<T>(turned, leaving, jet.omega, frame_),
          rate_at_end<T>(jet.translation - before.translation, sliding, jet.velocity, frame_));
     const Deviation<T>& d = s.deviation[i];
-    if (d.on_animation) continue;
+    if (d.on_animation && loose == 0) continue;
     std::array<T, 6> rate = d.rate;
+    if (loose > 0) {  // a ball joint that holds about some of its axes: as it went
+      held = {};
+      for (int k = 0; k < count; ++k) rate[k] = ends_.loose(tree, first + k) ? T(0) : s.rate[i][k];
+    }
     if (s.tree.type[i] == JointType::kFree) {
       const Vec3<T> world = p.local[i].rotation * Vec3<T>(rate[3], rate[4], rate[5]);
       for (int a = 0; a < 3; ++a) rate[3 + a] = world[a];
@@ -467,8 +478,7 @@ bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const> states) 
   bool led = false;
   for (const CharacterState<T>* s : states)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
-      const int i = s->tree.dof_body[dof];
-      loose_.push_back(s->problem.free[dof] && !holds(*s, i));
+      loose_.push_back(s->problem.free[dof] && !holds(*s, dof));
       led = led || !loose_.back();
     }
   return led;
@@ -501,8 +511,9 @@ void IslandStepper<T>::advance_one_step(T h) {
     measure_led(s, static_cast<int>(n), h);
     // Mean rates over the step, those before it: with both what is near to those at the end.
     for (int i = 0; s.rate_step_before > T(0) && i < s.tree.bodies; ++i)
-      for (int k = 0; k < s.tree.dof_count(i) && ends_.loose(static_cast<int>(n), s.tree.first_dof[i]); ++k)
-        s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
+      for (int k = 0; k < s.tree.dof_count(i); ++k)
+        if (ends_.loose(static_cast<int>(n), s.tree.first_dof[i] + k))
+          s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
     ends_.project(static_cast<int>(n), led_rates_, s.rate, s.history);
   }
   press(h);
