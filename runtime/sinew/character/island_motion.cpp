@@ -54,8 +54,9 @@ bool holds(const CharacterState<T>& s, int dof) {
 /// Speed that constant forces leave [dof], by how far they move a body in the step: 2; less where damping
 /// would turn the speed around.
 template <class T>
-void speed_shares(const TreeProblem<T>& p, T h, std::span<T> out) {
-  std::fill(out.begin(), out.end(), T(0));
+void speed_shares(const TreeProblem<T>& p, bool damped, T h, std::span<T> out) {
+  for (std::size_t dof = 0; dof < out.size(); ++dof)  // no rows where a joint is baked
+    out[dof] = damped && !p.free[dof] ? h * p.law.damping[dof] : T(0);
   const T damps = h * h / constant_emphasis(p.prediction.weight, h);  // kg·m² by N·m/rad
   for (const JointRow<T>& row : p.rows)
     for (int a = 0; a < row.count && row.kind == RowKind::kSpring && answers(row); ++a)
@@ -347,7 +348,7 @@ void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree,
   measure_constant(s, p, tree, s.guessed);
   if (std::all_of(constant_.begin(), constant_.end(), [](T x) { return x == T(0); })) return;
   speed_share_.resize(s.tree.dofs);
-  speed_shares<T>(p, h, speed_share_);
+  speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
   for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof] / p.prediction.weight;
   loose_.assign(s.tree.dofs, 1);
   TreeProblem<T>* const problem = &p;
@@ -411,7 +412,7 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   // A step of bdf1 has all forces act at once.
   if (p.prediction.scheme != Scheme::kBossak) return {moved_, turned_, moved_, turned_};
   speed_share_.resize(s.tree.dofs);
-  speed_shares<T>(p, h, speed_share_);
+  speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
   for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
   ends_.respond(tree, constant_, constant_sped_, constant_spun_);
   const std::span<const Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
@@ -478,7 +479,7 @@ bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const> states) 
   bool led = false;
   for (const CharacterState<T>* s : states)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
-      loose_.push_back(s->problem.free[dof] && !holds(*s, dof));
+      loose_.push_back((s->problem.free[dof] || s->baked[s->tree.dof_body[dof]]) && !holds(*s, dof));
       led = led || !loose_.back();
     }
   return led;
