@@ -24,10 +24,12 @@ bool answers(const JointRow<T>& row) {
   return row.kind == RowKind::kKink || (row.kind == RowKind::kSpring && row.scalar == RowScalar::kFromStart);
 }
 
-/// Generalised forces [dof] of a tree's rows: of those that answer, and of the others.
+/// Generalised forces [dof] of a tree's rows: of those that answer, and of the one-sided ones. Springs are
+/// smooth.
 template <class T>
 void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) {
   for (const JointRow<T>& row : p.rows) {
+    if (!answers(row) && row.kind != RowKind::kOneSided) continue;
     const T slope = row.slope(row.value);
     const std::span<T> out = answers(row) ? kinks : others;
     for (int a = 0; a < row.count; ++a) out[row.dof + a] -= slope * row.gradient[a];
@@ -542,6 +544,9 @@ void IslandStepper<T>::press(T h) {
     ends_.add(c, struck ? T(kMostSteps) * h * normal_force(c) : T(0), cone,
               Vec3<T>(-rubbed * friction_gradient(c, settings_.stick)));
   }
+  for (const Coupling<T>* c : couplings_)
+    for (const Stencil<T>& e : c->stencils)
+      if (c->led) ends_.add(*c, e);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     if (!struck_[set_[n]]) continue;
     for (const JointRow<T>& row : problems_[n]->rows)

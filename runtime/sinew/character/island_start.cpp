@@ -129,8 +129,8 @@ bool IslandStepper<T>::begin_whole() {
       for (Effect<T>* effect : p.effects) effect->begin_step(effect_pose(settings_, p));
     predict_at_rest<T>(s->tree, s->history, p.force, p.moment, span, settings_.common_origin, p.prediction);
     p.local = p.start;
-    if (one_step()) p.pushes.clear();                // forces of the step to come
-    if (s->tree.bodies == 1 && contacts_.empty()) {  // nothing to find out
+    if (one_step()) p.pushes.clear();                                     // forces of the step to come
+    if (s->tree.bodies == 1 && contacts_.empty() && p.effects.empty()) {  // nothing to find out
       p.kinematics.center[0] = p.prediction.center[0] + span * settings_.gravity;
       p.couple[0].setZero();
       continue;
@@ -145,8 +145,9 @@ bool IslandStepper<T>::begin_whole() {
   }
   SolveReport trial;
   trial.converged = true;
-  if (!contacts_.empty() ||
-      std::any_of(states_.begin(), states_.end(), [](const auto* s) { return s->tree.bodies > 1; })) {
+  if (!contacts_.empty() || std::any_of(states_.begin(), states_.end(), [](const auto* s) {
+        return s->tree.bodies > 1 || !s->problem.effects.empty();
+      })) {
     trial = solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
     total_.add(trial);
   }

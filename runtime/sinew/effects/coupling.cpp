@@ -181,14 +181,22 @@ TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& c, const Tetrahed
 }
 
 template <class T>
+Vec3<T> closing_velocity(const Stencil<T>& e) {
+  const T open = e.offset.norm();
+  return open > T(0) ? Vec3<T>(e.offset * (-T(kExitSpeed) / open)) : Vec3<T>(Vec3<T>::Zero());
+}
+
+template <class T>
 void lead_out(T h, Coupling<T>& c) {
   if (!c.leads_out) return;
+  c.led = c.closes();
   for (Stencil<T>& e : c.stencils) {
     const Vec3<T> open = reach(c, e);
     if ((open - e.offset).norm() > e.length + T(kTorn)) e.offset = open * (T(1) - e.length / open.norm());
     const T left = e.offset.norm();
     e.offset *= left > T(kExitSpeed) * h ? T(1) - T(kExitSpeed) * h / left : T(0);
   }
+  c.led = c.led || c.closes();
 }
 
 SINEW_COUPLING_INSTANCES(template, float)

@@ -86,6 +86,7 @@ struct Coupling {
   std::vector<Tetrahedron<T>> tetrahedra;
   bool active = true;
   bool leads_out = false;  ///< stencils that begin open close at a walking pace (loops)
+  bool led = false;        ///< in this step: its velocities are led, too
   double energy = 0;       ///< J, when last measured
 
   /// Whether something that began open is still being led out: that does work.
@@ -118,6 +119,10 @@ Mat3<T> stencil_curvature(const Coupling<T>& coupling, const Stencil<T>& stencil
 template <class T>
 TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const Tetrahedron<T>& element);
 
+/// m/s: how fast what is still open of an element is led in.
+template <class T>
+Vec3<T> closing_velocity(const Stencil<T>& stencil);
+
 /// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a
 /// teleport) begins anew. Call at the start of a part of a step, at the pose there.
 template <class T>
@@ -128,6 +133,7 @@ void lead_out(T h, Coupling<T>& coupling);
   prefix double measure_elements<T>(Coupling<T>&);                                                  \
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
+  prefix Vec3<T> closing_velocity<T>(const Stencil<T>&);                                            \
   prefix void lead_out<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)

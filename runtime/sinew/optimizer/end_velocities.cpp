@@ -1,6 +1,7 @@
 #include "sinew/optimizer/end_velocities.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace sinew {
 namespace {
@@ -266,6 +267,53 @@ void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   if (!add_side(*row, 0, row_)) pressed_.pop_back();
 }
 
+/// Adds a row for Σ wᵢ vᵢ along `direction`, of no more than two trees.
+template <class T>
+void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>& e, const Vec3<T>& direction,
+                                   T speed, T least) {
+  int trees[2] = {-1, -1};
+  for (int k = 0; k < e.count; ++k) {
+    const int tree = coupling.nodes[e.node[k]].tree;
+    if (tree < 0 || tree == trees[0] || tree == trees[1]) continue;
+    if (trees[1] >= 0) return;
+    trees[trees[0] < 0 ? 0 : 1] = tree;
+  }
+  Row* const row = trees[0] < 0 ? nullptr : open_row(trees[0], trees[1] < 0 ? trees[0] : trees[1]);
+  if (!row) return;
+  row->given = -speed;
+  row->least = least;
+  row->most = std::numeric_limits<T>::max();
+  bool room = true;
+  for (int n = 0; n < row->sides(); ++n) {
+    row_.assign(parts_[trees[n]].count, T(0));
+    for (int k = 0; k < e.count; ++k) {
+      const CouplingNode<T>& node = coupling.nodes[e.node[k]];
+      if (node.tree != trees[n]) continue;
+      project_point(node.tree, node.body, node.point, direction, e.weight[k], row_);
+      const Tree<T>& tree = *problems_[node.tree]->tree;
+      for (int body = node.body; body >= 0; body = tree.parent[body])
+        row->given += e.weight[k] * led_[parts_[node.tree].first_body + body].at(node.point).dot(direction);
+    }
+    room = room && add_side(*row, n, row_);
+  }
+  if (!room) pressed_.pop_back();
+}
+
+template <class T>
+void EndVelocities<T>::add(const Coupling<T>& coupling, const Stencil<T>& e) {
+  constexpr T kAnything = std::numeric_limits<T>::max();
+  const Vec3<T> leads = closing_velocity(e);
+  if (!(e.length > T(0))) {
+    for (int a = 0; a < 3; ++a) add_stencil(coupling, e, Vec3<T>::Unit(a), leads[a], -kAnything);
+    return;
+  }
+  const Vec3<T> reached = reach(coupling, e) - e.offset;
+  const T size = reached.norm();
+  if (e.only_pulls && !(size > e.length)) return;
+  const Vec3<T> shortens = reached / -std::max(size, e.length);
+  add_stencil(coupling, e, shortens, leads.dot(shortens), e.only_pulls ? T(0) : -kAnything);
+}
+
 /// Speed along a row.
 template <class T>
 T EndVelocities<T>::opening(const Row& row) const {
@@ -312,8 +360,9 @@ void EndVelocities<T>::press() {
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
       Row& row = pressed_[at];
       const T opens = opening(row);
-      if (row.most > T(0) && (opens < T(-kLeft) || row.impulse != T(0)) && know(row)) {
-        const T change = std::clamp(row.impulse - opens / row.mobility, T(0), row.most) - row.impulse;
+      const bool acts = opens < T(-kLeft) || (row.least < T(0) && opens > T(kLeft)) || row.impulse != T(0);
+      if (row.most > T(0) && acts && know(row)) {
+        const T change = std::clamp(row.impulse - opens / row.mobility, row.least, row.most) - row.impulse;
         push(row, change);
         most = std::max(most, std::abs(change * row.mobility));
       }

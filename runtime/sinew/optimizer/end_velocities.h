@@ -6,13 +6,14 @@
 // ≥ 0 take out what of u does, projected Gauss-Seidel over (n·J) u ≥ 0 (Acary, "Projected event-capturing
 // time-stepping schemes for nonsmooth mechanical systems", 2013). Nor may it slide, as far as Coulomb's cone
 // of that impulse allows: friction in the step itself goes by the smooth force that there was when it began.
-// All are projections: none adds energy.
+// What is led into a loop moves as it is led. All are projections: none adds energy.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
+#include "sinew/effects/coupling.h"
 #include "sinew/optimizer/problem.h"
 #include "sinew/residual/articulated_matrix.h"
 
@@ -55,6 +56,8 @@ class EndVelocities {
   /// friction by that impulse and `cone` beside it (N·s) can, of which `rubbed` (on body a, world axes) has
   /// been done.
   void add(const Contact<T>& contact, T most, T cone, const Vec3<T>& rubbed);
+  /// Nor may an element of a coupling stretch, or move but as it is led.
+  void add(const Coupling<T>& coupling, const Stencil<T>& element);
   /// Nor may the scalar of a tree's joint row grow.
   void add(int tree, const JointRow<T>& row, T most);
   /// Impulses that see to that. O(those that act · bodies).
@@ -78,7 +81,8 @@ class EndVelocities {
     T friction = T(0), cone = T(0);            ///< μ; N·s, beside what its own impulse allows
     T given = T(0);                            ///< m/s or rad/s, of joints that no unknown moves
     T mobility = T(0);                         ///< 1/kg; 0: not known yet
-    T impulse = T(0), most = T(0);             ///< N·s, N·m·s
+    T impulse = T(0);                          ///< N·s, N·m·s
+    T least = T(0), most = T(0);               ///< of it
     bool solved = false;
     int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
@@ -89,6 +93,8 @@ class EndVelocities {
   Row* open_row(int tree, int other);
   bool add_side(Row& row, int n, std::span<const T> entries);
   Row* add_point(const Contact<T>& contact, const Vec3<T>& point, const Vec3<T>& direction);
+  void add_stencil(const Coupling<T>& coupling, const Stencil<T>& element, const Vec3<T>& direction, T speed,
+                   T least);
   T opening(const Row& row) const;
   bool know(Row& row);
   void push(Row& row, T change);
