@@ -50,12 +50,31 @@ void change(CharacterState<T>& s, const RigidMotion& rigid, T factor,
     for (T& r : rate) r *= factor;
 }
 
-/// Scales a tree's motion: all of it, or that relative to its centre of mass. In contact, much of a change
-/// ends the history that bdf2 builds on.
+/// m/s, of the centre of mass of all.
 template <class T>
-void slow(CharacterState<T>& s, double factor, bool about_center) {
+Vec3<double> common_velocity(std::span<CharacterState<T>* const> states) {
+  double mass = 0;
+  Vec3<double> momentum = Vec3<double>::Zero();
+  for (const CharacterState<T>* s : states) {
+    mass += s->total_mass;
+    momentum += s->report.momentum;
+  }
+  return momentum / mass;
+}
+
+/// J, of the motion relative to a velocity.
+template <class T>
+double kinetic_about(const CharacterState<T>& s, const Vec3<double>& velocity) {
+  const CharacterReport& r = s.report;
+  return r.kinetic_energy - r.momentum.dot(velocity) + 0.5 * s.total_mass * velocity.squaredNorm();
+}
+
+/// Scales a tree's motion relative to a velocity. In contact, much of a change ends the history that bdf2
+/// builds on.
+template <class T>
+void slow(CharacterState<T>& s, double factor, const Vec3<double>& velocity) {
   RigidMotion kept;
-  if (about_center) kept.velocity = s.report.momentum / s.total_mass;
+  kept.velocity = velocity;
   change(s, kept, T(factor));
   if (factor > kSmall || s.report.contacts == 0 || s.history.scheme == Scheme::kBossak) return;
   s.history.step_before = T(0);
@@ -68,46 +87,51 @@ bool is_rigid(const CharacterState<T>& s) {
 }
 
 /// What was lent to a tree and is not stored any more has become motion, lost its way or lifted something:
-/// pays as much of it back, with this tree's motion, as the trees have above their ceiling.
+/// pays as much of it back, with this tree's motion relative to `still`, as the trees have above their
+/// ceiling.
 template <class T>
-void pay_back(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double ceiling) {
+void pay_back(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double ceiling,
+              const Vec3<double>& still) {
   double excess = -ceiling;
   for (const CharacterState<T>* s : states) excess += total(s->report);
   for (CharacterState<T>* s : states) {
-    const double kinetic = s->report.kinetic_energy, spent = s->lent - s->report.elastic_energy;
+    const double kinetic = kinetic_about(*s, still), spent = s->lent - s->report.elastic_energy;
     const double paid = std::min({spent, excess, kinetic});
     if (!(paid > 0)) continue;
-    slow(*s, std::sqrt(1 - paid / kinetic), false);
+    slow(*s, std::sqrt(1 - paid / kinetic), still);
     s->report_totals(gravity);
     s->lent -= paid;
     excess -= paid;
   }
 }
 
-/// Takes out what the trees have above their ceiling. True if there was something.
+/// Takes out what the trees have above their ceiling; where nothing outside holds them, they keep what they
+/// have of momentum together. True if there was something.
 template <class T>
 bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double before,
-           bool strict, bool never_rises) {
-  double now = 0, kinetic = 0, internal = 0, ceiling = 0, rounded = 0;
+           bool strict, bool never_rises, bool afloat) {
+  const Vec3<double> still = afloat ? common_velocity(states) : Vec3<double>(Vec3<double>::Zero());
+  double now = 0, kinetic = 0, loose = 0, internal = 0, ceiling = 0, rounded = 0;
   for (const CharacterState<T>* s : states) ceiling += s->energy_ceiling;
   if (strict || !std::isfinite(ceiling)) ceiling = before;
   if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
-  pay_back(states, gravity, ceiling);
+  pay_back(states, gravity, ceiling, still);
   for (const CharacterState<T>* s : states) {
     const CharacterReport& r = s->report;
     now += owned(*s);
     kinetic += r.kinetic_energy;
+    loose += kinetic_about(*s, still);
     rounded += rounding(*s, gravity);
     internal += r.kinetic_energy - 0.5 * r.momentum.squaredNorm() / s->total_mass;
   }
   const double gained = now - ceiling;
-  const bool above = gained > rounded && kinetic > 0;
+  const bool above = gained > rounded && loose > 0;
   if (above) {
     const bool about_center = gained < 0.9 * internal;
-    const double factor = std::sqrt(std::max(0.0, 1 - gained / (about_center ? internal : kinetic)));
+    const double factor = std::sqrt(std::max(0.0, 1 - gained / (about_center ? internal : loose)));
     now = 0;
     for (CharacterState<T>* s : states) {
-      slow(*s, factor, about_center);
+      slow(*s, factor, about_center ? Vec3<double>(s->report.momentum / s->total_mass) : still);
       s->report_totals(gravity);
       now += owned(*s);
     }
@@ -194,14 +218,17 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::sp
   if (touching || tied || strict) {
     const double before = std::accumulate(before_.begin(), before_.end(), 0.0,
                                           [](double sum, const Before& b) { return sum + b.energy; });
-    return limit<T>(states, gravity, before, strict, touching);
+    const bool afloat = !tied && !strict && std::none_of(contacts.begin(), contacts.end(), [](const auto& c) {
+      return c.tree_b < 0 && c.acts();
+    });
+    return limit<T>(states, gravity, before, strict, touching, afloat);
   }
   bool damped = false;
   for (std::size_t n = 0; n < states.size(); ++n) {
     keep_in_flight(*states[n], gravity, before_[n]);
     // The flight of what is rigid is exact: it never rises.
-    damped =
-        limit<T>(states.subspan(n, 1), gravity, before_[n].energy, false, is_rigid(*states[n])) || damped;
+    damped = limit<T>(states.subspan(n, 1), gravity, before_[n].energy, false, is_rigid(*states[n]), false) ||
+             damped;
   }
   return damped;
 }
