@@ -48,6 +48,7 @@ void change(CharacterState<T>& s, const RigidMotion& rigid, T factor,
   change_motion<T>(s.tree, rigid, factor, turn, s.history);
   for (std::array<T, 6>& rate : s.rate)
     for (T& r : rate) r *= factor;
+  if (s.history.scheme == Scheme::kBossak) s.read_root_rate();
 }
 
 /// m/s, of the centre of mass of all.

@@ -185,6 +185,7 @@ void IslandStepper<T>::advance_all(T h) {
     if (!one_step())
       advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
     if (s.left_to_gravity) set_momentum<T>(s.tree, momenta_[n], s.history);
+    if (s.left_to_gravity && one_step()) s.read_root_rate();
     if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
     s.pose_changed();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/character/residual_coder.h"
+#include "sinew/optimizer/bossak.h"
 
 namespace sinew {
 namespace {
@@ -121,25 +122,38 @@ void visit_one_step(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t known = h.accelerates ? 1 : 0;
   stream.value("accelerations are known", known);
   if (stream.reading()) h.accelerates = known != 0;
-  std::vector<Vec3<T>>&w = s.guessed.w, &v = s.guessed.v;  // motion axes, at the pose that visit_places left
-  const auto visit = [&](const char* name, auto visit_body) {
-    ResidualCoder<T> coder(name, stream);
+  const auto visit = [&](const char* name, bool marks, auto visit_body) {
+    ResidualCoder<T> coder(name, stream, marks);
     for (int i = 0; i < s.tree.bodies; ++i) visit_body(coder, i);
   };
-  visit("velocity", [&](auto& coder, int i) {
-    Vec3<T> spin = Vec3<T>::Zero(), slide = spin;
-    for (int dof = s.tree.first_dof[i + 1] - 1; dof >= 0; dof = s.tree.dof_parent[dof]) {
-      const int body = s.tree.dof_body[dof];
-      const T rate = s.rate[body][dof - s.tree.first_dof[body]];
-      spin += rate * w[dof];
-      slide += rate * v[dof];
+  // As EndVelocities moves the bodies, at the pose that visit_places left.
+  const Kinematics<T>& k = s.guessed;
+  std::vector<Vec3<T>>&spin = s.problem.moment, &slide = s.problem.force;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int parent = s.tree.parent[i], first = s.tree.first_dof[i];
+    spin[i] = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : spin[parent];
+    slide[i] = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : slide[parent];
+    std::array<T, 6> rate = s.rate[i];
+    if (s.tree.type[i] == JointType::kFree) {
+      const Vec3<T> turned = s.local[i].rotation * Vec3<T>(rate[3], rate[4], rate[5]);
+      for (int a = 0; a < 3; ++a) rate[3 + a] = turned[a];
     }
-    const Vec3<T> velocity = slide + spin.cross(h.center[i]) + h.changed.push;
-    coder.values(h.velocity[i], Vec3<T>(velocity + h.changed.faster(h.center[i], velocity)));
-    coder.values(h.rotation_rate[i], Mat3<T>(skew<T>(spin) * h.rotation[i]));
-    coder.values(h.momentum[i], momentum_of(s.tree.inertia[i], h.rotation[i], h.rotation_rate[i]));
+    for (int dof = first; dof < s.tree.first_dof[i + 1]; ++dof) {
+      spin[i] += rate[dof - first] * k.w[dof];
+      slide[i] += rate[dof - first] * k.v[dof];
+    }
+  }
+  visit("velocity", false, [&](auto& coder, int i) {
+    coder.values(h.velocity[i], Vec3<T>(slide[i] + spin[i].cross(h.center[i])));
   });
-  visit("acceleration", [&](auto& coder, int i) {
+  visit("angular momentum", true, [&](auto& coder, int i) {
+    const Mat3<T>& r = h.rotation[i];
+    coder.values(h.momentum[i], Vec3<T>(r * (s.tree.inertia[i] * (r.transpose() * spin[i]))));
+  });
+  visit("rotation rate", true, [&](auto& coder, int i) {
+    coder.values(h.rotation_rate[i], rotation_rate_of<T>(s.tree, i, h.rotation[i], h.momentum[i]));
+  });
+  visit("acceleration", false, [&](auto& coder, int i) {
     coder.values(h.acceleration[i], i > 0 ? h.acceleration[i - 1] : Vec3<T>(Vec3<T>::Zero()));
     coder.values(h.torque[i], Vec3<T>(Vec3<T>::Zero()));
   });
@@ -166,7 +180,9 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
   stream.value("scheme", scheme);
   if (stream.reading())
     h.scheme = static_cast<Scheme>(std::min(scheme, static_cast<std::uint8_t>(Scheme::kBossak)));
-  if (stream.part("changed after the solve", !h.changed.none())) {
+  const bool one_step = stream.part("accelerations are carried", s.one_step);
+  if (stream.reading()) s.one_step = one_step;
+  if (stream.part("changed after the solve", !one_step && !h.changed.none())) {
     MotionChange<T>& c = h.changed;
     stream.value("what it was scaled by", c.factor);
     for (Vec3<T>* v : {&c.push, &c.center, &c.velocity, &c.spin, &c.turn})
@@ -175,8 +191,6 @@ void visit_history(CharacterState<T>& s, ByteStream& stream) {
     h.changed = {};
   }
   visit_places(s, stream);
-  const bool one_step = stream.part("accelerations are carried", s.one_step);
-  if (stream.reading()) s.one_step = one_step;
   if (one_step) visit_one_step(s, stream);
   if (one_step && !stream.bounding()) return;
   step_back<T>(s, s.rate, s.rate_step / h.changed.factor, s.wanted, s.guessed);

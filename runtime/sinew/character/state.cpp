@@ -255,6 +255,18 @@ void CharacterState<T>::settle_totals() {
 }
 
 template <class T>
+void CharacterState<T>::read_root_rate() {
+  if (!floats) return;
+  const Mat3<T>& r = history.rotation[0];
+  const Vec3<T> spin = tree.inverse_inertia[0] * (r.transpose() * history.momentum[0]);  // child's axes
+  const Vec3<T> velocity = history.velocity[0] - Vec3<T>(r * spin).cross(history.center[0]);
+  for (int a = 0; a < 3; ++a) {
+    rate[0][a] = velocity[a];
+    rate[0][3 + a] = spin[a];
+  }
+}
+
+template <class T>
 void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
   owed.totals = false;
   const Totals sum = totals<T>(tree, history, gravity);

@@ -164,6 +164,8 @@ struct CharacterState {
     const Mat3<T> spin = history.rotation_rate[body] * history.rotation[body].transpose();
     return history.velocity[body] + spin * (point - problem.kinematics.center[body]);
   }
+  /// The speed of a free root from the history into `rate`: after the history was changed.
+  void read_root_rate();
   /// Energies and momenta of the history into the report.
   void report_totals(const Vec3<double>& gravity);
   /// The same where the last step owes them.

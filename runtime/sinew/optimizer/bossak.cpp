@@ -25,6 +25,11 @@ T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
 }
 
 template <class T>
+Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum) {
+  return skew<T>(spin_of<T>(tree, body, rotation, momentum)) * rotation;
+}
+
+template <class T>
 T steadiness(T turn) {
   return std::clamp((T(kLargeTurn) - turn) / T(kLargeTurn - kSmallTurn), T(0), T(1));
 }
@@ -109,7 +114,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
     }
     history.center[i] = c1;
     history.rotation[i] = r;
-    history.rotation_rate[i] = skew<T>(spin_of<T>(tree, i, r, history.momentum[i])) * r;
+    history.rotation_rate[i] = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
   history.scheme = Scheme::kBossak;
   history.step_before = h;

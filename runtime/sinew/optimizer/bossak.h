@@ -55,6 +55,10 @@ T lasting_share(T weight, T h) {
 template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
 
+/// Ṙ of a body, from its angular momentum.
+template <class T>
+Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum);
+
 /// ρ for bodies that turn so far in a step: 0.8 for small turns; far ones need damping, for the axes that
 /// forces act along turn with them.
 template <class T>
@@ -101,6 +105,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
 
 #define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
+  prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \
   prefix T spectral_radius<T>(T);                                                                  \
   prefix T steadiness<T>(T);                                                                       \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \

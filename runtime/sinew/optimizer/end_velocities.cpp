@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "sinew/optimizer/bossak.h"
+
 namespace sinew {
 namespace {
 
@@ -412,7 +414,7 @@ void EndVelocities<T>::write(int n, History<T>& history, std::span<std::array<T,
     const Mat3<T>& r = k.rotation[i];
     history.velocity[i] = twist.at(k.center[i]);
     history.momentum[i] = r * (tree.inertia[i] * (r.transpose() * twist.w));
-    history.rotation_rate[i] = skew<T>(twist.w) * r;
+    history.rotation_rate[i] = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sinew/effects/gravity.h"
+#include "sinew/optimizer/bossak.h"
 
 namespace sinew {
 
@@ -436,7 +437,9 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
     history.velocity[i] += scaled + change.turn.cross(history.center[i] - change.center);
     history.momentum[i] += stronger + momentum_of(change.turn);
     history.momentum_before[i] += stronger;
-    history.rotation_rate[i] += change.faster(history.rotation[i], history.rotation_rate[i]);
+    history.rotation_rate[i] = history.scheme == Scheme::kBossak
+                                   ? rotation_rate_of<T>(tree, i, r, history.momentum[i])
+                                   : history.rotation_rate[i] + change.faster(r, history.rotation_rate[i]);
   }
 }
 
