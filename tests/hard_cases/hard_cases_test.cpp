@@ -32,16 +32,6 @@ TEST_P(Catalogue, PassesOrIsKnownToFail) {
   EXPECT_TRUE(result.passed) << result.reason;
 }
 
-/// Scenes that choose a scheme of their own are not run again.
-TEST_P(Catalogue, PassesWithBossaksSchemeOrIsKnownToFail) {
-  const StabilityResult result = run_case(GetParam(), true, Scheme::kBossak);
-  const char* known = known_failure(GetParam().name, Scheme::kBossak);
-  if (known)
-    GTEST_SKIP() << (result.passed ? "passes here; known failure: " : "known failure: ") << known
-                 << "; today: " << result.reason;
-  EXPECT_TRUE(result.passed) << result.reason;
-}
-
 INSTANTIATE_TEST_SUITE_P(HardCases, Catalogue, testing::ValuesIn(tested()),
                          [](const testing::TestParamInfo<HardCase>& of) { return of.param.name; });
 

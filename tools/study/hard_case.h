@@ -78,8 +78,7 @@ std::vector<HardCase> muscle_cases();
 std::vector<HardCase> actuation_cases();
 std::vector<HardCase> input_cases();
 
-/// Why a case is known to fail today with bdf2 or, if that is asked for, with Bossak's scheme; or nullptr.
-/// The one list of each: known_failures.cpp.
-const char* known_failure(const std::string& case_name, Scheme scheme = Scheme::kBdf2);
+/// Why a case is known to fail today, or nullptr. The one list: known_failures.cpp.
+const char* known_failure(const std::string& case_name);
 
 }  // namespace sinew::study

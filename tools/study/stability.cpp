@@ -42,7 +42,7 @@ StabilityResult run_case(const HardCase& hard_case, bool quick, Scheme scheme) {
       result.reason = error.message;
       return result;
     }
-  if (trial.scene.world.accuracy.scheme == Scheme::kBdf2) trial.scene.world.accuracy.scheme = scheme;
+  if (trial.scene.world.accuracy.scheme == Accuracy{}.scheme) trial.scene.world.accuracy.scheme = scheme;
   for (const double h : hard_case.steps) {
     trial.h = h;
     if (hard_case.in_float) result.rows.push_back(run_row(hard_case.in_float, trial, true));

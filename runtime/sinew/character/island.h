@@ -110,7 +110,7 @@ class IslandStepper {
   void measure_constant_at_start(CharacterState<T>& state, int tree, T h);
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
   void measure_led(const CharacterState<T>& state, int tree, T h);
-  bool choose_loose(std::span<CharacterState<T>* const> states);
+  bool choose_loose();
   void advance_one_step(T h);
   void emphasise_friction(T h);
   void relax_friction(T h);

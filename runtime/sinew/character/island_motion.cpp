@@ -476,10 +476,10 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
 /// The degrees of freedom whose speed the step has to find: unknowns that no muscles hold. False where that
 /// is all of them.
 template <class T>
-bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const> states) {
+bool IslandStepper<T>::choose_loose() {
   loose_.clear();
   bool led = false;
-  for (const CharacterState<T>* s : states)
+  for (const CharacterState<T>* s : states_)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
       loose_.push_back((s->problem.free[dof] || s->baked[s->tree.dof_body[dof]]) && !holds(*s, dof));
       led = led || !loose_.back();
@@ -508,7 +508,7 @@ void IslandStepper<T>::advance_one_step(T h) {
     advance_bossak<T>(s.tree, p.kinematics, p.prediction, p.couple, jumps, h, settings_.common_origin,
                       s.history);
   }
-  if (choose_loose(states_)) ends_.begin(problems_, loose_);
+  if (choose_loose()) ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     measure_led(s, static_cast<int>(n), h);
@@ -574,7 +574,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::measure_constant_at_start(CharacterState<T>&, int, T);              \
   template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);                      \
   template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                      \
-  template bool IslandStepper<T>::choose_loose(std::span<CharacterState<T>* const>);                  \
+  template bool IslandStepper<T>::choose_loose();                                                     \
   template void IslandStepper<T>::advance_one_step(T);                                                \
   template void IslandStepper<T>::emphasise_friction(T);                                              \
   template void IslandStepper<T>::relax_friction(T);                                                  \

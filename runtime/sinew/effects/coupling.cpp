@@ -9,8 +9,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kExitSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts lead out
-constexpr double kTorn = 0.02;       ///< m; a hundred times what the weight pulls a loop apart
+constexpr double kTorn = 0.02;  ///< m; a hundred times what the weight pulls a loop apart
 
 template <class T>
 Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {
@@ -89,15 +88,6 @@ void set_material(double young, double poisson, Tetrahedron<double>& out) {
   // Equation (16) of the paper: in these the small-strain law is Hooke's.
   out.mu = 4 * mu / 3;
   out.lame = lame + 5 * mu / 6;
-}
-
-template <class T>
-Vec3<T> reach(const Coupling<T>& c, const Stencil<T>& e) {
-  // Relative to the first node, since the weights add up to zero: points far away keep their digits.
-  const Vec3<T>& base = c.nodes[e.node[0]].point;
-  Vec3<T> sum = Vec3<T>::Zero();
-  for (int i = 1; i < e.count; ++i) sum += e.weight[i] * (c.nodes[e.node[i]].point - base);
-  return sum;
 }
 
 template <class T>
@@ -181,12 +171,6 @@ TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& c, const Tetrahed
 }
 
 template <class T>
-Vec3<T> closing_velocity(const Stencil<T>& e) {
-  const T open = e.offset.norm();
-  return open > T(0) ? Vec3<T>(e.offset * (-T(kExitSpeed) / open)) : Vec3<T>(Vec3<T>::Zero());
-}
-
-template <class T>
 void lead_out(T h, Coupling<T>& c) {
   if (!c.leads_out) return;
   c.led = c.closes();
@@ -194,7 +178,7 @@ void lead_out(T h, Coupling<T>& c) {
     const Vec3<T> open = reach(c, e);
     if ((open - e.offset).norm() > e.length + T(kTorn)) e.offset = open * (T(1) - e.length / open.norm());
     const T left = e.offset.norm();
-    e.offset *= left > T(kExitSpeed) * h ? T(1) - T(kExitSpeed) * h / left : T(0);
+    e.offset *= left > T(kClosingSpeed) * h ? T(1) - T(kClosingSpeed) * h / left : T(0);
   }
   c.led = c.led || c.closes();
 }

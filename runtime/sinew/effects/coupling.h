@@ -103,7 +103,13 @@ void set_material(double young, double poisson, Tetrahedron<double>& out);
 
 /// Σ wᵢ xᵢ at the nodes' present points.
 template <class T>
-Vec3<T> reach(const Coupling<T>& coupling, const Stencil<T>& stencil);
+Vec3<T> reach(const Coupling<T>& c, const Stencil<T>& e) {
+  // Relative to the first node, since the weights add up to zero: points far away keep their digits.
+  const Vec3<T>& base = c.nodes[e.node[0]].point;
+  Vec3<T> sum = Vec3<T>::Zero();
+  for (int i = 1; i < e.count; ++i) sum += e.weight[i] * (c.nodes[e.node[i]].point - base);
+  return sum;
+}
 
 /// Energy (J) of all elements at the nodes' present points, kept in `energy` too; every node's gradient is
 /// overwritten.
@@ -119,9 +125,14 @@ Mat3<T> stencil_curvature(const Coupling<T>& coupling, const Stencil<T>& stencil
 template <class T>
 TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const Tetrahedron<T>& element);
 
+constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts lead out
+
 /// m/s: how fast what is still open of an element is led in.
 template <class T>
-Vec3<T> closing_velocity(const Stencil<T>& stencil);
+Vec3<T> closing_velocity(const Stencil<T>& e) {
+  const T open = e.offset.norm();
+  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) / open)) : Vec3<T>(Vec3<T>::Zero());
+}
 
 /// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a
 /// teleport) begins anew. Call at the start of a part of a step, at the pose there.
@@ -129,11 +140,9 @@ template <class T>
 void lead_out(T h, Coupling<T>& coupling);
 
 #define SINEW_COUPLING_INSTANCES(prefix, T)                                                         \
-  prefix Vec3<T> reach<T>(const Coupling<T>&, const Stencil<T>&);                                   \
   prefix double measure_elements<T>(Coupling<T>&);                                                  \
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
-  prefix Vec3<T> closing_velocity<T>(const Stencil<T>&);                                            \
   prefix void lead_out<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)

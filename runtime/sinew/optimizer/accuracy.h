@@ -11,7 +11,7 @@ enum class Scheme : std::uint8_t {
               ///< over the step: no energy, so no descent to fall back on; splits where Newton fails
   kBdf1,  ///< implicit Euler: first order, damps; true after a change of contacts
   kBdf2,  ///< second order, torque-free rotation prediction; falls back to bdf1 while the contact set changes
-  kBossak,  ///< second order through changes of contact, from one step back (bossak.h)
+  kBossak,  ///< the default: second order through changes of contact, from one step back (bossak.h)
 };
 
 /// Lengths in metres, angles in radians, speeds in m/s.

@@ -30,13 +30,9 @@ Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation,
 }
 
 template <class T>
-T steadiness(T turn) {
-  return std::clamp((T(kLargeTurn) - turn) / T(kLargeTurn - kSmallTurn), T(0), T(1));
-}
-
-template <class T>
 T spectral_radius(T turn) {
-  return T(kTightRadius) + steadiness(turn) * T(kLooseRadius - kTightRadius);
+  const T share = std::clamp((turn - T(kSmallTurn)) / T(kLargeTurn - kSmallTurn), T(0), T(1));
+  return T(kLooseRadius) + share * T(kTightRadius - kLooseRadius);
 }
 
 template <class T>

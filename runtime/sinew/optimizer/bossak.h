@@ -15,6 +15,11 @@
 //   a₁ = (f − α_m a₀)/(1 − α_m)                 τ₁ likewise
 //   v* = v₀ + h[(1 − γ)a₀ + γa₁] + sΔc/h        L* likewise, with sIΔφ/h; s = 1 for impulses, 2 for constants
 //
+// Of what constants leave as speed half is J M⁻¹Jᵀ w as it was where the step began: so they act along the
+// axes and at the lever arms of its middle. With those of its end alone a body that tips over an edge gains
+// ½h|w × v| of angular momentum in every step. Where the two halves differ by much, as of a stiff pendulum in
+// a strong wind, all of it is that of the end, which damps.
+//
 // The velocities are then those of the joints: u₁ = M⁻¹Jᵀ(m v*, L*) (end_velocities.h). Sources: Wood, Bossak
 // and Zienkiewicz, "An alpha modification of Newmark's method", 1980; the split into smooth forces and
 // impulses after Acary, "Projected event-capturing time-stepping schemes for nonsmooth mechanical systems",
@@ -64,11 +69,6 @@ Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation,
 template <class T>
 T spectral_radius(T largest_turn);
 
-/// 1 where a tree turns little in a step, 0 where it turns far: then forces act along axes of the step's end,
-/// which damps.
-template <class T>
-T steadiness(T largest_turn);
-
 /// What impulses have added to a tree's history just before a step, of which they act all along.
 template <class T>
 struct Strike {
@@ -107,7 +107,6 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \
   prefix T spectral_radius<T>(T);                                                                  \
-  prefix T steadiness<T>(T);                                                                       \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
                                 const Vec3<double>&, Prediction<T>&);                              \
   prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
