@@ -16,6 +16,7 @@ namespace {
 constexpr double kMostSteps = 2;
 constexpr double kSamePlane = 0.99;                    ///< cosine
 constexpr double kSaturated = 0.9999;                  ///< of a muscle's limit
+constexpr double kHardlyTurns = 2e-3;                  ///< rad: where a step ends is where it began
 constexpr double kTurnsLittle = 0.1, kTurnsAll = 0.3;  ///< of what constant forces do: its change in a step
 
 /// Muscles, dry friction and damping: forces that answer what happens in a step at once.
@@ -86,6 +87,15 @@ T share_of_start(const Tree<T>& tree, std::span<const Vec3<T>> sped_start,
   }
   const T change = 2 * std::sqrt(changes / std::max(sum, std::numeric_limits<T>::min()));
   return std::clamp((T(kTurnsAll) - change) / T(kTurnsAll - kTurnsLittle), T(0), T(1)) / 2;
+}
+
+/// rad: the furthest that a body has turned between two poses, if that is little.
+template <class T>
+T turn_between(const Kinematics<T>& a, const Kinematics<T>& b) {
+  T furthest = T(0);
+  for (std::size_t i = 0; i < a.rotation.size(); ++i)
+    furthest = std::max(furthest, (b.rotation[i] - a.rotation[i]).squaredNorm());
+  return std::sqrt(furthest / 2);
 }
 
 /// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
@@ -345,8 +355,13 @@ void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree,
                            spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
   std::fill(sped.begin(), sped.end(), Vec3<T>(Vec3<T>::Zero()));
   std::fill(spun.begin(), spun.end(), Vec3<T>(Vec3<T>::Zero()));
-  if (p.prediction.scheme != Scheme::kBossak) return;
+  const bool acted_on = !s.limp() || !p.pushes.empty() ||
+                        std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+                          return c.grip > T(0) && (c.tree_a == tree || c.tree_b == tree);
+                        });
+  if (p.prediction.scheme != Scheme::kBossak || !acted_on) return;  // what rubs within joints is weak
   forward_kinematics<T>(s.tree, p.start, p.common_origin, s.guessed);
+  if (turn_between(s.guessed, p.kinematics) < T(kHardlyTurns)) return;
   measure_constant(s, p, tree, s.guessed);
   if (std::all_of(constant_.begin(), constant_.end(), [](T x) { return x == T(0); })) return;
   speed_share_.resize(s.tree.dofs);
