@@ -18,8 +18,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60;
 
 EngineOption engine_of(const scene::MeasuredAccuracy& m) {
-  const std::string name = std::string(m.accuracy.scheme == Scheme::kBdf1 ? "bdf1" : "bdf2") +
-                           (m.double_precision ? " double" : " float");
+  const std::string name = scene::name_of(m.accuracy.scheme) + (m.double_precision ? " double" : " float");
   for (const EngineOption& o : sinew_options())
     if (o.option == name) return o;
   return {};

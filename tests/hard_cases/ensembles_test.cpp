@@ -61,7 +61,7 @@ TEST(Ensembles, JsonHasACurveForEveryRun) {
   const nlohmann::json json = ensembles_json({e});
   const nlohmann::json& first = json.at("ensembles").at(0);
   EXPECT_EQ(first.at("engine"), "sinew");
-  EXPECT_EQ(first.at("scheme"), "bdf2");
+  EXPECT_EQ(first.at("scheme"), "bossak");
   EXPECT_EQ(first.at("scalar"), "float");
   EXPECT_EQ(first.at("hz"), 30);
   EXPECT_EQ(first.at("seeds"), 2);

@@ -3,6 +3,7 @@
 // built in.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct MeasuredAccuracy {
 
 /// What was measured may be off by so much on a scene that nobody measured: the dial asks for that much less.
 constexpr double kDialSafety = 2;
+
+/// Names of schemes in scenes and measured settings.
+const std::map<std::string, Scheme>& schemes();
+std::string name_of(Scheme scheme);
 
 const std::vector<MeasuredAccuracy>& accuracy_presets();
 const std::vector<MeasuredAccuracy>& accuracy_front();

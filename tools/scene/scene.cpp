@@ -216,13 +216,9 @@ void read_accuracy(const json& value, Scene& s) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
     set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);
   }
-  static const std::map<std::string, Scheme> schemes{{"momentum", Scheme::kMomentum},
-                                                     {"bdf1", Scheme::kBdf1},
-                                                     {"bdf2", Scheme::kBdf2},
-                                                     {"bossak", Scheme::kBossak}};
   if (a.has("scheme")) {
-    const auto scheme = schemes.find(a.text("scheme", ""));
-    if (scheme == schemes.end()) fail("accuracy.scheme", "is momentum, bdf1, bdf2 or bossak");
+    const auto scheme = schemes().find(a.text("scheme", ""));
+    if (scheme == schemes().end()) fail("accuracy.scheme", "is momentum, bdf1, bdf2 or bossak");
     s.world.accuracy.scheme = scheme->second;
   }
   s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);

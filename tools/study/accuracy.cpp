@@ -109,7 +109,7 @@ class Sweep {
     p.momentum = trip.momentum;
     p.passes = trip.passes;
     const bool counted = p.varied == "step" && std::abs(p.h - kFrame) < 1e-9 &&
-                         (!quick_ || option.label() == "Sinew bdf2 float");
+                         (!quick_ || option.label() == "Sinew bossak float");
     if (counted && can_count_instructions()) p.instructions = instructions_of(scene_, option, p.h);
     std::vector<double> times;
     const int runs = p.varied == "accuracy" ? std::min(runs_, 3) : runs_;  // some take a second each

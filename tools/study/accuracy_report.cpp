@@ -22,8 +22,8 @@ void replace(std::string& text, const std::string& what, const std::string& with
 std::vector<AccuracyPoint> ahead_of_ours(const std::vector<AccuracyPoint>& points) {
   std::vector<AccuracyPoint> out;
   for (const AccuracyPoint& p : points)
-    if (out.empty() && p.engine == "Sinew" && p.option == "bdf2 float" && p.varied == "step" && p.survived &&
-        std::abs(p.h - 1.0 / 60) < 1e-6)
+    if (out.empty() && p.engine == "Sinew" && p.option == "bossak float" && p.varied == "step" &&
+        p.survived && std::abs(p.h - 1.0 / 60) < 1e-6)
       out.push_back(p);
   if (out.empty()) return out;
   for (const AccuracyPoint& p : points) {

@@ -126,8 +126,8 @@ Figure resting(const Skeleton& skeleton) {
 }
 
 std::vector<EngineOption> sinew_options() {
-  return {{"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
-          {"Sinew", "bossak float", make<float, Scheme::kBossak>},
+  return {{"Sinew", "bossak float", make<float, Scheme::kBossak>},
+          {"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
           {"Sinew", "bdf1 float", make<float, Scheme::kBdf1>},
           {"Sinew", "momentum float", make<float, Scheme::kMomentum>},
           {"Sinew", "bdf2 double", make<double, Scheme::kBdf2>},
