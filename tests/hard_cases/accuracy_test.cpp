@@ -13,7 +13,6 @@
 #include <iterator>
 
 #include "fixtures/known_failure.h"
-#include "fixtures/known_failure.h"
 #include "sinew/skeleton/rotation.h"
 #include "study/accuracy_store.h"
 #include "study/bodies.h"
