@@ -63,10 +63,11 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
-  for (auto* v :
-       {&moved_, &turned_, &sped_, &spun_, &constant_sped_, &constant_spun_, &start_sped_, &start_spun_})
+  for (auto* v : {&moved_, &turned_, &end_sped_, &end_spun_, &start_sped_, &start_spun_})
     v->reserve(room.bodies);
-  first_body_.reserve(room.trees);
+  impulse_.reserve(room.dofs);
+  for (auto* v : {&first_body_, &first_dof_}) v->reserve(room.trees);
+  turned_far_.reserve(room.trees);
   led_rates_.reserve(room.bodies);
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(room.bodies);
   momenta_.reserve(room.trees);
@@ -76,8 +77,8 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
-  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (5 * sizeof(T) + 1) +
-                    room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
+                    room.bodies * (8 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
                     (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
                     room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);

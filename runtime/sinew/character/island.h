@@ -109,7 +109,12 @@ class IslandStepper {
                         const Kinematics<T>& kinematics);
   void measure_constant_at_start(CharacterState<T>& state, int tree, T h);
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
+  T choose_start(const CharacterState<T>& state, int tree);
+  void add_start(CharacterState<T>& state, int tree);
   void measure_led(const CharacterState<T>& state, int tree, T h);
+  bool is_locked(const CharacterState<T>& state) const;
+  void fall(History<T>& history) const;
+  void accelerate_locked(CharacterState<T>& state, int tree);
   bool choose_loose();
   void advance_one_step(T h);
   void emphasise_friction(T h);
@@ -155,10 +160,12 @@ class IslandStepper {
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
   std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before
-  std::vector<T> jump_force_, constant_, kinks_, others_, speed_share_;                ///< [dof] of one tree
-  std::vector<Vec3<T>> moved_, turned_, sped_, spun_, constant_sped_, constant_spun_;  ///< [body] the same
-  std::vector<Vec3<T>> start_sped_, start_spun_;            ///< [body, trees one after the other] the same
-  std::vector<int> first_body_;                             ///< [tree] in these
+  std::vector<T> jump_force_, constant_, kinks_, others_, speed_share_;  ///< [dof] of one tree
+  std::vector<Vec3<T>> moved_, turned_, end_sped_, end_spun_;            ///< [body] the same
+  std::vector<Vec3<T>> start_sped_, start_spun_;  ///< [body, trees one after the other] see choose_start
+  std::vector<T> impulse_;                        ///< [dof, the same] what is not in the velocities yet
+  std::vector<int> first_body_, first_dof_;       ///< [tree] in these
+  std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;

@@ -230,16 +230,54 @@ void IslandStepper<T>::drop_constant(CharacterState<T>& s, int tree, std::span<c
   }
 }
 
-/// The same of all that played animations took but gravity.
+/// Whether no degree of freedom of a tree can move in the step, but as it is led.
+template <class T>
+bool IslandStepper<T>::is_locked(const CharacterState<T>& s) const {
+  const auto none = [](const auto& v) { return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; }); };
+  return couplings_.empty() && s.problem.effects.empty() && none(s.problem.free) && none(s.baked);
+}
+
+/// The accelerations that smooth forces leave a tree that is locked: those of each body by itself. They have
+/// the same part in the joints' freedom as those of the tree, Jᵀm a = JᵀF, and where no joint is free nothing
+/// else of them counts.
+template <class T>
+void IslandStepper<T>::accelerate_locked(CharacterState<T>& s, int tree) {
+  History<T>& h = s.history;
+  fall(h);
+  const auto act = [&](int body, const Vec3<T>& at, const Vec3<T>& force) {
+    if (!(s.tree.mass[body] > T(0))) return;
+    h.acceleration[body] += force / s.tree.mass[body];
+    h.torque[body] += (at - s.problem.kinematics.center[body]).cross(force);
+  };
+  for (const Contact<T>& c : contacts_) {
+    if (!(c.smooth_force > T(0))) continue;
+    const Vec3<T> normal = c.smooth_force * c.normal;
+    if (c.tree_a == tree) act(c.body_a, c.point, normal);
+    if (c.tree_b == tree) act(c.body_b, c.point, Vec3<T>(-normal));
+  }
+}
+
+/// The same of a tree on which nothing but gravity acts.
+template <class T>
+void IslandStepper<T>::fall(History<T>& h) const {
+  std::fill(h.acceleration.begin(), h.acceleration.end(), settings_.gravity);
+  std::fill(h.torque.begin(), h.torque.end(), Vec3<T>(Vec3<T>::Zero()));
+}
+
+/// Takes out of accelerations all that played animations took but gravity.
 template <class T>
 void IslandStepper<T>::drop_played() {
   bool begun = false;
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     if (s.rate_step > T(0) || !s.history.accelerates) continue;
+    TreeProblem<T>& p = s.problem;
+    if (is_locked(s)) {
+      fall(s.history);
+      continue;
+    }
     if (!begun) begin_ends();
     begun = true;
-    TreeProblem<T>& p = s.problem;
     for (int i = 0; i < s.tree.bodies; ++i) {
       p.force[i] = s.tree.mass[i] * (s.history.acceleration[i] - settings_.gravity);
       p.moment[i] = p.kinematics.center[i].cross(p.force[i]) + s.history.torque[i];
@@ -262,11 +300,11 @@ void IslandStepper<T>::drop_trial(CharacterState<T>& s, int tree) {
   drop_constant(s, tree, constant_);
 }
 
-/// Every degree of freedom loose.
+/// Every degree of freedom loose, but those of trees that are locked.
 template <class T>
 void IslandStepper<T>::begin_ends() {
   loose_.clear();
-  for (const CharacterState<T>* s : states_) loose_.insert(loose_.end(), s->tree.dofs, 1);
+  for (const CharacterState<T>* s : states_) loose_.insert(loose_.end(), s->tree.dofs, is_locked(*s) ? 0 : 1);
   ends_.begin(problems_, loose_);
 }
 
@@ -351,15 +389,11 @@ void IslandStepper<T>::measure_constant(const CharacterState<T>& s, TreeProblem<
 template <class T>
 void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree, T h) {
   TreeProblem<T>& p = s.problem;
-  const std::span<Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
-                           spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
-  std::fill(sped.begin(), sped.end(), Vec3<T>(Vec3<T>::Zero()));
-  std::fill(spun.begin(), spun.end(), Vec3<T>(Vec3<T>::Zero()));
   const bool acted_on = !s.limp() || !p.pushes.empty() ||
                         std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
                           return c.grip > T(0) && (c.tree_a == tree || c.tree_b == tree);
                         });
-  if (p.prediction.scheme != Scheme::kBossak || !acted_on) return;  // what rubs within joints is weak
+  if (p.prediction.scheme != Scheme::kBossak || !acted_on || is_locked(s)) return;  // what rubs within joints is weak
   forward_kinematics<T>(s.tree, p.start, p.common_origin, s.guessed);
   if (turn_between(s.guessed, p.kinematics) < T(kHardlyTurns)) return;
   measure_constant(s, p, tree, s.guessed);
@@ -371,8 +405,10 @@ void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree,
   TreeProblem<T>* const problem = &p;
   std::swap(p.kinematics, s.guessed);
   ends_.begin({&problem, 1}, loose_);
-  ends_.respond(0, constant_, sped, spun);
+  ends_.respond(0, constant_, std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
+                std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies));
   std::swap(p.kinematics, s.guessed);
+  turned_far_[tree] = 1;
 }
 
 /// What has moved in this step and is not carried on: impulses of contacts and rows, and forces that are
@@ -414,32 +450,57 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
       s.smooth[dof] = s.lasting_before[dof] = s.lasting[dof] = T(0);
     }
   }
-  for (auto* v : {&moved_, &turned_, &sped_, &spun_, &constant_sped_, &constant_spun_})
-    v->resize(s.tree.bodies);
+  const std::span<T> impulse = std::span(impulse_).subspan(first_dof_[tree], s.tree.dofs);
   bool any_constant = false;
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     any_constant = any_constant || constant_[dof] != T(0);
     jump_force_[dof] /= p.prediction.weight;
     constant_[dof] /= p.prediction.weight;
+    impulse[dof] = jump_force_[dof] / h;
+    jump_force_[dof] += constant_[dof];
   }
-  ends_.respond(tree, jump_force_, sped_, spun_);
-  if (!any_constant) return {sped_, spun_, sped_, spun_};
-  for (int dof = 0; dof < s.tree.dofs; ++dof) jump_force_[dof] += constant_[dof];
+  for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
   ends_.respond(tree, jump_force_, moved_, turned_);
-  // A step of bdf1 has all forces act at once.
-  if (p.prediction.scheme != Scheme::kBossak) return {moved_, turned_, moved_, turned_};
-  speed_share_.resize(s.tree.dofs);
-  speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
-  for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
-  ends_.respond(tree, constant_, constant_sped_, constant_spun_);
-  const std::span<const Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
-                                 spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
-  const T started = share_of_start<T>(s.tree, sped, spun, constant_sped_, constant_spun_);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    sped_[i] += (1 - started) * constant_sped_[i] + started * sped[i];
-    spun_[i] += (1 - started) * constant_spun_[i] + started * spun[i];
+  if (p.prediction.scheme != Scheme::kBossak) {  // a step of bdf1 has all forces act at once
+    std::fill(impulse.begin(), impulse.end(), T(0));
+  } else if (any_constant) {
+    speed_share_.resize(s.tree.dofs);
+    speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
+    for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
+    const T started = choose_start(s, tree);
+    for (int dof = 0; dof < s.tree.dofs; ++dof) impulse[dof] += (1 - started) / h * constant_[dof];
   }
-  return {moved_, turned_, sped_, spun_};
+  ends_.settle(tree, impulse);  // its floor's share is missing in `moved_`, too
+  return {moved_, turned_};
+}
+
+/// Of the speed that the constant forces leave, times h and over the weight in `constant_`: how much is that
+/// where the step began, which is left in `start_sped_` and `start_spun_` as a speed.
+template <class T>
+T IslandStepper<T>::choose_start(const CharacterState<T>& s, int tree) {
+  if (!turned_far_[tree]) return T(0);
+  const std::span<Vec3<T>> sped = std::span(start_sped_).subspan(first_body_[tree], s.tree.bodies),
+                           spun = std::span(start_spun_).subspan(first_body_[tree], s.tree.bodies);
+  for (auto* v : {&end_sped_, &end_spun_}) v->resize(s.tree.bodies);
+  ends_.respond(tree, constant_, end_sped_, end_spun_);
+  const T started = share_of_start<T>(s.tree, sped, spun, end_sped_, end_spun_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    sped[i] *= started / settings_.h;
+    spun[i] *= started / settings_.h;
+  }
+  return started;
+}
+
+/// Adds that to a tree's velocities.
+template <class T>
+void IslandStepper<T>::add_start(CharacterState<T>& s, int tree) {
+  if (!turned_far_[tree]) return;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = s.problem.kinematics.rotation[i];
+    const int at = first_body_[tree] + i;
+    s.history.velocity[i] += start_sped_[at];
+    s.history.momentum[i] += r * (s.tree.inertia[i] * (r.transpose() * start_spun_[at]));
+  }
 }
 
 /// How joints move at the end of the part that are led: as the animation does, or on their way back to it.
@@ -506,22 +567,33 @@ bool IslandStepper<T>::choose_loose() {
 template <class T>
 void IslandStepper<T>::advance_one_step(T h) {
   split_contacts(h);
-  first_body_.clear();
-  int bodies = 0;
+  for (auto* v : {&first_body_, &first_dof_}) v->clear();
+  int bodies = 0, dofs = 0;
   for (const CharacterState<T>* s : states_) {
     first_body_.push_back(bodies);
+    first_dof_.push_back(dofs);
     bodies += s->tree.bodies;
+    dofs += s->tree.dofs;
   }
   for (auto* v : {&start_sped_, &start_spun_}) v->resize(bodies);
+  impulse_.resize(dofs);
+  turned_far_.assign(states_.size(), 0);
   for (std::size_t n = 0; n < states_.size(); ++n)
     measure_constant_at_start(*states_[n], static_cast<int>(n), h);
   begin_ends();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     TreeProblem<T>& p = s.problem;
-    const Jumps<T> jumps = measure_jumps(s, static_cast<int>(n), h);
+    const bool locked = is_locked(s);
+    const Jumps<T> jumps = locked ? Jumps<T>{} : measure_jumps(s, static_cast<int>(n), h);
     advance_bossak<T>(s.tree, p.kinematics, p.prediction, p.couple, jumps, h, settings_.common_origin,
                       s.history);
+    if (locked) {
+      for (auto* v : {&s.smooth, &s.lasting, &s.lasting_before}) std::fill(v->begin(), v->end(), T(0));
+      accelerate_locked(s, static_cast<int>(n));
+    } else {
+      add_start(s, static_cast<int>(n));
+    }
   }
   if (choose_loose()) ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -532,7 +604,8 @@ void IslandStepper<T>::advance_one_step(T h) {
       for (int k = 0; k < s.tree.dof_count(i); ++k)
         if (ends_.loose(static_cast<int>(n), s.tree.first_dof[i] + k))
           s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
-    ends_.project(static_cast<int>(n), led_rates_, s.rate, s.history);
+    ends_.project(static_cast<int>(n), led_rates_, s.rate,
+                  std::span<const T>(impulse_).subspan(first_dof_[n], s.tree.dofs), s.history);
   }
   press(h);
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -588,6 +661,11 @@ void IslandStepper<T>::press(T h) {
                                                    const Kinematics<T>&);                             \
   template void IslandStepper<T>::measure_constant_at_start(CharacterState<T>&, int, T);              \
   template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);                      \
+  template T IslandStepper<T>::choose_start(const CharacterState<T>&, int);                           \
+  template void IslandStepper<T>::add_start(CharacterState<T>&, int);                                 \
+  template bool IslandStepper<T>::is_locked(const CharacterState<T>&) const;                          \
+  template void IslandStepper<T>::fall(History<T>&) const;                                            \
+  template void IslandStepper<T>::accelerate_locked(CharacterState<T>&, int);                         \
   template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                      \
   template bool IslandStepper<T>::choose_loose();                                                     \
   template void IslandStepper<T>::advance_one_step(T);                                                \

@@ -58,8 +58,7 @@ void predict_bossak(const Tree<T>& tree, const History<T>& history, const Strike
     }
     const Vec3<T> spin = tree.inverse_inertia[i] * (r0.transpose() * momentum);
     if (h * spin.norm() < T(kMostFreeTurn))
-      out.rotation[i] =
-          free_rotation<T>(tree.inverse_inertia[i], Quat<T>(r0), momentum, h).toRotationMatrix();
+      out.rotation[i] = free_rotation<T>(tree.inverse_inertia[i], r0, momentum, h);
     else
       out.rotation[i] = r0 + h * skew<T>(r0 * spin) * r0;
   }
@@ -89,18 +88,16 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
     const auto momentum_of = [&](const Vec3<T>& spin) {
       return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * spin)));
     };
-    Vec3<T> dc = Vec3<T>::Zero(), dl = dc;
+    if (!second) history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * couple;
     if (!jumps.moved.empty()) {
       force -= alpha * jumps.moved[i];
       couple -= alpha * momentum_of(jumps.turned[i]);
-      dc = jumps.sped[i];
-      dl = momentum_of(jumps.spun[i]);
     }
-    history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * couple + dl / h;
+    if (second) history.momentum[i] = prediction.momentum[i] + prediction.momentum_step * couple;
     if (second) {
       const Vec3<T> a0 = history.acceleration[i];
       const Vec3<T> a1 = (force - w.alpha_m * a0) / (1 - w.alpha_m);
-      history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1) + dc / h;
+      history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1);
       history.acceleration[i] = a1;
       history.torque[i] = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
     } else {

@@ -90,14 +90,14 @@ void accelerate(const Tree<T>& tree, const Kinematics<T>& kinematics, const Pred
 /// What impulses and constant forces have done to the bodies of a tree within a step.
 template <class T>
 struct Jumps {
-  std::span<const Vec3<T>> moved;       ///< [body] Δc, m; empty: nothing
-  std::span<const Vec3<T>> turned;      ///< [body] Δφ, rad, world axes
-  std::span<const Vec3<T>> sped, spun;  ///< [body] h times the speeds that they leave, m, rad
+  std::span<const Vec3<T>> moved;   ///< [body] Δc, m; empty: nothing
+  std::span<const Vec3<T>> turned;  ///< [body] Δφ, rad, world axes
 };
 
 /// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
-/// gradient there (about each centre of mass). From a prediction of bdf1, accelerations are those of its
-/// smooth forces.
+/// gradient there (about each centre of mass). What impulses and constant forces leave as speed is still to be
+/// added (EndVelocities::project). From a prediction of bdf1 velocities are those of the step, whatever moved
+/// it, and accelerations those of its smooth forces.
 template <class T>
 void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
                     std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,

@@ -13,12 +13,26 @@ constexpr double kUsed = 0.98;   ///< of friction: all
 constexpr double kStill = 1e-4;  ///< m/s: what slides as slowly is held by the next step's friction
 constexpr double kLeft = 1e-5;   ///< m/s, rad/s: of what closes
 
+/// The mass matrix over some degrees of freedom, as if every other joint were locked.
+template <class T>
+void factorise_masses(TreeProblem<T>& p, std::span<const int> dofs, ArticulatedParts<T>& out) {
+  const Tree<T>& tree = *p.tree;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Mat3<T> turned = p.kinematics.rotation[i].lazyProduct(tree.inertia[i]);
+    p.composite[i] = {};
+    p.composite[i].add_body(tree.mass[i], p.kinematics.center[i],
+                            turned.lazyProduct(p.kinematics.rotation[i].transpose()));
+  }
+  assemble_joints<T>(tree, p.kinematics, p.composite, dofs, false, out);
+  std::copy_n(out.own.begin(), dofs.size(), out.factor.begin());
+  (void)factorise_joints<T>(out);  // the floor sees to it
+}
+
 }  // namespace
 
 template <class T>
 void EndVelocities<T>::reserve(const SolveRoom& room) {
   parts_.reserve(room.trees);
-  unknowns_.reserve(room.dofs);
   for (auto* v : {&of_dof_, &dof_, &first_}) v->resize(room.dofs);
   blocks_.resize(room.bodies);
   eliminated_.resize(room.bodies);
@@ -28,16 +42,19 @@ void EndVelocities<T>::reserve(const SolveRoom& room) {
   for (auto* v : {&rates_, &near_, &projection_}) v->resize(room.dofs);
   for (auto* v : {&led_, &twist_}) v->resize(room.bodies);
   pressed_.reserve(kMost);
-  for (auto* v : {&rows_, &answers_}) v->reserve(kMost * room.dofs);
+  rows_.reserve(kMost * room.dofs);
   of_entry_.reserve(kMost * room.dofs);
   row_.reserve(room.dofs);
+  on_path_.reserve(room.bodies);
+  done_.resize(room.dofs);
+  disturbed_.reserve(room.trees);
 }
 
 template <class T>
 std::size_t EndVelocities<T>::bytes(const SolveRoom& room) {
   return room.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs) +
-         room.dofs * (4 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
-         kMost * (sizeof(Row) + (2 * sizeof(T) + sizeof(int)) * room.dofs);
+         room.dofs * (5 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
+         kMost * (sizeof(Row) + (sizeof(T) + sizeof(int)) * room.dofs);
 }
 
 template <class T>
@@ -46,18 +63,17 @@ void EndVelocities<T>::begin(std::span<TreeProblem<T>* const> problems, std::spa
   parts_.clear();
   pressed_.clear();
   rows_.clear();
-  answers_.clear();
   of_entry_.clear();
   Part next;
   for (TreeProblem<T>* problem : problems) {
-    TreeProblem<T>& p = *problem;
-    const Tree<T>& tree = *p.tree;
-    const Kinematics<T>& k = p.kinematics;
-    unknowns_.clear();
-    append_unknowns<T>(tree, loose.subspan(next.first_dof, tree.dofs), unknowns_);
-    next.count = unknowns_.pattern.size;
-    std::copy_n(unknowns_.of_dof.begin(), tree.dofs, of_dof_.begin() + next.first_dof);
-    std::copy_n(unknowns_.dof.begin(), next.count, dof_.begin() + next.first);
+    const Tree<T>& tree = *problem->tree;
+    next.count = 0;
+    for (int dof = 0; dof < tree.dofs; ++dof) {
+      of_dof_[next.first_dof + dof] = -1;
+      if (!loose[next.first_dof + dof]) continue;
+      dof_[next.first + next.count] = dof;
+      of_dof_[next.first_dof + dof] = next.count++;
+    }
     const auto bodies = [&](auto& all) { return std::span(all).subspan(next.first_body, tree.bodies); };
     const auto unknowns = [&](auto& all) { return std::span(all).subspan(next.first, next.count); };
     next.matrix = {0,
@@ -71,14 +87,12 @@ void EndVelocities<T>::begin(std::span<TreeProblem<T>* const> problems, std::spa
                    bodies(eliminated_),
                    bodies(force_),
                    bodies(motion_)};
-    for (int i = 0; i < tree.bodies; ++i) {
-      const Mat3<T> turned = k.rotation[i].lazyProduct(tree.inertia[i]);
-      p.composite[i] = {};
-      p.composite[i].add_body(tree.mass[i], k.center[i], turned.lazyProduct(k.rotation[i].transpose()));
+    if (next.count > 0) {
+      factorise_masses<T>(*problem, unknowns(dof_), next.matrix);
+    } else {
+      next.matrix.bodies = tree.bodies;
+      for (int i = 0; i < tree.bodies; ++i) next.matrix.blocks[i] = {tree.parent[i], 0, 0, false};
     }
-    assemble_joints<T>(tree, k, p.composite, unknowns_, false, next.matrix);
-    std::copy_n(next.matrix.own.begin(), next.count, next.matrix.factor.begin());
-    (void)factorise_joints<T>(next.matrix);  // the floor sees to it
     parts_.push_back(next);
     next.first_body += tree.bodies;
     next.first_dof += tree.dofs;
@@ -127,6 +141,19 @@ void EndVelocities<T>::respond(int n, std::span<const T> force, std::span<Vec3<T
   }
 }
 
+template <class T>
+void EndVelocities<T>::settle(int n, std::span<T> force) {
+  const Part& part = parts_[n];
+  const TreeProblem<T>& p = *problems_[n];
+  for (int u = 0; u < part.count; ++u) rates(n)[u] = force[dof_[part.first + u]];
+  solve_by_joints<T>(part.matrix, rates(n));
+  for (int u = 0; u < part.count; ++u) {
+    const int dof = dof_[part.first + u];
+    const Composite<T>& subtree = p.composite[p.tree->dof_body[dof]];
+    force[dof] -= joint_floor<T>(subtree, p.kinematics.w[dof], p.kinematics.v[dof]) * rates(n)[u];
+  }
+}
+
 /// Rates of joint offsets as those of the unknowns: a free joint's offsets turn about the child's axes, its
 /// degrees of freedom about the parent's.
 template <class T>
@@ -144,7 +171,7 @@ void EndVelocities<T>::read_near(int n, std::span<const std::array<T, 6>> rate) 
 
 template <class T>
 void EndVelocities<T>::project(int n, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
-                               const History<T>& history) {
+                               std::span<const T> impulse, const History<T>& history) {
   const Part& part = parts_[n];
   TreeProblem<T>& p = *problems_[n];
   const Tree<T>& tree = *p.tree;
@@ -162,7 +189,10 @@ void EndVelocities<T>::project(int n, std::span<const Twist<T>> led, std::span<c
   }
   const std::span<T> projection = std::span(projection_).subspan(part.first_dof, tree.dofs);
   project_wrenches<T>(tree, k, p.force, p.moment, projection);
-  for (int u = 0; u < part.count; ++u) rates(n)[u] = projection[dof_[part.first + u]];
+  for (int u = 0; u < part.count; ++u) {
+    const int dof = dof_[part.first + u];
+    rates(n)[u] = projection[dof] + (impulse.empty() ? T(0) : impulse[dof]);
+  }
   solve_by_joints<T>(part.matrix, rates(n));
   for (int u = 0; u < part.count; ++u) rates(n)[u] += near_[part.first + u];
 }
@@ -177,37 +207,48 @@ typename EndVelocities<T>::Row* EndVelocities<T>::open_row(int tree, int other) 
   return &pressed_.back();
 }
 
-/// `entries` [unknown of its tree] of a side, those that are not 0. False where there is no room.
+/// Room for the entries of one side of a row, to which project_point and others add.
 template <class T>
-bool EndVelocities<T>::add_side(Row& row, int n, std::span<const T> entries) {
+void EndVelocities<T>::begin_side(int n) {
+  row_.assign(parts_[n].count, T(0));
+  on_path_.assign(problems_[n]->tree->bodies, 0);
+}
+
+template <class T>
+void EndVelocities<T>::mark_path(int n, int body) {
+  for (; body >= 0 && !on_path_[body]; body = problems_[n]->tree->parent[body]) on_path_[body] = 1;
+}
+
+/// Keeps the side that has been begun, in the order of its unknowns. False where there is no room.
+template <class T>
+bool EndVelocities<T>::add_side(Row& row, int n) {
   row.entry[n] = static_cast<int>(rows_.size());
-  row.answer[n] = static_cast<int>(answers_.size());
-  if (rows_.size() + entries.size() > rows_.capacity() ||
-      answers_.size() + entries.size() > answers_.capacity())
-    return false;
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    if (entries[k] == T(0)) continue;
-    rows_.push_back(entries[k]);
-    of_entry_.push_back(static_cast<int>(k));
-    ++row.count[n];
+  const Part& part = parts_[row.tree[n]];
+  for (std::size_t i = 0; i < on_path_.size(); ++i) {
+    const JointBlock& block = part.matrix.blocks[i];
+    for (int u = block.first; on_path_[i] && u < block.first + block.count; ++u) {
+      if (rows_.size() == rows_.capacity()) return false;
+      rows_.push_back(row_[u]);
+      of_entry_.push_back(u);
+      ++row.count[n];
+    }
   }
-  answers_.resize(answers_.size() + entries.size());
   return true;
 }
 
 /// Adds the speed of a body's point along `normal` per unit of each unknown's rate.
 template <class T>
-void EndVelocities<T>::project_point(int n, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign,
-                                     std::span<T> row) const {
+void EndVelocities<T>::project_point(int n, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign) {
   const Part& part = parts_[n];
   const Tree<T>& tree = *problems_[n]->tree;
   const Kinematics<T>& k = problems_[n]->kinematics;
+  mark_path(n, body);
   while (body >= 0 && tree.dof_count(body) == 0) body = tree.parent[body];
   if (body < 0) return;
   const Vec3<T> moment = point.cross(normal);
   for (int dof = tree.first_dof[body + 1] - 1; dof >= 0; dof = tree.dof_parent[dof]) {
     const int unknown = of_dof_[part.first_dof + dof];
-    if (unknown >= 0) row[unknown] += sign * (k.v[dof].dot(normal) + k.w[dof].dot(moment));
+    if (unknown >= 0) row_[unknown] += sign * (k.v[dof].dot(normal) + k.w[dof].dot(moment));
   }
 }
 
@@ -223,15 +264,15 @@ typename EndVelocities<T>::Row* EndVelocities<T>::add_point(const Contact<T>& c,
     for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(point);
     return sum.dot(direction);
   };
-  row_.assign(parts_[c.tree_a].count, T(0));
-  project_point(c.tree_a, c.body_a, point, direction, T(1), row_);
+  begin_side(c.tree_a);
+  project_point(c.tree_a, c.body_a, point, direction, T(1));
   row->given = given(c.tree_a, c.body_a);
-  if (c.tree_b == c.tree_a) project_point(c.tree_b, c.body_b, point, direction, T(-1), row_);
-  bool room = add_side(*row, 0, row_);
+  if (c.tree_b == c.tree_a) project_point(c.tree_b, c.body_b, point, direction, T(-1));
+  bool room = add_side(*row, 0);
   if (row->tree[1] >= 0) {
-    row_.assign(parts_[c.tree_b].count, T(0));
-    project_point(c.tree_b, c.body_b, point, direction, T(-1), row_);
-    room = room && add_side(*row, 1, row_);
+    begin_side(c.tree_b);
+    project_point(c.tree_b, c.body_b, point, direction, T(-1));
+    room = room && add_side(*row, 1);
   }
   if (c.tree_b >= 0) row->given -= given(c.tree_b, c.body_b);
   if (!room) pressed_.pop_back();
@@ -261,12 +302,13 @@ void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   Row* row = open_row(tree, -1);
   if (!row) return;
   row->most = most;
-  row_.assign(parts_[tree].count, T(0));
+  begin_side(tree);
+  mark_path(tree, problems_[tree]->tree->dof_body[joint.dof]);
   for (int a = 0; a < joint.count; ++a) {
     const int unknown = of_dof_[parts_[tree].first_dof + joint.dof + a];
     if (unknown >= 0) row_[unknown] -= joint.gradient[a];
   }
-  if (!add_side(*row, 0, row_)) pressed_.pop_back();
+  if (!add_side(*row, 0)) pressed_.pop_back();
 }
 
 /// Adds a row for Σ wᵢ vᵢ along `direction`, of no more than two trees.
@@ -287,16 +329,16 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
   row->most = std::numeric_limits<T>::max();
   bool room = true;
   for (int n = 0; n < row->sides(); ++n) {
-    row_.assign(parts_[trees[n]].count, T(0));
+    begin_side(trees[n]);
     for (int k = 0; k < e.count; ++k) {
       const CouplingNode<T>& node = coupling.nodes[e.node[k]];
       if (node.tree != trees[n]) continue;
-      project_point(node.tree, node.body, node.point, direction, e.weight[k], row_);
+      project_point(node.tree, node.body, node.point, direction, e.weight[k]);
       const Tree<T>& tree = *problems_[node.tree]->tree;
       for (int body = node.body; body >= 0; body = tree.parent[body])
         row->given += e.weight[k] * led_[parts_[node.tree].first_body + body].at(node.point).dot(direction);
     }
-    room = room && add_side(*row, n, row_);
+    room = room && add_side(*row, n);
   }
   if (!room) pressed_.pop_back();
 }
@@ -316,30 +358,44 @@ void EndVelocities<T>::add(const Coupling<T>& coupling, const Stencil<T>& e) {
   add_stencil(coupling, e, shortens, leads.dot(shortens), e.only_pulls ? T(0) : -kAnything);
 }
 
-/// Speed along a row.
+/// Speed along a row. Before anything has pushed its trees it is `given`.
 template <class T>
-T EndVelocities<T>::opening(const Row& row) const {
+T EndVelocities<T>::opening(Row& row) {
   T sum = row.given;
   for (int n = 0; n < row.sides(); ++n) {
-    const T* const rate = rates_.data() + parts_[row.tree[n]].first;
-    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) sum += rows_[k] * rate[of_entry_[k]];
+    if (!disturbed_[row.tree[n]]) continue;
+    (void)reduce(row);
+    const T* const done = done_.data() + parts_[row.tree[n]].first;
+    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) sum += rows_[k] * done[of_entry_[k]];
   }
   return sum;
 }
 
-/// What an impulse along a row does, worked out when it is first asked for. False: nothing.
+/// Turns a row's entries J into L⁻ᵀJᵀ, whose square is its mobility. False: nothing moves it.
 template <class T>
-bool EndVelocities<T>::know(Row& row) {
-  if (row.solved) return row.mobility > T(0);
-  row.solved = true;
+bool EndVelocities<T>::reduce(Row& row) {
+  if (row.reduced) return row.mobility > T(0);
+  row.reduced = true;
   for (int n = 0; n < row.sides(); ++n) {
-    const Part& part = parts_[row.tree[n]];
-    const std::span<T> answer = std::span(answers_).subspan(row.answer[n], part.count);
-    std::fill(answer.begin(), answer.end(), T(0));
-    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) answer[of_entry_[k]] = rows_[k];
-    solve_by_joints<T>(part.matrix, answer);
-    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k)
-      row.mobility += rows_[k] * answer[of_entry_[k]];
+    const ArticulatedParts<T>& m = parts_[row.tree[n]].matrix;
+    const int begin = row.entry[n], end = begin + row.count[n];
+    if (begin == end) continue;
+    begin_side(row.tree[n]);
+    const Tree<T>& tree = *problems_[row.tree[n]]->tree;
+    int last = 0;
+    for (int k = begin; k < end; ++k) {
+      row_[of_entry_[k]] = rows_[k];
+      last = tree.dof_body[dof_[parts_[row.tree[n]].first + of_entry_[k]]];
+      mark_path(row.tree[n], last);
+    }
+    for (int i = 0; i <= last; ++i)
+      if (on_path_[i]) m.force[i].setZero();
+    for (int i = last; i >= 0; --i)
+      if (on_path_[i]) reduce_joint<T>(m, i, row_);
+    for (int k = begin; k < end; ++k) {
+      rows_[k] = row_[of_entry_[k]];
+      row.mobility += rows_[k] * rows_[k];
+    }
   }
   return row.mobility > T(0);
 }
@@ -348,22 +404,41 @@ template <class T>
 void EndVelocities<T>::push(Row& row, T change) {
   row.impulse += change;
   for (int n = 0; n < row.sides(); ++n) {
-    const std::span<T> rate = rates(row.tree[n]);
-    const T* const answer = answers_.data() + row.answer[n];
-    for (std::size_t k = 0; k < rate.size(); ++k) rate[k] += change * answer[k];
+    disturbed_[row.tree[n]] = 1;
+    T* const done = done_.data() + parts_[row.tree[n]].first;
+    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) done[of_entry_[k]] += change * rows_[k];
+  }
+}
+
+/// What the impulses make of the rates.
+template <class T>
+void EndVelocities<T>::spread() {
+  for (std::size_t n = 0; n < parts_.size(); ++n) {
+    if (!disturbed_[n]) continue;
+    const std::span<T> done = std::span(done_).subspan(parts_[n].first, parts_[n].count);
+    expand_by_joints<T>(parts_[n].matrix, done);
+    for (int u = 0; u < parts_[n].count; ++u) rates(static_cast<int>(n))[u] += done[u];
   }
 }
 
 template <class T>
 void EndVelocities<T>::press() {
   if (pressed_.empty()) return;
+  disturbed_.assign(parts_.size(), 0);
+  std::fill(done_.begin(), done_.end(), T(0));
+  for (Row& row : pressed_)
+    for (int n = 0; n < row.sides(); ++n) {
+      const T* const rate = rates_.data() + parts_[row.tree[n]].first;
+      for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k)
+        row.given += rows_[k] * rate[of_entry_[k]];
+    }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     T most = T(0);
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
       Row& row = pressed_[at];
       const T opens = opening(row);
       const bool acts = opens < T(-kLeft) || (row.least < T(0) && opens > T(kLeft)) || row.impulse != T(0);
-      if (row.most > T(0) && acts && know(row)) {
+      if (row.most > T(0) && acts && reduce(row)) {
         const T change = std::clamp(row.impulse - opens / row.mobility, row.least, row.most) - row.impulse;
         push(row, change);
         most = std::max(most, std::abs(change * row.mobility));
@@ -381,7 +456,7 @@ void EndVelocities<T>::press() {
       if (all && against > T(kUsed) * used * speed) continue;
       T wanted[2];
       for (int a = 0; a < 2; ++a)
-        wanted[a] = know(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
+        wanted[a] = reduce(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
       const T size = length(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
       for (int a = 0; a < 2; ++a) {
         const T change = share * wanted[a] - rubs[a].impulse;
@@ -389,8 +464,9 @@ void EndVelocities<T>::press() {
         most = std::max(most, std::abs(change * rubs[a].mobility));
       }
     }
-    if (most < T(kLeft)) return;
+    if (most < T(kLeft)) break;
   }
+  spread();
 }
 
 template <class T>

@@ -46,11 +46,16 @@ class EndVelocities {
   /// matrix. `moved` and `turned` [body] are written. O(bodies).
   void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
 
-  /// Finds the rates of a tree's unknowns from the momenta of its history. Joints that no unknown moves have
-  /// the velocities `led` [body]. It solves for the change of `rate` [body], near to the answer, for the
-  /// matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
+  /// Takes out of generalised forces or impulses [dof] what the matrix' floor (composite.h) keeps from moving
+  /// anything, as it does for respond(): M of what its factor makes of them. O(bodies).
+  void settle(int tree, std::span<T> force);
+
+  /// Finds the rates of a tree's unknowns from the momenta of its history and the impulses `impulse` [dof]
+  /// (N·m·s, N·s; empty: none), whose response M⁻¹ need not be found to be projected: JᵀmJM⁻¹ is 1. Joints that
+  /// no unknown moves have the velocities `led` [body]. It solves for the change of `rate` [body], near to the
+  /// answer, for the matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
   void project(int tree, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
-               const History<T>& history);
+               std::span<const T> impulse, const History<T>& history);
 
   /// A contact may not close, as far as an impulse of `most` (N·s) can see to that; nor slide, as far as
   /// friction by that impulse and `cone` beside it (N·s) can, of which `rubbed` (on body a, world axes) has
@@ -60,7 +65,7 @@ class EndVelocities {
   void add(const Coupling<T>& coupling, const Stencil<T>& element);
   /// Nor may the scalar of a tree's joint row grow.
   void add(int tree, const JointRow<T>& row, T most);
-  /// Impulses that see to that. O(those that act · bodies).
+  /// Impulses that see to that. O(those that act · the depth of their bodies).
   void press();
 
   /// The velocities into a tree's history, and those of its unknowns into `rate` [body].
@@ -76,14 +81,13 @@ class EndVelocities {
   struct Row {
     int tree[2] = {-1, -1};
     int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_` and `of_entry_`
-    int answer[2] = {0, 0};                    ///< of a side in `answers_`: all its tree's unknowns
     int grips = 0;                             ///< 2: the next two rows are those of its friction
     T friction = T(0), cone = T(0);            ///< μ; N·s, beside what its own impulse allows
-    T given = T(0);                            ///< m/s or rad/s, of joints that no unknown moves
-    T mobility = T(0);                         ///< 1/kg; 0: not known yet
-    T impulse = T(0);                          ///< N·s, N·m·s
-    T least = T(0), most = T(0);               ///< of it
-    bool solved = false;
+    T given = T(0);               ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
+    T mobility = T(0);            ///< 1/kg
+    T impulse = T(0);             ///< N·s, N·m·s
+    T least = T(0), most = T(0);  ///< of it
+    bool reduced = false;         ///< its entries and mobility are known
     int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
 
@@ -91,19 +95,20 @@ class EndVelocities {
   void read_near(int tree, std::span<const std::array<T, 6>> rate);
   std::span<T> rates(int tree) { return std::span(rates_).subspan(parts_[tree].first, parts_[tree].count); }
   Row* open_row(int tree, int other);
-  bool add_side(Row& row, int n, std::span<const T> entries);
+  bool add_side(Row& row, int n);
   Row* add_point(const Contact<T>& contact, const Vec3<T>& point, const Vec3<T>& direction);
   void add_stencil(const Coupling<T>& coupling, const Stencil<T>& element, const Vec3<T>& direction, T speed,
                    T least);
-  T opening(const Row& row) const;
-  bool know(Row& row);
+  T opening(Row& row);
+  void spread();
+  bool reduce(Row& row);
   void push(Row& row, T change);
-  void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign,
-                     std::span<T> row) const;
+  void begin_side(int tree);
+  void mark_path(int tree, int body);
+  void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign);
 
   std::span<TreeProblem<T>* const> problems_;
   std::vector<Part> parts_;  ///< [tree]
-  Unknowns unknowns_;        ///< of one tree
   std::vector<int> of_dof_, dof_;
   std::vector<JointBlock> blocks_;
   std::vector<int> first_;
@@ -114,7 +119,13 @@ class EndVelocities {
   std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
   std::vector<int> of_entry_;  ///< unknown of its tree
-  std::vector<T> rows_, answers_, row_;
+  /// What a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ, all of it on the paths
+  /// of its bodies.
+  std::vector<T> rows_;
+  std::vector<T> row_;                  ///< [unknown] of one side
+  std::vector<std::uint8_t> on_path_;   ///< [body] of one side
+  std::vector<T> done_;                 ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
+  std::vector<std::uint8_t> disturbed_;  ///< [tree] it is not 0
 };
 
 extern template class EndVelocities<float>;

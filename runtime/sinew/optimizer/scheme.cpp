@@ -115,31 +115,31 @@ Mat3<T> locked_inertia(const Tree<T>& tree, const History<T>& history, const Vec
 }  // namespace
 
 template <class T>
-Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, const Vec3<T>& momentum, T h) {
-  using Vec4 = Eigen::Matrix<T, 4, 1>;
-  const auto spin = [&](const Quat<T>& q) {
-    return Vec3<T>(q * (inverse_inertia * (q.conjugate() * momentum)));
-  };
-  const auto rate = [&](const Vec4& coefficients) {
-    const Quat<T> q(Vec4(coefficients.normalized()));
-    const Vec3<T> w = spin(q) / 2;
-    return Vec4((Quat<T>(T(0), w.x(), w.y(), w.z()) * q).coeffs());
-  };
-  const T angle = std::abs(h) * spin(start).norm();
-  constexpr T kPart = T(0.1);
+Mat3<T> free_rotation(const Mat3<T>& inverse_inertia, const Mat3<T>& start, const Vec3<T>& momentum, T h) {
+  // In the body's axes: l = Rᵀ L and its derivatives, l' = l × ω, and those of ω = I⁻¹ l.
+  Vec3<T> l = start.transpose() * momentum, w = inverse_inertia * l;
+  const T angle = std::abs(h) * w.norm();
+  constexpr T kPart = T(0.15);
   const bool countable = angle < kPart * (kMostRotationParts - 1);  // not so where it is no number
   const int parts = countable ? static_cast<int>(angle / kPart) + 1 : kMostRotationParts;
-  const T part = h / T(parts);
-  Vec4 q = start.coeffs();
+  const T t = h / T(parts);
+  Mat3<T> rotation = start;
   for (int n = 0; n < parts; ++n) {
-    const Vec4 a = rate(q), b = rate(q + part / 2 * a), c = rate(q + part / 2 * b), d = rate(q + part * c);
-    q = (q + part / 6 * (a + 2 * b + 2 * c + d)).normalized();
+    const Vec3<T> l1 = l.cross(w), w1 = inverse_inertia * l1;
+    const Vec3<T> l2 = l1.cross(w) + l.cross(w1), w2 = inverse_inertia * l2;
+    const Vec3<T> l3 = l2.cross(w) + 2 * l1.cross(w1) + l.cross(w2), w3 = inverse_inertia * l3;
+    const Vec3<T> high = (2 * w2 + w.cross(w1)) / 12 + t / 24 * (w3 + w.cross(w2));
+    const Mat3<T> turn = rotation_exp<T>(t * (w + t * (w1 / 2 + t * high))).toRotationMatrix();
+    rotation = Mat3<T>(rotation * turn);
+    if (n + 1 == parts) break;
+    l = Vec3<T>(turn.transpose() * l);
+    w = inverse_inertia * l;
   }
-  return Quat<T>(q);
+  return rotation;
 }
 
-template Quat<float> free_rotation<float>(const Mat3<float>&, const Quat<float>&, const Vec3<float>&, float);
-template Quat<double> free_rotation<double>(const Mat3<double>&, const Quat<double>&, const Vec3<double>&,
+template Mat3<float> free_rotation<float>(const Mat3<float>&, const Mat3<float>&, const Vec3<float>&, float);
+template Mat3<double> free_rotation<double>(const Mat3<double>&, const Mat3<double>&, const Vec3<double>&,
                                             double);
 
 template <class T>
@@ -250,7 +250,7 @@ void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Pr
   const Mat3<T> inverse = (inertia + thin * Mat3<T>::Identity()).inverse();
   const Quat<T> now(r0);
   const auto turn = [&](T seconds) {
-    return Vec3<T>(rotation_log<T>(now.conjugate() * free_rotation<T>(inverse, now, momentum, seconds)));
+    return Vec3<T>(rotation_log<T>(now.conjugate() * Quat<T>(free_rotation<T>(inverse, r0, momentum, seconds))));
   };
   const Vec3<T> exact = turn(h);
   const Vec3<T> before =

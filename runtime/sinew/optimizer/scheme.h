@@ -172,13 +172,14 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
 
-/// Where a free body that is at `start` with the angular momentum L (world) is after h seconds, which may be
-/// negative: q̇ = ½ωq, ω = R I⁻¹ Rᵀ L, by Runge and Kutta's fourth order in parts of a tenth of a radian.
+/// Where a free body that is at `start` (body → world) with the angular momentum L (world) is after h seconds,
+/// which may be negative: Ṙ = R ω^, ω = I⁻¹ Rᵀ L, by Magnus's series of fourth order in parts of 0.15 rad
+/// (Hairer, Lubich and Wanner, "Geometric Numerical Integration", 2006, section IV.7).
 template <class T>
-Quat<T> free_rotation(const Mat3<T>& inverse_inertia, const Quat<T>& start, const Vec3<T>& momentum, T h);
-extern template Quat<float> free_rotation<float>(const Mat3<float>&, const Quat<float>&, const Vec3<float>&,
+Mat3<T> free_rotation(const Mat3<T>& inverse_inertia, const Mat3<T>& start, const Vec3<T>& momentum, T h);
+extern template Mat3<float> free_rotation<float>(const Mat3<float>&, const Mat3<float>&, const Vec3<float>&,
                                                  float);
-extern template Quat<double> free_rotation<double>(const Mat3<double>&, const Quat<double>&,
+extern template Mat3<double> free_rotation<double>(const Mat3<double>&, const Mat3<double>&,
                                                    const Vec3<double>&, double);
 
 /// Moves a history's place on to the root of `kinematics`; returns by how much.

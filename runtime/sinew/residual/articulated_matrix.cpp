@@ -18,7 +18,7 @@ void ArticulatedMatrix<T>::assemble(const Tree<T>& tree, const Kinematics<T>& ki
                                     std::span<Composite<T>> bodies, const Unknowns& unknowns,
                                     bool geometric) {
   size_ = unknowns.pattern.size;
-  assemble_joints<T>(tree, kin, bodies, unknowns, geometric, parts_);
+  assemble_joints<T>(tree, kin, bodies, unknowns.dof, geometric, parts_);
 }
 
 template <class T>

@@ -95,34 +95,40 @@ SpatialForm<T> form_of(const Composite<T>& c, bool geometric) {
           spatial<T>(Vec3<T>(arm.y(), -arm.x(), zero), Vec3<T>(zero, zero, c.mass))};
 }
 
-/// See ArticulatedMatrix::assemble.
+/// What stands under the diagonal entry of an unknown with the axis (w, v): see add_floor.
+template <class T>
+T joint_floor(const Composite<T>& subtree, const Vec3<T>& w, const Vec3<T>& v) {
+  const T inertia = T(Number<T>(kInertiaFloor)) * subtree.rotational.trace();
+  const T mass = T(Number<T>(kInertiaFloor)) * subtree.mass;
+  return mass * v.squaredNorm() + inertia * w.squaredNorm();
+}
+
+/// See ArticulatedMatrix::assemble. `dofs` [unknown]: the degree of freedom that each is.
 template <class T, class K>
 void assemble_joints(const Tree<Number<T>>& tree, const K& kin, std::span<Composite<T>> bodies,
-                     const Unknowns& unknowns, bool geometric, ArticulatedParts<T>& m) {
+                     std::span<const int> dofs, bool geometric, ArticulatedParts<T>& m) {
   m.bodies = tree.bodies;
-  int next = unknowns.pattern.size;  // unknowns of the bodies after this one begin here
+  int next = static_cast<int>(dofs.size());  // unknowns of the bodies after this one begin here
   for (int i = tree.bodies - 1; i >= 0; --i) {
     const Composite<T>& c = bodies[i];
     const int end = next;
-    while (next > 0 && tree.dof_body[unknowns.dof[next - 1]] == i) --next;
+    while (next > 0 && tree.dof_body[dofs[next - 1]] == i) --next;
     m.blocks[i] = {tree.parent[i], next, end - next, false};
     if (end > next) {
       const SpatialForm<T> form = form_of(c, geometric);
       const bool one_rotation_vector = tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree;
-      const T inertia = T(Number<T>(kInertiaFloor)) * c.rotational.trace();
-      const T mass = T(Number<T>(kInertiaFloor)) * c.mass;
       for (int k = next; k < end; ++k) {
-        const Vec3<T>&w = kin.w[unknowns.dof[k]], &v = kin.v[unknowns.dof[k]];
+        const Vec3<T>&w = kin.w[dofs[k]], &v = kin.v[dofs[k]];
         m.first[k] = next;
         m.axes[k] = spatial<T>(w, v);
         m.moved[k] = spatial_product<T>(form, m.axes[k]);
         for (int l = next; l <= k; ++l) {
           T& entry = m.own_entry(k, l) = spatial_dot<T>(m.axes[l], m.moved[k]);
           // One rotation vector: neither axis acts first.
-          if (one_rotation_vector && l < k && !slides(tree, unknowns.dof[l]))
+          if (one_rotation_vector && l < k && !slides(tree, dofs[l]))
             entry = T(0.5) * (entry + spatial_dot<T>(m.axes[k], m.moved[l]));
         }
-        m.own_entry(k, k) += mass * v.squaredNorm() + inertia * w.squaredNorm();
+        m.own_entry(k, k) += joint_floor<T>(c, w, v);
       }
     }
     if (const int p = tree.parent[i]; p >= 0) bodies[p] += c;
@@ -208,23 +214,33 @@ auto factorise_joints(const ArticulatedParts<T>& m) {
   return definite;
 }
 
-/// Solves H·x = b in place, with the factor that factorise_joints left.
+/// Body i's part of reduce_by_joints, after those below it.
 template <class T>
-void solve_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
-  for (int i = 0; i < m.bodies; ++i) m.force[i].setZero();
-  for (int i = m.bodies - 1; i >= 0; --i) {
-    const JointBlock& b = m.blocks[i];
-    const SpatialVector<T> below = m.force[i];
-    SpatialVector<T> force = below;
-    for (int k = b.first; k < b.first + b.count; ++k) {
-      const JointBlockRow<T>& row = m.factor[k];
-      x[k] -= spatial_dot<T>(m.axes[k], below);
-      for (int l = b.first; l < k; ++l) x[k] -= row[l - b.first] * x[l];
-      x[k] *= row[k - b.first];
-      force += x[k] * m.reduced[k];
-    }
-    if (b.parent >= 0) m.force[b.parent] += force;
+void reduce_joint(const ArticulatedParts<T>& m, int i, std::span<T> x) {
+  const JointBlock& b = m.blocks[i];
+  const SpatialVector<T> below = m.force[i];
+  SpatialVector<T> force = below;
+  for (int k = b.first; k < b.first + b.count; ++k) {
+    const JointBlockRow<T>& row = m.factor[k];
+    x[k] -= spatial_dot<T>(m.axes[k], below);
+    for (int l = b.first; l < k; ++l) x[k] -= row[l - b.first] * x[l];
+    x[k] *= row[k - b.first];
+    force += x[k] * m.reduced[k];
   }
+  if (b.parent >= 0) m.force[b.parent] += force;
+}
+
+/// Half of a solve with the factor that factorise_joints left, H = LᵀL: x ← L⁻ᵀx in place, from the leaves to
+/// the root.
+template <class T>
+void reduce_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
+  for (int i = 0; i < m.bodies; ++i) m.force[i].setZero();
+  for (int i = m.bodies - 1; i >= 0; --i) reduce_joint<T>(m, i, x);
+}
+
+/// The other half, x ← L⁻¹x.
+template <class T>
+void expand_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
   for (int i = 0; i < m.bodies; ++i) {
     const JointBlock& b = m.blocks[i];
     SpatialVector<T> motion = SpatialVector<T>::Zero();
@@ -238,6 +254,13 @@ void solve_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
     }
     m.motion[i] = motion;
   }
+}
+
+/// Solves H·x = b in place.
+template <class T>
+void solve_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
+  reduce_by_joints<T>(m, x);
+  expand_by_joints<T>(m, x);
 }
 
 }  // namespace sinew

@@ -58,7 +58,7 @@ class PackInner {
   void build() {
     PackProblem<P>& p = *problem_;
     inertial_composite<P>(p);
-    assemble_joints<P>(*p.tree, p.kinematics, p.composite, *unknowns_, true, matrix_);
+    assemble_joints<P>(*p.tree, p.kinematics, p.composite, unknowns_->dof, true, matrix_);
     add_joint_geometry();
     if (!p.alike) leave_out();
     std::swap(p.rows, p.model_rows);
