@@ -13,6 +13,14 @@ constexpr double kUsed = 0.98;   ///< of friction: all
 constexpr double kStill = 1e-4;  ///< m/s: what slides as slowly is held by the next step's friction
 constexpr double kLeft = 1e-5;   ///< m/s, rad/s: of what closes
 
+/// Of as many entries as a has.
+template <class T>
+T dot(std::span<const T> a, std::span<const T> b) {
+  using Entries = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+  const Eigen::Map<const Entries> x(a.data(), std::ssize(a)), y(b.data(), std::ssize(a));
+  return x.dot(y);
+}
+
 /// The mass matrix over some degrees of freedom, as if every other joint were locked.
 template <class T>
 void factorise_masses(TreeProblem<T>& p, std::span<const int> dofs, ArticulatedParts<T>& out) {
@@ -43,7 +51,6 @@ void EndVelocities<T>::reserve(const SolveRoom& room) {
   for (auto* v : {&led_, &twist_}) v->resize(room.bodies);
   pressed_.reserve(kMost);
   rows_.reserve(kMost * room.dofs);
-  of_entry_.reserve(kMost * room.dofs);
   row_.reserve(room.dofs);
   on_path_.reserve(room.bodies);
   done_.resize(room.dofs);
@@ -54,7 +61,7 @@ template <class T>
 std::size_t EndVelocities<T>::bytes(const SolveRoom& room) {
   return room.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs) +
          room.dofs * (5 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
-         kMost * (sizeof(Row) + (sizeof(T) + sizeof(int)) * room.dofs);
+         kMost * (sizeof(Row) + sizeof(T) * room.dofs);
 }
 
 template <class T>
@@ -63,7 +70,6 @@ void EndVelocities<T>::begin(std::span<TreeProblem<T>* const> problems, std::spa
   parts_.clear();
   pressed_.clear();
   rows_.clear();
-  of_entry_.clear();
   Part next;
   for (TreeProblem<T>* problem : problems) {
     const Tree<T>& tree = *problem->tree;
@@ -211,28 +217,16 @@ typename EndVelocities<T>::Row* EndVelocities<T>::open_row(int tree, int other) 
 template <class T>
 void EndVelocities<T>::begin_side(int n) {
   row_.assign(parts_[n].count, T(0));
-  on_path_.assign(problems_[n]->tree->bodies, 0);
 }
 
-template <class T>
-void EndVelocities<T>::mark_path(int n, int body) {
-  for (; body >= 0 && !on_path_[body]; body = problems_[n]->tree->parent[body]) on_path_[body] = 1;
-}
-
-/// Keeps the side that has been begun, in the order of its unknowns. False where there is no room.
+/// Keeps the side that has been begun. False where there is no room.
 template <class T>
 bool EndVelocities<T>::add_side(Row& row, int n) {
   row.entry[n] = static_cast<int>(rows_.size());
-  const Part& part = parts_[row.tree[n]];
-  for (std::size_t i = 0; i < on_path_.size(); ++i) {
-    const JointBlock& block = part.matrix.blocks[i];
-    for (int u = block.first; on_path_[i] && u < block.first + block.count; ++u) {
-      if (rows_.size() == rows_.capacity()) return false;
-      rows_.push_back(row_[u]);
-      of_entry_.push_back(u);
-      ++row.count[n];
-    }
-  }
+  row.count[n] = static_cast<int>(row_.size());
+  while (row.count[n] > 0 && row_[row.count[n] - 1] == T(0)) --row.count[n];
+  if (rows_.size() + row.count[n] > rows_.capacity()) return false;
+  rows_.insert(rows_.end(), row_.begin(), row_.begin() + row.count[n]);
   return true;
 }
 
@@ -242,7 +236,6 @@ void EndVelocities<T>::project_point(int n, int body, const Vec3<T>& point, cons
   const Part& part = parts_[n];
   const Tree<T>& tree = *problems_[n]->tree;
   const Kinematics<T>& k = problems_[n]->kinematics;
-  mark_path(n, body);
   while (body >= 0 && tree.dof_count(body) == 0) body = tree.parent[body];
   if (body < 0) return;
   const Vec3<T> moment = point.cross(normal);
@@ -303,7 +296,6 @@ void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   if (!row) return;
   row->most = most;
   begin_side(tree);
-  mark_path(tree, problems_[tree]->tree->dof_body[joint.dof]);
   for (int a = 0; a < joint.count; ++a) {
     const int unknown = of_dof_[parts_[tree].first_dof + joint.dof + a];
     if (unknown >= 0) row_[unknown] -= joint.gradient[a];
@@ -365,37 +357,34 @@ T EndVelocities<T>::opening(Row& row) {
   for (int n = 0; n < row.sides(); ++n) {
     if (!disturbed_[row.tree[n]]) continue;
     (void)reduce(row);
-    const T* const done = done_.data() + parts_[row.tree[n]].first;
-    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) sum += rows_[k] * done[of_entry_[k]];
+    sum += dot<T>(side(row, n), std::span(done_).subspan(parts_[row.tree[n]].first));
   }
   return sum;
 }
 
-/// Turns a row's entries J into L⁻ᵀJᵀ, whose square is its mobility. False: nothing moves it.
+/// Turns a row's entries J into L⁻ᵀJᵀ, whose square is its mobility: along the paths of its bodies. False:
+/// nothing moves it.
 template <class T>
 bool EndVelocities<T>::reduce(Row& row) {
   if (row.reduced) return row.mobility > T(0);
   row.reduced = true;
   for (int n = 0; n < row.sides(); ++n) {
+    const std::span<T> entries = side(row, n);
+    if (entries.empty()) continue;
     const ArticulatedParts<T>& m = parts_[row.tree[n]].matrix;
-    const int begin = row.entry[n], end = begin + row.count[n];
-    if (begin == end) continue;
-    begin_side(row.tree[n]);
-    const Tree<T>& tree = *problems_[row.tree[n]]->tree;
     int last = 0;
-    for (int k = begin; k < end; ++k) {
-      row_[of_entry_[k]] = rows_[k];
-      last = tree.dof_body[dof_[parts_[row.tree[n]].first + of_entry_[k]]];
-      mark_path(row.tree[n], last);
+    on_path_.assign(m.bodies, 0);
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (entries[k] == T(0)) continue;
+      last = problems_[row.tree[n]]->tree->dof_body[dof_[parts_[row.tree[n]].first + k]];
+      for (int i = last; i >= 0 && !on_path_[i]; i = m.blocks[i].parent) {
+        on_path_[i] = 1;
+        m.force[i].setZero();
+      }
     }
-    for (int i = 0; i <= last; ++i)
-      if (on_path_[i]) m.force[i].setZero();
     for (int i = last; i >= 0; --i)
-      if (on_path_[i]) reduce_joint<T>(m, i, row_);
-    for (int k = begin; k < end; ++k) {
-      rows_[k] = row_[of_entry_[k]];
-      row.mobility += rows_[k] * rows_[k];
-    }
+      if (on_path_[i]) reduce_joint<T>(m, i, entries);
+    row.mobility += dot<T>(entries, entries);
   }
   return row.mobility > T(0);
 }
@@ -405,8 +394,10 @@ void EndVelocities<T>::push(Row& row, T change) {
   row.impulse += change;
   for (int n = 0; n < row.sides(); ++n) {
     disturbed_[row.tree[n]] = 1;
-    T* const done = done_.data() + parts_[row.tree[n]].first;
-    for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k) done[of_entry_[k]] += change * rows_[k];
+    const std::span<const T> entries = side(row, n);
+    using Entries = Eigen::Array<T, Eigen::Dynamic, 1>;
+    Eigen::Map<Entries>(done_.data() + parts_[row.tree[n]].first, std::ssize(entries)) +=
+        change * Eigen::Map<const Entries>(entries.data(), std::ssize(entries));
   }
 }
 
@@ -427,11 +418,7 @@ void EndVelocities<T>::press() {
   disturbed_.assign(parts_.size(), 0);
   std::fill(done_.begin(), done_.end(), T(0));
   for (Row& row : pressed_)
-    for (int n = 0; n < row.sides(); ++n) {
-      const T* const rate = rates_.data() + parts_[row.tree[n]].first;
-      for (int k = row.entry[n]; k < row.entry[n] + row.count[n]; ++k)
-        row.given += rows_[k] * rate[of_entry_[k]];
-    }
+    for (int n = 0; n < row.sides(); ++n) row.given += dot<T>(side(row, n), rates(row.tree[n]));
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     T most = T(0);
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {

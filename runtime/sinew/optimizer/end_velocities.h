@@ -80,10 +80,10 @@ class EndVelocities {
   };
   struct Row {
     int tree[2] = {-1, -1};
-    int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_` and `of_entry_`
+    int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_`: its tree's unknowns, to the last that acts
     int grips = 0;                             ///< 2: the next two rows are those of its friction
     T friction = T(0), cone = T(0);            ///< μ; N·s, beside what its own impulse allows
-    T given = T(0);               ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
+    T given = T(0);  ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
     T mobility = T(0);            ///< 1/kg
     T impulse = T(0);             ///< N·s, N·m·s
     T least = T(0), most = T(0);  ///< of it
@@ -104,7 +104,7 @@ class EndVelocities {
   bool reduce(Row& row);
   void push(Row& row, T change);
   void begin_side(int tree);
-  void mark_path(int tree, int body);
+  std::span<T> side(const Row& row, int n) { return std::span(rows_).subspan(row.entry[n], row.count[n]); }
   void project_point(int tree, int body, const Vec3<T>& point, const Vec3<T>& normal, T sign);
 
   std::span<TreeProblem<T>* const> problems_;
@@ -118,13 +118,10 @@ class EndVelocities {
   std::vector<T> rates_, near_, projection_;
   std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
-  std::vector<int> of_entry_;  ///< unknown of its tree
-  /// What a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ, all of it on the paths
-  /// of its bodies.
-  std::vector<T> rows_;
-  std::vector<T> row_;                  ///< [unknown] of one side
-  std::vector<std::uint8_t> on_path_;   ///< [body] of one side
-  std::vector<T> done_;                 ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
+  std::vector<T> rows_;  ///< what a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ
+  std::vector<T> row_;   ///< [unknown] of one side
+  std::vector<std::uint8_t> on_path_;    ///< [body] the same
+  std::vector<T> done_;                  ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
   std::vector<std::uint8_t> disturbed_;  ///< [tree] it is not 0
 };
 
