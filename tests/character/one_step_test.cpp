@@ -12,7 +12,6 @@ namespace {
 
 WorldSettings one_step(double tolerance = 3e-5) {
   WorldSettings settings;
-  settings.accuracy.scheme = Scheme::kBossak;
   settings.accuracy.tolerance = tolerance;
   return settings;
 }

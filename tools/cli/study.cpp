@@ -83,13 +83,13 @@ convert::Error StabilityCommand::run() const {
     if (!only.empty()) std::printf("%s\n", study::set_up_of(result.hard_case).c_str());
     std::fflush(stdout);
   };
-  const auto results = study::run_stability({quick, only, bdf2 ? Scheme::kBdf2 : Scheme::kBossak},
+  const auto results = study::run_stability({quick, only},
                                             json_output ? progress_line("stability") : nullptr, print);
   if (results.empty()) return {"there is no hard case '" + only + "'"};
   const nlohmann::json summary = study::stability_json(results);
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))
     return error;
-  if (only.empty() && !json_output && !bdf2)  // the maps have every scheme
+  if (only.empty() && !json_output)
     if (convert::Error error = draw_maps(directory, quick)) return error;
   if (json_output)
     std::puts(summary.dump().c_str());

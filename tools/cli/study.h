@@ -9,7 +9,7 @@ namespace sinew::cli {
 
 struct StabilityCommand {
   std::string directory = "out/study", only;
-  bool quick = false, json_output = false, bdf2 = false;
+  bool quick = false, json_output = false;
 
   convert::Error run() const;
 };

@@ -45,7 +45,6 @@ int main(int argc, char** argv) try {
   hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
   hard->add_option("--case", stability.only, "run one case");
   hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
-  hard->add_flag("--bdf2", stability.bdf2, "with bdf2 in place of Bossak's scheme");
   hard->add_flag("--json", stability.json_output);
   cli::TablesCommand tables;
   auto* paper = study->add_subcommand("tables",

@@ -15,7 +15,6 @@ using nlohmann::json;
 MeasuredAccuracy read(const json& from, const std::string& name) {
   MeasuredAccuracy m;
   m.name = name;
-  m.accuracy.scheme = schemes().at(from.at("scheme"));
   m.accuracy.substeps = from.at("substeps");
   m.accuracy.tolerance = from.at("tolerance");
   m.double_precision = from.at("precision") == "double";
@@ -46,20 +45,6 @@ std::string figure(double value, const char* unit) {
 }
 
 }  // namespace
-
-const std::map<std::string, Scheme>& schemes() {
-  static const std::map<std::string, Scheme> all{{"momentum", Scheme::kMomentum},
-                                                 {"bdf1", Scheme::kBdf1},
-                                                 {"bdf2", Scheme::kBdf2},
-                                                 {"bossak", Scheme::kBossak}};
-  return all;
-}
-
-std::string name_of(Scheme scheme) {
-  const auto named = std::find_if(schemes().begin(), schemes().end(),
-                                  [&](const auto& entry) { return entry.second == scheme; });
-  return named == schemes().end() ? std::string() : named->first;
-}
 
 const std::vector<MeasuredAccuracy>& accuracy_presets() {
   static const std::vector<MeasuredAccuracy> presets = [] {
@@ -129,7 +114,6 @@ convert::Error within_budget(const std::string& wanted, MeasuredAccuracy& out) {
 
 void set_accuracy(const MeasuredAccuracy& measured, double frame_rate, Accuracy& accuracy,
                   bool& double_precision) {
-  accuracy.scheme = measured.accuracy.scheme;
   accuracy.tolerance = measured.accuracy.tolerance;
   accuracy.substeps =
       std::max(1, static_cast<int>(std::ceil(measured.accuracy.substeps * 60 / frame_rate - 1e-9)));

@@ -3,7 +3,6 @@
 // built in.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -24,10 +23,6 @@ struct MeasuredAccuracy {
 /// What was measured may be off by so much on a scene that nobody measured: the dial asks for that much less.
 constexpr double kDialSafety = 2;
 
-/// Names of schemes in scenes and measured settings.
-const std::map<std::string, Scheme>& schemes();
-std::string name_of(Scheme scheme);
-
 const std::vector<MeasuredAccuracy>& accuracy_presets();
 const std::vector<MeasuredAccuracy>& accuracy_front();
 
@@ -37,7 +32,7 @@ convert::Error within_error(const std::string& wanted, MeasuredAccuracy& out);
 /// The most accurate that costs no more: "20us", "1ms".
 convert::Error within_budget(const std::string& wanted, MeasuredAccuracy& out);
 
-/// Takes scheme, substeps and tolerance over for steps of 1/frame_rate s; what says how a scene behaves
+/// Takes substeps and tolerance over for steps of 1/frame_rate s; what says how a scene behaves
 /// (contacts, limits, return time) stays.
 void set_accuracy(const MeasuredAccuracy& measured, double frame_rate, Accuracy& accuracy,
                   bool& double_precision);

@@ -209,17 +209,12 @@ void read_accuracy(const json& value, Scene& s) {
   MeasuredAccuracy preset;
   const json named = value.is_string() ? json{{"preset", value}} : value;
   const Reader a(named, "accuracy",
-                 {"preset", "scheme", "tolerance", "max_iterations", "substeps", "max_rotation",
+                 {"preset", "tolerance", "max_iterations", "substeps", "max_rotation",
                   "impact_step", "max_splits", "sink_depth", "contact_damping", "stick_speed",
                   "limit_stiffness", "limit_damping", "return_time", "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
     set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);
-  }
-  if (a.has("scheme")) {
-    const auto scheme = schemes().find(a.text("scheme", ""));
-    if (scheme == schemes().end()) fail("accuracy.scheme", "is momentum, bdf1, bdf2 or bossak");
-    s.world.accuracy.scheme = scheme->second;
   }
   s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
   s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);

@@ -64,7 +64,7 @@ int run_quietly(const char* program, const std::string& argument) {
 
 std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
   std::string csv =
-      "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,bdf2,contacts,"
+      "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,contacts,"
       "penetration_m,kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,"
       "plotted_limit_Nm,elastic_J,substeps,estimated_error_m";
   const std::vector<std::string> names = body_names(scene);
@@ -73,9 +73,9 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
   for (const TelemetryRow& r : telemetry.rows) {
     const SceneCharacter& c = scene.characters[r.character];
     const Skeleton& skeleton = c.asset->skeleton;
-    csv += fmt::format("{:.6f},{},{},{},{:.2f},{},{},{:d},{:d},{},{:.6f},{:.6f},{:.6f},{},{:.4f}", r.time,
+    csv += fmt::format("{:.6f},{},{},{},{:.2f},{},{},{:d},{},{:.6f},{:.6f},{:.6f},{},{:.4f}", r.time,
                        field(c.name), r.report.dofs, r.report.unknown_dofs, r.microseconds,
-                       r.report.outer_passes, r.report.factorisations, r.report.converged, r.report.used_bdf2,
+                       r.report.outer_passes, r.report.factorisations, r.report.converged,
                        r.report.contacts, r.report.penetration, r.report.kinetic_energy,
                        r.report.potential_energy, field(skeleton.joints[r.loaded_joint].name), r.load);
     csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{},{:.3e}", r.torque, r.limit, r.plotted_torque,

@@ -32,7 +32,7 @@ std::vector<DialPoint> candidates(bool quick) {
   std::vector<DialPoint> out;
   const std::vector<int> substeps =
       quick ? std::vector{1, 4} : std::vector{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48};
-  for (const char* option : {"bdf1 float", "bdf2 float", "bossak float", "bdf2 double", "bossak double"})
+  for (const char* option : {"bossak float", "bossak double"})
     for (const int parts : substeps)
       for (const double tolerance : {3e-4, 3e-5, 1e-6, 1e-7}) {
         if (quick && tolerance != 3e-5) continue;
@@ -41,7 +41,6 @@ std::vector<DialPoint> candidates(bool quick) {
         p.option = option_named(option);
         p.accuracy.substeps = parts;
         p.accuracy.tolerance = tolerance;
-        p.accuracy.scheme = scene::schemes().at(std::string(option).substr(0, std::string(option).find(' ')));
       }
   return out;
 }
@@ -54,8 +53,7 @@ double median_us(const AccuracyScene& scene, const DialPoint& p, int runs) {
 }
 
 nlohmann::json as_json(const DialPoint& p) {
-  return {{"scheme", scene::name_of(p.accuracy.scheme)},
-          {"substeps", p.accuracy.substeps},
+  return {{"substeps", p.accuracy.substeps},
           {"tolerance", p.accuracy.tolerance},
           {"precision", p.precise() ? "double" : "float"},
           {"error_m", p.error},
@@ -78,7 +76,7 @@ std::vector<DialPoint> measure_dial(bool quick, const std::function<void(int, in
     const std::vector<std::string> counted = dial_scenes();
     if (scene.scene.figures.empty() || std::find(counted.begin(), counted.end(), scene.name) == counted.end())
       continue;
-    const Track truth = converged(scene, option_named("bdf2 double"), quick);
+    const Track truth = converged(scene, option_named("bossak double"), quick);
     for (DialPoint& p : points) {
       const Trip trip = travel(scene, p.option, kFrame, p.accuracy, true);
       const double error = trip.survived ? apart(scene, trip.track, truth) : INFINITY;
@@ -145,16 +143,14 @@ std::string dial_header(const nlohmann::json& dial) {
       "};\n\n";
   for (const auto& [name, p] : dial["presets"].items()) {
     char line[400];
-    std::string scheme = p["scheme"];
-    scheme[0] = static_cast<char>(std::toupper(scheme[0]));
     std::snprintf(line, sizeof line,
                   "/// For %s. Within %.2g m of a converged run; %.0f µs per 1/60 s\n"
                   "/// while pushed, %.0f µs while collapsing.\n"
                   "inline constexpr AccuracyPreset k%c%sPreset{\n"
-                  "    \"%s\", %s, {.scheme = Scheme::k%s, .tolerance = %g, .substeps = %d}, %.2g};\n",
+                  "    \"%s\", %s, {.tolerance = %g, .substeps = %d}, %.2g};\n",
                   p["for"].get<std::string>().c_str(), p["error_m"].get<double>(), p["us"].get<double>(),
                   p["us_limp"].get<double>(), std::toupper(name[0]), name.c_str() + 1, name.c_str(),
-                  p["precision"] == "double" ? "true" : "false", scheme.c_str(), p["tolerance"].get<double>(),
+                  p["precision"] == "double" ? "true" : "false", p["tolerance"].get<double>(),
                   p["substeps"].get<int>(), p["error_m"].get<double>());
     text += line;
   }

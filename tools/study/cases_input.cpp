@@ -272,7 +272,6 @@ std::vector<Transform<T>> flown_in_parts(scene::Scene scene, double h, int subst
                                          bool& counted) {
   Accuracy& accuracy = scene.world.accuracy = {};
   accuracy.substeps = substeps;
-  accuracy.start_parts = 1;  // to compare like with like
   if (sizeof(T) == 8) accuracy.tolerance = 1e-7;
   scene.characters[0].speeds.random = 2;
   Stage<T> stage(scene);
@@ -321,10 +320,9 @@ Verdict momentum_scheme(const Trial& t) {
   Measurement measured;
   for (unsigned seed = 1; seed <= (t.quick ? 3u : 20u); ++seed) {
     scene::Scene scene = t.scene;
-    scene.world.accuracy.scheme = Scheme::kMomentum;
     scene.characters[0].speeds.random = 2;
     scene.characters[0].speeds.seed = seed;
-    Stage<T> stage(scene);
+    Stage<T> stage(scene, Compared::kMomentum);
     stage.run(3, t.h);
     measured.merge(stage.measured());
   }

@@ -3,6 +3,7 @@
 #include "sinew/effects/continuous_detection.h"
 #include "study/bodies.h"
 #include "study/engine.h"
+#include "study/schemes/schemes.h"
 
 namespace sinew::study {
 namespace {
@@ -24,8 +25,9 @@ std::vector<JointJet<T>> cast(const std::vector<JointJet<double>>& jets) {
 template <class T>
 class SinewEngine : public Engine {
  public:
-  SinewEngine(const EngineScene& scene, double h, const Accuracy& accuracy)
+  SinewEngine(const EngineScene& scene, double h, const Accuracy& accuracy, Compared scheme)
       : h_(h), world_(settings(scene, accuracy)) {
+    if (const Status status = declare_scheme(scheme, world_); !status) refusal_ = status.reason;
     if (const Status status = world_.template declare<ContinuousDetection>(); !status)
       refusal_ = status.reason;
     for (const Figure& figure : scene.figures) {
@@ -112,11 +114,9 @@ class SinewEngine : public Engine {
   std::vector<std::byte> snapshot_;
 };
 
-template <class T, Scheme scheme>
+template <class T, Compared scheme>
 std::unique_ptr<Engine> make(const EngineScene& scene, double h, const Accuracy& accuracy) {
-  Accuracy with = accuracy;
-  with.scheme = scheme;
-  return std::make_unique<SinewEngine<T>>(scene, h, with);
+  return std::make_unique<SinewEngine<T>>(scene, h, accuracy, scheme);
 }
 
 }  // namespace
@@ -126,18 +126,18 @@ Figure resting(const Skeleton& skeleton) {
 }
 
 std::vector<EngineOption> sinew_options() {
-  return {{"Sinew", "bossak float", make<float, Scheme::kBossak>},
-          {"Sinew", "bdf2 float", make<float, Scheme::kBdf2>},
-          {"Sinew", "bdf1 float", make<float, Scheme::kBdf1>},
-          {"Sinew", "momentum float", make<float, Scheme::kMomentum>},
-          {"Sinew", "bdf2 double", make<double, Scheme::kBdf2>},
-          {"Sinew", "bdf1 double", make<double, Scheme::kBdf1>},
-          {"Sinew", "bossak double", make<double, Scheme::kBossak>},
-          {"Sinew", "momentum double", make<double, Scheme::kMomentum>}};
+  return {{"Sinew", "bossak float", make<float, Compared::kBossak>},
+          {"Sinew", "bdf2 float", make<float, Compared::kBdf2>},
+          {"Sinew", "bdf1 float", make<float, Compared::kBdf1>},
+          {"Sinew", "momentum float", make<float, Compared::kMomentum>},
+          {"Sinew", "bdf2 double", make<double, Compared::kBdf2>},
+          {"Sinew", "bdf1 double", make<double, Compared::kBdf1>},
+          {"Sinew", "bossak double", make<double, Compared::kBossak>},
+          {"Sinew", "momentum double", make<double, Compared::kMomentum>}};
 }
 
 EngineOption most_accurate_option() {
-  return {"Sinew", "bdf2 double", make<double, Scheme::kBdf2>};
+  return {"Sinew", "bossak double", make<double, Compared::kBossak>};
 }
 
 std::vector<EngineOption> peer_options() {

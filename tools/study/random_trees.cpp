@@ -115,7 +115,6 @@ std::string fault_of_tree(std::uint64_t seed, Measurement& measured) {
   const Skeleton tree = random_tree(seed);
   Dice dice(~seed);
   WorldSettings settings;
-  settings.accuracy.scheme = dice.below(2) ? Scheme::kBossak : Scheme::kBdf1;
   const double h = 1 / dice.uniform(30, 240);
   Stage<T> stage(settings);
   std::vector<JointJet<T>> jets = rest_jets<T>(tree);

@@ -31,7 +31,7 @@ std::vector<HardCase> hard_cases() {
   return all;
 }
 
-StabilityResult run_case(const HardCase& hard_case, bool quick, Scheme scheme) {
+StabilityResult run_case(const HardCase& hard_case, bool quick) {
   StabilityResult result;
   result.hard_case = hard_case;
   result.reason = hard_case.unsupported;
@@ -42,7 +42,6 @@ StabilityResult run_case(const HardCase& hard_case, bool quick, Scheme scheme) {
       result.reason = error.message;
       return result;
     }
-  if (trial.scene.world.accuracy.scheme == Accuracy{}.scheme) trial.scene.world.accuracy.scheme = scheme;
   for (const double h : hard_case.steps) {
     trial.h = h;
     if (hard_case.in_float) result.rows.push_back(run_row(hard_case.in_float, trial, true));
@@ -62,7 +61,7 @@ std::vector<StabilityResult> run_stability(const StabilityOptions& options,
   if (!options.only.empty()) std::erase_if(cases, [&](const HardCase& c) { return c.name != options.only; });
   std::vector<StabilityResult> results;
   for (const HardCase& c : cases) {
-    results.push_back(run_case(c, options.quick, options.scheme));
+    results.push_back(run_case(c, options.quick));
     if (finished) finished(results.back());
     if (progress) progress(static_cast<int>(results.size()), static_cast<int>(cases.size()));
   }

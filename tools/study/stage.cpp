@@ -81,15 +81,15 @@ Energy energy_of(const Skeleton& skeleton, const std::vector<JointJet<T>>& jets,
 }
 
 template <class T>
-Stage<T>::Stage(const WorldSettings& settings)
+Stage<T>::Stage(const WorldSettings& settings, Compared scheme)
     : settings_(settings), world_(std::make_unique<World<T>>(settings)) {
   for (const Status& status :
-       {world_->template declare<ContinuousDetection>(), world_->template declare<Restitution>()})
+       {declare_scheme(scheme, *world_), world_->template declare<ContinuousDetection>(), world_->template declare<Restitution>()})
     if (!status) m_.refused = status.reason;
 }
 
 template <class T>
-Stage<T>::Stage(const scene::Scene& scene) : Stage(scene.world) {
+Stage<T>::Stage(const scene::Scene& scene, Compared scheme) : Stage(scene.world, scheme) {
   script_ = std::make_unique<Script>(scene, *world_);
   if (convert::Error error = script_->play.set_up()) {
     refuse(error.message);

@@ -10,6 +10,7 @@
 #include "scene/play.h"
 #include "sinew/character/world.h"
 #include "sinew/residual/tree.h"
+#include "study/schemes/schemes.h"
 
 namespace sinew::study {
 
@@ -45,9 +46,9 @@ struct Measurement {
 template <class T>
 class Stage {
  public:
-  explicit Stage(const WorldSettings& settings);
+  explicit Stage(const WorldSettings& settings, Compared scheme = Compared::kBossak);
   /// Plays a scene, of which it keeps a copy: sets it up, and does in every step what the scene asks for.
-  explicit Stage(const scene::Scene& scene);
+  explicit Stage(const scene::Scene& scene, Compared scheme = Compared::kBossak);
 
   /// Adds a character that starts in the state of `jets` (its rest pose where empty) and keeps it as target.
   /// Returns its index; a refusal ends the run (`measured().refused`).

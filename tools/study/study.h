@@ -13,7 +13,6 @@ namespace sinew::study {
 struct StabilityOptions {
   bool quick = false;
   std::string only;                 ///< name of one case; empty: all
-  Scheme scheme = Scheme::kBossak;  ///< that scenes which choose none of their own are stepped with
 };
 
 /// One case at one step and precision.
@@ -33,7 +32,7 @@ struct StabilityResult {
 };
 
 /// Runs one case at all its steps in float and double.
-StabilityResult run_case(const HardCase& hard_case, bool quick, Scheme scheme = Scheme::kBossak);
+StabilityResult run_case(const HardCase& hard_case, bool quick);
 
 /// Runs the catalogue; `progress(done, total)` and `finished(result)` may be empty. An unknown name in `only`
 /// gives no results.

@@ -74,8 +74,8 @@ OwnEquations<T> own_equations(const StepSettings<T>& settings, const TreeProblem
     const Vec3<T> own = (weight * tree.mass[b]) * (c - p.prediction.center[b]) +
                         gravity_gradient<T>(tree.mass[b], settings.gravity);
     force += own;
-    moment += c.cross(own) + (p.prediction.scheme == Scheme::kMomentum ? momentum_couple(settings, p, b)
-                                                                       : inertial_couple<T>(p, b));
+    moment += c.cross(own) +
+              (lacks_energy(p) ? p.prediction.other->couple(settings, p, b) : inertial_couple<T>(p, b));
     body.add_body(weight * tree.mass[b], c,
                   weight * (k.rotation[b] * tree.inertia[b] * k.rotation[b].transpose()));
   }

@@ -130,9 +130,8 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
     c.gap = gap;
   }
   c.stiffness = std::max(c.stiffness, found->stiffness);
-  // With Bossak's scheme friction of impulses is theirs (end_velocities.h).
-  const T bore = world_->accuracy.scheme == Scheme::kBossak ? c.smooth_before : c.lagged_normal_force;
-  c.grip = c.friction * std::min(bore, most_sunk_ * c.stiffness);
+  // Friction of impulses is theirs (end_velocities.h).
+  c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
@@ -146,8 +145,7 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   }
   thickness = std::min(thickness, c.half_thickness());
   c.approach = -closing.dot(c.normal);
-  // Bossak's scheme moves a body by at least h²/4 per unit of what stops it.
-  const T span = world_->accuracy.scheme == Scheme::kBossak ? h_ / 4 : h_;
+  const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
   if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (span * thickness));
 }
 

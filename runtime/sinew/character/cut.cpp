@@ -31,11 +31,12 @@ void restart(const Transform<T>& before, const JointJet<T>& now, JointJet<T>& la
 
 template <class T>
 void turn(const Mat3<T>& by, History<T>& history) {
-  for (auto* vectors : {&history.center, &history.center_before, &history.velocity, &history.velocity_before,
-                        &history.momentum, &history.momentum_before, &history.acceleration, &history.torque})
+  for (auto* vectors :
+       {&history.center, &history.velocity, &history.momentum, &history.acceleration, &history.torque})
     for (Vec3<T>& v : *vectors) v = (by * v).eval();
-  for (auto* matrices : {&history.rotation, &history.rotation_before, &history.rotation_rate})
+  for (auto* matrices : {&history.rotation, &history.rotation_rate})
     for (Mat3<T>& m : *matrices) m = (by * m).eval();
+  history.other.clear();
 }
 
 }  // namespace

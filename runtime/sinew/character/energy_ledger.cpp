@@ -8,7 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kSlack = 0.02;  ///< of the kinetic energy: bdf2's value at an instant oscillates by less
+constexpr double kSlack = 0.02;  ///< of the kinetic energy: what it swings by from step to step is less
 
 /// Of the energy of limbs moving against each other: the most that one step may give and take.
 constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
@@ -17,7 +17,6 @@ constexpr double kMostGiven = 0.2, kMostTaken = 0.9;
 constexpr double kTooRigid = 1e-3, kLooseEnough = 1e-2;
 
 constexpr double kNoSpin = 1e-30;  ///< rad/s: not worth keeping, see set_momentum
-constexpr double kSmall = 0.99;    ///< of speeds: a change that bdf2's history bears
 
 double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
@@ -48,7 +47,7 @@ void change(CharacterState<T>& s, const RigidMotion& rigid, T factor,
   change_motion<T>(s.tree, rigid, factor, turn, s.history);
   for (std::array<T, 6>& rate : s.rate)
     for (T& r : rate) r *= factor;
-  if (s.history.scheme == Scheme::kBossak) s.read_root_rate();
+  s.read_root_rate();
 }
 
 /// m/s, of the centre of mass of all.
@@ -70,16 +69,12 @@ double kinetic_about(const CharacterState<T>& s, const Vec3<double>& velocity) {
   return r.kinetic_energy - r.momentum.dot(velocity) + 0.5 * s.total_mass * velocity.squaredNorm();
 }
 
-/// Scales a tree's motion relative to a velocity. In contact, much of a change ends the history that bdf2
-/// builds on.
+/// Scales a tree's motion relative to a velocity.
 template <class T>
 void slow(CharacterState<T>& s, double factor, const Vec3<double>& velocity) {
   RigidMotion kept;
   kept.velocity = velocity;
   change(s, kept, T(factor));
-  if (factor > kSmall || s.report.contacts == 0 || s.history.scheme == Scheme::kBossak) return;
-  s.history.step_before = T(0);
-  s.steps_unchanged = 0;
 }
 
 template <class T>
@@ -152,7 +147,7 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
 template <class T>
 bool lossless(const CharacterState<T>& s) {
   const std::vector<JointRow<T>>& rows = s.problem.rows;
-  return s.report.used_bdf2 && s.steps_unchanged > 0 && s.report.elastic_energy == 0 &&
+  return s.history.accelerates && s.steps_unchanged > 0 && s.report.elastic_energy == 0 &&
          s.problem.effects.empty() && std::all_of(rows.begin(), rows.end(), [](const JointRow<T>& row) {
            return row.kind == RowKind::kOneSided;
          });

@@ -12,15 +12,14 @@
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
 #include "sinew/optimizer/error_estimate.h"
+#include "sinew/optimizer/time_scheme.h"
 
 namespace sinew {
 namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
-constexpr int kDistrust = -8;   ///< steps_unchanged after a wrong prediction: a solve was lost
 constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
-constexpr int kSettling = 8;  ///< after a push: of it bdf2's velocity lacks a third to the power of the steps
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
 template <class T>
@@ -101,29 +100,6 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   }
 }
 
-/// Whether any tree's touching contacts or bearing limits now differ from those after the last step.
-template <class T>
-bool IslandStepper<T>::touching_changed() const {
-  for (std::size_t n = 0; n < states_.size(); ++n)
-    if (touching<T>(contacts_, static_cast<int>(n)) != states_[n]->contact_signature ||
-        bearing<T>(*problems_[n]) != states_[n]->limit_signature)
-      return true;
-  return false;
-}
-
-template <class T>
-void IslandStepper<T>::predict_all(Scheme scheme, T h) {
-  if (scheme == Scheme::kBossak) return predict_bossak_all(h);
-  for (CharacterState<T>* s : states_)
-    for (std::size_t j = 0; j < s->problem.pushes.size(); ++j)
-      s->problem.pushes[j].force = s->impulses[j].force / frame_;
-  for (CharacterState<T>* s : states_) {
-    predict<T>(s->tree, s->history, scheme, h, settings_.common_origin, s->problem.prediction);
-    if (couplings_.empty() && s->contact_signature == 0)
-      predict_free_flight<T>(s->tree, s->history, h, s->problem.prediction);
-  }
-}
-
 template <class T>
 void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
   const WorldSettings& world = *world_;
@@ -160,11 +136,9 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
   s.left_to_gravity = !touched && !is_held_[tree] && couplings_.empty() && flies(s);
-  const bool exact = p.prediction.exact && touching<T>(contacts_, tree) == 0;
-  s.report.estimated_error = (parts_ > 1 ? s.report.estimated_error : 0) +
-                             (world.accuracy.estimate_error && !exact
-                                  ? integration_error<T>(p, s.history, s.load, h, settings_.common_origin)
-                                  : 0);
+  s.report.estimated_error =
+      (parts_ > 1 ? s.report.estimated_error : 0) +
+      (world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h) : 0);
 }
 
 /// Moves all trees' histories on to the solution.
@@ -173,22 +147,31 @@ void IslandStepper<T>::advance_all(T h) {
   momenta_.clear();
   for (const CharacterState<T>* s : states_) {
     Vec3<double>& momentum = momenta_.emplace_back(Vec3<double>::Zero());
-    if (!s->left_to_gravity) continue;
-    const Prediction<T>& p = s->problem.prediction;
-    const T falls = p.first || one_step() ? h : p.momentum_step;
-    momentum =
-        carried_momentum<T>(s->tree, s->history, p, h) + double(falls) * s->total_mass * world_->gravity;
+    if (s->left_to_gravity)
+      momentum = linear_momentum<T>(s->tree, s->history) + double(h) * s->total_mass * world_->gravity;
   }
-  if (one_step()) advance_one_step(h);
+  if (settings_.plan->scheme)
+    advance_by(*settings_.plan->scheme, h);
+  else
+    advance_one_step(h);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    const TreeProblem<T>& p = s.problem;
-    if (!one_step())
-      advance<T>(s.tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s.history);
-    if (s.left_to_gravity) set_momentum<T>(s.tree, momenta_[n], s.history);
-    if (s.left_to_gravity && one_step()) s.read_root_rate();
+    if (s.left_to_gravity && !settings_.plan->scheme) {
+      set_momentum<T>(s.tree, momenta_[n], s.history);
+      s.read_root_rate();
+    }
     if (s.floats) s.local[0].translation = s.history.place.template cast<T>();
     s.pose_changed();
+  }
+}
+
+/// The same by another scheme: all forces are those at the end.
+template <class T>
+void IslandStepper<T>::advance_by(const TimeScheme<T>& scheme, T h) {
+  for (Contact<T>& c : contacts_) c.smooth_force = normal_force(c);
+  for (CharacterState<T>* s : states_) {
+    const TreeProblem<T>& p = s->problem;
+    scheme.advance(s->tree, p.kinematics, p.prediction, p.couple, h, settings_.common_origin, s->history);
   }
 }
 
@@ -203,7 +186,6 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
   r.baked = static_cast<int>(std::count(s.baked.begin(), s.baked.end(), 1));
   r.estimated_error = error;
-  r.used_bdf2 = p.prediction.scheme == Scheme::kBdf2 || p.prediction.scheme == Scheme::kBossak;
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
@@ -214,8 +196,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of<T>(couplings_, tree);
   const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
-  s.steps_unchanged = mispredicted_ ? kDistrust : unchanged ? s.steps_unchanged + 1 : 0;
-  s.settling = s.impulses.empty() || one_step() ? std::max(s.settling - 1, 0) : kSettling;
+  s.steps_unchanged = unchanged ? s.steps_unchanged + 1 : 0;
   if (!is_held_[tree] && s.passing > 0) --s.passing;
   s.contact_signature = signature;
   s.limit_signature = limits;
@@ -253,7 +234,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
   settings_.h = h;
-  settings_.constant_muscles = one_step();
+  settings_.constant_muscles = !settings_.plan->scheme;
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
   settings_.kink_width = kink_width<T>(h, T(world.accuracy.tolerance));
@@ -271,34 +252,30 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
-    if (one_step() && s->limp()) continue;  // see strike()
+    if (!settings_.plan->scheme && s->limp()) continue;  // see strike()
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
-  if (one_step()) drop_played();
+  if (!settings_.plan->scheme) drop_played();
   find_contacts(h);
 }
 
 /// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
 template <class T>
 void IslandStepper<T>::begin_solve() {
-  const WorldSettings& world = *world_;
   const T h = settings_.h;
   for (CharacterState<T>* s : states_)
     for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
   if (!effects_.empty()) limit_guess(h);
-  if (one_step()) {
-    expect_to_last(h);
-    second_ = std::all_of(states_.begin(), states_.end(),
-                          [](const CharacterState<T>* s) { return s->history.accelerates; });
+  if (const TimeScheme<T>* scheme = settings_.plan->scheme) {
+    for (CharacterState<T>* s : states_)
+      scheme->predict(s->tree, s->history, h, settings_.common_origin, s->problem.prediction);
   } else {
-    second_ = world.accuracy.scheme == Scheme::kBdf2;
-    for (std::size_t n = 0; n < states_.size() && second_; ++n)
-      second_ = states_[n]->steps_unchanged >= kUnchangedSteps &&
-                touching_soon<T>(contacts_, static_cast<int>(n), states_, world.gravity, h) ==
-                    states_[n]->contact_signature;
+    expect_to_last(h);
+    const bool known = std::all_of(states_.begin(), states_.end(),
+                                   [](const CharacterState<T>* s) { return s->history.accelerates; });
+    known ? predict_all(h) : predict_euler_all(h);
   }
-  predict_all(second_ || scheme_ == Scheme::kMomentum ? scheme_ : Scheme::kBdf1, h);
   emphasise_friction(h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
@@ -319,16 +296,8 @@ template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
   const WorldSettings& world = *world_;
   const T h = settings_.h;
-  mispredicted_ = false;
   SolveReport total = first_solve();
   for (int round = 1;; ++round) {
-    if (second_ && !one_step() && (touching_changed() || lifted())) {
-      // The prediction was wrong: the three-point velocity would carry the impact's into the next steps.
-      second_ = false;
-      mispredicted_ = true;
-      predict_all(Scheme::kBdf1, h);
-      total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
-    }
     if (may_split && !total.converged) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
@@ -364,7 +333,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool closed = closed_;
   SolveReport solved = attempt(splits_left > 0);
   total_.add(solved);
-  if (closed && (solved.converged || splits_left == 0) && excess() > 0) {
+  const bool may_restart = closed && !settings_.plan->scheme;
+  if (may_restart && (solved.converged || splits_left == 0) && excess() > 0) {
     solved = solve_from_start();
     total_.add(solved);
     ++restarts_;
@@ -452,7 +422,6 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
                              std::span<Coupling<T>* const> couplings,
                              std::span<const LaggedForce<T>> lagged) {
   world_ = &world;
-  scheme_ = world.accuracy.scheme;
   surroundings_ = surroundings;
   frame_ = h;
   reset(states, indices, couplings, lagged);
@@ -461,10 +430,9 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   settings_.limit_damping = T(world.accuracy.limit_damping);
   for (CharacterState<T>* s : states_) {
     if (!s->is_prop) meet_cuts(*s, h);
-    if (!one_step()) continue;
-    begin_one_step(*s);
+    if (!settings_.plan->scheme) begin_one_step(*s);
   }
-  if (one_step()) strike_all();
+  if (!settings_.plan->scheme) strike_all();
   begin_couplings<T>(couplings_, states_, indices_);
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
   // What was struck is not put aside: who is begun next would take its strike for its own.
@@ -481,7 +449,6 @@ template <class T>
 void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged) {
   reset(begun.states, begun.indices, {}, lagged);
   settings_ = begun.settings;
-  second_ = begun.second;
   lasts_.assign(1, begun.lasts ? 1 : 0);
   problems_.assign(1, &states_[0]->problem);
   contacts_ = {};

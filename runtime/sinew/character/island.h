@@ -45,7 +45,7 @@ class IslandStepper {
     std::span<CharacterState<T>* const> states;
     std::span<const int> indices;
     StepSettings<T> settings;
-    bool second = false, lasts = false;
+    bool lasts = false;
   };
   /// Up to the first solve of a step in one part. True where that solve is of one tree that nothing is near
   /// and nothing is tied to: put_aside() then, and others may be begun before take_up(). Else end().
@@ -53,7 +53,7 @@ class IslandStepper {
              std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
   Begun put_aside() const {
-    return {states_, indices_, settings_, second_, !lasts_.empty() && lasts_[0] != 0};
+    return {states_, indices_, settings_, !lasts_.empty() && lasts_[0] != 0};
   }
   /// `begun` by the last world and time step that begin() was given.
   void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
@@ -66,8 +66,7 @@ class IslandStepper {
   bool starts() const;
   void limit_guess(T h);
   void start(T end, int splits);
-  bool starts_whole() const;
-  bool begin_whole();
+  void find_accelerations();
   void begin_loaded(T h);
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
@@ -91,10 +90,9 @@ class IslandStepper {
   void hold_lost(bool no_pose);
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
-  void predict_all(Scheme scheme, T h);
-  bool one_step() const { return scheme_ == Scheme::kBossak; }
   void find_sets();
-  void predict_bossak_all(T h);
+  void predict_all(T h);
+  void predict_euler_all(T h);
   void expect_to_last(T h);
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   void drop_played();
@@ -120,10 +118,9 @@ class IslandStepper {
   void emphasise_friction(T h);
   void relax_friction(T h);
   void press(T h);
-  bool touching_changed() const;
-  bool lifted() const;
   void settle_pose(CharacterState<T>& state, int tree, T h);
   void advance_all(T h);
+  void advance_by(const TimeScheme<T>& scheme, T h);
   void report(CharacterState<T>& state, int tree);
 
   const WorldSettings* world_ = nullptr;
@@ -138,11 +135,8 @@ class IslandStepper {
   bool closed_ = false;  ///< nothing can do work on the trees in this part
   double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
-  Scheme scheme_ = Scheme::kBdf2;                  ///< of the world's accuracy
-  bool second_ = false;                            ///< bdf2 is used
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
   const SolveReport* first_ = nullptr;             ///< see end()
-  bool mispredicted_ = false;                      ///< contacts or limits changed under bdf2
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
@@ -154,7 +148,7 @@ class IslandStepper {
   std::vector<T> free_share_;  ///< [tree] see IslandEffect::limit_guess
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
-  // Bossak's scheme
+  // Of the scheme
   std::vector<int> set_;              ///< [tree] see find_sets
   std::vector<T> radius_;             ///< [set] ρ
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose

@@ -14,7 +14,7 @@ constexpr int kPassing = 30;  ///< steps after a tree was held
 
 }  // namespace
 
-/// Whether nothing can do work on the trees: no muscle, no drive, no push now or just before, no effect, no
+/// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no
 /// loop that is being closed.
 template <class T>
 bool IslandStepper<T>::passive() const {
@@ -24,7 +24,7 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->settling == 0 && s->limp() &&
+    return s->impulses.empty() && s->limp() &&
            std::all_of(effects.begin(), effects.end(), closed);
   });
 }
@@ -56,13 +56,6 @@ double IslandStepper<T>::excess() const {
   return stored - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
 }
 
-/// Whether bdf2 has led passive trees in contact to such poses: its prediction carries on what an impact has
-/// just stopped. bdf1 never does, and no loss of speed would undo it.
-template <class T>
-bool IslandStepper<T>::lifted() const {
-  return !contacts_.empty() && closed_ && excess() > 0;
-}
-
 /// J that what stands still stores in its contacts: no more than a solve that failed may leave.
 template <class T>
 double IslandStepper<T>::standing() const {
@@ -72,15 +65,13 @@ double IslandStepper<T>::standing() const {
 }
 
 /// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in
-/// there. From the pose at the start, bdf1's energy is all that the trees have, and each step lowers it: what
-/// the result stores is no more.
+/// there. From the pose at the start, implicit Euler's energy is all that the trees have, and each step lowers
+/// it: what the result stores is no more.
 template <class T>
 SolveReport IslandStepper<T>::solve_from_start() {
-  mispredicted_ = mispredicted_ || second_;
-  second_ = false;
   for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));
   relax_friction(settings_.h);
-  predict_all(Scheme::kBdf1, settings_.h);
+  predict_euler_all(settings_.h);
   return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
 }
 
@@ -96,7 +87,7 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
   s.passing = kPassing;
-  predict<T>(s.tree, s.history, Scheme::kBdf1, settings_.h, settings_.common_origin, s.problem.prediction);
+  predict_euler<T>(s.tree, s.history, settings_.h, settings_.common_origin, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
   ++held_;
@@ -142,7 +133,6 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
 #define SINEW_LADDER_INSTANCES(T)                                          \
   template bool IslandStepper<T>::passive() const;                         \
   template double IslandStepper<T>::pose_energy() const;                   \
-  template bool IslandStepper<T>::lifted() const;                          \
   template double IslandStepper<T>::excess() const;                        \
   template double IslandStepper<T>::standing() const;                      \
   template SolveReport IslandStepper<T>::solve_from_start();               \

@@ -132,7 +132,7 @@ void IslandStepper<T>::find_sets() {
 /// Targets of Bossak's scheme, with one spectral radius for all that may touch: contact forces are equal and
 /// opposite in the momentum that they give only then.
 template <class T>
-void IslandStepper<T>::predict_bossak_all(T h) {
+void IslandStepper<T>::predict_all(T h) {
   find_sets();
   radius_.assign(states_.size(), T(1));
   for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -152,6 +152,16 @@ void IslandStepper<T>::predict_bossak_all(T h) {
     const T emphasis = constant_emphasis(p.prediction.weight, h);
     for (std::size_t j = 0; j < p.pushes.size(); ++j)
       p.pushes[j].force = emphasis / frame_ * s.impulses[j].force;
+  }
+}
+
+/// The same of implicit Euler: for a restart, and for a first step whose accelerations could not be found.
+template <class T>
+void IslandStepper<T>::predict_euler_all(T h) {
+  for (CharacterState<T>* s : states_) {
+    TreeProblem<T>& p = s->problem;
+    predict_euler<T>(s->tree, s->history, h, settings_.common_origin, p.prediction);
+    for (std::size_t j = 0; j < p.pushes.size(); ++j) p.pushes[j].force = s->impulses[j].force / frame_;
   }
 }
 
@@ -206,14 +216,13 @@ void IslandStepper<T>::strike_all() {
 /// Friction is constant over a step, as far as it is a force.
 template <class T>
 void IslandStepper<T>::emphasise_friction(T h) {
-  if (!one_step()) return;
+  if (settings_.plan->scheme) return;
   for (Contact<T>& c : contacts_) c.grip *= constant_emphasis(problems_[c.tree_a]->prediction.weight, h);
 }
 
-/// Undoes that, before another prediction: bdf1's forces are what they are.
+/// Undoes that, before another prediction: implicit Euler's forces are what they are.
 template <class T>
 void IslandStepper<T>::relax_friction(T h) {
-  if (!one_step()) return;
   for (Contact<T>& c : contacts_) c.grip /= constant_emphasis(problems_[c.tree_a]->prediction.weight, h);
 }
 
@@ -393,7 +402,7 @@ void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree,
                         std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
                           return c.grip > T(0) && (c.tree_a == tree || c.tree_b == tree);
                         });
-  if (p.prediction.scheme != Scheme::kBossak || !acted_on || is_locked(s)) return;  // what rubs within joints is weak
+  if (!(p.prediction.rho > T(0)) || !acted_on || is_locked(s)) return;  // what rubs within joints is weak
   forward_kinematics<T>(s.tree, p.start, p.common_origin, s.guessed);
   if (turn_between(s.guessed, p.kinematics) < T(kHardlyTurns)) return;
   measure_constant(s, p, tree, s.guessed);
@@ -461,7 +470,7 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   }
   for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
   ends_.respond(tree, jump_force_, moved_, turned_);
-  if (p.prediction.scheme != Scheme::kBossak) {  // a step of bdf1 has all forces act at once
+  if (!(p.prediction.rho > T(0))) {  // implicit Euler has all forces act at once
     std::fill(impulse.begin(), impulse.end(), T(0));
   } else if (any_constant) {
     speed_share_.resize(s.tree.dofs);
@@ -627,7 +636,7 @@ void IslandStepper<T>::press(T h) {
     if (!struck && !(c.grip > T(0))) continue;
     const Prediction<T>& prediction = problems_[c.tree_a]->prediction;
     const T acted = 1 / (h * prediction.weight);  // κh, s; twice that for what is constant over the step
-    const T rubbed = prediction.scheme == Scheme::kBossak ? 2 * acted : acted;
+    const T rubbed = prediction.rho > T(0) ? 2 * acted : acted;
     const T cone = c.friction * acted * (normal_force(c) - c.smooth_force) + rubbed * c.grip;
     ends_.add(c, struck ? T(kMostSteps) * h * normal_force(c) : T(0), cone,
               Vec3<T>(-rubbed * friction_gradient(c, settings_.stick)));
@@ -646,7 +655,8 @@ void IslandStepper<T>::press(T h) {
 
 #define SINEW_MOTION_INSTANCES(T)                                                                     \
   template void IslandStepper<T>::find_sets();                                                        \
-  template void IslandStepper<T>::predict_bossak_all(T);                                              \
+  template void IslandStepper<T>::predict_all(T);                                                     \
+  template void IslandStepper<T>::predict_euler_all(T);                                               \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
   template void IslandStepper<T>::strike_all();                                                       \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \

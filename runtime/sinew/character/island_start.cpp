@@ -1,4 +1,4 @@
-// The first step of IslandStepper from a reset, where bdf2 has no earlier state.
+// The first step of IslandStepper from a reset, in which accelerations are not known yet.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -11,33 +11,12 @@
 namespace sinew {
 namespace {
 
-constexpr int kMostStartParts = 16;
 constexpr double kTrialTurn = 3e-3;  ///< of a trial at rest: its span times the square of the fastest spin
 
 /// Angular velocity (rad/s) in body axes, as a matrix; not symmetric in part where it was differenced.
 template <class T>
 Mat3<T> spin_matrix(const CharacterState<T>& s, int i) {
   return s.history.rotation[i].transpose() * s.history.rotation_rate[i];
-}
-
-/// Whether all of a tree can move, by nothing but its joints' own rows, and its velocities are those that
-/// were set.
-template <class T>
-bool is_free_and_set(const CharacterState<T>& s) {
-  if (s.history.step_before != T(0) || s.contact_signature != 0 || s.limit_signature != 0 ||
-      !s.problem.effects.empty() ||
-      std::any_of(s.baked.begin(), s.baked.end(), [](auto baked) { return baked != 0; }) ||
-      std::any_of(s.problem.free.begin(), s.problem.free.end(), [](auto free) { return free == 0; }))
-    return false;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Mat3<T> spin = spin_matrix(s, i);
-    const T size = spin.norm(), rounded = T(1e-4) * size;
-    if (!((spin + spin.transpose()).norm() <= rounded)) return false;
-    const Vec3<T> w(spin(2, 1), spin(0, 2), spin(1, 0));
-    const Vec3<T> momentum = s.history.rotation[i].transpose() * s.history.momentum[i];
-    if (!((s.tree.inertia[i] * w - momentum).norm() <= rounded * s.tree.inertia[i].norm())) return false;
-  }
-  return true;
 }
 
 /// Motion of a joint that does not accelerate, from the velocities of the bodies that it joins.
@@ -78,13 +57,13 @@ JointJet<T> coasting_jet(const CharacterState<T>& s, int i) {
 /// What the bodies' motion asks for were no joint accelerated: forces and, about the centres of mass, couples
 /// (world axes) into the problem's room for wrenches.
 template <class T>
-void measure_coasting(CharacterState<T>& s, bool one_step) {
+void measure_coasting(CharacterState<T>& s) {
   TreeProblem<T>& p = s.problem;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int parent = s.tree.parent[i];
     BodyMotion<T>& body = s.motion.body[i];
     const int first = s.tree.first_dof[i];
-    const bool held = one_step && (s.tree.dof_count(i) == 0 || !p.free[first]);
+    const bool held = s.tree.dof_count(i) == 0 || !p.free[first];
     move_body<T>(s.tree, i, held ? s.target[i] : coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
                  parent < 0 ? nullptr : &s.motion.body[parent], body);
     const Mat3<T>& r = p.kinematics.rotation[i];
@@ -95,28 +74,18 @@ void measure_coasting(CharacterState<T>& s, bool one_step) {
 
 }  // namespace
 
-/// Whether a tree that nothing drives begins from a reset, without the earlier state that bdf2 needs.
+/// Whether a tree begins without knowing how it accelerates.
 template <class T>
 bool IslandStepper<T>::starts() const {
-  if (one_step())
-    return std::any_of(states_.begin(), states_.end(),
-                       [](const CharacterState<T>* s) { return !s->history.accelerates; });
-  const bool fresh = std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    return s->history.step_before == T(0) && s->contact_signature == 0;
+  return !settings_.plan->scheme && std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
+    return !s->history.accelerates;
   });
-  return fresh && world_->accuracy.scheme == Scheme::kBdf2 && couplings_.empty() && passive();
 }
 
-/// Whether the part that has been begun may be bdf2's first: nothing near that could be met.
+/// Finds the accelerations at the start of the part that has been begun: a trial that begins and ends at rest.
+/// Where it does not converge they are not known, and the step is implicit Euler's.
 template <class T>
-bool IslandStepper<T>::starts_whole() const {
-  return contacts_.empty() && std::all_of(states_.begin(), states_.end(),
-                                          [](const CharacterState<T>* s) { return is_free_and_set(*s); });
-}
-
-/// Predicts that part from how the bodies accelerate at its start. False where that was not found.
-template <class T>
-bool IslandStepper<T>::begin_whole() {
+void IslandStepper<T>::find_accelerations() {
   const T h = settings_.h;
   for (CharacterState<T>* s : states_) {
     TreeProblem<T>& p = s->problem;
@@ -124,23 +93,14 @@ bool IslandStepper<T>::begin_whole() {
     for (int i = 0; i < s->tree.bodies; ++i)
       fastest = std::max(fastest, spin_matrix(*s, i).squaredNorm() / 2);
     const T span = std::min(h * h / 2, T(kTrialTurn) / std::max(fastest, std::numeric_limits<T>::min()));
-    measure_coasting(*s, one_step());
-    if (one_step())
-      for (Effect<T>* effect : p.effects) effect->begin_step(effect_pose(settings_, p));
+    measure_coasting(*s);
+    for (Effect<T>* effect : p.effects) effect->begin_step(effect_pose(settings_, p));
     predict_at_rest<T>(s->tree, s->history, p.force, p.moment, span, settings_.common_origin, p.prediction);
     p.local = p.start;
-    if (one_step()) p.pushes.clear();                                     // forces of the step to come
+    p.pushes.clear();                                                     // forces of the step to come
     if (s->tree.bodies == 1 && contacts_.empty() && p.effects.empty()) {  // nothing to find out
       p.kinematics.center[0] = p.prediction.center[0] + span * settings_.gravity;
       p.couple[0].setZero();
-      continue;
-    }
-    if (one_step()) continue;  // what rubs is none of the forces that it carries
-    // What rubs goes by how far a joint has come since the start.
-    for (int i = 0; i < s->tree.bodies; ++i) {
-      std::array<T, 6> back = s->rate[i];
-      for (T& r : back) r *= -h;
-      p.start[i] = at_offset<T>(s->tree, i, p.start[i], back);
     }
   }
   SolveReport trial;
@@ -151,29 +111,22 @@ bool IslandStepper<T>::begin_whole() {
     trial = solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
     total_.add(trial);
   }
-  if (one_step()) begin_ends();
+  begin_ends();
   for (CharacterState<T>* const& s : states_) {
     TreeProblem<T>& p = s->problem;
-    if (one_step()) {
-      if (!s->history.accelerates) {
-        accelerate<T>(s->tree, p.kinematics, p.prediction, p.couple, s->history);
-        drop_trial(*s, static_cast<int>(&s - states_.data()));
-      }
-    } else {
-      predict_first<T>(s->tree, s->history, p.kinematics, p.couple, h, settings_.common_origin, p.prediction);
-      predict_free_flight<T>(s->tree, s->history, h, p.prediction);
+    if (!s->history.accelerates) {
+      accelerate<T>(s->tree, p.kinematics, p.prediction, p.couple, s->history);
+      drop_trial(*s, static_cast<int>(&s - states_.data()));
     }
     std::copy_n(s->local.begin(), s->tree.bodies, p.start.begin());
     if (s->floats) p.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
     first_guess(*s, h);
-    if (!one_step()) continue;
     forward_kinematics<T>(s->tree, p.start, p.common_origin, p.kinematics);
     s->history.accelerates = trial.converged;
     if (s->limp()) continue;
     for (const ExternalForce<T>& j : s->impulses) p.pushes.push_back({j.body, j.local, j.force / frame_});
   }
-  if (one_step() && trial.converged) begin_loaded(h);
-  return trial.converged;
+  if (trial.converged) begin_loaded(h);
 }
 
 /// What rests on something from the start on bears it like that since long: what the trial at rest found.
@@ -204,39 +157,19 @@ void IslandStepper<T>::begin_loaded(T h) {
   find_contacts(h);  // measured anew, at the start
 }
 
-/// The first part of a step from a reset, up to the fraction `end`. Whole where nothing is near; else in
-/// parts that double, because two of them are bdf1's (which in whole steps of 1/60 s take 2 % of a thrown
-/// humanoid's energy, and cost more accuracy than the half second after them), and bdf2 bears no sudden
-/// growth of the step.
+/// The first part of a step from a reset, up to the fraction `end`.
 template <class T>
 void IslandStepper<T>::start(T end, int splits) {
-  const int parts = std::clamp(world_->accuracy.start_parts, 1, kMostStartParts);
   begin_part(end * frame_, end);
-  if (one_step()) {
-    (void)begin_whole();
-    part_begun_ = true;
-    return advance_part(T(0), end, splits);
-  }
-  if (parts > 1 && starts_whole() && begin_whole()) {
-    part_begun_ = solve_begun_ = second_ = true;
-    advance_part(T(0), end, splits);
-    for (CharacterState<T>* s : states_)
-      if (s->steps_unchanged > 0) s->steps_unchanged = kUnchangedSteps;
-    return;
-  }
-  T begin = T(0);
-  for (int n = parts - 1; n >= 0; --n) {
-    const T next = end / T(1 << n);
-    advance_part(begin, next, splits);
-    begin = next;
-  }
+  find_accelerations();
+  part_begun_ = true;
+  advance_part(T(0), end, splits);
 }
 
-#define SINEW_START_INSTANCES(T)                        \
-  template bool IslandStepper<T>::starts() const;       \
-  template bool IslandStepper<T>::starts_whole() const; \
-  template bool IslandStepper<T>::begin_whole();        \
-  template void IslandStepper<T>::begin_loaded(T);      \
+#define SINEW_START_INSTANCES(T)                            \
+  template bool IslandStepper<T>::starts() const;           \
+  template void IslandStepper<T>::find_accelerations();     \
+  template void IslandStepper<T>::begin_loaded(T);          \
   template void IslandStepper<T>::start(T, int);
 SINEW_START_INSTANCES(float)
 SINEW_START_INSTANCES(double)

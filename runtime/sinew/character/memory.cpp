@@ -39,12 +39,12 @@ std::size_t bytes_of(const CharacterState<T>& s) {
               s.lasting, s.lasting_before, s.unknown, s.impulses, s.baked, s.wanted, s.standing) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
               law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal) +
-         held(p.prediction.center, p.prediction.rotation, p.prediction.momentum, p.prediction.start) +
+         held(p.prediction.center, p.prediction.rotation, p.prediction.momentum) +
          held(p.local, p.target, p.start, p.free, p.pushes, p.force, p.moment, p.body_force, p.couple,
               p.gradient, p.rows, p.ellipsoids, p.composite, p.joint_curvature) +
          held_by(p.kinematics) + held_by(s.guessed) +
-         held(h.center, h.center_before, h.velocity, h.velocity_before, h.rotation, h.rotation_before,
-              h.rotation_rate, h.momentum, h.momentum_before, h.acceleration, h.torque) +
+         held(h.center, h.velocity, h.rotation, h.rotation_rate, h.momentum, h.acceleration, h.torque,
+              h.other) +
          held(m.body, m.omega, m.velocity, m.origin_velocity);
 }
 

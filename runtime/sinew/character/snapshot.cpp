@@ -187,7 +187,6 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("contacts that touched", s.contact_signature);
   stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
-  stream.value("steps since a push", s.settling);
   stream.value("steps of passing", s.passing);
   stream.value("energy ceiling", s.energy_ceiling);
   stream.value("energy lent by surfaces", s.lent);

@@ -358,7 +358,6 @@ void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
-  settling = 0;
   passing = 0;
   forget_energy();
 }

@@ -105,7 +105,6 @@ struct CharacterState {
   bool carried = false;  ///< in this step, see carry_over()
   bool calm = true;      ///< no joint deviates: see settle_deviations
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
-  bool one_step = false;         ///< the world's scheme is Bossak's: accelerations are carried
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
 
   std::vector<JointJet<T>> target;         ///< [joint] what the animation wants at the end of the next step
@@ -141,7 +140,6 @@ struct CharacterState {
   std::uint64_t limit_signature = 0;       ///< of the joint limits that bore
   int steps_unchanged = 0;
   std::uint8_t passing = 0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::hold
-  int settling = 0;          ///< steps in which bdf2's velocity has not quite taken in the last push yet
   double energy_ceiling =
       std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
   double lent = 0;  ///< J, by surfaces that lead it out of them, and stored in contacts still: not its own

@@ -12,7 +12,7 @@ namespace {
 /// By which torques in the potential of a step of h seconds are larger than those that act.
 template <class T>
 T emphasis_of(const TreeProblem<T>& p, T h) {
-  return p.prediction.scheme == Scheme::kBossak ? constant_emphasis(p.prediction.weight, h) : T(1);
+  return p.prediction.other ? T(1) : constant_emphasis(p.prediction.weight, h);
 }
 
 }  // namespace
@@ -68,10 +68,8 @@ void first_guess(CharacterState<T>& s, T h, T share) {
       continue;
     }
     std::array<T, 6> moved{};
-    // Rates are those at the end of the last step, or their mean over it.
-    const T mean = s.history.scheme == Scheme::kBossak ? T(0.5) : T(1);
     const bool goes_on = s.steps_unchanged >= kUnchangedSteps && s.rate_step > T(0);
-    const T steady = goes_on ? mean * h / s.rate_step : T(0);
+    const T steady = goes_on ? h / (2 * s.rate_step) : T(0);  // rates are those at the end of a step
     for (int k = 0; k < count; ++k)
       moved[k] = share * h * (s.rate[i][k] + steady * (s.rate[i][k] - s.rate_before[i][k]));
     p.local[i] = at_offset<T>(s.tree, i, rebased<T>(s.tree, i, wanted, p.start[i]), moved);

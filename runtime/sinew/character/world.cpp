@@ -162,7 +162,6 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
     drop_last();
     return Status::error(Code::kInvalidArgument, kNoMuscles);
   }
-  added.one_step = settings.accuracy.scheme == Scheme::kBossak;
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   const SolveRooms before = rooms;
   const SolveRoom batch_before = batch_room;

@@ -67,7 +67,6 @@ struct CharacterReport {
   int held = 0;          ///< trees that were stopped where they stood: no pose could be found
   bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
   bool converged = true;
-  bool used_bdf2 = false;
   bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
   double kinetic_energy = 0;                             ///< J
   double potential_energy = 0;                           ///< J, gravity

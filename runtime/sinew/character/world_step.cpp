@@ -62,7 +62,7 @@ template <class T>
 bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
     return worker.batch && s.problem.room.fits(batch_room) &&
-           worker.batch->takes(s.problem, settings.accuracy);
+           worker.batch->takes(s.problem);
   return false;
 }
 
@@ -74,10 +74,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
-  for (CharacterState<T>* s : worker.members) {
-    s->levels.allowed = allowed_level(*s);
-    s->one_step = settings.accuracy.scheme == Scheme::kBossak;
-  }
+  for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
   if (!play_island(worker.members)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);

@@ -22,7 +22,7 @@ struct IslandTree {
   std::span<std::array<T, 6>> rate;  ///< [body] joint speeds over the last step
   Kinematics<T>& guessed;            ///< room, for the pose that a solve starts from
   double& elastic_energy;            ///< J, stored in contacts and joint limits
-  int& steps_unchanged;              ///< steps since contacts changed: few, and bdf2 is not used
+  int& steps_unchanged;              ///< steps since contacts changed
   std::uint64_t& contact_signature;  ///< of the contacts that touched after the last step
 
   /// Velocity (m/s) of a body's material point, given from the common origin of the problem's kinematics.

@@ -8,21 +8,7 @@ namespace {
 
 constexpr double kSlowest = 0.2;  ///< m/s; slower impacts, and what gravity makes in two steps, come to rest
 constexpr int kSweeps = 40;
-constexpr int kTrusted = 2;  ///< steps_unchanged from which bdf2 may be used
-
-/// A single body that bounced flies on as if it had always flown: bdf2 at once, where bdf1 would lose ½gh² of
-/// height in each of its steps.
-template <class T>
-void pretend_flight(History<T>& history, const Vec3<T>& gravity, T h) {
-  const Vec3<T> v = history.velocity[0];
-  const Mat3<T> spin = history.rotation_rate[0] * history.rotation[0].transpose();
-  const Vec3<T> turned = Vec3<T>(spin(2, 1), spin(0, 2), spin(1, 0)) * h;
-  history.center_before[0] = history.center[0] - h * v + gravity * (h * h / 2);
-  history.velocity_before[0] = v - h * gravity;
-  history.rotation_before[0] = rotation_exp<T>(Vec3<T>(-turned)).toRotationMatrix() * history.rotation[0];
-  history.momentum_before[0] = history.momentum[0];
-  history.step_before = h;
-}
+constexpr int kTrusted = 2;  ///< steps_unchanged from which what touches has lasted
 
 /// Kinetic, potential and stored, J.
 template <class T>
@@ -216,10 +202,9 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
   for (std::size_t t = 0; t < trees.size(); ++t) {
     const IslandTree<T>& tree = trees[t];
     move(tree, first_[t]);
-    tree.steps_unchanged = 0;  // the velocities before are no guide to those after
+    tree.steps_unchanged = 0;
     if (tree.problem.tree->bodies > 1) continue;
-    pretend_flight<T>(tree.history, gravity.template cast<T>(), h);
-    tree.contact_signature = 0;
+    tree.contact_signature = 0;  // a single body that bounced flies on as if it had always flown
     tree.steps_unchanged = kTrusted;
   }
   return true;

@@ -24,6 +24,8 @@ template <class T>
 struct SupportTerm;
 template <class T>
 struct CouplingTerm;
+template <class T>
+class TimeScheme;
 
 template <class T>
 struct StepPlan {
@@ -34,6 +36,7 @@ struct StepPlan {
   const PushTerm<T>* impulses = nullptr;
   const SupportTerm<T>* support = nullptr;
   const CouplingTerm<T>* couplings = nullptr;                ///< of loops and particles
+  const TimeScheme<T>* scheme = nullptr;                     ///< in place of Bossak's, for comparisons
   std::unique_ptr<BatchSolver> (*make_batches)() = nullptr;  ///< in float alone
 
   /// Nothing declared.

@@ -50,8 +50,8 @@ void BatchNewton::reserve(const SolveRoom& rig) {
   free_.reserve(rig.dofs);
 }
 
-bool BatchNewton::takes(const TreeProblem<float>& p, const Accuracy& accuracy) const {
-  if (accuracy.scheme == Scheme::kMomentum || !p.pushes.empty() || !p.effects.empty()) return false;
+bool BatchNewton::takes(const TreeProblem<float>& p) const {
+  if (p.prediction.other || !p.pushes.empty() || !p.effects.empty()) return false;
   bool any = false;
   for (int i = 0; i < p.tree->bodies; ++i) {
     const int first = p.tree->first_dof[i];

@@ -28,7 +28,7 @@ class BatchSolver {
   virtual std::size_t bytes(const SolveRoom& rig) const = 0;
 
   /// Whether a batch solves such a problem: see above.
-  virtual bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy) const = 0;
+  virtual bool takes(const TreeProblem<float>& problem) const = 0;
   /// Solves up to lanes() problems of one tree, each with at least one unknown, from their `local`. Where a
   /// report says converged, the problem holds the solution and its kinematics, gradient, couples and rows;
   /// the others are as before: they need a solve of their own.
@@ -43,7 +43,7 @@ class BatchNewton final : public BatchSolver {
   int lanes() const override { return lanes_; }
   void reserve(const SolveRoom& rig) override;
   std::size_t bytes(const SolveRoom& rig) const override;
-  bool takes(const TreeProblem<float>& problem, const Accuracy& accuracy) const override;
+  bool takes(const TreeProblem<float>& problem) const override;
   void solve(const StepSettings<float>& settings, const Accuracy& accuracy,
              std::span<TreeProblem<float>* const> problems, std::span<SolveReport> reports) override;
 

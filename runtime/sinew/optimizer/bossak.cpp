@@ -41,8 +41,7 @@ void predict_bossak(const Tree<T>& tree, const History<T>& history, const Strike
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const BossakWeights<T> w(rho);
   const T ahead = h * (T(0.5) - w.kappa);
-  out.exact = out.first = false;
-  out.scheme = Scheme::kBossak;
+  out.other = nullptr;
   out.rho = rho;
   out.weight = 1 / (w.kappa * h * h);
   out.momentum_step = h * w.gamma / (1 - w.alpha_m);
@@ -78,7 +77,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
                     std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,
                     const Vec3<double>& common_origin, History<T>& history) {
   const Vec3<T> moved = follow_root(kinematics, common_origin, history);
-  const bool second = prediction.scheme == Scheme::kBossak;
+  const bool second = prediction.rho > T(0);
   const BossakWeights<T> w(second ? prediction.rho : T(1));
   const T alpha = prediction.weight;
   for (int i = 0; i < tree.bodies; ++i) {
@@ -109,10 +108,8 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
     history.rotation[i] = r;
     history.rotation_rate[i] = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
-  history.scheme = Scheme::kBossak;
   history.step_before = h;
   history.accelerates = true;
-  history.changed = {};
 }
 
 SINEW_BOSSAK_INSTANCES(template, float)

@@ -50,7 +50,7 @@ T constant_emphasis(const T& weight, Number<T> h) {
   return largest(T(weight * (h * h / 2)), T(1));
 }
 
-/// 2κ of a step of h seconds with the weight α; 1 for bdf1. See lasting() in contact.h.
+/// 2κ of a step of h seconds with the weight α; 1 for implicit Euler's. See lasting() in contact.h.
 template <class T>
 T lasting_share(T weight, T h) {
   return std::min(2 / (weight * h * h), T(1));
@@ -96,7 +96,7 @@ struct Jumps {
 
 /// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
 /// gradient there (about each centre of mass). What impulses and constant forces leave as speed is still to be
-/// added (EndVelocities::project). From a prediction of bdf1 velocities are those of the step, whatever moved
+/// added (EndVelocities::project). From a prediction of implicit Euler's velocities are those of the step, whatever moved
 /// it, and accelerations those of its smooth forces.
 template <class T>
 void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,

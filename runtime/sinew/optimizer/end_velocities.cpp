@@ -223,8 +223,13 @@ void EndVelocities<T>::begin_side(int n) {
 template <class T>
 bool EndVelocities<T>::add_side(Row& row, int n) {
   row.entry[n] = static_cast<int>(rows_.size());
-  row.count[n] = static_cast<int>(row_.size());
-  while (row.count[n] > 0 && row_[row.count[n] - 1] == T(0)) --row.count[n];
+  const Part& part = parts_[row.tree[n]];
+  int last = part.count - 1;
+  while (last >= 0 && row_[last] == T(0)) --last;
+  if (last >= 0) {  // with the rest of its joint, which reduce() fills
+    const JointBlock& block = part.matrix.blocks[problems_[row.tree[n]]->tree->dof_body[dof_[part.first + last]]];
+    row.count[n] = block.first + block.count;
+  }
   if (rows_.size() + row.count[n] > rows_.capacity()) return false;
   rows_.insert(rows_.end(), row_.begin(), row_.begin() + row.count[n]);
   return true;

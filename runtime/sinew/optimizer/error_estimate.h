@@ -1,12 +1,8 @@
 // How far one step goes astray because it is finite: an embedded estimate, from what the step leaves behind.
 //
-// The formula of one order higher, on the same states, differs by
-//
-//   bdf1   h/2 · (v₁ − v₀)                              from the trapezoidal rule
-//   bdf2   βh/3 · ((v₁ − v₀) − w (v₀ − v₋₁))            from the third-order difference, w = h/h₋₁
-//   Bossak (κ − 1/6) h² (a₁ − a₀)                       where accelerations change as t³/6 has it
-//
-// with v the velocity of a body's centre, or its angular velocity. No second solve: about 60 flops per body.
+// The formula of one order higher, on the same states, differs by (κ − 1/6) h² (a₁ − a₀), where accelerations
+// change as t³/6 has it; a of a body's centre, or its angular acceleration. No second solve: about 60 flops per
+// body. Of a step of implicit Euler (a restart) it is h²/2 · a₁; of other schemes than the runtime's nothing.
 // Step doubling was not taken, since it costs two more solves. What it cannot see: a solve that stopped short
 // of its tolerance (CharacterReport::converged says so), and which of two ways an impact goes.
 #pragma once
@@ -21,11 +17,11 @@ namespace sinew {
 /// that hang on played or unsaturated joints alone are where the animation wants them: they count with 0.
 template <class T>
 double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
-                         T h, const Vec3<double>& common_origin);
+                         T h);
 
 extern template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
-                                                std::span<const float>, float, const Vec3<double>&);
+                                                std::span<const float>, float);
 extern template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
-                                                 std::span<const double>, double, const Vec3<double>&);
+                                                 std::span<const double>, double);
 
 }  // namespace sinew

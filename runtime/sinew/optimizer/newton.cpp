@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "sinew/optimizer/newton_constants.h"
+#include "sinew/optimizer/problem_pass.h"
 
 namespace sinew {
 template <class T>
@@ -74,7 +75,7 @@ bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy, b
   const auto calmer = [&] {
     return std::abs(inner_.slope_now(inner_.correction())) <= T(0.9) * std::abs(slope);
   };
-  if (trees_[0]->prediction.scheme == Scheme::kMomentum) return calmer();
+  if (lacks_energy(*trees_[0])) return calmer();
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
   return new_energy <= energy + 1e-4 * double(t * slope) ||
          (new_energy <= energy + noise && (slight || calmer()));
@@ -209,7 +210,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // Where no row bears the energy is smooth, and the step Newton's own; what effects do may bend otherwise
     // than their matrix says.
     const bool exact = inner.straight && inner_.joints_only() && inner_.geometric() &&
-                       trees_[0]->prediction.scheme != Scheme::kMomentum &&
+                       !lacks_energy(*trees_[0]) &&
                        length < kExactWithin * tolerance && kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
     report_.converged = small || (outcome == Outcome::kFull &&

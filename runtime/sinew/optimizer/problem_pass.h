@@ -1,12 +1,13 @@
 // What problem.h computes per body, on any scalar: float, double or a pack of characters of one rig (pack.h).
 //
-// `p` is a TreeProblem<T> or what has its members. Packs know no momentum scheme.
+// `p` is a TreeProblem<T> or what has its members. Packs know no other scheme than the runtime's.
 #pragma once
 
 #include <type_traits>
 
 #include "sinew/effects/gravity.h"
 #include "sinew/optimizer/problem.h"
+#include "sinew/optimizer/time_scheme.h"
 #include "sinew/residual/tree_pass.h"
 
 namespace sinew {
@@ -16,16 +17,6 @@ template <class T>
 auto positive_definite(const Mat3<T>& m) {
   const T second = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
   return both(both(m(0, 0) > T(0), second > T(0)), T(m.determinant()) > T(0));
-}
-
-/// Rotational part of the momentum scheme's residual. No energy belongs to it; the solver judges by the
-/// directional derivative alone.
-template <class T>
-Vec3<T> momentum_couple(const StepSettings<T>& settings, const TreeProblem<T>& p, int i) {
-  const Mat3<T>& r = p.kinematics.rotation[i];
-  const Vec3<T> turn = rotation_log<T>(Quat<T>(Mat3<T>(r * p.prediction.start[i].transpose())));
-  const Mat3<T> inertia = r * p.tree->inertia[i] * r.transpose();
-  return (inertia * turn / settings.h - p.prediction.momentum[i]) / settings.h;
 }
 
 /// Couple of A = α R P R̂ᵀ about a body's centre of mass, from (R − R̂) P: R̂ P R̂ᵀ is symmetric and has none,
@@ -38,12 +29,21 @@ Vec3<T> inertial_couple(const Mat3<T>& turned_second, const Mat3<T>& predicted, 
   return weight * Vec3<T>(entry(2, 1), entry(0, 2), entry(1, 0));
 }
 
-/// What inertia asks for about a body's centre of mass; not the momentum scheme's.
+/// What inertia asks for about a body's centre of mass, by its energy.
 template <class T, class Problem>
 Vec3<T> inertial_couple(const Problem& p, int i) {
   const Mat3<T>& predicted = p.prediction.rotation[i];
   const Mat3<T> turned = (p.kinematics.rotation[i] - predicted) * p.tree->second_moment[i].template cast<T>();
   return inertial_couple<T>(turned, predicted, p.prediction.weight);
+}
+
+/// Whether turning has no energy: see TimeScheme.
+template <class Problem>
+bool lacks_energy(const Problem& p) {
+  if constexpr (requires { p.prediction.other; })
+    return p.prediction.other && !p.prediction.other->has_energy();
+  else
+    return false;
 }
 
 /// Inertia's and gravity's part of begin_evaluation: energy (J, in double precision), wrenches.
@@ -61,8 +61,8 @@ auto inertial_energy(const StepSettings<Number<T>>& settings, Problem& p) {
     energy +=
         widened(T(T(0.5) * weight * mass * off.squaredNorm())) + widened(gravity_energy<T>(mass, gravity, c));
     p.body_force[i] = (weight * mass) * off + gravity_gradient<T>(mass, gravity);
-    if (p.prediction.scheme == Scheme::kMomentum) {
-      if constexpr (std::is_arithmetic_v<T>) p.couple[i] = momentum_couple(settings, p, i);
+    if (lacks_energy(p)) {
+      if constexpr (std::is_arithmetic_v<T>) p.couple[i] = p.prediction.other->couple(settings, p, i);
     } else {
       const Mat3<T> turned = r - p.prediction.rotation[i];
       const Mat3<T> second = turned.lazyProduct(tree.second_moment[i].template cast<T>());
@@ -101,7 +101,7 @@ void inertial_composite(Problem& p) {
     const auto plain = [&] {
       return Mat3<T>(weight * (r * tree.inertia[i].template cast<T>() * r.transpose()));
     };
-    if (p.prediction.scheme == Scheme::kMomentum)
+    if (lacks_energy(p))
       stiffness = plain();
     else
       stiffness = choose(

@@ -1,68 +1,35 @@
-// Implicit schemes: where inertia alone would carry each body, and the history that this needs.
+// What a step in time begins with: the history of every body, and where inertia alone would carry it.
 //
 // The step minimises  E(q) = α/2 Σ [ m‖c − ĉ‖² + tr((R − R̂) P (R − R̂)ᵀ) ] + potentials  (Gauss's principle of
-// least constraint at finite displacement). ĉ, R̂ and α are what a scheme is:
-//
-//   momentum as bdf1, but the rotational residual is (I₁ω₁ − L₀)/h with ω₁ = log(R₁R₀ᵀ)/h: no gradient of
-//          any energy
-//   bdf1   ĉ = c₀ + h ċ₀                     R̂ = R₀ + h Ṙ₀ (affine)      α = 1/h²
-//   bdf2   ĉ = a₀c₀ + a₁c₋₁ + βh(a₀ċ₀ + a₁ċ₋₁)   R̂ = R₀ exp(x)           α = 1/(βh)²
-//          a₀ = (1+w)²/(1+2w), a₁ = −w²/(1+2w), β = (1+w)/(1+2w), w = h/h₋₁
-//
-// x is the torque-free rotation: I·(derivative of the rotation vector) = exp(−x) R₀ᵀ L*, L* = a₀L₀ + a₁L₋₁.
-// With an affine R̂ bdf2 would be as stable, but free spin would decay.
+// least constraint at finite displacement). ĉ, R̂ and α are what a scheme is: bossak.h.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "sinew/optimizer/accuracy.h"
 #include "sinew/residual/tree.h"
 
 namespace sinew {
 
-/// How the motion of a step was changed after it was solved: `push` added to all velocities (set_momentum);
-/// then what was relative to a rigid motion scaled by `factor`, and all turned faster by `turn`
-/// (change_motion). Kept for snapshots, which go by it.
 template <class T>
-struct MotionChange {
-  Vec3<T> push = Vec3<T>::Zero();                                ///< m/s
-  Vec3<T> center = Vec3<T>::Zero(), velocity = Vec3<T>::Zero();  ///< m, m/s
-  Vec3<T> spin = Vec3<T>::Zero(), turn = Vec3<T>::Zero();        ///< rad/s
-  T factor = T(1);
+class TimeScheme;
 
-  bool none() const { return factor == T(1) && push.isZero(T(0)) && turn.isZero(T(0)); }
-  /// What the velocity of a point at x gains from scaling.
-  Vec3<T> scaled(const Vec3<T>& x, const Vec3<T>& v) const {
-    return (factor - 1) * (v - (velocity + spin.cross(x - center)));
-  }
-  /// The same with the turn.
-  Vec3<T> faster(const Vec3<T>& x, const Vec3<T>& v) const { return scaled(x, v) + turn.cross(x - center); }
-  /// What the rate of a rotation gains.
-  Mat3<T> faster(const Mat3<T>& rotation, const Mat3<T>& rate) const {
-    const Vec3<T> gained = turn - (factor - 1) * spin;
-    Mat3<T> sum = (factor - 1) * rate;
-    for (int a = 0; a < 3; ++a) sum.col(a) += gained.cross(rotation.col(a));
-    return sum;
-  }
-};
-
-/// Present and previous state of every body. Positions are relative to `place`, which follows the root in
-/// double precision: float keeps its digits however far from the world's origin a character is.
+/// State of every body. Positions are relative to `place`, which follows the root in double precision: float
+/// keeps its digits however far from the world's origin a character is.
 template <class T>
 struct History {
-  Vec3<double> place = Vec3<double>::Zero();       ///< m, world; of the root's origin
-  std::vector<Vec3<T>> center, center_before;      ///< m, from `place`
-  std::vector<Vec3<T>> velocity, velocity_before;  ///< of the centre of mass, m/s
-  std::vector<Mat3<T>> rotation, rotation_before;
-  std::vector<Mat3<T>> rotation_rate;              ///< Ṙ₀
-  std::vector<Vec3<T>> momentum, momentum_before;  ///< angular, about the centre of mass, kg·m²/s
-  std::vector<Vec3<T>> acceleration;               ///< Bossak's scheme: of the centre of mass, m/s²
-  std::vector<Vec3<T>> torque;                     ///< the same: change of the angular momentum, N·m
-  bool accelerates = false;                        ///< these two are known
-  Scheme scheme = Scheme::kBdf2;                   ///< that led here
-  MotionChange<T> changed;                         ///< by the last step, after it was solved
-  T step_before = T(0);                            ///< s between before and now; 0: no earlier state
+  Vec3<double> place = Vec3<double>::Zero();  ///< m, world; of the root's origin
+  std::vector<Vec3<T>> center;                ///< m, from `place`
+  std::vector<Vec3<T>> velocity;              ///< of the centre of mass, m/s
+  std::vector<Mat3<T>> rotation;
+  std::vector<Mat3<T>> rotation_rate;  ///< Ṙ₀
+  std::vector<Vec3<T>> momentum;       ///< angular, about the centre of mass, kg·m²/s
+  std::vector<Vec3<T>> acceleration;   ///< of the centre of mass, by smooth forces, m/s²
+  std::vector<Vec3<T>> torque;         ///< the same: change of the angular momentum, N·m
+  bool accelerates = false;            ///< these two are known
+  T step_before = T(0);                ///< s, the last step; 0: none since a reset
+  std::vector<T> other;                ///< another scheme's own, see TimeScheme; empty
+  bool turns_as_differenced = false;   ///< the same: its energy of turning is that of `rotation_rate`
 
   explicit History(int bodies);
   /// Takes all motion out.
@@ -88,13 +55,12 @@ struct RigidMotion {
   Vec3<double> spin_of(const Vec3<double>& momentum) const;
 };
 
-/// Of a history that bdf2 led to.
+/// Of a history's motion.
 template <class T>
 RigidMotion rigid_motion(const Tree<T>& tree, const History<T>& history, const Totals& totals);
 
 /// Scales the motion relative to the rigid one, which keeps the momenta, and turns all faster by `turn`
-/// (rad/s). What was before is scaled with it, so that the backward differences of the next steps see a
-/// change of speed and no jolt; a turn mends an angular momentum that was right before.
+/// (rad/s), which mends an angular momentum that was right before.
 template <class T>
 void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, const Vec3<double>& turn,
                    History<T>& history);
@@ -105,22 +71,19 @@ struct Prediction {
   std::vector<Vec3<T>> center;    ///< ĉ
   std::vector<Mat3<T>> rotation;  ///< R̂
   std::vector<Vec3<T>> momentum;  ///< L*, so that L₁ = L* + βh·g
-  std::vector<Mat3<T>> start;     ///< R₀ (momentum scheme)
   T weight = T(0);                ///< α, 1/s²
   T momentum_step = T(0);         ///< βh, s
-  T rho = T(0);                   ///< Bossak's scheme: see BossakWeights
-  T k1 = T(1), k2 = T(0);  ///< of the backward difference: rate at the end = (k1 (x₁ − x₀) − k2 (x₀ − x₋₁))/h
-  Scheme scheme = Scheme::kBdf1;
-  bool exact = false;  ///< where nothing touches the tree: see predict_free_flight
-  bool first = false;  ///< bdf2 with no earlier state: see predict_first
+  T rho = T(0);                   ///< see BossakWeights; 0: implicit Euler's, see predict_euler
+  const TimeScheme<T>* other = nullptr;  ///< whose they are; null: the runtime's own
 
   explicit Prediction(int bodies);
 };
 
-/// Fills `out` for a step of h seconds. bdf2 needs an earlier state; without one, bdf1 is used.
+/// Targets of implicit Euler, ĉ = c₀ + h v₀, R̂ = R₀ + hṘ₀, α = 1/h²: at the pose where the step begins (1) is
+/// the kinetic energy, so that what a descent from there stores is no more than there was.
 template <class T>
-void predict(const Tree<T>& tree, const History<T>& history, Scheme scheme, T h,
-             const Vec3<double>& common_origin, Prediction<T>& out);
+void predict_euler(const Tree<T>& tree, const History<T>& history, T h, const Vec3<double>& common_origin,
+                   Prediction<T>& out);
 
 /// Targets with which a solve that begins and ends at rest finds how the tree's bodies accelerate now, under
 /// the torques that its rows have at the start: it moves them by `span` (s²) times that. `force` and `couple`
@@ -130,32 +93,11 @@ void predict_at_rest(const Tree<T>& tree, const History<T>& history, std::span<c
                      std::span<const Vec3<T>> couple, T span, const Vec3<double>& common_origin,
                      Prediction<T>& out);
 
-/// The first step of bdf2, as if the one before had been infinitely short (w → ∞): the trapezoidal rule, of
-/// second order from the first step on. `out` holds the targets of predict_at_rest, `kinematics` and `torque`
-/// [body] what its solve has found.
+/// kg·m/s, of the velocities that a tree's bodies have.
 template <class T>
-void predict_first(const Tree<T>& tree, const History<T>& history, const Kinematics<T>& kinematics,
-                   std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin,
-                   Prediction<T>& out);
+Vec3<double> linear_momentum(const Tree<T>& tree, const History<T>& history);
 
-/// Turns bdf2's prediction of a rigid tree with a free root about its centre of mass by what the backward
-/// difference misses of a free body's rotation: where nothing touches it, it moves exactly, whatever the
-/// turn.
-template <class T>
-void predict_free_flight(const Tree<T>& tree, const History<T>& history, T h, Prediction<T>& out);
-
-/// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
-/// gradient there (about each centre of mass).
-template <class T>
-void advance(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
-             std::span<const Vec3<T>> torque, T h, const Vec3<double>& common_origin, History<T>& history);
-
-/// What the scheme makes of the linear momentum in a step in which no force acts, kg·m/s; before advance().
-template <class T>
-Vec3<double> carried_momentum(const Tree<T>& tree, const History<T>& history, const Prediction<T>& prediction,
-                              T h);
-
-/// Gives a tree the linear momentum (kg·m/s) that it must have after advance(), by the same change of all
+/// Gives a tree the linear momentum (kg·m/s) that it must have after a step, by the same change of all
 /// velocities: differences of rounded places, and what a solve leaves unbalanced, would add up in it.
 template <class T>
 void set_momentum(const Tree<T>& tree, const Vec3<double>& momentum, History<T>& history);
@@ -166,9 +108,8 @@ template <class T>
 void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const Motion<T>& motion, T h,
                      const Vec3<T>& gravity, const Vec3<double>& common_origin, History<T>& history);
 
-/// The kinetic energy is the one that the scheme dissipates. bdf2: ½m|ċ|² + ½L·I⁻¹L of the carried momentum,
-/// which torque-free flight keeps; a difference of rotations would wobble by h²|ω|² around it. bdf1: ½ṘP:Ṙ
-/// of the difference of rotations.
+/// The kinetic energy is ½m|ċ|² + ½L·I⁻¹L of the carried momentum, which torque-free flight keeps; a
+/// difference of rotations would wobble by h²|ω|² around it.
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
 
@@ -189,15 +130,10 @@ Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_
 #define SINEW_SCHEME_INSTANCES(prefix, T)                                                                    \
   prefix struct History<T>;                                                                                  \
   prefix struct Prediction<T>;                                                                               \
-  prefix void predict<T>(const Tree<T>&, const History<T>&, Scheme, T, const Vec3<double>&, Prediction<T>&); \
+  prefix void predict_euler<T>(const Tree<T>&, const History<T>&, T, const Vec3<double>&, Prediction<T>&);   \
   prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,                \
                                  std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);          \
-  prefix void predict_first<T>(const Tree<T>&, const History<T>&, const Kinematics<T>&,                      \
-                               std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);            \
-  prefix void predict_free_flight<T>(const Tree<T>&, const History<T>&, T, Prediction<T>&);                  \
-  prefix void advance<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,                         \
-                         std::span<const Vec3<T>>, T, const Vec3<double>&, History<T>&);                     \
-  prefix Vec3<double> carried_momentum<T>(const Tree<T>&, const History<T>&, const Prediction<T>&, T);       \
+  prefix Vec3<double> linear_momentum<T>(const Tree<T>&, const History<T>&);                                 \
   prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                             \
   prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
   prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \

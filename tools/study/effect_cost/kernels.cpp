@@ -58,7 +58,7 @@ struct Solving {
     advance_exactly<float>(tree, problem.kinematics, still, kStep, Vec3<float>::Zero(), Vec3<double>::Zero(),
                            history);
     history.stop();
-    predict<float>(tree, history, Scheme::kBdf1, kStep, Vec3<double>::Zero(), problem.prediction);
+    predict_euler<float>(tree, history, kStep, Vec3<double>::Zero(), problem.prediction);
   }
   static BuiltIn built_in(const std::string& name, int count) {
     if (name == "muscles") return {.muscles = count};

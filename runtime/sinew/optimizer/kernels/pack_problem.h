@@ -115,7 +115,6 @@ struct PackPrediction {
   std::span<Vec3<P>> center;
   std::span<Mat3<P>> rotation;
   P weight;
-  static constexpr Scheme scheme = Scheme::kBdf2;  ///< or bdf1: targets and weight say it all
 };
 
 /// Limits of each lane; the rest is the rig's.

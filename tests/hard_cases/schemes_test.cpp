@@ -1,24 +1,27 @@
 // Schemes on one free body, against Euler's equations integrated finely by Runge–Kutta.
-#include "sinew/optimizer/scheme.h"
+#include "study/schemes/schemes.h"
 
 #include <gtest/gtest.h>
 
 #include "optimizer/free_body.h"
 
-namespace sinew {
+namespace sinew::study {
 namespace {
 
 using fixtures::kPrincipal;
 using fixtures::V;
 
+const Bdf1<double> kBdf1;
+const Bdf2<double> kBdf2;
+
 /// Stepped as a world steps it: predict, minimise, advance.
 struct FreeBody : fixtures::FreeBody {
   using fixtures::FreeBody::FreeBody;
-  void step(double h, Scheme scheme = Scheme::kBdf2) {
+  void step(double h, const TimeScheme<double>& scheme = kBdf2) {
     problem.start = problem.local;
-    predict<double>(tree, history, scheme, h, V::Zero(), problem.prediction);
+    scheme.predict(tree, history, h, V::Zero(), problem.prediction);
     minimise(h);
-    advance<double>(tree, problem.kinematics, problem.prediction, problem.couple, h, V::Zero(), history);
+    scheme.advance(tree, problem.kinematics, problem.prediction, problem.couple, h, V::Zero(), history);
   }
 };
 
@@ -77,14 +80,14 @@ TEST(Bdf1, FreeSpinDecays) {
   V turn = V::Zero();
   for (int n = 0; n < 120; ++n) {
     const Mat3<double> before = body.history.rotation[0];
-    body.step(1 / 60.0, Scheme::kBdf1);
+    body.step(1 / 60.0, kBdf1);
     turn = rotation_log<double>(Quat<double>(Mat3<double>(before.transpose() * body.history.rotation[0])));
   }
   EXPECT_LT(turn.norm() * 60, 15);
 }
 
 /// Rotation error (rad) after one second with steps of h, alternately longer and shorter by `uneven`.
-double rotation_error(double h, double uneven, Scheme scheme) {
+double rotation_error(double h, double uneven, const TimeScheme<double>& scheme) {
   const V omega(1, 4, 2);
   Reference exact(omega);
   exact.run(1);
@@ -95,23 +98,23 @@ double rotation_error(double h, double uneven, Scheme scheme) {
 }
 
 TEST(Bdf2, TumblingConvergesWithSecondOrder) {
-  const double coarse = rotation_error(1 / 60.0, 0, Scheme::kBdf2),
-               middle = rotation_error(1 / 120.0, 0, Scheme::kBdf2),
-               fine = rotation_error(1 / 240.0, 0, Scheme::kBdf2);
+  const double coarse = rotation_error(1 / 60.0, 0, kBdf2),
+               middle = rotation_error(1 / 120.0, 0, kBdf2),
+               fine = rotation_error(1 / 240.0, 0, kBdf2);
   EXPECT_NEAR(std::log2(middle / fine), 2, 0.2);  // still nearing its limit
   EXPECT_NEAR(std::log2(coarse / middle), 2, 0.3);
   EXPECT_LT(fine, 0.01);
 }
 
 TEST(Bdf2, KeepsSecondOrderWithUnequalSteps) {
-  const double coarse = rotation_error(1 / 120.0, 0.4, Scheme::kBdf2),
-               fine = rotation_error(1 / 240.0, 0.4, Scheme::kBdf2);
+  const double coarse = rotation_error(1 / 120.0, 0.4, kBdf2),
+               fine = rotation_error(1 / 240.0, 0.4, kBdf2);
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
 }
 
 TEST(Bdf1, TumblingConvergesWithFirstOrder) {
-  const double coarse = rotation_error(1 / 240.0, 0, Scheme::kBdf1),
-               fine = rotation_error(1 / 480.0, 0, Scheme::kBdf1);
+  const double coarse = rotation_error(1 / 240.0, 0, kBdf1),
+               fine = rotation_error(1 / 480.0, 0, kBdf1);
   EXPECT_NEAR(std::log2(coarse / fine), 1, 0.3);
 }
 
@@ -125,13 +128,10 @@ TEST(Bdf2, ParabolaIsExactAlsoWithUnequalSteps) {
   const V c0 = center();
   const auto exact = [&](double t) { return V(c0 + velocity * t + 0.5 * gravity * t * t); };
   double t = 0.02;
-  body.history.center_before[0] = body.history.center[0];
-  body.history.velocity_before[0] = velocity;
-  body.history.rotation_before[0] = body.history.rotation[0];
-  body.history.momentum_before[0] = body.history.momentum[0];
+  const History<double> before = body.history;
   body.history.center[0] += exact(t) - c0;
   body.history.velocity[0] = velocity + gravity * t;
-  body.history.step_before = t;
+  Bdf2<double>::keep(before, t, body.history);
   for (const double h : {0.02, 0.013, 0.03, 0.007, 0.05, 0.02}) {
     body.step(h);
     t += h;
@@ -140,19 +140,19 @@ TEST(Bdf2, ParabolaIsExactAlsoWithUnequalSteps) {
   }
 }
 
-TEST(Predict, UsesBdf1WithoutAnEarlierState) {
+TEST(Bdf2, BeginsWithBdf1) {
   FreeBody body(V(1, 2, 3), V::Zero(), V::Zero());
-  predict<double>(body.tree, body.history, Scheme::kBdf2, 0.01, V::Zero(), body.problem.prediction);
-  EXPECT_EQ(body.problem.prediction.scheme, Scheme::kBdf1);
+  kBdf2.predict(body.tree, body.history, 0.01, V::Zero(), body.problem.prediction);
+  EXPECT_DOUBLE_EQ(body.problem.prediction.weight, 1 / 1e-4);
   body.step(0.01);
-  predict<double>(body.tree, body.history, Scheme::kBdf2, 0.01, V::Zero(), body.problem.prediction);
-  EXPECT_EQ(body.problem.prediction.scheme, Scheme::kBdf2);
+  kBdf2.predict(body.tree, body.history, 0.01, V::Zero(), body.problem.prediction);
+  EXPECT_DOUBLE_EQ(body.problem.prediction.weight, 2.25 / 1e-4);
 }
 
-TEST(Predict, AbsurdSpinFallsBackToTheAffineTarget) {
+TEST(Bdf2, AbsurdSpinFallsBackToTheAffineTarget) {
   FreeBody body(V(10, 200, 30), V::Zero(), V::Zero());  // over 3 rad per step
   for (int n = 0; n < 60; ++n) {
-    predict<double>(body.tree, body.history, Scheme::kBdf2, 1 / 60.0, V::Zero(), body.problem.prediction);
+    kBdf2.predict(body.tree, body.history, 1 / 60.0, V::Zero(), body.problem.prediction);
     ASSERT_TRUE(body.problem.prediction.rotation[0].allFinite());
     body.step(1 / 60.0);
     ASSERT_TRUE(body.history.momentum[0].allFinite());
@@ -160,4 +160,4 @@ TEST(Predict, AbsurdSpinFallsBackToTheAffineTarget) {
 }
 
 }  // namespace
-}  // namespace sinew
+}  // namespace sinew::study
