@@ -67,6 +67,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
   impulse_.reserve(room.dofs);
   for (auto* v : {&first_body_, &first_dof_}) v->reserve(room.trees);
   turned_far_.reserve(room.trees);
+  for (auto* v : {&missed_, &unturned_}) v->reserve(room.bodies);
   led_rates_.reserve(room.bodies);
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(room.bodies);
   momenta_.reserve(room.trees);
@@ -77,7 +78,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
-                    room.bodies * (8 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+                    room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
                     (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
                     room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
@@ -136,9 +137,6 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
   s.left_to_gravity = !touched && !is_held_[tree] && couplings_.empty() && flies(s);
-  s.report.estimated_error =
-      (parts_ > 1 ? s.report.estimated_error : 0) +
-      (world.accuracy.estimate_error ? integration_error<T>(p, s.history, s.load, h) : 0);
 }
 
 /// Moves all trees' histories on to the solution.
@@ -150,10 +148,26 @@ void IslandStepper<T>::advance_all(T h) {
     if (s->left_to_gravity)
       momentum = linear_momentum<T>(s->tree, s->history) + double(h) * s->total_mass * world_->gravity;
   }
+  number_bodies();
+  const bool estimates = world_->accuracy.estimate_error && !settings_.plan->scheme;
+  const auto bodies = [&](auto& all, std::size_t n) {
+    return std::span(all).subspan(first_body_[n], states_[n]->tree.bodies);
+  };
+  for (std::size_t n = 0; n < states_.size() && estimates; ++n)
+    begin_error<T>(*problems_[n], states_[n]->history, h, settings_.common_origin, bodies(missed_, n),
+                   bodies(unturned_, n));
   if (settings_.plan->scheme)
     advance_by(*settings_.plan->scheme, h);
   else
     advance_one_step(h);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    double& error = s.report.estimated_error;
+    if (parts_ <= 1) error = 0;
+    if (estimates)
+      error += integration_error<T>(*problems_[n], s.history, s.load, h, bodies(missed_, n),
+                                    bodies(unturned_, n));
+  }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     if (s.left_to_gravity && !settings_.plan->scheme) {

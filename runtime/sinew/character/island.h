@@ -119,6 +119,7 @@ class IslandStepper {
   void relax_friction(T h);
   void press(T h);
   void settle_pose(CharacterState<T>& state, int tree, T h);
+  void number_bodies();
   void advance_all(T h);
   void advance_by(const TimeScheme<T>& scheme, T h);
   void report(CharacterState<T>& state, int tree);
@@ -159,6 +160,7 @@ class IslandStepper {
   std::vector<Vec3<T>> start_sped_, start_spun_;  ///< [body, trees one after the other] see choose_start
   std::vector<T> impulse_;                        ///< [dof, the same] what is not in the velocities yet
   std::vector<int> first_body_, first_dof_;       ///< [tree] in these
+  std::vector<Vec3<T>> missed_, unturned_;        ///< [body, the same] see begin_error
   std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                         ///< [body]

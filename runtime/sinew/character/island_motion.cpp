@@ -572,10 +572,9 @@ bool IslandStepper<T>::choose_loose() {
   return led;
 }
 
-/// Moves all trees' histories on to the solution.
+/// Where each tree's bodies and degrees of freedom begin among those of all.
 template <class T>
-void IslandStepper<T>::advance_one_step(T h) {
-  split_contacts(h);
+void IslandStepper<T>::number_bodies() {
   for (auto* v : {&first_body_, &first_dof_}) v->clear();
   int bodies = 0, dofs = 0;
   for (const CharacterState<T>* s : states_) {
@@ -584,8 +583,14 @@ void IslandStepper<T>::advance_one_step(T h) {
     bodies += s->tree.bodies;
     dofs += s->tree.dofs;
   }
-  for (auto* v : {&start_sped_, &start_spun_}) v->resize(bodies);
+  for (auto* v : {&start_sped_, &start_spun_, &missed_, &unturned_}) v->resize(bodies);
   impulse_.resize(dofs);
+}
+
+/// Moves all trees' histories on to the solution.
+template <class T>
+void IslandStepper<T>::advance_one_step(T h) {
+  split_contacts(h);
   turned_far_.assign(states_.size(), 0);
   for (std::size_t n = 0; n < states_.size(); ++n)
     measure_constant_at_start(*states_[n], static_cast<int>(n), h);
@@ -678,6 +683,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::accelerate_locked(CharacterState<T>&, int);                         \
   template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                      \
   template bool IslandStepper<T>::choose_loose();                                                     \
+  template void IslandStepper<T>::number_bodies();                                                    \
   template void IslandStepper<T>::advance_one_step(T);                                                \
   template void IslandStepper<T>::emphasise_friction(T);                                              \
   template void IslandStepper<T>::relax_friction(T);                                                  \

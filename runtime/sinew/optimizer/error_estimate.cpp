@@ -26,33 +26,51 @@ bool carried_by_integration(const TreeProblem<T>& p, std::span<const T> load, in
   return body >= 0;
 }
 
+/// How far a body turns in h seconds (rad, its axes) by an angular momentum.
+template <class T>
+Vec3<T> turn_of(const TreeProblem<T>& p, int i, const Vec3<T>& momentum, T h) {
+  return h * (p.tree->inverse_inertia[i] * (p.kinematics.rotation[i].transpose() * momentum));
+}
+
+template <class T>
+BossakWeights<T> weights_of(const TreeProblem<T>& p) {
+  return BossakWeights<T>(p.prediction.rho > T(0) ? p.prediction.rho : T(1));
+}
+
 }  // namespace
 
 template <class T>
-double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
-                         T h) {
-  const Prediction<T>& p = problem.prediction;
-  if (p.other) return 0;
+void begin_error(const TreeProblem<T>& problem, const History<T>& history, T h,
+                 const Vec3<double>& common_origin, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned) {
   const Tree<T>& tree = *problem.tree;
-  const bool second = p.rho > T(0);  // else implicit Euler's: h/2 of the change of speed
-  const BossakWeights<T> w(second ? p.rho : T(1));
-  const T known = second ? T(1) : T(0), factor = second ? w.kappa - T(1) / 6 : T(0.5);
+  const Vec3<T> place = (history.place - common_origin).template cast<T>();
+  const T ahead = problem.prediction.rho > T(0) ? h * (T(0.5) - weights_of(problem).kappa) : T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    moved[i] = problem.kinematics.center[i] - place - history.center[i] - h / 2 * history.velocity[i];
+    // The free turn, which is exact, is that of the predicted momentum.
+    const Mat3<T> turn = problem.prediction.rotation[i].transpose() * problem.kinematics.rotation[i];
+    const Vec3<T> predicted = history.momentum[i] + ahead * history.torque[i];
+    turned[i] = rotation_log<T>(Quat<T>(turn)) -
+                turn_of<T>(problem, i, history.momentum[i] / 2 - predicted, h);
+  }
+}
+
+template <class T>
+double integration_error(const TreeProblem<T>& problem, const History<T>& history, std::span<const T> load,
+                         T h, std::span<const Vec3<T>> moved, std::span<const Vec3<T>> turned) {
+  const Tree<T>& tree = *problem.tree;
   T sum = T(0), mass = T(0);
   for (int i = 0; i < tree.bodies; ++i) {
     mass += tree.mass[i];
     if (!carried_by_integration(problem, load, i)) continue;
-    const Vec3<T> force = p.weight * (problem.kinematics.center[i] - p.center[i]);
-    const Vec3<T> change = (force - known * history.acceleration[i]) / (1 - w.alpha_m);
-    const Vec3<T> twist = problem.kinematics.rotation[i].transpose() *
-                          Vec3<T>(problem.couple[i] - known * history.torque[i]) / (1 - w.alpha_m);
-    sum += tree.mass[i] * change.squaredNorm() + twist.dot(tree.inverse_inertia[i] * twist);
+    const Vec3<T> left = moved[i] - h / 2 * history.velocity[i];
+    const Vec3<T> twist = turned[i] - turn_of<T>(problem, i, history.momentum[i], h / 2);
+    sum += tree.mass[i] * left.squaredNorm() + twist.dot(tree.inertia[i] * twist);
   }
-  return mass > T(0) ? double(factor * h * h * std::sqrt(sum / mass)) : 0;
+  return mass > T(0) ? double(12 * (weights_of(problem).kappa - T(1) / 6) * std::sqrt(sum / mass)) : 0;
 }
 
-template double integration_error<float>(const TreeProblem<float>&, const History<float>&,
-                                         std::span<const float>, float);
-template double integration_error<double>(const TreeProblem<double>&, const History<double>&,
-                                          std::span<const double>, double);
+SINEW_ERROR_INSTANCES(template, float)
+SINEW_ERROR_INSTANCES(template, double)
 
 }  // namespace sinew

@@ -234,7 +234,8 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
     else
       rate = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
-  history.other.clear();
+  constexpr T kBears = T(0.99);  // what another scheme keeps of earlier velocities bears such a change
+  if (factor < kBears) history.other.clear();
 }
 
 SINEW_SCHEME_INSTANCES(template, float)
