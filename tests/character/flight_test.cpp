@@ -76,7 +76,7 @@ TEST(Flight, BeginsWithAWholeStepOfSecondOrder) {
     const auto error = [&](double h) { return largest_distance(flown(seed, h, 1), flown(seed, h, 64)); };
     const double coarse = error(1 / 120.0), fine = error(1 / 240.0);
     std::printf("seed %u: first step off by %.2e m at 1/120 s, %.2e m at 1/240 s\n", seed, coarse, fine);
-    // The error of one step falls with h³; of bdf1's with h², by a factor of four.
+    // The error of one step falls with h³; of implicit Euler's with h², by a factor of four.
     EXPECT_GT(coarse / fine, 6) << seed;
   }
 }

@@ -204,7 +204,7 @@ TEST(Loop, PairInFlightKeepsItsMomenta) {
   scene.run(60);
   momenta(after, spin_after);
   EXPECT_LT((after - before).norm(), 1e-6) << "as exactly as the solve converges";
-  // Centres go by chords: bdf2 keeps angular momentum to the second order of h·ω = 0.05.
+  // Centres go by chords: angular momentum is kept to the second order of h·ω = 0.05.
   EXPECT_LT((spin_after - spin_before).norm(), 0.01 * spin_before.norm());
 }
 
@@ -251,7 +251,7 @@ TEST(Loop, RopePullsAndNeverPushes) {
   scene.tie(LoopKind::kRope, prop_anchor(0), world_anchor({0, 0, 0}), 1.5);
   scene.run(18);
   const double fallen = 1 - scene.world.prop_pose(0).translation.z();
-  EXPECT_NEAR(fallen, 0.5 * 9.81 * 0.3 * 0.3, 0.03) << "slack: free fall, bdf1's first steps late";
+  EXPECT_NEAR(fallen, 0.5 * 9.81 * 0.3 * 0.3, 0.03) << "slack: free fall";
   EXPECT_EQ(scene.world.loop_force(0).norm(), 0);
   double lowest = 0;
   for (int n = 0; n < 120; ++n) {
@@ -271,7 +271,7 @@ TEST(Loop, WhatBeginsOpenClosesAtAWalkingPace) {
     scene.run(1);
     fastest = std::max(fastest, double(scene.world.prop_velocity(0).norm()));
   }
-  EXPECT_LT(fastest, 0.6) << "0.45 m/s, and what bdf2 swings beyond where it starts at once";
+  EXPECT_LT(fastest, 0.6) << "0.45 m/s, and what the scheme swings beyond where it starts at once";
   EXPECT_GT(fastest, 0.3) << "0.3 m at 0.45 m/s take 0.7 s";
   EXPECT_LT(scene.world.prop_pose(0).translation.norm(), 2e-4);
 }

@@ -282,7 +282,7 @@ TEST(OneStep, TorquesKeepToTheirLimits) {
       if (limit[dof] > 0) most = std::max(most, std::abs(torque[dof]) / limit[dof]);
   }
   EXPECT_GT(most, 0.9f);
-  EXPECT_LT(most, 1.02f);  // in the chart of a joint that is far off; bdf2: 1.014
+  EXPECT_LT(most, 1.02f);  // in the chart of a joint that is far off
 }
 
 }  // namespace

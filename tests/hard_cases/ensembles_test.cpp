@@ -26,7 +26,7 @@ TEST(Ensembles, EnergyOfPosesIsTheTextbooks) {
   EXPECT_NEAR(energy, 0.5 * (2 * velocity.squaredNorm() + 0.2 * 16), 1e-12);
 }
 
-/// Sinew's own first option (bdf2 in float).
+/// Sinew's own first option (its scheme in float).
 EngineOption ours() {
   return sinew_options()[0];
 }

@@ -74,8 +74,7 @@ TEST(Bdf2, TumblingBodyKeepsItsAngularMomentum) {
 }
 
 TEST(Bdf1, FreeSpinDecays) {
-  // The reason for bdf2 (DESIGN 3.1: 0.12 of the spin is left after 2 s). If this fails the table is out of
-  // date.
+  // 0.12 of the spin is left after 2 s (prototype). If this fails the documents are out of date.
   FreeBody body(V(0, 0, 30), V::Zero(), V::Zero());
   V turn = V::Zero();
   for (int n = 0; n < 120; ++n) {

@@ -70,7 +70,7 @@ class Sweep {
     return scene_.name + "|" + what + "|" + std::to_string(runs_);
   }
 
-  /// Of our bdf2 in double, of a peer's last option (its most accurate).
+  /// Of our scheme in double, of a peer's last option (its most accurate).
   const Track& reference(const std::string& engine) {
     const auto found = references_.find(engine);
     if (found != references_.end()) return found->second;

@@ -75,7 +75,7 @@ struct AccuracyResult {
   double references_apart = -1;  ///< m, between ours and the peer's converged run; < 0: not comparable
   double uncertainty =
       -1;  ///< m, between our converged run and one of twice its step: finer errors mean nothing
-  std::vector<EstimatedFrame> estimates;  ///< of our bdf2 at 1/60 s
+  std::vector<EstimatedFrame> estimates;  ///< of our scheme at 1/60 s
 };
 
 struct AccuracyOptions {
@@ -110,7 +110,7 @@ void mark_pareto(std::vector<AccuracyPoint>& points);
 double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double bound,
                 double AccuracyPoint::*error = &AccuracyPoint::error);
 
-/// Peers' points that are no dearer and no further off than our bdf2 in float at 1/60 s: each peer's
+/// Peers' points that are no dearer and no further off than our scheme in float at 1/60 s: each peer's
 /// cheapest. The first is our own; empty where it was not measured.
 std::vector<AccuracyPoint> ahead_of_ours(const std::vector<AccuracyPoint>& points);
 

@@ -19,9 +19,8 @@ AccuracyScene tumbling_body() {
   s.title = "A tumbling box in the air";
   s.reading =
       "No contact, no joint: only the rotation is integrated. Lines fall with their order: twice the time "
-      "buys half the error of a first-order scheme and a quarter of a second-order one. Our bdf2 moves a "
-      "rigid "
-      "body exactly, from its first step on.";
+      "buys half the error of a first-order scheme and a quarter of a second-order one. Our scheme moves a "
+      "rigid body exactly, from its first step on.";
   s.to_catch_up = "a closed form for single bodies in flight; ours solves for them as for any tree.";
   s.scene.ground = false;
   s.scene.gravity.setZero();

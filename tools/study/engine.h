@@ -59,7 +59,7 @@ struct EngineOption {
   std::string label() const { return engine + " " + option; }
 };
 
-/// Sinew's schemes in float and double; `accuracy.scheme` is overridden by the option.
+/// Sinew's scheme, and those that it is compared with, in float and double.
 std::vector<EngineOption> sinew_options();
 /// Of these, the one whose finest steps the others are judged by.
 EngineOption most_accurate_option();

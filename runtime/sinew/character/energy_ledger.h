@@ -1,6 +1,6 @@
 // Energy without work: the last word on what a step may leave behind.
 //
-// bdf1 dissipates and bdf2 nearly does, but a constraint's reaction works along the chord that a joint's arc
+// Steps dissipate, or nearly do, but a constraint's reaction works along the chord that a joint's arc
 // is stepped by, of the order of h²g/length and h²|ω|², so an inverted pendulum or a light link that whirls
 // about a heavy one can gain. Where nothing does work, each island has a ceiling that never rises: what a
 // step leaves above it is taken out of the motion, first of that relative to each tree's centre of mass.

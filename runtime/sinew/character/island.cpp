@@ -222,9 +222,8 @@ template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
-    const Transform<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction)
-                                                : Transform<T>{now.rotation, now.translation};
-    s.wanted[i] = s.in_solve(i, wanted, settings_.common_origin);
+    const JointJet<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction) : now;
+    s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
   }
 }
 
@@ -247,6 +246,7 @@ template <class T>
 void IslandStepper<T>::begin_part(T h, T fraction) {
   const WorldSettings& world = *world_;
   problems_.clear();
+  part_end_ = fraction;
   settings_.h = h;
   settings_.constant_muscles = !settings_.plan->scheme;
   settings_.common_origin = states_[0]->history.place;
@@ -463,6 +463,7 @@ template <class T>
 void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged) {
   reset(begun.states, begun.indices, {}, lagged);
   settings_ = begun.settings;
+  part_end_ = T(1);
   lasts_.assign(1, begun.lasts ? 1 : 0);
   problems_.assign(1, &states_[0]->problem);
   contacts_ = {};

@@ -130,6 +130,7 @@ class IslandStepper {
   std::span<const int> indices_;
   std::span<Coupling<T>* const> couplings_;
   T frame_ = T(0);                      ///< s, the whole step
+  T part_end_ = T(1);                   ///< where the present part ends, as a fraction of it
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
   std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
   SolveReport total_;

@@ -535,11 +535,17 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
       continue;
     }
     const JointJet<T>&jet = s.target[i], &before = s.last_target()[i];
-    const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * jet.rotation);
-    const Vec3<T> leaving = jet.omega - frame_ * jet.alpha,
-                  sliding = jet.velocity - frame_ * jet.acceleration;
-    lead(s.wanted[i].rotation.toRotationMatrix(), rate_at_end<T>(turned, leaving, jet.omega, frame_),
-         rate_at_end<T>(jet.translation - before.translation, sliding, jet.velocity, frame_));
+    const Mat3<T> wanted = s.wanted[i].rotation.toRotationMatrix();
+    if (part_end_ < T(1)) {
+      const JointJet<T> within = animation_within<T>(before, jet, frame_, part_end_);
+      lead(wanted, within.omega, within.velocity);
+    } else {
+      const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * jet.rotation);
+      const Vec3<T> leaving = jet.omega - frame_ * jet.alpha,
+                    sliding = jet.velocity - frame_ * jet.acceleration;
+      lead(wanted, rate_at_end<T>(turned, leaving, jet.omega, frame_),
+           rate_at_end<T>(jet.translation - before.translation, sliding, jet.velocity, frame_));
+    }
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && loose == 0) continue;
     std::array<T, 6> rate = d.rate;

@@ -1,5 +1,5 @@
 // Whether what a body touches, and which of its limits bear, is the same as a step ago: where it is not,
-// speeds jump and bdf2 has no use for those before. Internal to the character layer.
+// speeds jump and forces are no smooth ones. Internal to the character layer.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 
 namespace sinew {
 
-/// Steps with the same contacts before bdf2 may be used: after one, a dropped ball still lifts off again.
+/// Steps with the same contacts after which all of their forces is smooth.
 constexpr int kUnchangedSteps = 2;
 
 /// A joint is an unknown if it was released and has not come to rest on its target since, or if nothing

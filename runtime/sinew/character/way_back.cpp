@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sinew {
 namespace {
@@ -37,25 +38,32 @@ T stoppable(T offset, T deceleration, T h) {
   return std::sqrt(in_step * in_step + 2 * deceleration * std::abs(offset)) - in_step;
 }
 
-/// Where a fraction u of the frame has brought an animation that moves by `whole` in it: on the cubic with
-/// the rates (per frame) at both ends, since straight lines would ask for infinite accelerations where frames
-/// meet. Foreign rates are left out.
+/// Where a fraction u of the frame has brought an animation that moves by `whole` in it, and its rate per frame
+/// there: on the cubic with the rates at both ends, since straight lines would ask for infinite accelerations
+/// where frames meet. Foreign rates are left out.
 template <class T>
-Vec3<T> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving, T u) {
-  if (are_foreign(whole, leaving, arriving)) return u * whole;
-  return (u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving);
+std::pair<Vec3<T>, Vec3<T>> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving,
+                                       T u) {
+  if (are_foreign(whole, leaving, arriving)) return {u * whole, whole};
+  return {(u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving),
+          (6 * u * (1 - u)) * whole + (1 - u * (4 - 3 * u)) * leaving - (u * (2 - 3 * u)) * arriving};
 }
 
 }  // namespace
 
 template <class T>
-Transform<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction) {
+JointJet<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction) {
   const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
   const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
-  return {
-      before.rotation * rotation_exp<T>(on_the_way<T>(turn, frame * before.omega, frame * rate, fraction)),
-      before.translation + on_the_way<T>(now.translation - before.translation, frame * before.velocity,
-                                         frame * now.velocity, fraction)};
+  const auto [turned, turning] = on_the_way<T>(turn, frame * before.omega, frame * rate, fraction);
+  const auto [moved, moving] = on_the_way<T>(now.translation - before.translation, frame * before.velocity,
+                                             frame * now.velocity, fraction);
+  JointJet<T> jet;
+  jet.rotation = before.rotation * rotation_exp<T>(turned);
+  jet.omega = right_jacobian<T>(turned) * turning / frame;
+  jet.translation = before.translation + moved;
+  jet.velocity = moving / frame;
+  return jet;
 }
 
 template <class T>
@@ -89,9 +97,9 @@ void choose_targets(CharacterState<T>& s, T return_time, T h) {
   }
 }
 
-template Transform<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
+template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
                                                   float);
-template Transform<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
+template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
                                                     double);
 template void choose_targets<float>(CharacterState<float>&, float, float);
 template void choose_targets<double>(CharacterState<double>&, double, double);

@@ -23,14 +23,15 @@ bool are_foreign(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& ar
   return off > std::max(whole.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3);
 }
 
-/// The animation at a fraction of a frame of `frame` seconds between two targets: the cubic with the
-/// velocities at both ends.
+/// Where an animation that goes from `before` to `now` within a frame of so many seconds is at a fraction of
+/// it, and how fast: pose, angular velocity and velocity of the jet; on the cubic with the velocities at both
+/// ends.
 template <class T>
-Transform<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction);
+JointJet<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction);
 
-extern template Transform<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&,
+extern template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&,
                                                          float, float);
-extern template Transform<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
+extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
                                                            double, double);
 extern template void choose_targets<float>(CharacterState<float>&, float, float);
 extern template void choose_targets<double>(CharacterState<double>&, double, double);
