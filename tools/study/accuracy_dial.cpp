@@ -20,7 +20,7 @@ struct Rule {
 };
 constexpr Rule kRules[] = {{"crowd", 0.2, "many characters, seen from afar"},
                            {"game", 0.1, "players and those near them"},
-                           {"cinematic", 0.01, "close-ups, recorded takes"},
+                           {"cinematic", 0.002, "close-ups, recorded takes"},
                            {"reference", 0.0005, "comparing others with"}};
 
 EngineOption option_named(const std::string& name) {

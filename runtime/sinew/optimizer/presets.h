@@ -13,21 +13,21 @@ struct AccuracyPreset {
   double error;           ///< m, the largest measured: rms of all mass from a converged run
 };
 
-/// For close-ups, recorded takes. Within 0.0057 m of a converged run; 22 µs per 1/60 s
-/// while pushed, 57 µs while collapsing.
+/// For close-ups, recorded takes. Within 0.0019 m of a converged run; 34 µs per 1/60 s
+/// while pushed, 104 µs while collapsing.
 inline constexpr AccuracyPreset kCinematicPreset{
-    "cinematic", false, {.tolerance = 3e-05, .substeps = 2}, 0.0057};
-/// For many characters, seen from afar. Within 0.1 m of a converged run; 9 µs per 1/60 s
-/// while pushed, 28 µs while collapsing.
+    "cinematic", false, {.tolerance = 3e-05, .substeps = 2}, 0.0019};
+/// For many characters, seen from afar. Within 0.0067 m of a converged run; 18 µs per 1/60 s
+/// while pushed, 60 µs while collapsing.
 inline constexpr AccuracyPreset kCrowdPreset{
-    "crowd", false, {.tolerance = 0.0003, .substeps = 1}, 0.1};
-/// For players and those near them. Within 0.017 m of a converged run; 12 µs per 1/60 s
-/// while pushed, 33 µs while collapsing.
+    "crowd", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
+/// For players and those near them. Within 0.0067 m of a converged run; 18 µs per 1/60 s
+/// while pushed, 60 µs while collapsing.
 inline constexpr AccuracyPreset kGamePreset{
-    "game", false, {.tolerance = 0.0003, .substeps = 1}, 0.017};
-/// For comparing others with. Within 0.00037 m of a converged run; 206 µs per 1/60 s
-/// while pushed, 449 µs while collapsing.
+    "game", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
+/// For comparing others with. Within 0.00044 m of a converged run; 73 µs per 1/60 s
+/// while pushed, 207 µs while collapsing.
 inline constexpr AccuracyPreset kReferencePreset{
-    "reference", true, {.tolerance = 1e-07, .substeps = 16}, 0.00037};
+    "reference", true, {.tolerance = 1e-06, .substeps = 4}, 0.00044};
 
 }  // namespace sinew
