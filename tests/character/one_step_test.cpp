@@ -285,7 +285,8 @@ std::vector<Transform<double>> swung(int parts, bool as_steps) {
     for (std::size_t i = 0; i < jets.size(); ++i) {
       const Joint& joint = playing.skeleton.joints[i];
       if (joint.type != JointType::kRevolute) continue;
-      jets[i].rotation = jets[i].rotation * Quat<double>(Eigen::AngleAxisd(0.2 * std::sin(20 * t), joint.axis));
+      jets[i].rotation =
+          jets[i].rotation * Quat<double>(Eigen::AngleAxisd(0.2 * std::sin(20 * t), joint.axis));
       jets[i].omega = 4 * std::cos(20 * t) * joint.axis;
       jets[i].alpha = -80 * std::sin(20 * t) * joint.axis;
     }

@@ -38,8 +38,8 @@ FallRow fall(double h) {
   row.unconverged = double(bad) / steps;
   std::printf(
       "h 1/%-3.0f %-6s  unconverged %.2f %%  above start %2d of 40  passes %.2f  factorisations %.2f\n",
-      1 / h, sizeof(T) == 4 ? "float" : "double",
-      100 * row.unconverged, row.above_start, double(passes) / steps, double(factorisations) / steps);
+      1 / h, sizeof(T) == 4 ? "float" : "double", 100 * row.unconverged, row.above_start,
+      double(passes) / steps, double(factorisations) / steps);
   return row;
 }
 
@@ -55,8 +55,7 @@ TEST(LimpFall, ConvergesAndGainsNoEnergyAtSixtyAndThirtyHertz) {
 }
 
 TEST(LimpFall, GainsNoEnergyAtFifteenHertz) {
-  for (const FallRow& row : {fall<double>(1 / 15.0), fall<float>(1 / 15.0)})
-    EXPECT_EQ(row.above_start, 0);
+  for (const FallRow& row : {fall<double>(1 / 15.0), fall<float>(1 / 15.0)}) EXPECT_EQ(row.above_start, 0);
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ TEST(Wind, FallingBallReachesItsTerminalSpeedAtAnyStep) {
 }
 
 TEST(Wind, CarriesALightBallAwayButNotFasterThanItself) {
-  // A balloon of 10 g and 1 m in a storm: drag would throw an explicit step 300 times too far. A speed that is
-  // not the mean of the step, which drag goes by, passes it by 1 %.
+  // A balloon of 10 g and 1 m in a storm: drag would throw an explicit step 300 times too far. A speed that
+  // is not the mean of the step, which drag goes by, passes it by 1 %.
   double passed = 0;
   for (const double h : {1 / 60.0, 0.25}) {
     WorldSettings settings = airborne();
@@ -75,7 +75,8 @@ TEST(Wind, CarriesALightBallAwayButNotFasterThanItself) {
     passed = std::max(passed, fastest / 40);
     EXPECT_GT(ball.world.prop_velocity(0).x(), 39) << "h " << h;
   }
-  SINEW_FAILS_TODAY(passed <= 1.02, "drag that stops within a step is carried on as a smooth force: 55 and 73 m/s");
+  SINEW_FAILS_TODAY(passed <= 1.02,
+                    "drag that stops within a step is carried on as a smooth force: 55 and 73 m/s");
 }
 
 TEST(Wind, StillAirOnlyTakesEnergyFromALimpBody) {

@@ -83,7 +83,8 @@ TEST(Dial, MoreBudgetNeverBuysLessAccuracy) {
 
 TEST(Dial, HasASettingForTenMicroseconds) {
   scene::MeasuredAccuracy cheap;
-  SINEW_FAILS_TODAY(!scene::within_budget("10us", cheap), "implicit Euler took 9 us where the one scheme takes 16");
+  SINEW_FAILS_TODAY(!scene::within_budget("10us", cheap),
+                    "implicit Euler took 9 us where the one scheme takes 16");
 }
 
 TEST(Dial, RefusesWhatIsNoErrorNoTimeOrOutOfReach) {

@@ -97,8 +97,7 @@ double rotation_error(double h, double uneven, const TimeScheme<double>& scheme)
 }
 
 TEST(Bdf2, TumblingConvergesWithSecondOrder) {
-  const double coarse = rotation_error(1 / 60.0, 0, kBdf2),
-               middle = rotation_error(1 / 120.0, 0, kBdf2),
+  const double coarse = rotation_error(1 / 60.0, 0, kBdf2), middle = rotation_error(1 / 120.0, 0, kBdf2),
                fine = rotation_error(1 / 240.0, 0, kBdf2);
   EXPECT_NEAR(std::log2(middle / fine), 2, 0.2);  // still nearing its limit
   EXPECT_NEAR(std::log2(coarse / middle), 2, 0.3);
@@ -106,14 +105,12 @@ TEST(Bdf2, TumblingConvergesWithSecondOrder) {
 }
 
 TEST(Bdf2, KeepsSecondOrderWithUnequalSteps) {
-  const double coarse = rotation_error(1 / 120.0, 0.4, kBdf2),
-               fine = rotation_error(1 / 240.0, 0.4, kBdf2);
+  const double coarse = rotation_error(1 / 120.0, 0.4, kBdf2), fine = rotation_error(1 / 240.0, 0.4, kBdf2);
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
 }
 
 TEST(Bdf1, TumblingConvergesWithFirstOrder) {
-  const double coarse = rotation_error(1 / 240.0, 0, kBdf1),
-               fine = rotation_error(1 / 480.0, 0, kBdf1);
+  const double coarse = rotation_error(1 / 240.0, 0, kBdf1), fine = rotation_error(1 / 480.0, 0, kBdf1);
   EXPECT_NEAR(std::log2(coarse / fine), 1, 0.3);
 }
 

@@ -183,9 +183,9 @@ struct SimulateCommand {
     sinew::scene::set_accuracy(chosen, scene.frame_rate, scene.world.accuracy, scene.double_precision);
     if (!json_output)
       std::printf("%d substeps, tolerance %g m, %s: measured within %.2g mm and %.2g degrees, %.3g us\n",
-                  scene.world.accuracy.substeps,
-                  chosen.accuracy.tolerance, chosen.double_precision ? "double" : "float", 1e3 * chosen.error,
-                  chosen.degrees, chosen.us);
+                  scene.world.accuracy.substeps, chosen.accuracy.tolerance,
+                  chosen.double_precision ? "double" : "float", 1e3 * chosen.error, chosen.degrees,
+                  chosen.us);
     return {};
   }
 };

@@ -83,8 +83,8 @@ convert::Error StabilityCommand::run() const {
     if (!only.empty()) std::printf("%s\n", study::set_up_of(result.hard_case).c_str());
     std::fflush(stdout);
   };
-  const auto results = study::run_stability({quick, only},
-                                            json_output ? progress_line("stability") : nullptr, print);
+  const auto results =
+      study::run_stability({quick, only}, json_output ? progress_line("stability") : nullptr, print);
   if (results.empty()) return {"there is no hard case '" + only + "'"};
   const nlohmann::json summary = study::stability_json(results);
   if (convert::Error error = write_atomically(directory + "/stability.csv", study::stability_csv(results)))

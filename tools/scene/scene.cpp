@@ -209,9 +209,9 @@ void read_accuracy(const json& value, Scene& s) {
   MeasuredAccuracy preset;
   const json named = value.is_string() ? json{{"preset", value}} : value;
   const Reader a(named, "accuracy",
-                 {"preset", "tolerance", "max_iterations", "substeps", "max_rotation",
-                  "impact_step", "max_splits", "sink_depth", "contact_damping", "stick_speed",
-                  "limit_stiffness", "limit_damping", "return_time", "precision", "estimate_error"});
+                 {"preset", "tolerance", "max_iterations", "substeps", "max_rotation", "impact_step",
+                  "max_splits", "sink_depth", "contact_damping", "stick_speed", "limit_stiffness",
+                  "limit_damping", "return_time", "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
     set_accuracy(preset, s.frame_rate, s.world.accuracy, s.double_precision);

@@ -75,9 +75,9 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
     const Skeleton& skeleton = c.asset->skeleton;
     csv += fmt::format("{:.6f},{},{},{},{:.2f},{},{},{:d},{},{:.6f},{:.6f},{:.6f},{},{:.4f}", r.time,
                        field(c.name), r.report.dofs, r.report.unknown_dofs, r.microseconds,
-                       r.report.outer_passes, r.report.factorisations, r.report.converged,
-                       r.report.contacts, r.report.penetration, r.report.kinetic_energy,
-                       r.report.potential_energy, field(skeleton.joints[r.loaded_joint].name), r.load);
+                       r.report.outer_passes, r.report.factorisations, r.report.converged, r.report.contacts,
+                       r.report.penetration, r.report.kinetic_energy, r.report.potential_energy,
+                       field(skeleton.joints[r.loaded_joint].name), r.load);
     csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{},{:.3e}", r.torque, r.limit, r.plotted_torque,
                        r.plotted_limit, r.report.elastic_energy, r.report.substeps, r.report.estimated_error);
     for (const std::string& name : names) {

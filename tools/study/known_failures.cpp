@@ -15,7 +15,7 @@ struct KnownFailure {
 
 constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"limp_fall_counts",
-     "3.8 factorisations a step, 3.7 wanted: figures move longer than in bdf2 before they lie"},
+     "3.8 factorisations a step, 3.7 wanted: figures move longer before they lie than in the prototype"},
     {"ragdoll_hit_in_the_same_frame",
      "one step in ninety does not converge: a hand at 400 m/s meets limits at 20 rad a step"},
     {"ellipsoidal_limit", "one step in 400 in which a joint that creeps off has reached its way back"},

@@ -84,7 +84,8 @@ template <class T>
 Stage<T>::Stage(const WorldSettings& settings, Compared scheme)
     : settings_(settings), world_(std::make_unique<World<T>>(settings)) {
   for (const Status& status :
-       {declare_scheme(scheme, *world_), world_->template declare<ContinuousDetection>(), world_->template declare<Restitution>()})
+       {declare_scheme(scheme, *world_), world_->template declare<ContinuousDetection>(),
+        world_->template declare<Restitution>()})
     if (!status) m_.refused = status.reason;
 }
 

@@ -12,7 +12,7 @@ namespace sinew::study {
 
 struct StabilityOptions {
   bool quick = false;
-  std::string only;                 ///< name of one case; empty: all
+  std::string only;  ///< name of one case; empty: all
 };
 
 /// One case at one step and precision.

@@ -165,8 +165,8 @@ void IslandStepper<T>::advance_all(T h) {
     double& error = s.report.estimated_error;
     if (parts_ <= 1) error = 0;
     if (estimates)
-      error += integration_error<T>(*problems_[n], s.history, s.load, h, bodies(missed_, n),
-                                    bodies(unturned_, n));
+      error +=
+          integration_error<T>(*problems_[n], s.history, s.load, h, bodies(missed_, n), bodies(unturned_, n));
   }
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];

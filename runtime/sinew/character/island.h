@@ -52,9 +52,7 @@ class IslandStepper {
   bool begin(const WorldSettings& world, const Surroundings& surroundings, T h,
              std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
-  Begun put_aside() const {
-    return {states_, indices_, settings_, !lasts_.empty() && lasts_[0] != 0};
-  }
+  Begun put_aside() const { return {states_, indices_, settings_, !lasts_.empty() && lasts_[0] != 0}; }
   /// `begun` by the last world and time step that begin() was given.
   void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
   /// The rest. `first`: what the first solve reported, whose solution the tree's problem holds; null: there

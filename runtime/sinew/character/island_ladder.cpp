@@ -24,8 +24,7 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->limp() &&
-           std::all_of(effects.begin(), effects.end(), closed);
+    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 
@@ -65,8 +64,8 @@ double IslandStepper<T>::standing() const {
 }
 
 /// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in
-/// there. From the pose at the start, implicit Euler's energy is all that the trees have, and each step lowers
-/// it: what the result stores is no more.
+/// there. From the pose at the start, implicit Euler's energy is all that the trees have, and each step
+/// lowers it: what the result stores is no more.
 template <class T>
 SolveReport IslandStepper<T>::solve_from_start() {
   for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));

@@ -242,7 +242,9 @@ void IslandStepper<T>::drop_constant(CharacterState<T>& s, int tree, std::span<c
 /// Whether no degree of freedom of a tree can move in the step, but as it is led.
 template <class T>
 bool IslandStepper<T>::is_locked(const CharacterState<T>& s) const {
-  const auto none = [](const auto& v) { return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; }); };
+  const auto none = [](const auto& v) {
+    return std::all_of(v.begin(), v.end(), [](auto x) { return x == 0; });
+  };
   return couplings_.empty() && s.problem.effects.empty() && none(s.problem.free) && none(s.baked);
 }
 

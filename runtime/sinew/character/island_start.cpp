@@ -77,13 +77,13 @@ void measure_coasting(CharacterState<T>& s) {
 /// Whether a tree begins without knowing how it accelerates.
 template <class T>
 bool IslandStepper<T>::starts() const {
-  return !settings_.plan->scheme && std::any_of(states_.begin(), states_.end(), [](const CharacterState<T>* s) {
-    return !s->history.accelerates;
-  });
+  return !settings_.plan->scheme &&
+         std::any_of(states_.begin(), states_.end(),
+                     [](const CharacterState<T>* s) { return !s->history.accelerates; });
 }
 
-/// Finds the accelerations at the start of the part that has been begun: a trial that begins and ends at rest.
-/// Where it does not converge they are not known, and the step is implicit Euler's.
+/// Finds the accelerations at the start of the part that has been begun: a trial that begins and ends at
+/// rest. Where it does not converge they are not known, and the step is implicit Euler's.
 template <class T>
 void IslandStepper<T>::find_accelerations() {
   const T h = settings_.h;
@@ -166,10 +166,10 @@ void IslandStepper<T>::start(T end, int splits) {
   advance_part(T(0), end, splits);
 }
 
-#define SINEW_START_INSTANCES(T)                            \
-  template bool IslandStepper<T>::starts() const;           \
-  template void IslandStepper<T>::find_accelerations();     \
-  template void IslandStepper<T>::begin_loaded(T);          \
+#define SINEW_START_INSTANCES(T)                        \
+  template bool IslandStepper<T>::starts() const;       \
+  template void IslandStepper<T>::find_accelerations(); \
+  template void IslandStepper<T>::begin_loaded(T);      \
   template void IslandStepper<T>::start(T, int);
 SINEW_START_INSTANCES(float)
 SINEW_START_INSTANCES(double)

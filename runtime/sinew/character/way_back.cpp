@@ -38,9 +38,9 @@ T stoppable(T offset, T deceleration, T h) {
   return std::sqrt(in_step * in_step + 2 * deceleration * std::abs(offset)) - in_step;
 }
 
-/// Where a fraction u of the frame has brought an animation that moves by `whole` in it, and its rate per frame
-/// there: on the cubic with the rates at both ends, since straight lines would ask for infinite accelerations
-/// where frames meet. Foreign rates are left out.
+/// Where a fraction u of the frame has brought an animation that moves by `whole` in it, and its rate per
+/// frame there: on the cubic with the rates at both ends, since straight lines would ask for infinite
+/// accelerations where frames meet. Foreign rates are left out.
 template <class T>
 std::pair<Vec3<T>, Vec3<T>> on_the_way(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& arriving,
                                        T u) {
@@ -98,9 +98,9 @@ void choose_targets(CharacterState<T>& s, T return_time, T h) {
 }
 
 template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
-                                                  float);
+                                                 float);
 template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
-                                                    double);
+                                                   double);
 template void choose_targets<float>(CharacterState<float>&, float, float);
 template void choose_targets<double>(CharacterState<double>&, double, double);
 

@@ -29,10 +29,10 @@ bool are_foreign(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& ar
 template <class T>
 JointJet<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction);
 
-extern template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&,
-                                                         float, float);
+extern template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
+                                                        float);
 extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
-                                                           double, double);
+                                                          double, double);
 extern template void choose_targets<float>(CharacterState<float>&, float, float);
 extern template void choose_targets<double>(CharacterState<double>&, double, double);
 

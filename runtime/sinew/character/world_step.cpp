@@ -61,8 +61,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
 template <class T>
 bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
-    return worker.batch && s.problem.room.fits(batch_room) &&
-           worker.batch->takes(s.problem);
+    return worker.batch && s.problem.room.fits(batch_room) && worker.batch->takes(s.problem);
   return false;
 }
 

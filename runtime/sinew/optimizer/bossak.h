@@ -95,9 +95,9 @@ struct Jumps {
 };
 
 /// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
-/// gradient there (about each centre of mass). What impulses and constant forces leave as speed is still to be
-/// added (EndVelocities::project). From a prediction of implicit Euler's velocities are those of the step, whatever moved
-/// it, and accelerations those of its smooth forces.
+/// gradient there (about each centre of mass). What impulses and constant forces leave as speed is still to
+/// be added (EndVelocities::project). From a prediction of implicit Euler's velocities are those of the step,
+/// whatever moved it, and accelerations those of its smooth forces.
 template <class T>
 void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
                     std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,

@@ -227,7 +227,8 @@ bool EndVelocities<T>::add_side(Row& row, int n) {
   int last = part.count - 1;
   while (last >= 0 && row_[last] == T(0)) --last;
   if (last >= 0) {  // with the rest of its joint, which reduce() fills
-    const JointBlock& block = part.matrix.blocks[problems_[row.tree[n]]->tree->dof_body[dof_[part.first + last]]];
+    const JointBlock& block =
+        part.matrix.blocks[problems_[row.tree[n]]->tree->dof_body[dof_[part.first + last]]];
     row.count[n] = block.first + block.count;
   }
   if (rows_.size() + row.count[n] > rows_.capacity()) return false;

@@ -51,9 +51,9 @@ class EndVelocities {
   void settle(int tree, std::span<T> force);
 
   /// Finds the rates of a tree's unknowns from the momenta of its history and the impulses `impulse` [dof]
-  /// (N·m·s, N·s; empty: none), whose response M⁻¹ need not be found to be projected: JᵀmJM⁻¹ is 1. Joints that
-  /// no unknown moves have the velocities `led` [body]. It solves for the change of `rate` [body], near to the
-  /// answer, for the matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
+  /// (N·m·s, N·s; empty: none), whose response M⁻¹ need not be found to be projected: JᵀmJM⁻¹ is 1. Joints
+  /// that no unknown moves have the velocities `led` [body]. It solves for the change of `rate` [body], near
+  /// to the answer, for the matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
   void project(int tree, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
                std::span<const T> impulse, const History<T>& history);
 
@@ -80,12 +80,13 @@ class EndVelocities {
   };
   struct Row {
     int tree[2] = {-1, -1};
-    int entry[2] = {0, 0}, count[2] = {0, 0};  ///< of a side in `rows_`: its tree's unknowns, to the last that acts
-    int grips = 0;                             ///< 2: the next two rows are those of its friction
-    T friction = T(0), cone = T(0);            ///< μ; N·s, beside what its own impulse allows
-    T given = T(0);  ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
-    T mobility = T(0);            ///< 1/kg
-    T impulse = T(0);             ///< N·s, N·m·s
+    int entry[2] = {0, 0},
+        count[2] = {0, 0};           ///< of a side in `rows_`: its tree's unknowns, to the last that acts
+    int grips = 0;                   ///< 2: the next two rows are those of its friction
+    T friction = T(0), cone = T(0);  ///< μ; N·s, beside what its own impulse allows
+    T given = T(0);     ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
+    T mobility = T(0);  ///< 1/kg
+    T impulse = T(0);   ///< N·s, N·m·s
     T least = T(0), most = T(0);  ///< of it
     bool reduced = false;         ///< its entries and mobility are known
     int sides() const { return tree[1] < 0 ? 1 : 2; }
@@ -119,9 +120,9 @@ class EndVelocities {
   std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
   std::vector<T> rows_;  ///< what a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ
-  std::vector<T> row_;   ///< [unknown] of one side
-  std::vector<std::uint8_t> on_path_;    ///< [body] the same
-  std::vector<T> done_;                  ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
+  std::vector<T> row_;                 ///< [unknown] of one side
+  std::vector<std::uint8_t> on_path_;  ///< [body] the same
+  std::vector<T> done_;  ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
   std::vector<std::uint8_t> disturbed_;  ///< [tree] it is not 0
 };
 

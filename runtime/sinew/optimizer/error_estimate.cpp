@@ -50,8 +50,8 @@ void begin_error(const TreeProblem<T>& problem, const History<T>& history, T h,
     // The free turn, which is exact, is that of the predicted momentum.
     const Mat3<T> turn = problem.prediction.rotation[i].transpose() * problem.kinematics.rotation[i];
     const Vec3<T> predicted = history.momentum[i] + ahead * history.torque[i];
-    turned[i] = rotation_log<T>(Quat<T>(turn)) -
-                turn_of<T>(problem, i, history.momentum[i] / 2 - predicted, h);
+    turned[i] =
+        rotation_log<T>(Quat<T>(turn)) - turn_of<T>(problem, i, history.momentum[i] / 2 - predicted, h);
   }
 }
 

@@ -210,8 +210,8 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     // Where no row bears the energy is smooth, and the step Newton's own; what effects do may bend otherwise
     // than their matrix says.
     const bool exact = inner.straight && inner_.joints_only() && inner_.geometric() &&
-                       !lacks_energy(*trees_[0]) &&
-                       length < kExactWithin * tolerance && kLeft * length * length < kCautious * tolerance;
+                       !lacks_energy(*trees_[0]) && length < kExactWithin * tolerance &&
+                       kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
     report_.converged = small || (outcome == Outcome::kFull &&
                                   (exact || (near && converge_by_chords(tolerance, length, energy))));

@@ -19,12 +19,10 @@ inline constexpr AccuracyPreset kCinematicPreset{
     "cinematic", false, {.tolerance = 3e-05, .substeps = 2}, 0.0019};
 /// For many characters, seen from afar. Within 0.0067 m of a converged run; 18 µs per 1/60 s
 /// while pushed, 60 µs while collapsing.
-inline constexpr AccuracyPreset kCrowdPreset{
-    "crowd", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
+inline constexpr AccuracyPreset kCrowdPreset{"crowd", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
 /// For players and those near them. Within 0.0067 m of a converged run; 18 µs per 1/60 s
 /// while pushed, 60 µs while collapsing.
-inline constexpr AccuracyPreset kGamePreset{
-    "game", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
+inline constexpr AccuracyPreset kGamePreset{"game", false, {.tolerance = 3e-05, .substeps = 1}, 0.0067};
 /// For comparing others with. Within 0.00044 m of a converged run; 73 µs per 1/60 s
 /// while pushed, 207 µs while collapsing.
 inline constexpr AccuracyPreset kReferencePreset{

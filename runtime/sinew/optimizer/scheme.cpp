@@ -179,9 +179,8 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
     const Vec3<double> velocity = history.velocity[i].template cast<double>();
     const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
     const Mat3<T>& rate = history.rotation_rate[i];
-    const T turning = history.turns_as_differenced
-                          ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
-                          : spin.dot(tree.inverse_inertia[i] * spin);
+    const T turning = history.turns_as_differenced ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
+                                                   : spin.dot(tree.inverse_inertia[i] * spin);
     sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
     sum.potential_energy += gravity_energy<double>(m, gravity, history.place + center);
     sum.momentum += m * velocity;
@@ -226,7 +225,8 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
       return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * w)));
     };
     const Vec3<T> arm = history.center[i] - center;
-    history.velocity[i] += (factor - 1) * (history.velocity[i] - (velocity + spin.cross(arm))) + faster.cross(arm);
+    history.velocity[i] +=
+        (factor - 1) * (history.velocity[i] - (velocity + spin.cross(arm))) + faster.cross(arm);
     history.momentum[i] += (factor - 1) * (history.momentum[i] - momentum_of(spin)) + momentum_of(faster);
     Mat3<T>& rate = history.rotation_rate[i];
     if (history.turns_as_differenced)

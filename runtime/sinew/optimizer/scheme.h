@@ -68,12 +68,12 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
 /// Targets of inertia for one step, relative to the common origin.
 template <class T>
 struct Prediction {
-  std::vector<Vec3<T>> center;    ///< ĉ
-  std::vector<Mat3<T>> rotation;  ///< R̂
-  std::vector<Vec3<T>> momentum;  ///< L*, so that L₁ = L* + βh·g
-  T weight = T(0);                ///< α, 1/s²
-  T momentum_step = T(0);         ///< βh, s
-  T rho = T(0);                   ///< see BossakWeights; 0: implicit Euler's, see predict_euler
+  std::vector<Vec3<T>> center;           ///< ĉ
+  std::vector<Mat3<T>> rotation;         ///< R̂
+  std::vector<Vec3<T>> momentum;         ///< L*, so that L₁ = L* + βh·g
+  T weight = T(0);                       ///< α, 1/s²
+  T momentum_step = T(0);                ///< βh, s
+  T rho = T(0);                          ///< see BossakWeights; 0: implicit Euler's, see predict_euler
   const TimeScheme<T>* other = nullptr;  ///< whose they are; null: the runtime's own
 
   explicit Prediction(int bodies);
@@ -113,9 +113,9 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
 
-/// Where a free body that is at `start` (body → world) with the angular momentum L (world) is after h seconds,
-/// which may be negative: Ṙ = R ω^, ω = I⁻¹ Rᵀ L, by Magnus's series of fourth order in parts of 0.15 rad
-/// (Hairer, Lubich and Wanner, "Geometric Numerical Integration", 2006, section IV.7).
+/// Where a free body that is at `start` (body → world) with the angular momentum L (world) is after h
+/// seconds, which may be negative: Ṙ = R ω^, ω = I⁻¹ Rᵀ L, by Magnus's series of fourth order in parts of
+/// 0.15 rad (Hairer, Lubich and Wanner, "Geometric Numerical Integration", 2006, section IV.7).
 template <class T>
 Mat3<T> free_rotation(const Mat3<T>& inverse_inertia, const Mat3<T>& start, const Vec3<T>& momentum, T h);
 extern template Mat3<float> free_rotation<float>(const Mat3<float>&, const Mat3<float>&, const Vec3<float>&,
@@ -127,19 +127,19 @@ extern template Mat3<double> free_rotation<double>(const Mat3<double>&, const Ma
 template <class T>
 Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history);
 
-#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                    \
-  prefix struct History<T>;                                                                                  \
-  prefix struct Prediction<T>;                                                                               \
-  prefix void predict_euler<T>(const Tree<T>&, const History<T>&, T, const Vec3<double>&, Prediction<T>&);   \
-  prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,                \
-                                 std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);          \
-  prefix Vec3<double> linear_momentum<T>(const Tree<T>&, const History<T>&);                                 \
-  prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                             \
-  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
-  prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
-  prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);     \
-  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&,  \
-                                 const Vec3<double>&, History<T>&);                                          \
+#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                   \
+  prefix struct History<T>;                                                                                 \
+  prefix struct Prediction<T>;                                                                              \
+  prefix void predict_euler<T>(const Tree<T>&, const History<T>&, T, const Vec3<double>&, Prediction<T>&);  \
+  prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,               \
+                                 std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);         \
+  prefix Vec3<double> linear_momentum<T>(const Tree<T>&, const History<T>&);                                \
+  prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                            \
+  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                          \
+  prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                     \
+  prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);    \
+  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&, \
+                                 const Vec3<double>&, History<T>&);                                         \
   prefix Vec3<T> follow_root<T>(const Kinematics<T>&, const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)
 SINEW_SCHEME_INSTANCES(extern template, double)

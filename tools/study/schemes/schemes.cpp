@@ -144,8 +144,8 @@ void Bdf2<T>::keep(const History<T>& before, T h, History<T>& now) {
   now.other.resize(static_cast<std::size_t>(bodies) * Earlier<T>::kNumbers + 1);
   const Vec3<T> moved = (now.place - before.place).template cast<T>();
   for (int i = 0; i < bodies; ++i)
-    Earlier<T>{before.center[i] - moved, before.velocity[i], before.momentum[i], before.rotation[i]}.write(now,
-                                                                                                         i);
+    Earlier<T>{before.center[i] - moved, before.velocity[i], before.momentum[i], before.rotation[i]}.write(
+        now, i);
   now.other.back() = now.step_before = h;
 }
 
