@@ -218,7 +218,8 @@ template <class T>
 void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, const Vec3<double>& turn,
                    History<T>& history) {
   const Vec3<T> center = rigid.center.template cast<T>(), spin = rigid.spin.template cast<T>(),
-                velocity = rigid.velocity.template cast<T>(), faster = turn.template cast<T>();
+                velocity = rigid.velocity.template cast<T>();
+  const Vec3<T>& faster = turn.template cast<T>();
   for (int i = 0; i < tree.bodies; ++i) {
     const Mat3<T>& r = history.rotation[i];
     const auto momentum_of = [&](const Vec3<T>& w) {
