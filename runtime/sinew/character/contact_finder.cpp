@@ -16,6 +16,7 @@ constexpr int kFirstHost = 0x4000;    ///< of contact identities
 constexpr double kMostPiled = 8;      ///< of the heaviest body: what a contact may bear of a pile
 constexpr double kMostGripped = 4;    ///< weights that a contact may have to bear, in friction by what is led
 constexpr double kExitSpeed = 0.45;   ///< m/s, of what begins inside something or was pressed into it
+constexpr double kExitAcceleration = 10;  ///< m/s², with which its surface presses
 constexpr double kLeftInside = 1e-3;  ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
@@ -90,20 +91,17 @@ void ContactFinder<T>::lead_out(Contact<T>& c) const {
   bring_back(c, c.stiffness, T(0));
 }
 
-/// The surface of what is led out of it comes back, to `least` m off its place at most; an obstacle's no
-/// further than what it lends by that takes the tree along at the walking pace: a stiff one would shoot it
-/// out.
+/// The surface of what is led out of it comes back, to `least` m off its place at most; and no further than
+/// where it presses with what takes the lighter tree along: what it cannot move it must not store ever more in.
 template <class T>
 void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness, T least) const {
   T back = std::min(T(kExitSpeed) * h_, c.offset - least);
   if (!(back > T(0))) return;  // as a rule: nothing is led
+  const double mass = std::min(states_[c.tree_a]->total_mass,
+                               c.tree_b < 0 ? std::numeric_limits<double>::max() : states_[c.tree_b]->total_mass);
+  const T most = T(mass * (world_->gravity.norm() + kExitAcceleration));
+  back = std::max(std::min(back, ContactLaw<T>::depth(stiffness, most) + c.gap), T(0));
   const T stored = ContactLaw<T>::energy(stiffness, c.gap);
-  if (c.tree_b < 0) {
-    const T enough = T(states_[c.tree_a]->total_mass * kExitSpeed *
-                       (kExitSpeed / 2 + world_->gravity.norm() * double(h_)));
-    back = std::min(back, ContactLaw<T>::depth_storing(stiffness, stored + enough) + c.gap);
-  }
-  back = std::max(back, T(0));
   c.offset -= back;
   c.gap -= back;
   c.lent = ContactLaw<T>::energy(stiffness, c.gap) - stored;
