@@ -25,7 +25,8 @@ std::vector<std::pair<std::string, Accuracy>> settings() {
   for (const int cap : {1, 2, 4, 8}) {
     Accuracy& a = out.emplace_back("iteration cap", Accuracy{}).second;
     a.max_iterations = cap;
-    a.max_splits = 0;  // a halved step would have the cap anew
+    a.max_splits = 0;  // parts of a step would have the cap anew
+    a.max_parts = 1;
   }
   return out;
 }

@@ -12,18 +12,22 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
-constexpr int kFirstHost = 0x4000;    ///< of contact identities
-constexpr double kMostPiled = 8;      ///< of the heaviest body: what a contact may bear of a pile
-constexpr double kMostGripped = 4;    ///< weights that a contact may have to bear, in friction by what is led
-constexpr double kExitSpeed = 0.45;   ///< m/s, of what begins inside something or was pressed into it
-constexpr double kExitAcceleration = 10;  ///< m/s², with which its surface presses
-constexpr double kLeftInside = 1e-3;  ///< m, that this leaves
+constexpr int kFirstHost = 0x4000;   ///< of contact identities
+constexpr double kMostPiled = 8;     ///< of the heaviest body: what a contact may bear of a pile
+constexpr double kMostGripped = 4;   ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kExitSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
+constexpr double kLent = 2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
+constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
   return first_contact_id(tree_a) ^ (std::uint64_t(point + 1) << 32) ^ (std::uint64_t(tree_b + 1) << 16) ^
          std::uint64_t(shape + 1);
+}
+
+bool is_of_tree(std::uint64_t id, int tree) {
+  return id >> 48 == std::uint64_t(tree + 1) || ((id >> 16) & 0xffff) == std::uint64_t(tree + 1);
 }
 
 }  // namespace
@@ -34,6 +38,7 @@ void ContactFinder<T>::reserve(const SolveRoom& room) {
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
   first_bound_.reserve(room.trees);
+  led_.reserve(room.trees);
 }
 
 template <class T>
@@ -71,14 +76,31 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach || contacts_.size() >= most_) return;
   remember(c);
-  if (c.fresh) {
-    stiffen_for_impact(c);
-    lead_out(c);
-  }
-  c.start_gap = c.gap;
-  // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
-  if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kExitSpeed)), h_);
   contacts_.push_back(c);
+}
+
+/// What contacts that were not there before begin with, and how all are damped.
+template <class T>
+void ContactFinder<T>::begin_all(bool many_shapes) {
+  for (Contact<T>& c : contacts_) {
+    if (c.fresh) {
+      if (!many_shapes || !runs_on(c)) stiffen_for_impact(c);
+      lead_out(c);
+    }
+    c.start_gap = c.gap;
+    // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
+    if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kExitSpeed)), h_);
+  }
+}
+
+/// Whether a point slides towards an edge that is no higher than what it rests on: not an impact.
+template <class T>
+bool ContactFinder<T>::runs_on(const Contact<T>& c) const {
+  return c.tree_b < 0 && c.gap > T(0) &&
+         std::any_of(contacts_.begin(), contacts_.end(), [&](const auto& rests) {
+           return !rests.fresh && rests.lagged_normal_force > T(0) &&
+                  is_level<T>(c, rests, T(world_->accuracy.sink_depth));
+         });
 }
 
 /// What begins inside something (spawned there, or played there by an animation) is not shot out of it: the
@@ -88,23 +110,32 @@ void ContactFinder<T>::lead_out(Contact<T>& c) const {
   if (c.gap >= T(-kLeftInside)) return;
   c.offset -= c.gap;
   c.gap = T(0);
-  bring_back(c, c.stiffness, T(0));
 }
 
-/// The surface of what is led out of it comes back, to `least` m off its place at most; and no further than
-/// where it presses with what takes the lighter tree along: what it cannot move it must not store ever more in.
+/// The surface of what is led out of it comes back; all that lead a tree store no more together than takes it
+/// along at the walking pace, the lighter of two: in what is wedged they would store ever more.
 template <class T>
-void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness, T least) const {
-  T back = std::min(T(kExitSpeed) * h_, c.offset - least);
+void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness) const {
+  T back = std::min(T(kExitSpeed) * h_, c.offset - T(kLeftInside));
   if (!(back > T(0))) return;  // as a rule: nothing is led
-  const double mass = std::min(states_[c.tree_a]->total_mass,
-                               c.tree_b < 0 ? std::numeric_limits<double>::max() : states_[c.tree_b]->total_mass);
-  const T most = T(mass * (world_->gravity.norm() + kExitAcceleration));
-  back = std::max(std::min(back, ContactLaw<T>::depth(stiffness, most) + c.gap), T(0));
+  const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(led_[n], 1)); };
+  const T mass = c.tree_b < 0 ? share(c.tree_a) : std::min(share(c.tree_a), share(c.tree_b));
+  const T enough = mass * T(kLent * kExitSpeed * (kExitSpeed / 2 + world_->gravity.norm() * double(h_)));
+  back = std::max(std::min(back, ContactLaw<T>::depth_storing(stiffness, enough) + c.gap), T(0));
   const T stored = ContactLaw<T>::energy(stiffness, c.gap);
   c.offset -= back;
   c.gap -= back;
   c.lent = ContactLaw<T>::energy(stiffness, c.gap) - stored;
+}
+
+/// How many contacts lead each tree out of something.
+template <class T>
+void ContactFinder<T>::count_led() {
+  led_.assign(states_.size(), 0);
+  for (const LaggedForce<T>& f : lagged_) {
+    if (!(f.offset > T(kLeftInside))) continue;
+    for (std::size_t n = 0; n < states_.size(); ++n) led_[n] += is_of_tree(f.id, indices_[n]);
+  }
 }
 
 /// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
@@ -121,7 +152,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.smooth_before = found->smooth;
   c.offset = found->offset;
   c.gap += c.offset;
-  bring_back(c, found->stiffness, T(kLeftInside));
+  bring_back(c, found->stiffness);
   if (found->stiffness < c.stiffness && c.gap < T(0)) {
     const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
     c.offset += gap - c.gap;
@@ -290,6 +321,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   }
   bears_ = std::min(together, T(kMostPiled) * heaviest);
   most_ = std::min(most_, room_);
+  count_led();
   contacts_.clear();
   bounds_.clear();
   first_bound_.clear();
@@ -302,6 +334,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
     for (int m = 0; m < static_cast<int>(states.size()); ++m)
       if (m != n ? world.body_contact : states[n]->settings.self_collision) meet_tree(n, m);
   }
+  begin_all(!surroundings.obstacles.empty() || !surroundings.hosts.empty());
   return contacts_;
 }
 

@@ -19,7 +19,6 @@ namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
-constexpr int kMostParts = 16;  ///< of a step, however fast a body spins
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
 template <class T>
@@ -338,10 +337,13 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     advance_part(begin, middle, splits);
     advance_part(middle, end, splits);
   };
-  if (!part_begun_) begin_part(h, end);
+  if (!part_begun_) {
+    if (turns_far(h)) return halve(splits_left);
+    begin_part(h, end);
+    if (begin == T(0) && may_divide() && starts()) find_accelerations();
+  }
   part_begun_ = false;
-  const bool too_long = world_->accuracy.impact_step > 0 && h > T(1.2 * world_->accuracy.impact_step);
-  if (too_long && gets_substeps(states_[0]) && strikes(h)) return halve(splits_left);
+  if (strikes_in_long(h)) return halve(splits_left);
   closed_ = passive();
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
   const bool closed = closed_;
@@ -381,8 +383,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
     const T force = normal_force(c);
-    const bool unloaded = c.gap == T(0) && c.offset > T(0);  // by a bounce
-    if (force > T(0) || unloaded)
+    const bool led = c.offset > T(0) && c.gap < c.offset;  // still inside
+    if (force > T(0) || led)
       lagged_.push_back(
           {c.id, force, c.stiffness, c.offset, c.smooth_force, c.lasting_force, c.lasting_last});
   }
@@ -390,24 +392,15 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
 }
 
-/// How often to divide a step so that no body turns further than the accuracy allows in one part.
+/// How often to divide a step whatever happens in it.
 template <class T>
-int IslandStepper<T>::parts_of(T h) const {
-  const Accuracy& accuracy = world_->accuracy;
-  if (std::none_of(states_.begin(), states_.end(), gets_substeps<T>)) return 1;
-  int parts = std::max(accuracy.substeps, 1);
-  if (accuracy.max_rotation > 0) {
-    T fastest = T(0);
-    for (const CharacterState<T>* s : states_)
-      for (int i = 0; i < s->tree.bodies; ++i) {
-        // Of the carried momentum: a difference of rotations is the sine of the turn.
-        const Vec3<T> momentum = s->history.rotation[i].transpose() * s->history.momentum[i];
-        fastest = std::max(fastest, Vec3<T>(s->tree.inverse_inertia[i] * momentum).norm());
-      }
-    const double wanted = std::ceil(double(h * fastest) / accuracy.max_rotation);
-    parts = std::max(parts, static_cast<int>(std::min(wanted, double(kMostParts))));
-  }
-  return parts;
+int IslandStepper<T>::parts_of() const {
+  return may_divide() ? std::max(world_->accuracy.substeps, 1) : 1;
+}
+
+template <class T>
+bool IslandStepper<T>::may_divide() const {
+  return std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
 }
 
 template <class T>
@@ -451,7 +444,7 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
   // What was struck is not put aside: who is begun next would take its strike for its own.
   const bool alone = states.size() == 1 && couplings.empty() && struck_velocity_.empty();
-  if (!alone || parts_of(h) > 1 || (gets_substeps(states[0]) && starts())) return false;
+  if (!alone || parts_of() > 1 || (may_divide() && starts()) || turns_far(h)) return false;
   begin_part(h, T(1));
   part_begun_ = true;
   if (!contacts_.empty()) return false;
@@ -473,14 +466,11 @@ void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T
 template <class T>
 int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first) {
   const WorldSettings& world = *world_;
-  const T h = frame_;
   first_ = first;
-  const int parts = parts_of(h);
-  const bool fine = std::any_of(states_.begin(), states_.end(), gets_substeps<T>);
+  const int parts = parts_of();
+  const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
-  const bool begins = fine && starts();
-  if (begins) start(T(1) / T(parts), splits);
-  for (int n = begins ? 1 : 0; n < parts; ++n)
+  for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
     CharacterReport& r = s->report;

@@ -60,16 +60,18 @@ class IslandStepper {
   int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr);
 
  private:
-  int parts_of(T h) const;
+  int parts_of() const;
+  bool may_divide() const;
   bool starts() const;
   void limit_guess(T h);
-  void start(T end, int splits);
   void find_accelerations();
   void begin_loaded(T h);
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);
-  bool strikes(T h) const;
+  bool may_halve(T h) const;
+  bool turns_far(T h) const;
+  bool strikes_in_long(T h) const;
   bool strikes_deep(T h) const;
   void choose_guess(T h);
   void begin_solve();
@@ -99,7 +101,7 @@ class IslandStepper {
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
   void take_over(Contact<T>& contact) const;
-  bool is_level(const Contact<T>& contact) const;
+  bool rests_above(const Contact<T>& contact) const;
   void split_contacts(T h);
   void measure_constant(const CharacterState<T>& state, TreeProblem<T>& problem, int tree,
                         const Kinematics<T>& kinematics);

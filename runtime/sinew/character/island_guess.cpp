@@ -1,5 +1,6 @@
 // Where IslandStepper starts a solve: not beyond what its bodies would strike on the way.
 #include <algorithm>
+#include <limits>
 
 #include "sinew/character/baking.h"
 #include "sinew/character/island.h"
@@ -10,6 +11,34 @@ namespace {
 
 constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
 constexpr double kDeep = 0.03;        ///< m; guesses that go no deeper are left again in a pass or two
+
+constexpr double kSharesTurn = 0.1;  ///< of a figure's kinetic energy; whatever less does is not worth a part
+
+/// Share of a tree's kinetic energy about its centre of mass that is of bodies which turn faster than `speed`
+/// (rad/s).
+template <class T>
+T energy_that_turns(const Tree<T>& tree, const History<T>& history, T speed) {
+  Vec3<T> momentum = Vec3<T>::Zero();
+  T mass = T(0), all = T(0), turning = T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += tree.mass[i];
+    momentum += tree.mass[i] * history.velocity[i];
+  }
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> local = history.rotation[i].transpose() * history.momentum[i],
+                  spin = tree.inverse_inertia[i] * local;
+    const T energy = tree.mass[i] * (history.velocity[i] - momentum / mass).squaredNorm() + spin.dot(local);
+    all += energy;
+    if (spin.squaredNorm() > speed * speed) turning += energy;
+  }
+  return turning / std::max(all, std::numeric_limits<T>::min());
+}
+
+/// A figure that no muscle holds.
+template <class T>
+bool falls(const CharacterState<T>& s) {
+  return s.limp() && !s.is_prop;
+}
 
 }  // namespace
 
@@ -22,13 +51,30 @@ void IslandStepper<T>::limit_guess(T h) {
     if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
 }
 
-/// Whether a limp body is about to strike something within h.
 template <class T>
-bool IslandStepper<T>::strikes(T h) const {
+bool IslandStepper<T>::may_halve(T h) const {
+  return may_divide() && h * T(world_->accuracy.max_parts) > T(1.5) * frame_;
+}
+
+/// Whether a figure that falls has a body that turns too far in h.
+template <class T>
+bool IslandStepper<T>::turns_far(T h) const {
+  const double most = world_->accuracy.max_rotation;
+  if (!(most > 0) || !may_halve(h)) return false;
+  return std::any_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
+    return falls(*s) && largest_turn<T>(s->tree, s->history, h) > T(most) &&
+           energy_that_turns<T>(s->tree, s->history, T(most) / h) > T(kSharesTurn);
+  });
+}
+
+/// Whether one is about to strike something within h, and h is longer than impacts shall be.
+template <class T>
+bool IslandStepper<T>::strikes_in_long(T h) const {
+  const double most = world_->accuracy.impact_step;
+  if (!(most > 0) || h < T(1.2 * most) || !may_halve(h)) return false;
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    const bool limp = (states_[c.tree_a]->limp() && !states_[c.tree_a]->is_prop) ||
-                      (c.tree_b >= 0 && states_[c.tree_b]->limp() && !states_[c.tree_b]->is_prop);
-    return limp && c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach;
+    return c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach &&
+           (falls(*states_[c.tree_a]) || (c.tree_b >= 0 && falls(*states_[c.tree_b])));
   });
 }
 
@@ -55,10 +101,12 @@ void IslandStepper<T>::choose_guess(T h) {
   guess([&](std::size_t n) { return effects_.empty() ? T(1) : free_share_[n]; });
 }
 
-#define SINEW_GUESS_INSTANCES(T)                         \
-  template void IslandStepper<T>::limit_guess(T);        \
-  template bool IslandStepper<T>::strikes(T) const;      \
-  template bool IslandStepper<T>::strikes_deep(T) const; \
+#define SINEW_GUESS_INSTANCES(T)                            \
+  template void IslandStepper<T>::limit_guess(T);           \
+  template bool IslandStepper<T>::may_halve(T) const;       \
+  template bool IslandStepper<T>::turns_far(T) const;       \
+  template bool IslandStepper<T>::strikes_in_long(T) const; \
+  template bool IslandStepper<T>::strikes_deep(T) const;    \
   template void IslandStepper<T>::choose_guess(T);
 SINEW_GUESS_INSTANCES(float)
 SINEW_GUESS_INSTANCES(double)

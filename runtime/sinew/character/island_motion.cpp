@@ -14,7 +14,6 @@ namespace {
 /// That a contact's force would take to do what it does to velocities at most: one that has hardly begun to
 /// bear is no wall yet. Falls keep as much energy with 2 as without a bound, and less with a half.
 constexpr double kMostSteps = 2;
-constexpr double kSamePlane = 0.99;                    ///< cosine
 constexpr double kSaturated = 0.9999;                  ///< of a muscle's limit
 constexpr double kHardlyTurns = 2e-3;                  ///< rad: where a step ends is where it began
 constexpr double kTurnsLittle = 0.1, kTurnsAll = 0.3;  ///< of what constant forces do: its change in a step
@@ -334,7 +333,8 @@ template <class T>
 void IslandStepper<T>::take_over(Contact<T>& c) const {
   if (!c.fresh || c.tree_b >= 0 || !(normal_force(c) > T(0))) return;
   for (const Contact<T>& left : contacts_) {
-    if (left.id >> 32 != c.id >> 32 || left.tree_b >= 0 || left.fresh || normal_force(left) > T(0)) continue;
+    if (point_of(left) != point_of(c) || left.tree_b >= 0 || left.fresh || normal_force(left) > T(0))
+      continue;
     if (left.frame.col(2).dot(c.normal) < T(kSamePlane)) continue;
     c.smooth_before = left.smooth_before;
     c.lasting_last = left.lasting_last;
@@ -343,17 +343,11 @@ void IslandStepper<T>::take_over(Contact<T>& c) const {
   }
 }
 
-/// Whether a contact is with an edge that lies in the plane of what the same point rests on already, as where
-/// tiles meet: whoever slides over it does not run into it.
+/// Whether a contact is with an edge that the same point rests above already.
 template <class T>
-bool IslandStepper<T>::is_level(const Contact<T>& c) const {
-  const auto nearest = [](const Contact<T>& of) {
-    return Vec3<T>(of.point - (of.radius + of.gap - of.offset) * of.normal);
-  };
+bool IslandStepper<T>::rests_above(const Contact<T>& c) const {
   return c.tree_b < 0 && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& other) {
-           return &other != &c && other.id >> 32 == c.id >> 32 && other.tree_b < 0 &&
-                  normal_force(other) > T(0) && other.normal.dot(c.normal) < T(kSamePlane) &&
-                  other.normal.dot(nearest(c) - nearest(other)) < -c.gap;
+           return normal_force(other) > T(0) && is_level<T>(c, other, -c.gap);
          });
 }
 
@@ -645,7 +639,7 @@ void IslandStepper<T>::press(T h) {
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (!lasts_[n]) struck_[set_[n]] = 1;
   for (const Contact<T>& c : contacts_) {
-    const bool struck = struck_[set_[c.tree_a]] && normal_force(c) > T(0) && !is_level(c);
+    const bool struck = struck_[set_[c.tree_a]] && normal_force(c) > T(0) && !rests_above(c);
     if (!struck && !(c.grip > T(0))) continue;
     const Prediction<T>& prediction = problems_[c.tree_a]->prediction;
     const T acted = 1 / (h * prediction.weight);  // κh, s; twice that for what is constant over the step
@@ -678,7 +672,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::drop_trial(CharacterState<T>&, int);                                \
   template void IslandStepper<T>::expect_to_last(T);                                                  \
   template void IslandStepper<T>::take_over(Contact<T>&) const;                                       \
-  template bool IslandStepper<T>::is_level(const Contact<T>&) const;                                  \
+  template bool IslandStepper<T>::rests_above(const Contact<T>&) const;                               \
   template void IslandStepper<T>::split_contacts(T);                                                  \
   template void IslandStepper<T>::measure_constant(const CharacterState<T>&, TreeProblem<T>&, int,    \
                                                    const Kinematics<T>&);                             \

@@ -157,20 +157,10 @@ void IslandStepper<T>::begin_loaded(T h) {
   find_contacts(h);  // measured anew, at the start
 }
 
-/// The first part of a step from a reset, up to the fraction `end`.
-template <class T>
-void IslandStepper<T>::start(T end, int splits) {
-  begin_part(end * frame_, end);
-  find_accelerations();
-  part_begun_ = true;
-  advance_part(T(0), end, splits);
-}
-
 #define SINEW_START_INSTANCES(T)                        \
   template bool IslandStepper<T>::starts() const;       \
   template void IslandStepper<T>::find_accelerations(); \
-  template void IslandStepper<T>::begin_loaded(T);      \
-  template void IslandStepper<T>::start(T, int);
+  template void IslandStepper<T>::begin_loaded(T);
 SINEW_START_INSTANCES(float)
 SINEW_START_INSTANCES(double)
 
