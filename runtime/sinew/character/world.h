@@ -152,7 +152,8 @@ class Character {
   void set_root_drive(RootDrive drive);
   Status set_detail(const CharacterDetail& detail);
   const CharacterDetail& detail() const;
-  /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step.
+  /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step; at its
+  /// beginning where no muscle holds the character.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
