@@ -22,7 +22,7 @@ int number(const char* name, int otherwise) {
 #ifdef __SANITIZE_ADDRESS__
 constexpr int kUsualCount = 40;
 #else
-constexpr int kUsualCount = 1000;
+constexpr int kUsualCount = 800;
 #endif
 
 constexpr int kEnough = 400;  ///< trees for the rarest of what is expected: one in 50 restarts
