@@ -27,7 +27,8 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
 }
 
 bool is_of_tree(std::uint64_t id, int tree) {
-  return id >> 48 == std::uint64_t(tree + 1) || ((id >> 16) & 0xffff) == std::uint64_t(tree + 1);
+  const std::uint64_t number = first_contact_id(tree) >> 48;
+  return id >> 48 == number || ((id >> 16) & 0xffff) == number;
 }
 
 }  // namespace
