@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "character/scenes.h"
-#include "fixtures/known_failure.h"
 #include "sinew/character/prop.h"
 
 namespace sinew {
@@ -27,7 +26,6 @@ Skeleton piston() {
 }
 
 TEST(Crush, LimbsThatAPistonHasJammedComeFreeWhenItGoesBack) {
-  double caught = 0;  // m, at the end
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
     fixtures::Limp<float> figure({}, 0, 0.1, seed);
     World<float>& world = figure.world;
@@ -55,10 +53,9 @@ TEST(Crush, LimbsThatAPistonHasJammedComeFreeWhenItGoesBack) {
     EXPECT_GT(deepest, 0.05) << seed;  // a chest of 26 cm in a gap of 1 cm
     // A limb that stuck out at the piston's back stayed 12 cm in it. Of 24 seeds the worst three keep a foot
     // 11 mm between the floor and the wall's underside, which it leaves by creeping.
-    caught = std::max(caught, world.character(0).report().penetration);
+    EXPECT_LT(world.character(0).report().penetration, 0.02) << seed;
     EXPECT_LT(world.character(0).report().kinetic_energy, 5) << seed;
   }
-  EXPECT_LT(caught, 0.02);
 }
 
 /// Kinetic energy (J) after a third of a second of a figure that falls onto a step, with or without a box on

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
-#include <type_traits>
 
 #include "study/hard_case.h"
 
@@ -23,18 +22,10 @@ int number(const char* name, int otherwise) {
 #ifdef __SANITIZE_ADDRESS__
 constexpr int kUsualCount = 40;
 #else
-constexpr int kUsualCount = 800;
+constexpr int kUsualCount = 1000;
 #endif
 
-/// In double, that gain energy today: a whip whose steps are taken in parts, 151 of 402 kJ.
-constexpr std::uint64_t kGainsToday = 1940;
-
 constexpr int kEnough = 400;  ///< trees for the rarest of what is expected: one in 50 restarts
-
-TEST(RandomTrees, OneThatGainsEnergyTodayDoesSoStill) {
-  Measurement measured;
-  EXPECT_NE(fault_of_tree<double>(kGainsToday, measured), "") << "passes now: take it off the list";
-}
 
 template <class T>
 void expect_no_fault(std::uint64_t seed) {
@@ -50,13 +41,9 @@ void expect_no_faults(int half) {
     return;
   }
   const int count = std::max(1, number("SINEW_RANDOM_TREES", kUsualCount) / 2);
-  RandomTreesReport report =
+  const RandomTreesReport report =
       run_random_trees<T>(1 + std::uint64_t(half) * std::uint64_t(count), count,
                           std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  if (std::is_same_v<T, double>)
-    std::erase_if(report.faults, [](const std::string& fault) {
-      return fault.starts_with("seed " + std::to_string(kGainsToday) + ":");
-    });
   std::string first;
   for (std::size_t i = 0; i < std::min<std::size_t>(report.faults.size(), 10); ++i)
     first += "\n" + report.faults[i];
@@ -81,7 +68,7 @@ TEST(RandomTrees, StayFiniteClosedAndWithoutFreeEnergyInDouble) {
 }
 
 TEST(RandomTrees, ThatOnceGainedEnergyDoNotGainAny) {
-  for (const std::uint64_t seed : {268u, 6317u, 7716u, 14031u}) expect_no_fault<double>(seed);
+  for (const std::uint64_t seed : {268u, 1940u, 6317u, 7716u, 14031u}) expect_no_fault<double>(seed);
   for (const std::uint64_t seed : {2102u, 9005u}) expect_no_fault<float>(seed);
 }
 

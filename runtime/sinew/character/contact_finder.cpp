@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sinew/character/contacts.h"
 #include "sinew/optimizer/contact_rows.h"
@@ -12,12 +13,13 @@ namespace {
 
 constexpr double kMargin =
     0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
-constexpr int kFirstHost = 0x4000;   ///< of contact identities
-constexpr double kMostPiled = 8;     ///< of the heaviest body: what a contact may bear of a pile
-constexpr double kMostGripped = 4;   ///< weights that a contact may have to bear, in friction by what is led
-constexpr double kExitSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
-constexpr double kLent = 2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
-constexpr double kLeftInside = 1e-3;    ///< m, that this leaves
+constexpr int kFirstHost = 0x4000;  ///< of contact identities
+constexpr double kMostPiled = 8;    ///< of the heaviest body: what a contact may bear of a pile
+constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
+constexpr double kMostStored =
+    2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
+constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
 constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
@@ -31,6 +33,28 @@ bool is_of_tree(std::uint64_t id, int tree) {
   return id >> 48 == number || ((id >> 16) & 0xffff) == number;
 }
 
+/// Makes a contact stiffer, not softer. Its offset takes up the difference in depth, so that under load it
+/// keeps its force: this gives no energy.
+template <class T>
+void stiffen(Contact<T>& c, T stiffness) {
+  if (!(stiffness > c.stiffness)) return;
+  if (c.gap < T(0)) {
+    const T gap = -ContactLaw<T>::depth(stiffness, ContactLaw<T>::force(c.stiffness, c.gap));
+    c.offset += gap - c.gap;
+    c.gap = gap;
+  }
+  c.stiffness = stiffness;
+}
+
+/// What begins inside something (spawned there, or played there by an animation) is not shot out of it: the
+/// surface is where the feature is, and comes back at a walking pace.
+template <class T>
+void begin_inside(Contact<T>& c) {
+  if (c.gap >= T(-kLeftInside)) return;
+  c.offset -= c.gap;
+  c.gap = T(0);
+}
+
 }  // namespace
 
 template <class T>
@@ -39,7 +63,7 @@ void ContactFinder<T>::reserve(const SolveRoom& room) {
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
   first_bound_.reserve(room.trees);
-  led_.reserve(room.trees);
+  depenetrating_.reserve(room.trees);
 }
 
 template <class T>
@@ -82,65 +106,46 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
 
 /// What contacts that were not there before begin with, and how all are damped.
 template <class T>
-void ContactFinder<T>::begin_all(bool many_shapes) {
+void ContactFinder<T>::begin_all() {
   for (Contact<T>& c : contacts_) {
     if (c.fresh) {
-      if (!many_shapes || !runs_on(c)) stiffen_for_impact(c);
-      lead_out(c);
+      begin_inside(c);
+      stiffen_for_impact(c);
     }
     c.start_gap = c.gap;
     // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
-    if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kExitSpeed)), h_);
+    if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kDepenetrationSpeed)), h_);
   }
 }
 
-/// Whether a point slides towards an edge that is no higher than what it rests on: not an impact.
-template <class T>
-bool ContactFinder<T>::runs_on(const Contact<T>& c) const {
-  return c.tree_b < 0 && c.gap > T(0) &&
-         std::any_of(contacts_.begin(), contacts_.end(), [&](const auto& rests) {
-           return !rests.fresh && rests.lagged_normal_force > T(0) &&
-                  is_level<T>(c, rests, T(world_->accuracy.sink_depth));
-         });
-}
-
-/// What begins inside something (spawned there, or played there by an animation) is not shot out of it: the
-/// surface is where the feature is, and comes back at a walking pace.
-template <class T>
-void ContactFinder<T>::lead_out(Contact<T>& c) const {
-  if (c.gap >= T(-kLeftInside)) return;
-  c.offset -= c.gap;
-  c.gap = T(0);
-}
-
-/// The surface of what is led out of it comes back; all that lead a tree store no more together than takes it
+/// Brings the surface back to where it belongs; all that do so to a tree store no more together than takes it
 /// along at the walking pace, the lighter of two: in what is wedged they would store ever more.
 template <class T>
-void ContactFinder<T>::bring_back(Contact<T>& c, T stiffness) const {
-  T back = std::min(T(kExitSpeed) * h_, c.offset - T(kLeftInside));
-  if (!(back > T(0))) return;  // as a rule: nothing is led
-  const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(led_[n], 1)); };
+void ContactFinder<T>::depenetrate(Contact<T>& c) const {
+  T back = std::min(T(kDepenetrationSpeed) * h_, c.offset - T(kLeftInside));
+  if (!(back > T(0))) return;  // as a rule: nothing is inside
+  const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(depenetrating_[n], 1)); };
   const T mass = c.tree_b < 0 ? share(c.tree_a) : std::min(share(c.tree_a), share(c.tree_b));
-  const T enough = mass * T(kLent * kExitSpeed * (kExitSpeed / 2 + world_->gravity.norm() * double(h_)));
-  back = std::max(std::min(back, ContactLaw<T>::depth_storing(stiffness, enough) + c.gap), T(0));
-  const T stored = ContactLaw<T>::energy(stiffness, c.gap);
+  const double work = kDepenetrationSpeed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
+  const T enough = mass * T(kMostStored * kDepenetrationSpeed * work);
+  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough) + c.gap), T(0));
+  const T stored = ContactLaw<T>::energy(c.stiffness, c.gap);
   c.offset -= back;
   c.gap -= back;
-  c.lent = ContactLaw<T>::energy(stiffness, c.gap) - stored;
+  c.depenetration_work = ContactLaw<T>::energy(c.stiffness, c.gap) - stored;
 }
 
-/// How many contacts lead each tree out of something.
+/// How many contacts bring each tree out of something.
 template <class T>
-void ContactFinder<T>::count_led() {
-  led_.assign(states_.size(), 0);
+void ContactFinder<T>::count_depenetrating() {
+  depenetrating_.assign(states_.size(), 0);
   for (const LaggedForce<T>& f : lagged_) {
     if (!(f.offset > T(kLeftInside))) continue;
-    for (std::size_t n = 0; n < states_.size(); ++n) led_[n] += is_of_tree(f.id, indices_[n]);
+    for (std::size_t n = 0; n < states_.size(); ++n) depenetrating_[n] += is_of_tree(f.id, indices_[n]);
   }
 }
 
-/// Normal force and stiffness of the step before. A contact under load never softens, and where it is to be
-/// stiffer its offset takes up the difference in depth: neither gives energy.
+/// Normal force and stiffness of the step before. A contact under load never softens.
 template <class T>
 void ContactFinder<T>::remember(Contact<T>& c) const {
   const auto found = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
@@ -153,13 +158,9 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.smooth_before = found->smooth;
   c.offset = found->offset;
   c.gap += c.offset;
-  bring_back(c, found->stiffness);
-  if (found->stiffness < c.stiffness && c.gap < T(0)) {
-    const T gap = -ContactLaw<T>::depth(c.stiffness, ContactLaw<T>::force(found->stiffness, c.gap));
-    c.offset += gap - c.gap;
-    c.gap = gap;
-  }
-  c.stiffness = std::max(c.stiffness, found->stiffness);
+  const T own = std::exchange(c.stiffness, found->stiffness);
+  depenetrate(c);
+  stiffen(c, own);
   // Friction of impulses is theirs (end_velocities.h).
   c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.stiffness);
 }
@@ -173,10 +174,15 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
     closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
   }
+  const T approach = -closing.dot(c.normal);
+  const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
+  const bool reached = approach > T(0) && c.gap < h_ * approach;
+  if (reached && c.gap > T(0) && is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth), bore))
+    return;  // slides on to it
+  c.approach = approach;
   thickness = std::min(thickness, c.half_thickness());
-  c.approach = -closing.dot(c.normal);
   const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
-  if (c.approach > T(0)) c.stiffness = std::max(c.stiffness, 2 * mass * c.approach / (span * thickness));
+  if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
 template <class T>
@@ -322,7 +328,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   }
   bears_ = std::min(together, T(kMostPiled) * heaviest);
   most_ = std::min(most_, room_);
-  count_led();
+  count_depenetrating();
   contacts_.clear();
   bounds_.clear();
   first_bound_.clear();
@@ -335,7 +341,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
     for (int m = 0; m < static_cast<int>(states.size()); ++m)
       if (m != n ? world.body_contact : states[n]->settings.self_collision) meet_tree(n, m);
   }
-  begin_all(!surroundings.obstacles.empty() || !surroundings.hosts.empty());
+  begin_all();
   return contacts_;
 }
 

@@ -1,6 +1,7 @@
 // Which features may touch within a step: floor, static obstacles, other trees, and a character itself.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -32,17 +33,20 @@ template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
   return c.id >> 32;
 }
-/// Whether a static contact is with an edge that lies in the plane of what the same point rests on by
-/// another, as where tiles meet, or is higher by less than `tolerance` (m): whoever slides over it does not
-/// run into it.
-template <class T>
-bool is_level(const Contact<T>& edge, const Contact<T>& rests, T tolerance) {
+/// Whether a contact is with a static edge that lies in the plane of what the same point rests on by another
+/// that `bears`, as where tiles meet, or is higher by less than `tolerance` (m): whoever slides over it does
+/// not run into it.
+template <class T, class Bears>
+bool is_level_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
+                   const Bears& bears) {
   const auto nearest = [](const Contact<T>& of) {
     return Vec3<T>(of.point - (of.radius + of.gap - of.offset) * of.normal);
   };
-  return &rests != &edge && point_of(rests) == point_of(edge) && edge.tree_b < 0 && rests.tree_b < 0 &&
-         rests.normal.dot(edge.normal) < T(kSamePlane) &&
-         rests.normal.dot(nearest(edge) - nearest(rests)) < tolerance;
+  return edge.tree_b < 0 && std::any_of(contacts.begin(), contacts.end(), [&](const Contact<T>& rests) {
+           return &rests != &edge && point_of(rests) == point_of(edge) && rests.tree_b < 0 && bears(rests) &&
+                  rests.normal.dot(edge.normal) < T(kSamePlane) &&
+                  rests.normal.dot(nearest(edge) - nearest(rests)) < tolerance;
+         });
 }
 
 /// A shape of the host's, and what it is made of.
@@ -109,12 +113,10 @@ class ContactFinder final : public ContactSearch<T> {
   bool kept_apart(int n, int body, int m, int other) const;
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
-  void begin_all(bool many_shapes);
-  bool runs_on(const Contact<T>& contact) const;
+  void begin_all();
   void remember(Contact<T>& contact) const;
-  void lead_out(Contact<T>& contact) const;
-  void bring_back(Contact<T>& contact, T stiffness) const;
-  void count_led();
+  void depenetrate(Contact<T>& contact) const;
+  void count_depenetrating();
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
 
@@ -131,7 +133,7 @@ class ContactFinder final : public ContactSearch<T> {
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
   std::vector<Bound> bounds_;        ///< all colliders of all states
   std::vector<int> first_bound_;     ///< [state]
-  std::vector<int> led_;             ///< [state] contacts that lead it out of something
+  std::vector<int> depenetrating_;   ///< [state] contacts through which it is brought out of something
 };
 
 /// Whether an obstacle may be in the way of the animation.

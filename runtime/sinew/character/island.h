@@ -101,7 +101,6 @@ class IslandStepper {
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
   void take_over(Contact<T>& contact) const;
-  bool rests_above(const Contact<T>& contact) const;
   void split_contacts(T h);
   void measure_constant(const CharacterState<T>& state, TreeProblem<T>& problem, int tree,
                         const Kinematics<T>& kinematics);

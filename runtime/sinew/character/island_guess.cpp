@@ -1,6 +1,5 @@
 // Where IslandStepper starts a solve: not beyond what its bodies would strike on the way.
 #include <algorithm>
-#include <limits>
 
 #include "sinew/character/baking.h"
 #include "sinew/character/island.h"
@@ -13,26 +12,6 @@ constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the 
 constexpr double kDeep = 0.03;        ///< m; guesses that go no deeper are left again in a pass or two
 
 constexpr double kSharesTurn = 0.1;  ///< of a figure's kinetic energy; whatever less does is not worth a part
-
-/// Share of a tree's kinetic energy about its centre of mass that is of bodies which turn faster than `speed`
-/// (rad/s).
-template <class T>
-T energy_that_turns(const Tree<T>& tree, const History<T>& history, T speed) {
-  Vec3<T> momentum = Vec3<T>::Zero();
-  T mass = T(0), all = T(0), turning = T(0);
-  for (int i = 0; i < tree.bodies; ++i) {
-    mass += tree.mass[i];
-    momentum += tree.mass[i] * history.velocity[i];
-  }
-  for (int i = 0; i < tree.bodies; ++i) {
-    const Vec3<T> local = history.rotation[i].transpose() * history.momentum[i],
-                  spin = tree.inverse_inertia[i] * local;
-    const T energy = tree.mass[i] * (history.velocity[i] - momentum / mass).squaredNorm() + spin.dot(local);
-    all += energy;
-    if (spin.squaredNorm() > speed * speed) turning += energy;
-  }
-  return turning / std::max(all, std::numeric_limits<T>::min());
-}
 
 /// A figure that no muscle holds.
 template <class T>
@@ -63,7 +42,7 @@ bool IslandStepper<T>::turns_far(T h) const {
   if (!(most > 0) || !may_halve(h)) return false;
   return std::any_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     return falls(*s) && largest_turn<T>(s->tree, s->history, h) > T(most) &&
-           energy_that_turns<T>(s->tree, s->history, T(most) / h) > T(kSharesTurn);
+           share_turning_faster<T>(s->tree, s->history, T(most) / h) > T(kSharesTurn);
   });
 }
 

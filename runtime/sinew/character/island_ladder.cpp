@@ -92,8 +92,8 @@ void IslandStepper<T>::hold(CharacterState<T>& s) {
   ++held_;
 }
 
-/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::lead_out) would load
-/// what cannot move, without end.
+/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::depenetrate) would
+/// load what cannot move, without end.
 template <class T>
 void IslandStepper<T>::forget_contacts() {
   for (Contact<T>& c : contacts_) {

@@ -343,14 +343,6 @@ void IslandStepper<T>::take_over(Contact<T>& c) const {
   }
 }
 
-/// Whether a contact is with an edge that the same point rests above already.
-template <class T>
-bool IslandStepper<T>::rests_above(const Contact<T>& c) const {
-  return c.tree_b < 0 && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& other) {
-           return normal_force(other) > T(0) && is_level<T>(c, other, -c.gap);
-         });
-}
-
 /// After a solve: splits the contacts' forces into smooth ones and impulses.
 template <class T>
 void IslandStepper<T>::split_contacts(T h) {
@@ -638,8 +630,9 @@ void IslandStepper<T>::press(T h) {
   struck_.assign(states_.size(), 0);
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (!lasts_[n]) struck_[set_[n]] = 1;
+  const auto bears = [](const Contact<T>& c) { return normal_force(c) > T(0); };
   for (const Contact<T>& c : contacts_) {
-    const bool struck = struck_[set_[c.tree_a]] && normal_force(c) > T(0) && !rests_above(c);
+    const bool struck = struck_[set_[c.tree_a]] && bears(c) && !is_level_edge<T>(c, contacts_, -c.gap, bears);
     if (!struck && !(c.grip > T(0))) continue;
     const Prediction<T>& prediction = problems_[c.tree_a]->prediction;
     const T acted = 1 / (h * prediction.weight);  // κh, s; twice that for what is constant over the step
@@ -672,7 +665,6 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::drop_trial(CharacterState<T>&, int);                                \
   template void IslandStepper<T>::expect_to_last(T);                                                  \
   template void IslandStepper<T>::take_over(Contact<T>&) const;                                       \
-  template bool IslandStepper<T>::rests_above(const Contact<T>&) const;                               \
   template void IslandStepper<T>::split_contacts(T);                                                  \
   template void IslandStepper<T>::measure_constant(const CharacterState<T>&, TreeProblem<T>&, int,    \
                                                    const Kinematics<T>&);                             \

@@ -97,15 +97,15 @@ struct Contact {
   T lasting_force = T(0);                        ///< N; at the end of this one
   T smooth_before = T(0);                        ///< N; what of λ no impulse was: see split()
   T smooth_force = T(0);                         ///< N; of the normal force at the end
-  T expected_force = T(0);  ///< N, along the normal at the end: what a solve knows of it so far
-  T restitution = T(0);     ///< of a bounce: impulse of the release by that of the compression
-  T offset = T(0);          ///< m, added to the gap: stiffening a loaded contact keeps its force
-  T lent = T(0);            ///< J, that it stores more because the offset shrank when the step began
-  bool fresh = true;        ///< bore nothing after the last step
-  T start_gap = T(0);       ///< when the step began, m
-  T stretch = T(1);         ///< 1 + τ/h: change of the damped gap by the gap
-  T lag = T(0);             ///< m; the damped gap where the gap is 0, ≥ 0
-  T approach = T(0);        ///< closing speed then (fresh ones only), m/s
+  T expected_force = T(0);      ///< N, along the normal at the end: what a solve knows of it so far
+  T restitution = T(0);         ///< of a bounce: impulse of the release by that of the compression
+  T offset = T(0);              ///< m, added to the gap: stiffening a loaded contact keeps its force
+  T depenetration_work = T(0);  ///< J, that it stores more because the offset shrank when the step began
+  bool fresh = true;            ///< bore nothing after the last step
+  T start_gap = T(0);           ///< when the step began, m
+  T stretch = T(1);             ///< 1 + τ/h: change of the damped gap by the gap
+  T lag = T(0);                 ///< m; the damped gap where the gap is 0, ≥ 0
+  T approach = T(0);            ///< closing speed then (fresh ones only), m/s
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
           material_b = Vec3<T>::Zero();  ///< body axes (static: from common origin)

@@ -1,6 +1,7 @@
 #include "sinew/optimizer/bossak.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace sinew {
 namespace {
@@ -22,6 +23,24 @@ T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
   for (int i = 0; i < tree.bodies; ++i)
     fastest = std::max(fastest, spin_of<T>(tree, i, history.rotation[i], history.momentum[i]).squaredNorm());
   return h * std::sqrt(fastest);
+}
+
+template <class T>
+T share_turning_faster(const Tree<T>& tree, const History<T>& history, T speed) {
+  Vec3<T> momentum = Vec3<T>::Zero();
+  T mass = T(0), all = T(0), faster = T(0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    mass += tree.mass[i];
+    momentum += tree.mass[i] * history.velocity[i];
+  }
+  for (int i = 0; i < tree.bodies; ++i) {
+    const Vec3<T> spin = spin_of<T>(tree, i, history.rotation[i], history.momentum[i]);
+    const T energy =
+        tree.mass[i] * (history.velocity[i] - momentum / mass).squaredNorm() + spin.dot(history.momentum[i]);
+    all += energy;
+    if (spin.squaredNorm() > speed * speed) faster += energy;
+  }
+  return faster / std::max(all, std::numeric_limits<T>::min());
 }
 
 template <class T>

@@ -60,6 +60,11 @@ T lasting_share(T weight, T h) {
 template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
 
+/// Share of a tree's kinetic energy about its centre of mass that is of bodies which turn faster than `speed`
+/// (rad/s), 0 to 1. O(bodies).
+template <class T>
+T share_turning_faster(const Tree<T>& tree, const History<T>& history, T speed);
+
 /// Ṙ of a body, from its angular momentum.
 template <class T>
 Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum);
@@ -105,6 +110,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
 
 #define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
+  prefix T share_turning_faster<T>(const Tree<T>&, const History<T>&, T);                          \
   prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \
   prefix T spectral_radius<T>(T);                                                                  \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
