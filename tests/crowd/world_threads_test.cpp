@@ -134,7 +134,7 @@ TEST(WorldThreads, AnIslandBeyondTheLimitIsCutAndSaysSo) {
     world.character(n).reset();
   }
   bool crowded = false;
-  for (int n = 0; n < 30; ++n) {
+  for (int n = 0; n < 90; ++n) {  // until they fall upon each other
     ASSERT_TRUE(world.step(kStep).ok());
     crowded = crowded || world.character(2).report().crowded;
   }

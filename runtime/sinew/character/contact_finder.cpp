@@ -368,8 +368,8 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{make_finder<T>, near_obstacle<T>, append_contact_points<T>,
-                                   share_stiffness<T>, measure<T>};
+constexpr ContactTerm<T> kContacts{make_finder<T>,           near_obstacle<T>,   come_close<T>,
+                                   append_contact_points<T>, share_stiffness<T>, measure<T>};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/character/closeness.h"
 #include "sinew/character/state.h"
 #include "sinew/effects/static_shape.h"
 
@@ -145,6 +146,8 @@ template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
   bool (*near_obstacle)(const CharacterState<T>& state, const Surroundings& around, T h);
+  bool (*come_close)(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
+                     std::vector<MovingCollider<T>>& room);
   // See contact.h.
   void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);

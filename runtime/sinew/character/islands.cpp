@@ -7,13 +7,13 @@
 namespace sinew {
 namespace {
 
-constexpr double kTouching = 0.02;  ///< m between bounding spheres, at which a sleeper wakes
-constexpr double kReach = 0.2;      ///< m beyond what the present speed covers, as in ContactFinder
+constexpr double kMargin = 0.03, kTouching = 0.02;  ///< m beyond what they move by; at which a sleeper wakes
 
 }  // namespace
 
 template <class T>
-void Islands<T>::reserve(int states, int couplings) {
+void Islands<T>::reserve(int states, int couplings, int colliders) {
+  room_.reserve(colliders);
   grid_.reserve(states);
   for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_}) v->reserve(states);
   first_.reserve(states + 1);
@@ -95,22 +95,19 @@ void Islands<T>::divide_ties(const Couplings<T>& couplings) {
   first_tie_.pop_back();
 }
 
-/// Whether two that may meet are to be stepped together, by their colliders: nobody is woken, or solved for,
-/// because somebody walks by.
-template <class T>
-bool Islands<T>::meet(CharacterState<T>& a, CharacterState<T>& b, T h) {
-  return colliders_near(a, b, h, b.levels.asleep ? T(kTouching) : T(kReach));
-}
-
 template <class T>
 void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states,
-                      const Couplings<T>& couplings, T h, int most_dofs, bool body_contact) {
+                      const Couplings<T>& couplings, T h, int most_dofs, const ContactTerm<T>* contacts) {
   const int count = static_cast<int>(states.size());
   grid_.clear();
   parent_.resize(count);
   dofs_.resize(count);
   island_.assign(count, -1);
   awake_.clear();
+  // Nobody is woken, or solved for, because somebody walks by.
+  const auto meet = [&](CharacterState<T>& a, CharacterState<T>& b) {
+    return contacts->come_close(a, b, h, b.levels.asleep ? T(kTouching) : T(kMargin), room_);
+  };
   const auto center = [&](int n) { return states[n]->middle(); };
   // Together they leave a decimetre, and twice what both may move by.
   const auto reach = [&](int n) { return double(states[n]->radius + T(0.05) + 2 * h * states[n]->pace()); };
@@ -128,7 +125,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     for_each_tree(couplings[c], [&](int n) { unite(root_of(first), root_of(n)); });
   }
   awake_.clear();
-  const bool may_meet = body_contact && count > 1;
+  const bool may_meet = contacts && count > 1;
   for (int n = 0; n < count; ++n) {
     if (states[n]->parked) continue;
     if (may_meet) grid_.add(n, center(n), reach(n));
@@ -140,7 +137,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     grid_.overlapping(center(n), reach(n), [&](int other) {
       CharacterState<T>& s = *states[other];
       // From the side of the first, unless the other sleeps.
-      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(*states[n], s, h)) return;
+      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(*states[n], s)) return;
       if (s.levels.asleep) wake(s.levels.nap, states);
       join(n, other, states, most_dofs);
     });

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/character/contact_finder.h"
 #include "sinew/character/couplings.h"
 #include "sinew/character/neighbour_grid.h"
 #include "sinew/character/state.h"
@@ -15,8 +16,8 @@ namespace sinew {
 template <class T>
 class Islands {
  public:
-  /// Set-up for so many states and couplings; nothing allocates afterwards.
-  void reserve(int states, int couplings);
+  /// Set-up for so many states, couplings, and colliders of a state; nothing allocates afterwards.
+  void reserve(int states, int couplings, int colliders);
 
   /// Wakes sleepers that the host, a neighbour or somebody tied to them calls for, then
   /// divides those who are awake into islands, each named by and listing its members in ascending order.
@@ -24,7 +25,7 @@ class Islands {
   /// degrees of freedom stay apart, the later first: they pass through each other (see
   /// CharacterReport::crowded). O(states) where they are spread out.
   void find(std::span<const std::unique_ptr<CharacterState<T>>> states, const Couplings<T>& couplings, T h,
-            int most_dofs, bool body_contact);
+            int most_dofs, const ContactTerm<T>* contacts);
 
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Whether a state takes part in the step: it is in the world, and awake.
@@ -40,7 +41,6 @@ class Islands {
 
  private:
   static bool takes_part(const CharacterState<T>& s) { return !s.parked && !s.levels.asleep; }
-  static bool meet(CharacterState<T>& a, CharacterState<T>& b, T h);
   void wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states);
   void wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> states, const Couplings<T>& couplings);
   int root_of(int state);
@@ -49,8 +49,9 @@ class Islands {
   void join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states, int most_dofs);
 
   NeighbourGrid grid_;
-  std::vector<int> parent_;  ///< [state] union-find; towards the smallest index
-  std::vector<int> dofs_;    ///< [state] of the island whose root it is
+  std::vector<MovingCollider<T>> room_;  ///< for come_close()
+  std::vector<int> parent_;              ///< [state] union-find; towards the smallest index
+  std::vector<int> dofs_;                ///< [state] of the island whose root it is
   std::vector<int> awake_;
   std::vector<int> island_;            ///< [state] number of the island
   std::vector<int> first_, members_;   ///< [island + 1] into members_

@@ -33,20 +33,6 @@ bool is_woken(const CharacterState<T>& s) {
 }
 
 template <class T>
-bool colliders_near(CharacterState<T>& a, CharacterState<T>& b, T h, T margin) {
-  const T speed = a.fastest() + b.fastest();
-  for (std::size_t c = 0; c < a.colliders.size(); ++c) {
-    const Vec3<T> one = a.model()[a.colliders[c].joint] * a.bound_center[c];
-    for (std::size_t d = 0; d < b.colliders.size(); ++d) {
-      const Vec3<T> two = b.model()[b.colliders[d].joint] * b.bound_center[d];
-      const T reach = a.bound_radius[c] + b.bound_radius[d] + margin + 2 * h * speed;
-      if ((one - two).squaredNorm() < reach * reach) return true;
-    }
-  }
-  return false;
-}
-
-template <class T>
 void put_to_sleep(std::span<CharacterState<T>* const> members, std::span<const int> indices,
                   std::span<Coupling<T>* const> ties, const LevelOfDetail& detail, T h) {
   if (detail.sleep_after <= 0) return;

@@ -13,11 +13,6 @@ namespace sinew {
 template <class T>
 bool is_woken(const CharacterState<T>& state);
 
-/// Whether colliders of two states may come within `margin` (m) of each other in h seconds, by their bounding
-/// spheres. O(colliders²).
-template <class T>
-bool colliders_near(CharacterState<T>& a, CharacterState<T>& b, T h, T margin);
-
 /// After an island's step of h seconds: puts it to sleep where all its members have been at rest long
 /// enough, and no loop is being closed. `indices` are the members' numbers in the world, `ties` what they are
 /// tied together with.
@@ -27,7 +22,6 @@ void put_to_sleep(std::span<CharacterState<T>* const> members, std::span<const i
 
 #define SINEW_SLEEP_INSTANCES(prefix, T)                                                 \
   prefix bool is_woken<T>(const CharacterState<T>&);                                     \
-  prefix bool colliders_near<T>(CharacterState<T>&, CharacterState<T>&, T, T);           \
   prefix void put_to_sleep<T>(std::span<CharacterState<T>* const>, std::span<const int>, \
                               std::span<Coupling<T>* const>, const LevelOfDetail&, T);
 SINEW_SLEEP_INSTANCES(extern template, float)

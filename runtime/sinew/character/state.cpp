@@ -14,7 +14,6 @@ namespace {
 constexpr double kSnapAngle = 2e-3;
 constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
-constexpr double kLimbSpeed = 6;    ///< m/s against the root, where nobody has measured it
 
 }  // namespace
 

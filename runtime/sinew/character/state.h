@@ -77,6 +77,8 @@ struct Rig {
   void choose_baked();
 };
 
+constexpr double kLimbSpeed = 6;  ///< m/s against the root, where nobody has measured it
+
 template <class T>
 struct CharacterState {
   std::shared_ptr<const Rig<T>> rig;

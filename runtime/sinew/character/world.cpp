@@ -107,7 +107,7 @@ void World<T>::Impl::reserve() {
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();
-  islands.reserve(static_cast<int>(count), static_cast<int>(couplings.all().size()));
+  islands.reserve(static_cast<int>(count), static_cast<int>(couplings.all().size()), rooms.largest.colliders);
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
@@ -344,7 +344,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
   for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
   couplings.begin_step(states);
-  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact && plan.contacts);
+  islands.find(states, couplings, h, settings.island_dofs, settings.body_contact ? plan.contacts : nullptr);
   large.clear();
   heavy.clear();
   light.clear();

@@ -1,0 +1,113 @@
+#include "sinew/character/closeness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace sinew {
+namespace {
+
+/// m/s²: what two bodies approach faster by after a step than before, over the step. Falling takes a third of
+/// it; who is struck may do more and is met a step later, inside.
+constexpr double kSurprise = 30;
+constexpr int kSections = 16;      ///< of an axis: to a thousandth of its length
+constexpr double kGolden = 0.618;  ///< of what is left
+
+template <class T>
+MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T h) {
+  MovingCollider<T> m;
+  m.collider = &s.colliders[collider];
+  const int body = m.collider->joint;
+  const Transform<T>& joint = s.model()[body];
+  m.pose = joint * m.collider->local.template cast<T>();
+  m.center = joint * s.bound_center[collider];
+  m.radius = s.bound_radius[collider];
+  if (s.owed.motion) {
+    m.velocity = s.history.velocity[0];
+    m.any = h * T(kLimbSpeed);
+  } else {
+    const T arm = (s.bound_center[collider] - s.tree.center_of_mass[body]).norm() + m.radius;
+    const T spin = s.owed.history ? s.motion.omega[body].norm()
+                                  : s.history.rotation_rate[body].norm() / T(std::numbers::sqrt2);
+    m.velocity = s.owed.history ? s.motion.velocity[body] : s.history.velocity[body];
+    m.any = std::min(h * spin, T(2)) * arm;  // a chord
+  }
+  for (const ExternalForce<T>& impulse : s.impulses)
+    m.any += h * impulse.force.norm() / std::max(s.tree.mass[impulse.body], std::numeric_limits<T>::min());
+  return m;
+}
+
+/// Distance of a sphere's or capsule's axis to a convex shape, by golden sections: along a line it has one
+/// minimum.
+template <class T>
+SignedDistance<T> axis_to_shape(const Transform<T>& pose, T half, const Transform<T>& other_pose,
+                                const Collider& other) {
+  const Mat3<T> to_other = other_pose.rotation.conjugate().toRotationMatrix();
+  const Vec3<T> center = to_other * (pose.translation - other_pose.translation),
+                axis = to_other * (pose.rotation * Vec3<T>(0, 0, half)), size = other.size.template cast<T>();
+  const auto at = [&](T along) { return signed_distance<T>(other.shape, size, center + along * axis); };
+  if (half == T(0)) return at(T(0));
+  T low = T(-1), high = T(1), left = high - T(kGolden) * (high - low),
+    right = low + T(kGolden) * (high - low);
+  T of_left = at(left).distance, of_right = at(right).distance;
+  for (int n = 0; n < kSections; ++n) {
+    if (of_left < of_right) {
+      high = right, right = left, of_right = of_left;
+      left = high - T(kGolden) * (high - low);
+      of_left = at(left).distance;
+    } else {
+      low = left, left = right, of_left = of_right;
+      right = low + T(kGolden) * (high - low);
+      of_right = at(right).distance;
+    }
+  }
+  return at((low + high) / 2);
+}
+
+/// Distance of two colliders, m, and the direction (world) in which the first leaves the second.
+template <class T>
+SignedDistance<T> distance_between(const MovingCollider<T>& a, const MovingCollider<T>& b) {
+  const auto half_of = [](const Collider& c) { return c.shape == Shape::kCapsule ? T(c.size.z()) : T(0); };
+  if (a.collider->shape != Shape::kBox) {
+    SignedDistance<T> d = axis_to_shape<T>(a.pose, half_of(*a.collider), b.pose, *b.collider);
+    d.distance -= T(a.collider->size.x());
+    d.normal = b.pose.rotation * d.normal;
+    return d;
+  }
+  SignedDistance<T> d = axis_to_shape<T>(b.pose, half_of(*b.collider), a.pose, *a.collider);
+  d.distance -= b.collider->shape == Shape::kBox ? b.radius : T(b.collider->size.x());
+  d.normal = -(a.pose.rotation * d.normal);
+  return d;
+}
+
+template <class T>
+bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T margin) {
+  const Vec3<T> velocity = a.velocity - b.velocity;
+  const T any = margin + a.any + b.any, most = any + h * velocity.norm();
+  const T reach = a.radius + b.radius + most;
+  if ((a.center - b.center).squaredNorm() > reach * reach) return false;
+  const SignedDistance<T> d = distance_between(a, b);
+  return d.distance < any + h * std::max(-velocity.dot(d.normal), T(0));
+}
+
+}  // namespace
+
+template <class T>
+bool come_close(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
+                std::vector<MovingCollider<T>>& room) {
+  margin += T(kSurprise) * h * h;
+  room.clear();
+  for (std::size_t c = 0; c < b.colliders.size(); ++c) room.push_back(moving_collider(b, c, h));
+  for (std::size_t c = 0; c < a.colliders.size(); ++c) {
+    const MovingCollider<T> one = moving_collider(a, c, h);
+    for (const MovingCollider<T>& other : room)
+      if (comes_close<T>(one, other, h, margin)) return true;
+  }
+  return false;
+}
+
+SINEW_CLOSENESS_INSTANCES(template, float)
+SINEW_CLOSENESS_INSTANCES(template, double)
+
+}  // namespace sinew

@@ -1,0 +1,36 @@
+// Whether two characters or props come so close that they are solved together. Internal to the character
+// layer.
+#pragma once
+
+#include <vector>
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// A collider where it is, and how it moves.
+template <class T>
+struct MovingCollider {
+  const Collider* collider = nullptr;
+  Transform<T> pose;                   ///< of the shape, world
+  Vec3<T> center = Vec3<T>::Zero();    ///< of its bounding sphere, world
+  Vec3<T> velocity = Vec3<T>::Zero();  ///< m/s, of its body
+  T radius = T(0);                     ///< m, of the bounding sphere
+  T any = T(0);                        ///< m, that it may move by in any direction besides
+};
+
+/// Whether colliders of two states come within `margin` (m) of each other in h seconds, as their bodies move
+/// now, or faster by what accelerates them (kSurprise). By their distances, in the direction in which they
+/// approach: what passes by, or falls beside, is not close. Boxes against each other by a bounding sphere.
+/// `room` is for the colliders of b. O(colliders²), and some hundred nanoseconds for each pair whose bounding
+/// spheres come close.
+template <class T>
+bool come_close(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
+                std::vector<MovingCollider<T>>& room);
+
+#define SINEW_CLOSENESS_INSTANCES(prefix, T) \
+  prefix bool come_close<T>(CharacterState<T>&, CharacterState<T>&, T, T, std::vector<MovingCollider<T>>&);
+SINEW_CLOSENESS_INSTANCES(extern template, float)
+SINEW_CLOSENESS_INSTANCES(extern template, double)
+
+}  // namespace sinew

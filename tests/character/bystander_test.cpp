@@ -1,0 +1,147 @@
+// What does not touch changes nothing: whoever is near a character, but never comes close, leaves its motion
+// to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "character/scenes.h"
+#include "fixtures/pile.h"
+#include "sinew/character/prop.h"
+
+namespace sinew {
+namespace {
+
+constexpr float kStep = 1.f / 60;
+
+struct Scene {
+  World<float> world{WorldSettings()};
+
+  /// A limp figure, its limbs thrown about, over a place on the floor. `seed` says how.
+  int fall(const Vec3<float>& place, unsigned seed) {
+    CharacterSettings limp;
+    limp.root = RootDrive::kFree;
+    limp.strength = 0;
+    const Skeleton body = fixtures::humanoid();
+    Status status;
+    const int n = world.add_character(body, limp, status);
+    EXPECT_TRUE(status.ok()) << status.reason;
+    std::vector<JointJet<float>> jets = fixtures::piled_jets(body, static_cast<int>(seed));
+    jets[0].rotation = Quat<float>::Identity();
+    jets[0].translation = place;
+    EXPECT_TRUE(world.character(n).set_target(jets).ok());
+    world.character(n).reset();
+    return n;
+  }
+  int box(const Vec3<double>& place, const Vec3<double>& velocity, const Vec3<double>& spin) {
+    PropSettings box;
+    box.shape = Shape::kBox;
+    box.size = {0.1, 0.15, 0.2};
+    box.mass = 5;
+    box.pose.translation = place;
+    box.velocity = velocity;
+    box.angular_velocity = spin;
+    Status status;
+    const int n = world.add_prop(box, status);
+    EXPECT_TRUE(status.ok()) << status.reason;
+    return n;
+  }
+};
+
+using Poses = std::vector<Transform<float>>;
+
+/// The poses of what `watched` reads, after each of so many steps.
+Poses record(Scene& scene, int steps, const std::function<Poses()>& watched) {
+  Poses all;
+  for (int n = 0; n < steps; ++n) {
+    EXPECT_TRUE(scene.world.step(kStep).ok());
+    const Poses now = watched();
+    all.insert(all.end(), now.begin(), now.end());
+  }
+  return all;
+}
+
+Poses record_character(Scene& scene, int character, int steps) {
+  return record(scene, steps, [&] {
+    const auto model = scene.world.character(character).model();
+    return Poses(model.begin(), model.end());
+  });
+}
+
+Poses record_box(Scene& scene, int box, int steps) {
+  return record(scene, steps, [&] { return Poses{scene.world.prop_pose(box)}; });
+}
+
+/// m, the furthest that anything is from where it is in the other.
+double apart(const Poses& a, const Poses& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double furthest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double turned = (a[i].rotation.coeffs() - b[i].rotation.coeffs()).norm();
+    furthest = std::max({furthest, double((a[i].translation - b[i].translation).norm()), turned});
+  }
+  return furthest;
+}
+
+constexpr float kAbove = 2;  // m
+const Vec3<float> kHere(0, 0, kAbove), kBeside(0, 2, kAbove);
+
+TEST(Bystander, AFallBesideAFallIsAsAlone) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    Scene alone, two;
+    const Poses wanted = record_character(alone, alone.fall(kHere, seed), 60);
+    const int n = two.fall(kHere, seed);
+    two.fall(kBeside, seed + 10);
+    EXPECT_EQ(apart(record_character(two, n, 60), wanted), 0) << seed;
+  }
+}
+
+TEST(Bystander, AFallBehindAnotherInTheListIsAsAlone) {
+  Scene alone, two;
+  const Poses wanted = record_character(alone, alone.fall(kHere, 1), 60);
+  two.fall(kBeside, 11);
+  EXPECT_EQ(apart(record_character(two, two.fall(kHere, 1), 60), wanted), 0);
+}
+
+TEST(Bystander, ASpinningBoxBesideATumblingFigureKeepsItsSpin) {
+  Scene alone, two;
+  const Vec3<double> place(0.6, 0, 2);
+  const Poses wanted = record_box(alone, alone.box(place, {0, 0, 3}, {0, 0, 20}), 40);
+  const int box = two.box(place, {0, 0, 3}, {0, 0, 20});
+  two.fall(kHere, 3);
+  EXPECT_EQ(apart(record_box(two, box, 40), wanted), 0);
+}
+
+TEST(Bystander, AFallBesideSixInOnePlaceFallsAtG) {
+  Scene alone, many;
+  const Vec3<float> beside(0, 2.5f, kAbove);
+  const Poses wanted = record_character(alone, alone.fall(beside, 7), 30);
+  const int n = many.fall(beside, 7);
+  for (unsigned k = 0; k < 6; ++k) many.fall({0, 0, kAbove}, k);
+  EXPECT_EQ(apart(record_character(many, n, 30), wanted), 0);
+}
+
+TEST(Bystander, DetailOfTheOtherChangesNothing) {
+  Scene full, capped;
+  std::vector<Poses> poses;
+  for (Scene* scene : {&full, &capped}) {
+    const int n = scene->fall(kHere, 5), other = scene->fall(kBeside, 6);
+    CharacterDetail detail;
+    if (scene == &capped) detail.most = Level::kPartial;
+    EXPECT_TRUE(scene->world.character(other).set_detail(detail).ok());
+    poses.push_back(record_character(*scene, n, 60));
+  }
+  EXPECT_EQ(apart(poses[0], poses[1]), 0);
+}
+
+TEST(Bystander, ABoxSlidesPastAFallenFigureAsAlone) {
+  Scene alone, two;
+  const Vec3<double> place(-1.5, 0, 0.2), velocity(4, 0, 0);
+  const Poses wanted = record_box(alone, alone.box(place, velocity, Vec3<double>::Zero()), 90);
+  const int box = two.box(place, velocity, Vec3<double>::Zero());
+  two.fall({0, 1.4f, 1}, 2);
+  EXPECT_EQ(apart(record_box(two, box, 90), wanted), 0);
+}
+
+}  // namespace
+}  // namespace sinew
