@@ -94,17 +94,17 @@ bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T 
 }  // namespace
 
 template <class T>
-bool come_close(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
-                std::vector<MovingCollider<T>>& room) {
+void append_moving(CharacterState<T>& s, T h, std::vector<MovingCollider<T>>& out) {
+  for (std::size_t c = 0; c < s.colliders.size(); ++c) out.push_back(moving_collider(s, c, h));
+}
+
+template <class T>
+bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin) {
   margin += T(kSurprise) * h * h;
-  room.clear();
-  for (std::size_t c = 0; c < b.colliders.size(); ++c) room.push_back(moving_collider(b, c, h));
-  for (std::size_t c = 0; c < a.colliders.size(); ++c) {
-    const MovingCollider<T> one = moving_collider(a, c, h);
-    for (const MovingCollider<T>& other : room)
-      if (comes_close<T>(one, other, h, margin)) return true;
-  }
-  return false;
+  return std::any_of(a.begin(), a.end(), [&](const MovingCollider<T>& one) {
+    return std::any_of(b.begin(), b.end(),
+                       [&](const MovingCollider<T>& other) { return comes_close<T>(one, other, h, margin); });
+  });
 }
 
 SINEW_CLOSENESS_INSTANCES(template, float)

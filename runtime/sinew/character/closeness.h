@@ -2,6 +2,7 @@
 // layer.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sinew/character/state.h"
@@ -19,17 +20,20 @@ struct MovingCollider {
   T any = T(0);                        ///< m, that it may move by in any direction besides
 };
 
-/// Whether colliders of two states come within `margin` (m) of each other in h seconds, as their bodies move
-/// now, or faster by what accelerates them (kSurprise). By their distances, in the direction in which they
-/// approach: what passes by, or falls beside, is not close. Boxes against each other by a bounding sphere.
-/// `room` is for the colliders of b. O(colliders²), and some hundred nanoseconds for each pair whose bounding
-/// spheres come close.
+/// Appends the colliders of a state for a step of h seconds. O(colliders).
 template <class T>
-bool come_close(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
-                std::vector<MovingCollider<T>>& room);
+void append_moving(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
 
-#define SINEW_CLOSENESS_INSTANCES(prefix, T) \
-  prefix bool come_close<T>(CharacterState<T>&, CharacterState<T>&, T, T, std::vector<MovingCollider<T>>&);
+/// Whether some of two states' colliders come within `margin` (m) of each other in h seconds, as their bodies
+/// move now, or faster by what accelerates them (kSurprise). By their distances, in the direction in which
+/// they approach: what passes by, or falls beside, is not close. Boxes against each other by a bounding
+/// sphere. O(colliders²), and some hundred nanoseconds for each pair whose bounding spheres come close.
+template <class T>
+bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin);
+
+#define SINEW_CLOSENESS_INSTANCES(prefix, T)                                            \
+  prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&); \
+  prefix bool come_close<T>(std::span<const MovingCollider<T>>, std::span<const MovingCollider<T>>, T, T);
 SINEW_CLOSENESS_INSTANCES(extern template, float)
 SINEW_CLOSENESS_INSTANCES(extern template, double)
 

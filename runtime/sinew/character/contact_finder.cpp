@@ -11,8 +11,9 @@
 namespace sinew {
 namespace {
 
-constexpr double kMargin =
-    0.2;  ///< m beyond what the present speed covers: a solve may move a light limb far
+/// m beyond what the present speed covers, from what stands still, and between two trees: a solve may move a
+/// light limb far.
+constexpr double kMargin = 0.2, kMarginBetween = 0.1;
 constexpr int kFirstHost = 0x4000;  ///< of contact identities
 constexpr double kMostPiled = 8;    ///< of the heaviest body: what a contact may bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
@@ -31,6 +32,11 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
 bool is_of_tree(std::uint64_t id, int tree) {
   const std::uint64_t number = first_contact_id(tree) >> 48;
   return id >> 48 == number || ((id >> 16) & 0xffff) == number;
+}
+
+template <class T>
+bool between_trees(const Contact<T>& c) {
+  return c.tree_b >= 0;
 }
 
 /// Makes a contact stiffer, not softer. Its offset takes up the difference in depth, so that under load it
@@ -60,6 +66,7 @@ void begin_inside(Contact<T>& c) {
 template <class T>
 void ContactFinder<T>::reserve(const SolveRoom& room) {
   contacts_.reserve(room.contacts);
+  gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
   first_bound_.reserve(room.trees);
@@ -99,9 +106,39 @@ template <class T>
 void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
-  if (c.gap > reach || contacts_.size() >= most_) return;
+  if (c.gap > reach) return;
+  const T& most_gap = most_gap_[between_trees(c)];
+  while (c.gap < most_gap && contacts_.size() >= most_)
+    if (!make_room()) break;
+  if (!(c.gap < most_gap) || contacts_.size() >= most_) {
+    ++left_out_;
+    return;
+  }
   remember(c);
   contacts_.push_back(c);
+}
+
+/// Drops the further half of the contacts between trees, or, if there are none, of the static ones; further
+/// ones are not taken any more. False where all are as near.
+template <class T>
+bool ContactFinder<T>::make_room() {
+  const bool any_between = std::any_of(contacts_.begin(), contacts_.end(), between_trees<T>);
+  T& most_gap = most_gap_[any_between];
+  gaps_.clear();
+  for (const Contact<T>& c : contacts_)
+    if (between_trees(c) == any_between) gaps_.push_back(c.gap - c.offset);
+  if (gaps_.empty()) return false;
+  const auto middle = gaps_.begin() + static_cast<std::ptrdiff_t>(gaps_.size() / 2);
+  std::nth_element(gaps_.begin(), middle, gaps_.end());
+  if (!(*std::min_element(gaps_.begin(), middle + 1) < *middle)) return false;
+  most_gap = *middle;
+  const auto further = [&](const Contact<T>& c) {
+    return between_trees(c) == any_between && !(c.gap - c.offset < most_gap);
+  };
+  const auto kept = std::remove_if(contacts_.begin(), contacts_.end(), further);
+  left_out_ += static_cast<int>(contacts_.end() - kept);
+  contacts_.erase(kept, contacts_.end());
+  return true;
 }
 
 /// What contacts that were not there before begin with, and how all are damped.
@@ -263,7 +300,7 @@ bool ContactFinder<T>::kept_apart(int n, int body, int m, int other) const {
 template <class T>
 void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
-  const T reach = a.reach + b.reach - T(kMargin);
+  const T reach = a.reach + b.reach - T(2 * kMargin - kMarginBetween);
   if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const Collider& shape = t.colliders[other];
@@ -330,6 +367,8 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   most_ = std::min(most_, room_);
   count_depenetrating();
   contacts_.clear();
+  std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
+  left_out_ = 0;
   bounds_.clear();
   first_bound_.clear();
   for (const CharacterState<T>* s : states) {
@@ -368,8 +407,9 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{make_finder<T>,           near_obstacle<T>,   come_close<T>,
-                                   append_contact_points<T>, share_stiffness<T>, measure<T>};
+constexpr ContactTerm<T> kContacts{make_finder<T>, near_obstacle<T>,         append_moving<T>,
+                                   come_close<T>,  append_contact_points<T>, share_stiffness<T>,
+                                   measure<T>};
 
 }  // namespace
 

@@ -80,11 +80,14 @@ class ContactSearch {
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
-  /// feet would. Allocates nothing; contacts beyond the room of the trees are dropped.
+  /// feet would. Allocates nothing; where the trees' room does not do, those between trees that are furthest
+  /// apart are left out, and only if that does not do, such of static obstacles: see left_out().
   virtual std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                                      std::span<CharacterState<T>* const> states, std::span<const int> indices,
                                      std::span<const LaggedForce<T>> lagged,
                                      const Vec3<double>& common_origin, T h) = 0;
+  /// How many candidates the last find() had no room for.
+  virtual int left_out() const = 0;
 };
 
 template <class T>
@@ -92,12 +95,13 @@ class ContactFinder final : public ContactSearch<T> {
  public:
   void reserve(const SolveRoom& room) override;
   std::size_t bytes(const SolveRoom& room) const override {
-    return room.contacts * sizeof(Contact<T>) + room.colliders * sizeof(Bound);
+    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound);
   }
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
                              std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin,
                              T h) override;
+  int left_out() const override { return left_out_; }
 
  private:
   /// Bounding sphere of a collider now, and how far its body may come within the step.
@@ -114,6 +118,7 @@ class ContactFinder final : public ContactSearch<T> {
   bool kept_apart(int n, int body, int m, int other) const;
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
+  bool make_room();
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
@@ -132,9 +137,12 @@ class ContactFinder final : public ContactSearch<T> {
   T most_sunk_ = T(0);         ///< m: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
-  std::vector<Bound> bounds_;        ///< all colliders of all states
-  std::vector<int> first_bound_;     ///< [state]
-  std::vector<int> depenetrating_;   ///< [state] contacts through which it is brought out of something
+  std::vector<T> gaps_;              ///< m, for make_room()
+  T most_gap_[2] = {T(0), T(0)};  ///< m, of static contacts and of those between trees that there is room for
+  int left_out_ = 0;
+  std::vector<Bound> bounds_;       ///< all colliders of all states
+  std::vector<int> first_bound_;    ///< [state]
+  std::vector<int> depenetrating_;  ///< [state] contacts through which it is brought out of something
 };
 
 /// Whether an obstacle may be in the way of the animation.
@@ -146,8 +154,9 @@ template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
   bool (*near_obstacle)(const CharacterState<T>& state, const Surroundings& around, T h);
-  bool (*come_close)(CharacterState<T>& a, CharacterState<T>& b, T h, T margin,
-                     std::vector<MovingCollider<T>>& room);
+  void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
+  bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
+                     T margin);
   // See contact.h.
   void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);

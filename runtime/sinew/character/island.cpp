@@ -232,6 +232,7 @@ void IslandStepper<T>::find_contacts(T h) {
   contacts_ = {};
   if (!finder_) return;
   contacts_ = finder_->find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
+  left_out_ = std::max(left_out_, finder_->left_out());
   const auto passes = [&](const Contact<T>& c) {
     const bool caught = c.tree_b >= 0 && c.offset > T(0);
     return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
@@ -418,7 +419,7 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
   total_ = {};
   all_converged_ = true;
   for (CharacterState<T>* s : states) s->unbaked = 0;
-  splits_ = parts_ = damped_ = held_ = restarts_ = 0;
+  splits_ = parts_ = damped_ = held_ = restarts_ = left_out_ = 0;
   part_begun_ = solve_begun_ = false;
   first_ = nullptr;
 }
@@ -485,6 +486,7 @@ int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveRepor
     r.damped = damped_;
     r.restarts = restarts_;
     r.held = held_;
+    r.left_out = left_out_;
     r.unbaked = s->unbaked;
   }
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());

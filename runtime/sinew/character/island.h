@@ -138,7 +138,7 @@ class IslandStepper {
   bool all_converged_ = true;
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
   const SolveReport* first_ = nullptr;             ///< see end()
-  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0;
+  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0, left_out_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;

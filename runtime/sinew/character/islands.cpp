@@ -13,7 +13,8 @@ constexpr double kMargin = 0.03, kTouching = 0.02;  ///< m beyond what they move
 
 template <class T>
 void Islands<T>::reserve(int states, int couplings, int colliders) {
-  room_.reserve(colliders);
+  moving_.reserve(colliders);
+  first_moving_.reserve(states);
   grid_.reserve(states);
   for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_}) v->reserve(states);
   first_.reserve(states + 1);
@@ -95,6 +96,17 @@ void Islands<T>::divide_ties(const Couplings<T>& couplings) {
   first_tie_.pop_back();
 }
 
+/// The colliders of the nth state.
+template <class T>
+std::span<const MovingCollider<T>> Islands<T>::moving(CharacterState<T>& s, int n,
+                                                      const ContactTerm<T>& contacts, T h) {
+  if (first_moving_[n] < 0) {
+    first_moving_[n] = static_cast<int>(moving_.size());
+    contacts.append_moving(s, h, moving_);
+  }
+  return std::span(moving_).subspan(first_moving_[n], s.colliders.size());
+}
+
 template <class T>
 void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states,
                       const Couplings<T>& couplings, T h, int most_dofs, const ContactTerm<T>* contacts) {
@@ -103,10 +115,14 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   parent_.resize(count);
   dofs_.resize(count);
   island_.assign(count, -1);
+  moving_.clear();
+  first_moving_.assign(count, -1);
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
-  const auto meet = [&](CharacterState<T>& a, CharacterState<T>& b) {
-    return contacts->come_close(a, b, h, b.levels.asleep ? T(kTouching) : T(kMargin), room_);
+  const auto meet = [&](int n, int other) {
+    const T margin = states[other]->levels.asleep ? T(kTouching) : T(kMargin);
+    return contacts->come_close(moving(*states[n], n, *contacts, h),
+                                moving(*states[other], other, *contacts, h), h, margin);
   };
   const auto center = [&](int n) { return states[n]->middle(); };
   // Together they leave a decimetre, and twice what both may move by.
@@ -137,7 +153,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
     grid_.overlapping(center(n), reach(n), [&](int other) {
       CharacterState<T>& s = *states[other];
       // From the side of the first, unless the other sleeps.
-      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(*states[n], s)) return;
+      if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(n, other)) return;
       if (s.levels.asleep) wake(s.levels.nap, states);
       join(n, other, states, most_dofs);
     });

@@ -16,7 +16,7 @@ namespace sinew {
 template <class T>
 class Islands {
  public:
-  /// Set-up for so many states, couplings, and colliders of a state; nothing allocates afterwards.
+  /// Set-up for so many states, couplings, and colliders of all states; nothing allocates afterwards.
   void reserve(int states, int couplings, int colliders);
 
   /// Wakes sleepers that the host, a neighbour or somebody tied to them calls for, then
@@ -43,15 +43,18 @@ class Islands {
   static bool takes_part(const CharacterState<T>& s) { return !s.parked && !s.levels.asleep; }
   void wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states);
   void wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> states, const Couplings<T>& couplings);
+  std::span<const MovingCollider<T>> moving(CharacterState<T>& state, int n, const ContactTerm<T>& contacts,
+                                            T h);
   int root_of(int state);
   void unite(int root, int other);
   void divide_ties(const Couplings<T>& couplings);
   void join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states, int most_dofs);
 
   NeighbourGrid grid_;
-  std::vector<MovingCollider<T>> room_;  ///< for come_close()
-  std::vector<int> parent_;              ///< [state] union-find; towards the smallest index
-  std::vector<int> dofs_;                ///< [state] of the island whose root it is
+  std::vector<MovingCollider<T>> moving_;  ///< of who has met somebody in this step
+  std::vector<int> first_moving_;          ///< [state] into moving_; −1: has not
+  std::vector<int> parent_;                ///< [state] union-find; towards the smallest index
+  std::vector<int> dofs_;                  ///< [state] of the island whose root it is
   std::vector<int> awake_;
   std::vector<int> island_;            ///< [state] number of the island
   std::vector<int> first_, members_;   ///< [island + 1] into members_

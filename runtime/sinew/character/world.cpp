@@ -107,7 +107,7 @@ void World<T>::Impl::reserve() {
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();
-  islands.reserve(static_cast<int>(count), static_cast<int>(couplings.all().size()), rooms.largest.colliders);
+  islands.reserve(static_cast<int>(count), static_cast<int>(couplings.all().size()), rooms.all.colliders);
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);

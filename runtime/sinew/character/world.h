@@ -60,6 +60,7 @@ struct CharacterReport {
   int corrections = 0;   ///< second-order corrections that saved a full step
   int plain_passes = 0;  ///< passes without the geometric terms, which made the matrix indefinite
   int contacts = 0;      ///< active contact points
+  int left_out = 0;      ///< of the candidates for contacts, those that there was no memory for: the furthest
   int substeps = 0;      ///< parts that the step was solved in; 0 = played
   int splits = 0;        ///< of these, halvings because a solve did not converge
   int restarts = 0;      ///< of the parts, solved again from where they began: the first result was too deep
