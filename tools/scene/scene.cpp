@@ -210,7 +210,7 @@ void read_accuracy(const json& value, Scene& s) {
   const json named = value.is_string() ? json{{"preset", value}} : value;
   const Reader a(named, "accuracy",
                  {"preset", "tolerance", "max_iterations", "substeps", "max_rotation", "impact_step",
-                  "max_parts", "max_splits", "sink_depth", "contact_damping", "stick_speed",
+                  "max_parts", "max_splits", "max_passes", "sink_depth", "contact_damping", "stick_speed",
                   "limit_stiffness", "limit_damping", "return_time", "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
@@ -221,6 +221,7 @@ void read_accuracy(const json& value, Scene& s) {
   s.world.accuracy.impact_step = a.time("impact_step", s.world.accuracy.impact_step);
   s.world.accuracy.max_parts = a.count("max_parts", s.world.accuracy.max_parts, 1, 1000);
   s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
+  s.world.accuracy.max_passes = a.count("max_passes", s.world.accuracy.max_passes, 1, 1000000);
   s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);
   s.world.accuracy.limit_damping = a.time("limit_damping", s.world.accuracy.limit_damping);
   s.world.accuracy.tolerance = a.positive("tolerance", s.world.accuracy.tolerance);

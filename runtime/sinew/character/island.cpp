@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
+constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
 template <class T>
@@ -301,18 +302,28 @@ template <class T>
 SolveReport IslandStepper<T>::first_solve() {
   if (!solve_begun_) begin_solve();
   solve_begun_ = false;
-  if (!first_) return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+  if (!first_) return solve();
+  passes_left_ -= first_->outer_passes;
   return *std::exchange(first_, nullptr);
+}
+
+/// In as many passes as the step has left.
+template <class T>
+SolveReport IslandStepper<T>::solve() {
+  Accuracy accuracy = world_->accuracy;
+  accuracy.max_iterations = std::min(accuracy.max_iterations, std::max(passes_left_, kLeastPasses));
+  const SolveReport report = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
+  passes_left_ -= report.outer_passes;
+  return report;
 }
 
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
-  const WorldSettings& world = *world_;
   const T h = settings_.h;
   SolveReport total = first_solve();
   for (int round = 1;; ++round) {
-    if (may_split && !total.converged) return total;
+    if (may_split && !total.converged && passes_left_ > 0) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
       released = release_overloaded(*s, h) || released;
@@ -324,7 +335,7 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
       forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     find_contacts(h);
     emphasise_friction(h);
-    total.add(solver_.solve(settings_, world.accuracy, problems_, contacts_, couplings_));
+    total.add(solve());
   }
 }
 
@@ -349,6 +360,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
   const bool closed = closed_;
   SolveReport solved = attempt(splits_left > 0);
+  if (passes_left_ <= 0) splits_left = 0;
   total_.add(solved);
   const bool may_restart = closed && !settings_.plan->scheme;
   if (may_restart && (solved.converged || splits_left == 0) && excess() > 0) {
@@ -417,6 +429,7 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
     trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
                       s->steps_unchanged, s->contact_signature});
   total_ = {};
+  passes_left_ = 0;
   all_converged_ = true;
   for (CharacterState<T>* s : states) s->unbaked = 0;
   splits_ = parts_ = damped_ = held_ = restarts_ = left_out_ = 0;
@@ -471,6 +484,7 @@ int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveRepor
   const int parts = parts_of();
   const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
+  passes_left_ = parts * world.accuracy.max_passes;
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {

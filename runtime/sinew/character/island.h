@@ -76,6 +76,7 @@ class IslandStepper {
   void choose_guess(T h);
   void begin_solve();
   SolveReport first_solve();
+  SolveReport solve();
   SolveReport attempt(bool may_split);
   void reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
@@ -138,6 +139,7 @@ class IslandStepper {
   bool all_converged_ = true;
   bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
   const SolveReport* first_ = nullptr;             ///< see end()
+  int passes_left_ = 0;                            ///< of the step, see Accuracy::max_passes
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0, left_out_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part

@@ -71,7 +71,7 @@ SolveReport IslandStepper<T>::solve_from_start() {
   for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));
   relax_friction(settings_.h);
   predict_euler_all(settings_.h);
-  return solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+  return solve();
 }
 
 /// Last rung: where a solve left something that is no pose, or one that only energy from nowhere could reach,
