@@ -143,5 +143,44 @@ TEST(Bystander, ABoxSlidesPastAFallenFigureAsAlone) {
   EXPECT_EQ(apart(record_box(two, box, 90), wanted), 0);
 }
 
+/// Steps of a second in which an idle figure is not played but solved, with an obstacle in its world.
+int solved_beside(const Vec3<double>& place) {
+  fixtures::Playing<float> figure;
+  Collider obstacle;
+  obstacle.shape = Shape::kBox;
+  obstacle.size = Vec3<double>::Constant(0.25);
+  obstacle.local.translation = place;
+  EXPECT_TRUE(figure.world.add_obstacle(obstacle).ok());
+  int solved = 0;
+  for (int n = 0; n < 60; ++n) {
+    figure.step();
+    solved += figure.character().report().substeps > 0;
+  }
+  return solved;
+}
+
+TEST(Bystander, AnObstacleBesideAFigureDoesNotEndItsPlayback) {
+  EXPECT_EQ(solved_beside({0, 0.9, 1.2}), 0);
+  EXPECT_EQ(solved_beside({0.65, 0, 0.9}), 0);
+  EXPECT_GT(solved_beside({0.2, 0, 1.2}), 50) << "in its chest";
+}
+
+TEST(Bystander, WhoStandsASpanAwayDoesNotEndPlaybackEither) {
+  World<float> world{WorldSettings()};
+  const Skeleton body = fixtures::humanoid();
+  Status status;
+  for (int n = 0; n < 2; ++n) ASSERT_EQ(world.add_character(body, {}, status), n) << status.reason;
+  for (int step = 0; step < 60; ++step) {
+    for (int n = 0; n < 2; ++n) {
+      std::vector<JointJet<float>> jets = fixtures::idle<float>(body, step / 60.0 + n);
+      jets[0].translation.x() += 0.7f * float(n);
+      ASSERT_TRUE(world.character(n).set_target(jets).ok());
+      if (step == 0) world.character(n).reset();
+    }
+    ASSERT_TRUE(world.step(kStep).ok());
+    for (int n = 0; n < 2; ++n) EXPECT_EQ(world.character(n).report().substeps, 0) << step;
+  }
+}
+
 }  // namespace
 }  // namespace sinew

@@ -65,20 +65,27 @@ SignedDistance<T> axis_to_shape(const Transform<T>& pose, T half, const Transfor
   return at((low + high) / 2);
 }
 
-/// Distance of two colliders, m, and the direction (world) in which the first leaves the second.
+/// Distance of a collider to a convex shape, m, and the direction (world) in which it leaves that. Of a box,
+/// its bounding sphere's.
+template <class T>
+SignedDistance<T> distance_to(const MovingCollider<T>& a, const MovingCollider<T>& b) {
+  const Collider& c = *a.collider;
+  const T half = c.shape == Shape::kCapsule ? T(c.size.z()) : T(0);
+  SignedDistance<T> d = axis_to_shape<T>(a.pose, half, b.pose, *b.collider);
+  d.distance -= c.shape == Shape::kBox ? a.radius : T(c.size.x());
+  d.normal = b.pose.rotation * d.normal;
+  return d;
+}
+
+/// The same of either to the other.
 template <class T>
 SignedDistance<T> distance_between(const MovingCollider<T>& a, const MovingCollider<T>& b) {
-  const auto half_of = [](const Collider& c) { return c.shape == Shape::kCapsule ? T(c.size.z()) : T(0); };
-  if (a.collider->shape != Shape::kBox) {
-    SignedDistance<T> d = axis_to_shape<T>(a.pose, half_of(*a.collider), b.pose, *b.collider);
-    d.distance -= T(a.collider->size.x());
-    d.normal = b.pose.rotation * d.normal;
-    return d;
-  }
-  SignedDistance<T> d = axis_to_shape<T>(b.pose, half_of(*b.collider), a.pose, *a.collider);
-  d.distance -= b.collider->shape == Shape::kBox ? b.radius : T(b.collider->size.x());
-  d.normal = -(a.pose.rotation * d.normal);
-  return d;
+  if (a.collider->shape != Shape::kBox) return distance_to(a, b);
+  SignedDistance<T> d = distance_to(b, a);
+  d.normal = -d.normal;
+  if (b.collider->shape != Shape::kBox) return d;
+  const SignedDistance<T> other = distance_to(a, b);  // both are at most what it is
+  return other.distance > d.distance ? other : d;
 }
 
 template <class T>
@@ -104,6 +111,26 @@ bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingColl
   return std::any_of(a.begin(), a.end(), [&](const MovingCollider<T>& one) {
     return std::any_of(b.begin(), b.end(),
                        [&](const MovingCollider<T>& other) { return comes_close<T>(one, other, h, margin); });
+  });
+}
+
+template <class T>
+bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h) {
+  MovingCollider<T> still;
+  still.collider = &obstacle;
+  still.pose = obstacle.local.template cast<T>();
+  still.center = still.pose.translation;
+  still.radius = T(bounding_radius(obstacle));
+  return come_close<T>(colliders, std::span(&still, 1), h, T(kCloseMargin));
+}
+
+template <class T>
+bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h) {
+  const T margin = T(kCloseMargin) + T(kSurprise) * h * h;
+  return std::any_of(colliders.begin(), colliders.end(), [&](const MovingCollider<T>& c) {
+    const SignedDistance<double> d = shape.distance(c.center.template cast<double>());
+    const T closing = std::max(-c.velocity.dot(d.normal.template cast<T>()), T(0));
+    return T(d.distance) < c.radius + margin + c.any + h * closing;
   });
 }
 

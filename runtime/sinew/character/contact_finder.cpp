@@ -64,7 +64,8 @@ void begin_inside(Contact<T>& c) {
 }  // namespace
 
 template <class T>
-void ContactFinder<T>::reserve(const SolveRoom& room) {
+void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
+  near_.reserve(static_cast<std::size_t>(obstacles));
   contacts_.reserve(room.contacts);
   gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
@@ -242,9 +243,27 @@ void ContactFinder<T>::meet_hosts(int n, int collider, std::span<const HostObsta
   }
 }
 
+/// Which obstacles any collider of the nth state may reach.
+template <class T>
+void ContactFinder<T>::find_near(int n, const Surroundings& surroundings) {
+  near_.clear();
+  const std::span<const Bound> bounds =
+      std::span(bounds_).subspan(first_bound_[n], states_[n]->colliders.size());
+  if (surroundings.obstacles.empty() || bounds.empty()) return;
+  Vec3<T> least = Vec3<T>::Constant(std::numeric_limits<T>::infinity()), most = -least;
+  for (const Bound& b : bounds) {
+    least = least.cwiseMin(b.center - Vec3<T>::Constant(b.radius + b.reach));
+    most = most.cwiseMax(b.center + Vec3<T>::Constant(b.radius + b.reach));
+  }
+  const Vec3<double> middle = ((least + most) / 2).template cast<double>() + common_origin_;
+  surroundings.grid->overlapping(middle, double((most - least).norm() / 2),
+                                 [&](int obstacle) { near_.push_back(obstacle); });
+  std::sort(near_.begin(), near_.end());
+}
+
 template <class T>
 void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
-  const std::span<const Collider> obstacles = surroundings.obstacles;
+  find_near(n, surroundings);
   const CharacterState<T>& s = *states_[n];
   const T ground = T(world_->ground_height - common_origin_.z());
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
@@ -261,8 +280,8 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
         add(c, b.reach);
       }
     meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
-    for (std::size_t o = 0; o < obstacles.size(); ++o) {
-      const Collider& obstacle = obstacles[o];
+    for (const int o : near_) {
+      const Collider& obstacle = surroundings.obstacles[o];
       const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
                               (obstacle.local.translation - common_origin_).template cast<T>()};
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
@@ -277,7 +296,7 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
         c.shape_pose = pose;
         c.friction = std::sqrt(s.points[k].friction * T(obstacle.friction));
         c.restitution = std::max(c.restitution, T(obstacle.restitution));
-        c.id = contact_id(indices_[n], k, -1, static_cast<int>(o));
+        c.id = contact_id(indices_[n], k, -1, o);
         add(c, b.reach);
       }
     }
@@ -385,18 +404,27 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
 }
 
 template <class T>
-bool near_obstacle(const CharacterState<T>& s, const Surroundings& around, T h) {
-  if (!s.settings.ground_contact) return false;
+bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
+                   std::vector<MovingCollider<T>>& room) {
+  if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
   const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>();
-  const auto near = [&](double distance) { return distance < double(reach); };
-  return std::any_of(
-             around.obstacles.begin(), around.obstacles.end(),
-             [&](const Collider& o) {
-               return near(signed_distance<double>(o.shape, o.size, o.local.inverse() * center).distance);
-             }) ||
-         std::any_of(around.hosts.begin(), around.hosts.end(),
-                     [&](const HostObstacle& o) { return near(o.shape->distance(center).distance); });
+  room.clear();
+  const auto movers = [&] {
+    if (room.empty()) append_moving(s, h, room);
+    return std::span<const MovingCollider<T>>(room);
+  };
+  bool near = false;
+  if (!around.obstacles.empty())
+    around.grid->overlapping(center, double(reach), [&](int o) {
+      const Collider& obstacle = around.obstacles[o];
+      const SignedDistance<double> d =
+          signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
+      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h));
+    });
+  return near || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
+           return o.shape->distance(center).distance < double(reach) && comes_close(movers(), *o.shape, h);
+         });
 }
 
 namespace {

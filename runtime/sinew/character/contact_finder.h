@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/character/closeness.h"
+#include "sinew/character/neighbour_grid.h"
 #include "sinew/character/state.h"
 #include "sinew/effects/static_shape.h"
 
@@ -65,6 +66,7 @@ struct BodyPair {
 /// What stands around, apart from the floor, and who never touches whom.
 struct Surroundings {
   std::span<const Collider> obstacles;
+  const NeighbourGrid* grid = nullptr;  ///< of the obstacles' bounding spheres
   std::span<const HostObstacle> hosts;
   std::span<const BodyPair> apart;
 };
@@ -73,7 +75,8 @@ template <class T>
 class ContactSearch {
  public:
   virtual ~ContactSearch() = default;
-  virtual void reserve(const SolveRoom& room) = 0;
+  /// For so much, among so many obstacles.
+  virtual void reserve(const SolveRoom& room, int obstacles) = 0;
   /// That reserve() takes.
   virtual std::size_t bytes(const SolveRoom& room) const = 0;
 
@@ -93,7 +96,7 @@ class ContactSearch {
 template <class T>
 class ContactFinder final : public ContactSearch<T> {
  public:
-  void reserve(const SolveRoom& room) override;
+  void reserve(const SolveRoom& room, int obstacles) override;
   std::size_t bytes(const SolveRoom& room) const override {
     return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound);
   }
@@ -112,6 +115,7 @@ class ContactFinder final : public ContactSearch<T> {
   };
 
   void bound(const CharacterState<T>& state, T h);
+  void find_near(int n, const Surroundings& surroundings);
   void meet_static(int n, const Surroundings& surroundings);
   void meet_hosts(int n, int collider, std::span<const HostObstacle> hosts);
   void meet_tree(int n, int m);
@@ -142,18 +146,23 @@ class ContactFinder final : public ContactSearch<T> {
   int left_out_ = 0;
   std::vector<Bound> bounds_;       ///< all colliders of all states
   std::vector<int> first_bound_;    ///< [state]
+  std::vector<int> near_;           ///< obstacles that the present state may touch, ascending
   std::vector<int> depenetrating_;  ///< [state] contacts through which it is brought out of something
 };
 
-/// Whether an obstacle may be in the way of the animation.
+/// Whether an obstacle may be in the way of the animation within h seconds: by its distance from the
+/// colliders as they move (closeness.h), for which `room` is. O(colliders) for each obstacle that is within
+/// their reach.
 template <class T>
-bool near_obstacle(const CharacterState<T>& state, const Surroundings& around, T h);
+bool near_obstacle(CharacterState<T>& state, const Surroundings& around, T h,
+                   std::vector<MovingCollider<T>>& room);
 
 /// What a world's step asks of contacts.
 template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
-  bool (*near_obstacle)(const CharacterState<T>& state, const Surroundings& around, T h);
+  bool (*near_obstacle)(CharacterState<T>& state, const Surroundings& around, T h,
+                        std::vector<MovingCollider<T>>& room);
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);

@@ -46,14 +46,14 @@ bool gets_substeps(const CharacterState<T>* s) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(const SolveRoom& room) {
+void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   problems_.reserve(room.trees);
   free_share_.reserve(room.trees);
   is_held_.reserve(room.trees);
   ledger_.reserve(room.trees);
   trees_.reserve(room.trees);
   for (const auto& effect : effects_) effect->reserve(room);
-  if (finder_) finder_->reserve(room);
+  if (finder_) finder_->reserve(room, obstacles);
   lagged_.reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);

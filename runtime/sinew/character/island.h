@@ -18,7 +18,7 @@ namespace sinew {
 template <class T>
 class IslandStepper {
  public:
-  void reserve(const SolveRoom& room);
+  void reserve(const SolveRoom& room, int obstacles);
   /// That reserve() takes.
   std::size_t bytes(const SolveRoom& room) const;
   /// Set-up, before reserve(): the world's plan, again where it has changed.

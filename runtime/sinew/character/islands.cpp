@@ -7,7 +7,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kMargin = 0.03, kTouching = 0.02;  ///< m beyond what they move by; at which a sleeper wakes
+constexpr double kTouching = 0.02;  ///< m beyond what they move by, at which a sleeper wakes
 
 }  // namespace
 
@@ -120,7 +120,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
   const auto meet = [&](int n, int other) {
-    const T margin = states[other]->levels.asleep ? T(kTouching) : T(kMargin);
+    const T margin = states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin);
     return contacts->come_close(moving(*states[n], n, *contacts, h),
                                 moving(*states[other], other, *contacts, h), h, margin);
   };

@@ -29,10 +29,8 @@ Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
     first_point.push_back(static_cast<int>(points.size()));
     if (plan.contacts) plan.contacts->append_points(on_body, points, static_cast<int>(n));
     colliders.push_back(on_body);
-    const Vec3<double>& size = on_body.size;
-    const double round = size.x() + (on_body.shape == Shape::kCapsule ? size.z() : 0);
     bound_center.push_back(on_body.local.translation.template cast<T>());
-    bound_radius.push_back(T(on_body.shape == Shape::kBox ? size.norm() : round));
+    bound_radius.push_back(T(bounding_radius(on_body)));
   }
   first_point.push_back(static_cast<int>(points.size()));
   if (plan.contacts) plan.contacts->share_stiffness(points);

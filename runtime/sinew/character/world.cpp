@@ -98,7 +98,8 @@ void World<T>::Impl::reserve() {
   small_room = small;
   for (std::size_t n = 0; n < workers.size(); ++n) {
     const SolveRoom& room = n == 0 ? most : small_room;
-    workers[n]->stepper.reserve(room);
+    workers[n]->stepper.reserve(room, static_cast<int>(obstacles.size()));
+    workers[n]->moving.reserve(rooms.largest.colliders);
     workers[n]->members.reserve(room.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
@@ -116,6 +117,11 @@ void World<T>::Impl::reserve() {
 /// What is around has changed: anybody may touch it.
 template <class T>
 void World<T>::Impl::meet_surroundings() {
+  obstacle_grid.reserve(static_cast<int>(obstacles.size()));
+  obstacle_grid.clear();
+  for (std::size_t o = 0; o < obstacles.size(); ++o)
+    obstacle_grid.add(static_cast<int>(o), obstacles[o].local.translation, bounding_radius(obstacles[o]));
+  obstacle_grid.build();
   count_all();
   for (const auto& s : states) s->levels.wake = true;
   reserve();

@@ -45,6 +45,7 @@ struct World<T>::Impl {
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
+    std::vector<MovingCollider<T>> moving;  ///< for near_obstacle()
   };
 
   WorldSettings settings;
@@ -57,6 +58,7 @@ struct World<T>::Impl {
   std::vector<int> loops;  ///< into couplings
   std::vector<ParticleSet> particles;
   std::vector<Collider> obstacles;
+  NeighbourGrid obstacle_grid;
   std::vector<HostObstacle> hosts;
   std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
   std::vector<std::unique_ptr<Worker>> workers;
@@ -89,7 +91,7 @@ struct World<T>::Impl {
   void meet_surroundings();
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
-  bool play_island(std::span<CharacterState<T>* const> members);
+  bool play_island(std::span<CharacterState<T>* const> members, Worker& worker);
   bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,
@@ -104,7 +106,7 @@ struct World<T>::Impl {
   void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
   MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all()}; }
-  Surroundings surroundings() const { return {obstacles, hosts, couplings.apart()}; }
+  Surroundings surroundings() const { return {obstacles, &obstacle_grid, hosts, couplings.apart()}; }
 
   // Of loops and particle bodies: world_ties.cpp
   Status find(const Anchor& anchor, Place& out) const;

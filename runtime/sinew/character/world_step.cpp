@@ -33,7 +33,7 @@ std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
 
 /// Plays an island where that will do. False, with nothing moved, where it has to be solved.
 template <class T>
-bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
+bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members, Worker& worker) {
   bool follows = true;
   for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
   if (follows) {
@@ -45,8 +45,8 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members) {
     return true;
   }
   CharacterState<T>& s = *members[0];
-  const auto in_the_way = [&](const CharacterState<T>& of) {
-    return plan.contacts && plan.contacts->near_obstacle(of, surroundings(), h);
+  const auto in_the_way = [&](CharacterState<T>& of) {
+    return plan.contacts && plan.contacts->near_obstacle(of, surroundings(), h, worker.moving);
   };
   if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
@@ -75,7 +75,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : indices) worker.members.push_back(states[n].get());
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
-  if (!play_island(worker.members)) {
+  if (!play_island(worker.members, worker)) {
     for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
     if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
         batches(*worker.members[0], worker))

@@ -48,6 +48,12 @@ struct Collider {
   bool operator==(const Collider&) const = default;
 };
 
+/// m, of the sphere about its middle that holds it.
+inline double bounding_radius(const Collider& c) {
+  if (c.shape == Shape::kBox) return c.size.norm();
+  return c.size.x() + (c.shape == Shape::kCapsule ? c.size.z() : 0);
+}
+
 /// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a
 /// name.
 enum class Role : std::uint8_t {
