@@ -14,7 +14,10 @@ namespace {
 /// m beyond what the present speed covers, from what stands still, and between two trees: a solve may move a
 /// light limb far.
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
-constexpr int kFirstHost = 0x4000;  ///< of contact identities
+constexpr int kByOneFace = 0x8000;                   ///< of contact identities: see way_out()
+constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
+constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
+constexpr int kFirstHost = 0x4000;                   ///< of contact identities
 constexpr double kMostPiled = 8;    ///< of the heaviest body: what a contact may bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
@@ -223,6 +226,45 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
+/// The face by which all points of a collider leave a box (see Contact::face), where the nearest ones are
+/// opposite for two of them: each by its own, what has been pressed through would hang in it for good. The
+/// one that the collider as a whole is nearer to; −1: each by its own. `pose` is about the common origin.
+template <class T>
+int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const {
+  const CharacterState<T>& s = *states_[n];
+  const Kinematics<T>& k = s.problem.kinematics;
+  const Transform<T> into_box = pose.inverse();
+  unsigned faces = 0;
+  Vec3<T> least = Vec3<T>::Constant(std::numeric_limits<T>::infinity()), most = -least;
+  for (int p = s.first_point[collider]; p < s.first_point[collider + 1]; ++p) {
+    const ContactPoint<T>& point = s.points[p];
+    if (!point.meets(Shape::kBox)) continue;
+    const Vec3<T> at = into_box * Vec3<T>(k.origin[point.body] + k.rotation[point.body] * point.local);
+    least = least.cwiseMin(at);
+    most = most.cwiseMax(at);
+    Eigen::Index axis = 0;
+    if ((at.cwiseAbs() - size).maxCoeff(&axis) < T(0)) faces |= 1u << (2 * axis + (at[axis] < T(0)));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if ((faces >> (2 * axis) & 3) == 3) return 2 * axis + (least[axis] + most[axis] < T(0));
+  return -1;
+}
+
+/// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
+/// that it stands on, into the floor. `pose` is about the common origin, `local` what is changed with `size`.
+template <class T>
+void ContactFinder<T>::go_on_below(const Transform<T>& pose, Vec3<T>& size, Transform<T>& local) const {
+  if (!world_->ground) return;
+  const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
+  Eigen::Index axis = 0;
+  if (down.cwiseAbs().maxCoeff(&axis) < T(kFacesDown)) return;
+  const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
+  const T height = (pose * Vec3<T>(size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
+  if (height > T(kOnFloor)) return;
+  local.translation += local.rotation * Vec3<T>(T(kBelowFloor) / 2 * face);
+  size[axis] += T(kBelowFloor) / 2;
+}
+
 template <class T>
 void ContactFinder<T>::meet_hosts(int n, int collider, std::span<const HostObstacle> hosts) {
   const CharacterState<T>& s = *states_[n];
@@ -282,21 +324,27 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
     meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
     for (const int o : near_) {
       const Collider& obstacle = surroundings.obstacles[o];
-      const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
-                              (obstacle.local.translation - common_origin_).template cast<T>()};
+      Transform<T> pose{obstacle.local.rotation.template cast<T>(),
+                        (obstacle.local.translation - common_origin_).template cast<T>()};
+      Vec3<T> size = obstacle.size.template cast<T>();
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
-      if (signed_distance<T>(obstacle.shape, obstacle.size.template cast<T>(), apart).distance >
-          b.radius + b.reach)
-        continue;
+      const T distance = signed_distance<T>(obstacle.shape, size, apart).distance;
+      if (distance > b.radius + b.reach) continue;
+      int face = -1;
+      if (obstacle.shape == Shape::kBox && distance < b.radius) {
+        go_on_below(pose, size, pose);
+        face = way_out(n, static_cast<int>(collider), size, pose);
+      }
       for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
         if (!s.points[k].meets(obstacle.shape)) continue;
         Contact<T> c = contact_of(n, s.points[k]);
         c.shape = obstacle.shape;
-        c.size = obstacle.size.template cast<T>();
+        c.size = size;
         c.shape_pose = pose;
         c.friction = std::sqrt(s.points[k].friction * T(obstacle.friction));
         c.restitution = std::max(c.restitution, T(obstacle.restitution));
-        c.id = contact_id(indices_[n], k, -1, o);
+        c.face = face;
+        c.id = contact_id(indices_[n], k, -1, o | (face < 0 ? 0 : kByOneFace));
         add(c, b.reach);
       }
     }
@@ -324,6 +372,15 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const Collider& shape = t.colliders[other];
   if (kept_apart(n, s.colliders[collider].joint, m, shape.joint)) return;
+  const Kinematics<T>& k_other = t.problem.kinematics;
+  Transform<T> local = shape.local.template cast<T>();
+  Vec3<T> size = shape.size.template cast<T>();
+  int face = -1;
+  if (shape.shape == Shape::kBox && (a.center - b.center).norm() < a.radius + b.radius) {
+    const Transform<T> body{Quat<T>(k_other.rotation[shape.joint]), k_other.origin[shape.joint]};
+    go_on_below(body * local, size, local);
+    face = way_out(n, collider, size, body * local);
+  }
   // Two axes need to meet once only.
   const bool second = m < n || (m == n && other < collider);
   for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
@@ -333,12 +390,13 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
     c.tree_b = m;
     c.body_b = shape.joint;
     c.shape = shape.shape;
-    c.size = shape.size.template cast<T>();
-    c.shape_pose = shape.local.template cast<T>();
+    c.size = size;
+    c.shape_pose = local;
+    c.face = face;
     c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, bears_));
     c.friction = std::sqrt(point.friction * T(shape.friction));
     c.restitution = std::max(c.restitution, T(shape.restitution));
-    c.id = contact_id(indices_[n], k, indices_[m], other);
+    c.id = contact_id(indices_[n], k, indices_[m], other | (face < 0 ? 0 : kByOneFace));
     add(c, reach);
   }
 }

@@ -123,6 +123,8 @@ class ContactFinder final : public ContactSearch<T> {
   void meet_collider(int n, int collider, int m, int other);
   void add(Contact<T>& contact, T reach);
   bool make_room();
+  int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
+  void go_on_below(const Transform<T>& pose, Vec3<T>& size, Transform<T>& local) const;
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;

@@ -146,6 +146,18 @@ SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from
 
 }  // namespace
 
+namespace {
+
+/// Distance of a point inside a box to one of its faces.
+template <class T>
+SignedDistance<T> below_face(int face, const Vec3<T>& size, const Vec3<T>& point) {
+  const int axis = face / 2;
+  const T side = face % 2 == 0 ? T(1) : T(-1);
+  return {side * point[axis] - size[axis], side * Vec3<T>::Unit(axis), T(0), Vec3<T>::Zero()};
+}
+
+}  // namespace
+
 template <class T>
 void share_stiffness(std::vector<ContactPoint<T>>& points) {
   const auto touching = [&](int body) {
@@ -176,7 +188,9 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
     const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
     SignedDistance<T> d;
     if (c.half_axis_a.isZero(T(0)) || c.shape == Shape::kBox) {
-      d = signed_distance<T>(c.shape, c.size, rotation.transpose() * (c.point - origin));
+      const Vec3<T> at = rotation.transpose() * (c.point - origin);
+      d = signed_distance<T>(c.shape, c.size, at);
+      if (c.face >= 0 && d.distance < T(0)) d = below_face(c.face, c.size, at);
     } else {
       const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
       T along = T(0);

@@ -89,6 +89,8 @@ struct Contact {
   T plane_height = T(0);                      ///< from the common origin
   Transform<T> shape_pose;                    ///< shape → body_b (or → common origin when static)
   Vec3<T> size = Vec3<T>::Zero();
+  int face =
+      -1;  ///< of a box, that the point leaves it by: 2 axis + 1 for the side below; −1: by the nearest
   T stiffness = T(1e5);                          ///< N/m
   T friction = T(0.8);                           ///< μ
   T lagged_normal_force = T(0);                  ///< λ, N
