@@ -55,6 +55,27 @@ TEST(Pile, OfSixConvergesInEveryStepAndGainsNothing) {
   EXPECT_LE(effort.worst_rise, 1e-3);
 }
 
+// Who begins in one place can hardly be solved; without the budget of passes a step took 800, and 5 s.
+TEST(Pile, InOnePlaceTakesABoundedStep) {
+  const auto world = fixtures::pile_of(4);
+  for (int i = 0; i < 4; ++i) {
+    Character<float> figure = world->character(i);
+    std::vector<JointJet<float>> jets = fixtures::piled_jets(figure.skeleton(), i);
+    jets[0].rotation = Quat<float>::Identity();
+    jets[0].translation = {0, 0, 2};
+    ASSERT_TRUE(figure.set_target(jets).ok());
+    figure.reset();
+  }
+  constexpr int kLeast = 12, kParts = 4;  // of a solve, whatever is left
+  int most = 0;
+  for (int n = 0; n < 12; ++n) {
+    ASSERT_TRUE(world->step(float(kStep)).ok());
+    most = std::max(most, world->character(0).report().outer_passes);
+  }
+  EXPECT_LE(most, Accuracy().max_passes + 2 * kParts * kLeast);
+  EXPECT_GT(most, Accuracy().max_passes / 2) << "no step has been hard: the test shows nothing";
+}
+
 /// Most that the energy (J) of five figures that begin in each other rises above what they had, as a share of
 /// their most kinetic energy.
 double gain_of_entangled(double h) {

@@ -20,6 +20,9 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"ragdoll_hit_in_the_same_frame",
      "converges, but its push is booked as force times chord: it acts at once, on a hand that then turns 20 "
      "rad"},
+    {"piston",
+     "double: one step that does not converge flings a foot at 28 m/s, where fine steps' fastest is 14; of "
+     "240 starts a millimetre apart nine in ten stay below 13"},
     {"ellipsoidal_limit", "one step in 400 in which a joint that creeps off has reached its way back"},
 };
 
