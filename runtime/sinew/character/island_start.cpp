@@ -108,7 +108,7 @@ void IslandStepper<T>::find_accelerations() {
   if (!contacts_.empty() || std::any_of(states_.begin(), states_.end(), [](const auto* s) {
         return s->tree.bodies > 1 || !s->problem.effects.empty();
       })) {
-    trial = solver_.solve(settings_, world_->accuracy, problems_, contacts_, couplings_);
+    trial = solve();
     total_.add(trial);
   }
   begin_ends();

@@ -1,0 +1,81 @@
+// What surroundings cost a figure that nothing touches, and what a step costs that can hardly be solved.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "character/scenes.h"
+#include "fixtures/pile.h"
+
+namespace sinew {
+namespace {
+
+constexpr float kStep = 1.f / 60;
+
+Collider box_at(double x, double y) {
+  Collider box;
+  box.shape = Shape::kBox;
+  box.size = Vec3<double>::Constant(0.25);
+  box.local.translation = {x, y, 0.25};
+  return box;
+}
+
+/// A hundred figures that idle 4 m apart, with so many boxes 200 m away, and one 0.6 m beside each or none.
+void beside(benchmark::State& state) {
+  constexpr int kSide = 10, kRow = 70;
+  constexpr double kApart = 4, kFar = 200, kNear = 0.85;
+  World<float> world{WorldSettings()};
+  for (int n = 0; n < int(state.range(0)); ++n) (void)world.add_obstacle(box_at(kFar + n % kRow, n / kRow));
+  for (int n = 0; n < kSide * kSide && state.range(1) != 0; ++n)
+    (void)world.add_obstacle(box_at(kApart * (n % kSide) + kNear, kApart * (n / kSide)));
+  const Skeleton body = fixtures::humanoid();
+  Status status;
+  for (int n = 0; n < kSide * kSide; ++n) (void)world.add_character(body, {}, status);
+  double time = 0;
+  bool begun = false;
+  int solved = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (int n = 0; n < kSide * kSide; ++n) {
+      std::vector<JointJet<float>> jets = fixtures::idle<float>(body, time + 0.01 * n);
+      jets[0].translation +=
+          Vec3<float>(float(kApart) * float(n % kSide), float(kApart) * float(n / kSide), 0);
+      (void)world.character(n).set_target(jets);
+      if (!begun) world.character(n).reset();
+    }
+    begun = true;
+    time += kStep;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(world.step(kStep));
+    for (int n = 0; n < kSide * kSide; ++n) solved += world.character(n).report().substeps > 0;
+  }
+  state.counters["solved"] = double(solved) / double(state.iterations()) / (kSide * kSide);
+  state.counters["per character"] = benchmark::Counter(
+      kSide * kSide, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// Six limp figures that begin in one place, 20 steps, with a budget of so many passes a step.
+void one_place(benchmark::State& state) {
+  constexpr int kFigures = 6;
+  WorldSettings settings;
+  settings.accuracy.max_passes = int(state.range(0));
+  const auto world = fixtures::pile_of(kFigures, settings);
+  fixtures::put_in_one_place(*world, fixtures::humanoid(), kFigures);
+  int most_passes = 0;
+  double most_ms = 0;
+  for (auto _ : state) {
+    const std::clock_t begin = std::clock();
+    benchmark::DoNotOptimize(world->step(kStep));
+    most_ms = std::max(most_ms, 1e3 * double(std::clock() - begin) / CLOCKS_PER_SEC);
+    most_passes = std::max(most_passes, world->character(0).report().outer_passes);
+  }
+  state.counters["max_ms"] = most_ms;
+  state.counters["max_passes"] = most_passes;
+}
+
+BENCHMARK(beside)->Args({0, 0})->Args({5000, 0})->Args({0, 1})->Iterations(120)->Unit(
+    benchmark::kMicrosecond);
+BENCHMARK(one_place)->Arg(100)->Arg(100000)->Iterations(20)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sinew
