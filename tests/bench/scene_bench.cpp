@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 
 #include "character/scenes.h"
@@ -12,11 +13,17 @@ namespace {
 
 constexpr float kStep = 1.f / 60;
 
-Collider box_at(double x, double y) {
+/// m, of the nth in rows of so many.
+Vec3<double> in_rows(int n, int row, double apart) {
+  const std::div_t at = std::div(n, row);
+  return {apart * at.rem, apart * at.quot, 0};
+}
+
+Collider box_at(const Vec3<double>& place) {
   Collider box;
   box.shape = Shape::kBox;
   box.size = Vec3<double>::Constant(0.25);
-  box.local.translation = {x, y, 0.25};
+  box.local.translation = place + Vec3<double>(0, 0, 0.25);
   return box;
 }
 
@@ -25,9 +32,10 @@ void beside(benchmark::State& state) {
   constexpr int kSide = 10, kRow = 70;
   constexpr double kApart = 4, kFar = 200, kNear = 0.85;
   World<float> world{WorldSettings()};
-  for (int n = 0; n < int(state.range(0)); ++n) (void)world.add_obstacle(box_at(kFar + n % kRow, n / kRow));
+  for (int n = 0; n < int(state.range(0)); ++n)
+    (void)world.add_obstacle(box_at(in_rows(n, kRow, 1) + Vec3<double>(kFar, 0, 0)));
   for (int n = 0; n < kSide * kSide && state.range(1) != 0; ++n)
-    (void)world.add_obstacle(box_at(kApart * (n % kSide) + kNear, kApart * (n / kSide)));
+    (void)world.add_obstacle(box_at(in_rows(n, kSide, kApart) + Vec3<double>(kNear, 0, 0)));
   const Skeleton body = fixtures::humanoid();
   Status status;
   for (int n = 0; n < kSide * kSide; ++n) (void)world.add_character(body, {}, status);
@@ -38,8 +46,7 @@ void beside(benchmark::State& state) {
     state.PauseTiming();
     for (int n = 0; n < kSide * kSide; ++n) {
       std::vector<JointJet<float>> jets = fixtures::idle<float>(body, time + 0.01 * n);
-      jets[0].translation +=
-          Vec3<float>(float(kApart) * float(n % kSide), float(kApart) * float(n / kSide), 0);
+      jets[0].translation += in_rows(n, kSide, kApart).cast<float>();
       (void)world.character(n).set_target(jets);
       if (!begun) world.character(n).reset();
     }
