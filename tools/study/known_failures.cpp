@@ -18,8 +18,8 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "2.5 passes and 5.9 factorisations a step, 2 and 3.7 wanted: steps in which limbs strike are cut in "
      "four"},
     {"ragdoll_hit_in_the_same_frame",
-     "converges, but its push is booked as force times chord: it acts at once, on a hand that then turns 20 "
-     "rad"},
+     "one step needs more passes than its budget; and its push is booked as force times chord: it acts at "
+     "once, on a hand that then turns 20 rad"},
     {"piston",
      "double: one step that does not converge flings a foot at 28 m/s, where fine steps' fastest is 14; of "
      "240 starts a millimetre apart nine in ten stay below 13"},
