@@ -26,9 +26,7 @@ struct Scene {
     Status status;
     const int n = world.add_character(body, limp, status);
     EXPECT_TRUE(status.ok()) << status.reason;
-    std::vector<JointJet<float>> jets = fixtures::piled_jets(body, static_cast<int>(seed));
-    jets[0].rotation = Quat<float>::Identity();
-    jets[0].translation = place;
+    const std::vector<JointJet<float>> jets = fixtures::upright_jets(body, static_cast<int>(seed), place);
     EXPECT_TRUE(world.character(n).set_target(jets).ok());
     world.character(n).reset();
     return n;

@@ -76,10 +76,8 @@ double gain_of_entangled(double h) {
   double begun = 0, gain = 0, most = 0;
   for (int i = 0; i < 5; ++i) {
     Character<float> figure = world->character(i);
-    std::vector<JointJet<float>> jets = fixtures::piled_jets(figure.skeleton(), i);
-    jets[0].rotation = Quat<float>::Identity();
-    jets[0].translation = {0, 0, 1 + 1.2f * float(i)};  // feet in the next one's chest
-    EXPECT_TRUE(figure.set_target(jets).ok());
+    const Vec3<float> place(0, 0, 1 + 1.2f * float(i));  // feet in the next one's chest
+    EXPECT_TRUE(figure.set_target(fixtures::upright_jets(figure.skeleton(), i, place)).ok());
     figure.reset();
   }
   for (int n = 0; n * h < 1; ++n) {

@@ -429,7 +429,6 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
     trees_.push_back({s->problem, s->history, s->rate, s->guessed, s->report.elastic_energy,
                       s->steps_unchanged, s->contact_signature});
   total_ = {};
-  passes_left_ = 0;
   all_converged_ = true;
   for (CharacterState<T>* s : states) s->unbaked = 0;
   splits_ = parts_ = damped_ = held_ = restarts_ = left_out_ = 0;

@@ -84,6 +84,7 @@ WorldMemory World<T>::Impl::memory() const {
   for (const auto& s : states) bytes.characters += bytes_of(*s);
   for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
+  bytes.characters += rooms.all.colliders * sizeof(MovingCollider<T>);
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving += workers[n]->stepper.bytes(n == 0 ? most : small);
