@@ -12,6 +12,7 @@
 #include "study/effects.h"
 #include "study/ensembles.h"
 #include "study/maps.h"
+#include "study/scenes/situation.h"
 #include "study/study.h"
 
 namespace sinew::cli {
@@ -156,6 +157,32 @@ convert::Error AccuracyCommand::run() const {
   }
   for (const study::AccuracyResult& result : results) print_accuracy(result);
   std::printf("%s.html\n", base.c_str());
+  return {};
+}
+
+convert::Error ScenesCommand::run() const {
+  if (convert::Error error = make_directory(directory)) return error;
+  std::vector<study::Situation> asked = study::situations();
+  if (!only.empty()) std::erase_if(asked, [&](const study::Situation& s) { return s.name != only; });
+  if (asked.empty()) return {"there is no situation '" + only + "'"};
+  std::vector<study::SituationResult> results;
+  const auto progress = progress_line("scenes");
+  for (const study::Situation& situation : asked) {
+    results.push_back(study::run_situation(situation, quick));
+    if (json_output)
+      progress(static_cast<int>(results.size()), static_cast<int>(asked.size()));
+    else
+      std::fputs(study::situation_table(results.back()).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  const nlohmann::json summary = study::situations_json(results);
+  if (convert::Error error = write_atomically(directory + "/scenes.json", summary.dump(1) + "\n"))
+    return error;
+  if (json_output)
+    std::puts(summary.dump().c_str());
+  else
+    std::printf("%d scenes passed, %d failed; %s/scenes.json\n", summary["passed"].get<int>(),
+                summary["failed"].get<int>(), directory.c_str());
   return {};
 }
 

@@ -25,6 +25,13 @@ struct AccuracyCommand {
   convert::Error write_presets(nlohmann::json& dial) const;
 };
 
+struct ScenesCommand {
+  std::string directory = "out/study", only;
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 struct EffectsCommand {
   std::string directory = "out/study";
   bool quick = false, json_output = false;

@@ -61,6 +61,13 @@ int main(int argc, char** argv) try {
                  "mean energies of many limp falls instead: JSON, pictures");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
+  cli::ScenesCommand scenes;
+  auto* ordinary = study->add_subcommand(
+      "scenes", "ordinary situations, judged from poses\nExample: sinew study scenes --quick -o out/study");
+  ordinary->add_option("-o,--output", scenes.directory, "directory for scenes.json (out/study)");
+  ordinary->add_option("--scene", scenes.only, "run one");
+  ordinary->add_flag("--quick", scenes.quick, "shorter runs, fewer seeds");
+  ordinary->add_flag("--json", scenes.json_output);
   cli::EffectsCommand effects;
   auto* each = study->add_subcommand(
       "effects",
@@ -83,6 +90,8 @@ int main(int argc, char** argv) try {
     error = tables.run();
   else if (cost->parsed())
     error = accuracy.run();
+  else if (ordinary->parsed())
+    error = scenes.run();
   else
     error = effects.run();
   if (!error) return 0;

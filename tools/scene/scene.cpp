@@ -14,6 +14,7 @@
 #include "scene/presets.h"
 #include "scene/reader.h"
 #include "scene/ties.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew::scene {
 namespace {
@@ -103,10 +104,11 @@ void read_motion(const Reader& in, const Skeleton& skeleton, SceneCharacter& c) 
 
 SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
-  const Reader in(value, where, {"asset",      "figure",      "name",           "position",       "yaw_deg",
-                                 "clips",      "path",        "turn_rate",      "pose",           "velocity",
-                                 "spin",       "random_spin", "strength",       "group_strength", "root",
-                                 "root_force", "root_torque", "ground_contact", "self_collision", "options"});
+  const Reader in(value, where,
+                  {"asset",          "figure",         "name", "position",   "yaw_deg",     "clips",
+                   "path",           "turn_rate",      "pose", "velocity",   "spin",        "random_spin",
+                   "strength",       "group_strength", "root", "root_force", "root_torque", "ground_contact",
+                   "self_collision", "options",        "grid"});
   SceneCharacter c;
   const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
@@ -155,6 +157,21 @@ SceneCharacter read_character(const json& value, const std::string& where,
   return c;
 }
 
+/// Where the copies of an entry stand from it, m: the first at 0.
+std::vector<Vec3<double>> grid_of(const json& entry, const std::string& where) {
+  if (!entry.contains("grid")) return {Vec3<double>::Zero()};
+  const Reader in(entry["grid"], where + ".grid", {"count", "spacing"});
+  const Vec3<double> count = in.vector("count", Vec3<double>::Ones()),
+                     spacing = in.vector("spacing", {1, 1, 1});
+  if ((count.array() != count.array().floor()).any() || count.minCoeff() < 1 || count.prod() > 10000)
+    fail(in.inside("count"), "must be three whole numbers, at least 1, that make 10000 at most");
+  std::vector<Vec3<double>> places;
+  for (int z = 0; z < count.z(); ++z)
+    for (int y = 0; y < count.y(); ++y)
+      for (int x = 0; x < count.x(); ++x) places.push_back(spacing.cwiseProduct(Vec3<double>(x, y, z)));
+  return places;
+}
+
 int character_of(const Scene& scene, const Reader& in, const char* key) {
   if (scene.characters.empty()) fail(in.inside(key), "the scene has no character");
   return in.has(key) ? character_named(scene, in.at(key), in.inside(key)) : 0;
@@ -162,8 +179,8 @@ int character_of(const Scene& scene, const Reader& in, const char* key) {
 
 SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
   const Reader in(value, where,
-                  {"name", "shape", "size", "mass", "friction", "restitution", "position", "velocity",
-                   "angular_velocity", "launch_time", "throw_at"});
+                  {"name", "shape", "size", "mass", "friction", "restitution", "position", "rotation",
+                   "velocity", "angular_velocity", "launch_time", "throw_at", "grid"});
   SceneProp p;
   p.name = in.text("name", "ball");
   p.settings.shape = shape_of(in);
@@ -172,6 +189,7 @@ SceneProp read_prop(const json& value, const std::string& where, const Scene& sc
   p.settings.friction = in.time("friction", p.settings.friction);
   p.settings.restitution = in.time("restitution", p.settings.restitution);
   p.settings.pose.translation = in.vector("position", {0, 0, 1});
+  p.settings.pose.rotation = rotation_exp<double>(in.vector("rotation", Vec3<double>::Zero()));
   p.settings.velocity = in.vector("velocity", p.settings.velocity);
   p.settings.angular_velocity = in.vector("angular_velocity", p.settings.angular_velocity);
   p.launch_time = in.time("launch_time", 0);
@@ -250,11 +268,24 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   s.world.gravity = in.vector("gravity", s.world.gravity);
   s.world.ground = in.flag("ground", true);
   const json& characters = in.list("characters");
-  for (std::size_t i = 0; i < characters.size(); ++i)
-    s.characters.push_back(read_character(characters[i], in.item("characters", i), base));
+  for (std::size_t i = 0; i < characters.size(); ++i) {
+    const SceneCharacter first = read_character(characters[i], in.item("characters", i), base);
+    unsigned copy = 0;
+    for (const Vec3<double>& place : grid_of(characters[i], in.item("characters", i))) {
+      SceneCharacter c = first;
+      c.position += place;
+      for (auto& [time, at] : c.path) at += place;
+      c.speeds.seed += copy;
+      if (++copy > 1) c.name += " " + std::to_string(copy);
+      s.characters.push_back(std::move(c));
+    }
+  }
   const json& props = in.list("props");
   for (std::size_t i = 0; i < props.size(); ++i)
-    s.props.push_back(read_prop(props[i], in.item("props", i), s));
+    for (const Vec3<double>& place : grid_of(props[i], in.item("props", i))) {
+      s.props.push_back(read_prop(props[i], in.item("props", i), s));
+      s.props.back().settings.pose.translation += place;
+    }
   if (s.characters.empty() && s.props.empty())
     fail("characters", "the scene has neither characters nor props");
   const json& loops = in.list("loops");

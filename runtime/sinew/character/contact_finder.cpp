@@ -32,6 +32,13 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
+constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges identities have room for
+constexpr int kCornerNumber = kAxisNumber + 1;
+/// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
+int feature(int own, int others, int collider) {
+  return 0x8000 | own << 11 | others << 7 | collider;
+}
+
 bool is_of_tree(std::uint64_t id, int tree) {
   const std::uint64_t number = first_contact_id(tree) >> 48;
   return id >> 48 == number || ((id >> 16) & 0xffff) == number;
@@ -103,6 +110,16 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.radius = point.radius;
   c.restitution = point.restitution;
   c.stiffness = point.share * states_[n]->contact_stiffness(*world_, bears_);
+  return c;
+}
+
+template <class T>
+Contact<T> ContactFinder<T>::contact_of(int n, const Collider& collider) const {
+  Contact<T> c;
+  c.tree_a = n;
+  c.body_a = collider.joint;
+  c.restitution = T(collider.restitution);
+  c.stiffness = states_[n]->contact_stiffness(*world_, bears_);
   return c;
 }
 
@@ -251,18 +268,143 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
 }
 
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
-/// that it stands on, into the floor. `pose` is about the common origin, `local` what is changed with `size`.
+/// that it stands on, into the floor.
 template <class T>
-void ContactFinder<T>::go_on_below(const Transform<T>& pose, Vec3<T>& size, Transform<T>& local) const {
+void ContactFinder<T>::go_on_below(Met& box) const {
   if (!world_->ground) return;
+  const Transform<T> pose = pose_of(box);
   const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
   Eigen::Index axis = 0;
   if (down.cwiseAbs().maxCoeff(&axis) < T(kFacesDown)) return;
   const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
-  const T height = (pose * Vec3<T>(size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
+  const T height =
+      (pose * Vec3<T>(box.size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
   if (height > T(kOnFloor)) return;
-  local.translation += local.rotation * Vec3<T>(T(kBelowFloor) / 2 * face);
-  size[axis] += T(kBelowFloor) / 2;
+  box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * face);
+  box.size[axis] += T(kBelowFloor) / 2;
+}
+
+/// About the common origin.
+template <class T>
+Transform<T> ContactFinder<T>::pose_of(const Met& met) const {
+  if (met.tree < 0) return met.local;
+  const Kinematics<T>& k = states_[met.tree]->problem.kinematics;
+  return Transform<T>{Quat<T>(k.rotation[met.body]), k.origin[met.body]} * met.local;
+}
+
+template <class T>
+std::uint64_t ContactFinder<T>::id_of(int n, int point, const Met& met) const {
+  return contact_id(indices_[n], point, met.tree < 0 ? -1 : indices_[met.tree], met.number);
+}
+
+template <class T>
+Contact<T> ContactFinder<T>::contact_with(const Met& met, Contact<T> c, T friction) const {
+  c.tree_b = met.tree;
+  c.body_b = met.body;
+  if (met.tree >= 0)
+    c.stiffness = std::min(c.stiffness, states_[met.tree]->contact_stiffness(*world_, bears_));
+  c.friction = std::sqrt(friction * met.friction);
+  c.restitution = std::max(c.restitution, met.restitution);
+  return c;
+}
+
+/// All of a collider of tree n that a shape may meet. `reach` is beyond what the two hold.
+template <class T>
+void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
+  const Bound& bound = bounds_[first_bound_[n] + collider];
+  int face = -1;
+  if (met.shape == Shape::kBox) {
+    const Transform<T> pose = pose_of(met);
+    const Vec3<T> apart = pose.rotation.conjugate() * (bound.center - pose.translation);
+    if (signed_distance<T>(Shape::kBox, met.size, apart).distance < bound.radius) {
+      go_on_below(met);
+      face = way_out(n, collider, met.size, pose_of(met));
+    }
+  }
+  meet_points(n, collider, met, face, reach);
+  if (met.shape != Shape::kBox || states_[n]->colliders[collider].shape == Shape::kSphere) return;
+  meet_edges(n, collider, met, reach);
+  if (met.tree < 0) meet_corners(n, collider, met, reach);
+}
+
+/// The points of a collider against a shape.
+template <class T>
+void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face, T reach) {
+  const CharacterState<T>& s = *states_[n];
+  for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
+    const ContactPoint<T>& point = s.points[k];
+    // Two axes need to meet once only.
+    if (!point.meets(met.shape) || (met.second && point.kind == PointKind::kAxis)) continue;
+    Contact<T> c = contact_with(met, contact_of(n, point), point.friction);
+    c.shape = met.shape;
+    c.size = met.size;
+    c.shape_pose = met.local;
+    c.face = face;
+    c.id = id_of(n, k, met) ^ std::uint64_t(face < 0 ? 0 : kByOneFace);
+    add(c, reach);
+  }
+}
+
+/// The edges of a box, or the axis of a capsule, across the edges of a box.
+template <class T>
+void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
+  const CharacterState<T>& s = *states_[n];
+  const Collider& own = s.colliders[collider];
+  if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
+  const Kinematics<T>& k = s.problem.kinematics;
+  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+  const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>()),
+      b(Shape::kBox, met.size, pose_of(met));
+  Vec3<T> motion = s.point_velocity(own.joint, a.center);
+  const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
+  if (other) motion -= states_[met.tree]->point_velocity(met.body, a.center);
+  std::array<EdgePair<T>, kMostEdgePairs> pairs;
+  const int count = crossing_edges<T>(a, b, h_ * motion, pairs);
+  const Contact<T> made = contact_with(met, contact_of(n, own), T(own.friction));
+  for (int p = 0; p < count; ++p) {
+    const EdgePair<T>& pair = pairs[p];
+    Contact<T> c = made;
+    c.meeting = Meeting::kEdges;
+    c.local_a = k.rotation[own.joint].transpose() * (pair.a.center - k.origin[own.joint]);
+    c.half_axis_a = k.rotation[own.joint].transpose() * pair.a.half_axis;
+    c.local_b = pair.b.center;
+    c.half_axis_b = pair.b.half_axis;
+    if (other) {
+      c.local_b = other->rotation[met.body].transpose() * (c.local_b - other->origin[met.body]);
+      c.half_axis_b = other->rotation[met.body].transpose() * c.half_axis_b;
+    }
+    c.side = pair.side;
+    c.radius = pair.radius;
+    c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
+    c.id = id_of(n, feature(pair.a.number, pair.b.number, collider), met);
+    add(c, reach);
+  }
+}
+
+/// The corners of an obstacle against a collider: those of a box that moves are points of its own.
+template <class T>
+void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach) {
+  const Bound& bound = bounds_[first_bound_[n] + collider];
+  const Collider& own = states_[n]->colliders[collider];
+  if (collider > kMostWithEdges) return;
+  Contact<T> c = contact_with(met, contact_of(n, own), T(own.friction));
+  c.meeting = Meeting::kCorner;
+  c.shape = own.shape;
+  c.shape_pose = own.local.template cast<T>();
+  c.size = own.size.template cast<T>();
+  if (own.shape == Shape::kBox) {  // as rounded as its own corners
+    c.radius = T(box_rounding(own.size));
+    c.size.array() -= c.radius;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3<T> in_box = met.size.cwiseProduct(
+        Vec3<T>(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1), corner & 4 ? T(1) : T(-1)));
+    Contact<T> at_corner = c;
+    at_corner.local_b = met.local * in_box;
+    if ((at_corner.local_b - bound.center).norm() > bound.radius + reach) continue;
+    at_corner.id = id_of(n, feature(kCornerNumber, corner, collider), met);
+    add(at_corner, reach);
+  }
 }
 
 template <class T>
@@ -324,29 +466,19 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
     meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
     for (const int o : near_) {
       const Collider& obstacle = surroundings.obstacles[o];
-      Transform<T> pose{obstacle.local.rotation.template cast<T>(),
-                        (obstacle.local.translation - common_origin_).template cast<T>()};
-      Vec3<T> size = obstacle.size.template cast<T>();
+      const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
+                              (obstacle.local.translation - common_origin_).template cast<T>()};
+      const Vec3<T> size = obstacle.size.template cast<T>();
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
-      const T distance = signed_distance<T>(obstacle.shape, size, apart).distance;
-      if (distance > b.radius + b.reach) continue;
-      int face = -1;
-      if (obstacle.shape == Shape::kBox && distance < b.radius) {
-        go_on_below(pose, size, pose);
-        face = way_out(n, static_cast<int>(collider), size, pose);
-      }
-      for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
-        if (!s.points[k].meets(obstacle.shape)) continue;
-        Contact<T> c = contact_of(n, s.points[k]);
-        c.shape = obstacle.shape;
-        c.size = size;
-        c.shape_pose = pose;
-        c.friction = std::sqrt(s.points[k].friction * T(obstacle.friction));
-        c.restitution = std::max(c.restitution, T(obstacle.restitution));
-        c.face = face;
-        c.id = contact_id(indices_[n], k, -1, o | (face < 0 ? 0 : kByOneFace));
-        add(c, b.reach);
-      }
+      if (signed_distance<T>(obstacle.shape, size, apart).distance > b.radius + b.reach) continue;
+      Met met;
+      met.shape = obstacle.shape;
+      met.size = size;
+      met.local = pose;
+      met.friction = T(obstacle.friction);
+      met.restitution = T(obstacle.restitution);
+      met.number = o;
+      meet(n, static_cast<int>(collider), met, b.reach);
     }
   }
 }
@@ -363,42 +495,25 @@ bool ContactFinder<T>::kept_apart(int n, int body, int m, int other) const {
   });
 }
 
-/// The points of one collider of tree n against the shape of one of tree m.
+/// One collider of tree n against the shape of one of tree m.
 template <class T>
 void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
   const T reach = a.reach + b.reach - T(2 * kMargin - kMarginBetween);
   if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
-  const CharacterState<T>&s = *states_[n], &t = *states_[m];
-  const Collider& shape = t.colliders[other];
-  if (kept_apart(n, s.colliders[collider].joint, m, shape.joint)) return;
-  const Kinematics<T>& k_other = t.problem.kinematics;
-  Transform<T> local = shape.local.template cast<T>();
-  Vec3<T> size = shape.size.template cast<T>();
-  int face = -1;
-  if (shape.shape == Shape::kBox && (a.center - b.center).norm() < a.radius + b.radius) {
-    const Transform<T> body{Quat<T>(k_other.rotation[shape.joint]), k_other.origin[shape.joint]};
-    go_on_below(body * local, size, local);
-    face = way_out(n, collider, size, body * local);
-  }
-  // Two axes need to meet once only.
-  const bool second = m < n || (m == n && other < collider);
-  for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
-    const ContactPoint<T>& point = s.points[k];
-    if (!point.meets(shape.shape) || (second && point.kind == PointKind::kAxis)) continue;
-    Contact<T> c = contact_of(n, point);
-    c.tree_b = m;
-    c.body_b = shape.joint;
-    c.shape = shape.shape;
-    c.size = size;
-    c.shape_pose = local;
-    c.face = face;
-    c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, bears_));
-    c.friction = std::sqrt(point.friction * T(shape.friction));
-    c.restitution = std::max(c.restitution, T(shape.restitution));
-    c.id = contact_id(indices_[n], k, indices_[m], other | (face < 0 ? 0 : kByOneFace));
-    add(c, reach);
-  }
+  const Collider& shape = states_[m]->colliders[other];
+  if (kept_apart(n, states_[n]->colliders[collider].joint, m, shape.joint)) return;
+  Met met;
+  met.shape = shape.shape;
+  met.size = shape.size.template cast<T>();
+  met.local = shape.local.template cast<T>();
+  met.friction = T(shape.friction);
+  met.restitution = T(shape.restitution);
+  met.tree = m;
+  met.body = shape.joint;
+  met.number = other;
+  met.second = m < n || (m == n && other < collider);
+  meet(n, collider, met, reach);
 }
 
 template <class T>

@@ -8,6 +8,7 @@
 #include "sinew/character/closeness.h"
 #include "sinew/character/neighbour_grid.h"
 #include "sinew/character/state.h"
+#include "sinew/effects/crossing_edges.h"
 #include "sinew/effects/static_shape.h"
 
 namespace sinew {
@@ -121,16 +122,35 @@ class ContactFinder final : public ContactSearch<T> {
   void meet_tree(int n, int m);
   bool kept_apart(int n, int body, int m, int other) const;
   void meet_collider(int n, int collider, int m, int other);
+  /// What a collider meets: another's collider, or an obstacle.
+  struct Met {
+    Shape shape = Shape::kSphere;
+    Vec3<T> size = Vec3<T>::Zero();  ///< as Collider::size
+    Transform<T> local;              ///< shape → its body, or → the common origin
+    T friction = T(0), restitution = T(0);
+    int tree = -1, body = -1;  ///< of the solve; −1: static
+    int number = 0;            ///< of identities: of the collider or obstacle
+    bool second = false;       ///< the same pair meets the other way round, too, and did before
+  };
+  /// What a contact with the thing met needs beside what meets.
+  Contact<T> contact_with(const Met& met, Contact<T> own, T friction) const;
+  std::uint64_t id_of(int n, int point, const Met& met) const;
+  Transform<T> pose_of(const Met& met) const;
+  void meet(int n, int collider, Met met, T reach);
+  void meet_points(int n, int collider, const Met& met, int face, T reach);
+  void meet_edges(int n, int collider, const Met& met, T reach);
+  void meet_corners(int n, int collider, const Met& met, T reach);
   void add(Contact<T>& contact, T reach);
   bool make_room();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
-  void go_on_below(const Transform<T>& pose, Vec3<T>& size, Transform<T>& local) const;
+  void go_on_below(Met& box) const;
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
   void count_depenetrating();
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
+  Contact<T> contact_of(int n, const Collider& collider) const;
 
   const WorldSettings* world_ = nullptr;
   std::span<CharacterState<T>* const> states_;

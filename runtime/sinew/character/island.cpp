@@ -61,6 +61,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   radius_.reserve(room.trees);
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
+  jumps_.reserve(room.bodies);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
   for (auto* v : {&moved_, &turned_, &end_sped_, &end_spun_, &start_sped_, &start_spun_})
     v->reserve(room.bodies);
@@ -78,7 +79,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
-                    room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>)) +
+                    room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(std::array<T, 6>)) +
                     (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
                     room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
@@ -262,12 +263,13 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     if (s->floats)
       s->problem.start[0].translation = (s->history.place - settings_.common_origin).template cast<T>();
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
-    choose_targets<T>(*s, T(world.accuracy.return_time), h);
+    choose_targets<T>(*s, T(world.accuracy.return_time),
+                      height_of_floor<T>(world, settings_.common_origin.z()), h);
     choose_baked<T>(*s, world.detail.bake_every, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     s->problem.pushes.clear();
-    if (!settings_.plan->scheme && s->limp()) continue;  // see strike()
+    if (!settings_.plan->scheme && s->is_struck(return_time())) continue;  // see strike()
     for (const ExternalForce<T>& j : s->impulses)
       s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
   }
@@ -382,6 +384,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   hold_lost(!solved.converged && closed && excess() > standing());
   for (std::size_t n = 0; n < states_.size(); ++n) settle_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
+  stop_lost();
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   for (const auto& effect : effects_) {
     if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;

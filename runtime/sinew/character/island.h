@@ -2,6 +2,7 @@
 // layer.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sinew/character/contact_finder.h"
@@ -88,7 +89,9 @@ class IslandStepper {
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);
   void forget_contacts();
+  void stop_lost();
   void hold_lost(bool no_pose);
+  T return_time() const { return T(world_->accuracy.return_time); }
   bool settled(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
   void find_sets();
@@ -98,6 +101,7 @@ class IslandStepper {
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   void drop_played();
   void strike_all();
+  void end_deviations(CharacterState<T>& state, int tree, T h);
   void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
@@ -164,6 +168,7 @@ class IslandStepper {
   std::vector<int> first_body_, first_dof_;       ///< [tree] in these
   std::vector<Vec3<T>> missed_, unturned_;        ///< [body, the same] see begin_error
   std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
+  std::vector<std::array<T, 6>> jumps_;           ///< [body] of one tree, of its joint rates
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;

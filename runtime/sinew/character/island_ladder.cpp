@@ -113,6 +113,21 @@ bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
   return std::isfinite(sum);
 }
 
+/// A force that is no number would stay in the velocities for good: such a tree is stopped.
+template <class T>
+void IslandStepper<T>::stop_lost() {
+  for (CharacterState<T>* s : states_) {
+    T sum = T(0);
+    for (const Vec3<T>& v : s->history.velocity) sum += v.sum();
+    for (const Vec3<T>& l : s->history.momentum) sum += l.sum();
+    if (std::isfinite(sum)) continue;
+    s->history.stop();
+    std::fill(s->rate.begin(), s->rate.end(), std::array<T, 6>{});
+    all_converged_ = false;
+    ++held_;
+  }
+}
+
 /// Holds the trees whose solve left no finite pose; all of them where there is `no_pose` at all.
 template <class T>
 void IslandStepper<T>::hold_lost(bool no_pose) {
@@ -138,6 +153,7 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
   template void IslandStepper<T>::hold(CharacterState<T>&);                \
   template void IslandStepper<T>::forget_contacts();                       \
   template bool IslandStepper<T>::settled(const CharacterState<T>&) const; \
+  template void IslandStepper<T>::stop_lost();                             \
   template void IslandStepper<T>::hold_lost(bool);
 SINEW_LADDER_INSTANCES(float)
 SINEW_LADDER_INSTANCES(double)

@@ -164,8 +164,11 @@ void IslandStepper<T>::predict_euler_all(T h) {
   }
 }
 
-/// Impulses on what no muscle holds change its velocities where it is, before the step: over the step they
-/// would act on what has moved by then, and on which they have more effect.
+/// Impulses that strike change velocities where the bodies are, before the step: over the step they would act
+/// on what has moved by then, and on which they have more effect, and on muscles that have the whole step to
+/// resist. Muscles lead what was struck back; it begins at its new speed, while what is limp moves as under
+/// the constant force that the impulse is the mean of: `velocity` and `momentum` [body] are what that leaves
+/// out.
 template <class T>
 void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
                               std::span<Vec3<T>> momentum) {
@@ -184,6 +187,11 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
   jump_force_.assign(s.tree.dofs, T(0));
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
   loose_.assign(s.tree.dofs, 1);
+  const bool limp = s.limp();
+  for (int dof = 0; dof < s.tree.dofs && !limp; ++dof) {
+    const bool led = s.root_is_kinematic() && s.tree.type[0] == JointType::kFree && dof < s.tree.first_dof[1];
+    loose_[dof] = !led && std::isfinite(p.law.torque_minus[dof]) && std::isfinite(p.law.torque_plus[dof]);
+  }
   TreeProblem<T>* const struck = &p;
   ends_.begin({&struck, 1}, loose_);
   turned_.resize(s.tree.bodies);
@@ -195,12 +203,25 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
     s.history.momentum[i] += momentum[i];
     s.history.rotation_rate[i] += skew<T>(turned_[i]) * r;
   }
+  if (limp) return;
+  jumps_.resize(s.tree.bodies);
+  ends_.answered(0, jumps_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    Deviation<T>& d = s.deviation[i];
+    for (int k = 0; k < s.tree.dof_count(i); ++k) {
+      d.rate[k] += jumps_[i][k];
+      d.on_animation = d.on_animation && jumps_[i][k] == T(0);
+    }
+  }
+  s.settle_deviations();
+  std::fill_n(velocity.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
+  std::fill_n(momentum.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
 }
 
 /// The same of all trees.
 template <class T>
 void IslandStepper<T>::strike_all() {
-  const auto struck = [](const CharacterState<T>* s) { return s->limp() && !s->impulses.empty(); };
+  const auto struck = [&](const CharacterState<T>* s) { return s->is_struck(return_time()); };
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->clear();
   if (std::none_of(states_.begin(), states_.end(), struck)) return;
   std::size_t body = 0;
@@ -581,6 +602,19 @@ void IslandStepper<T>::number_bodies() {
   impulse_.resize(dofs);
 }
 
+/// What has left the animation goes back from the speed that it has at the end of the step: until here it is
+/// the mean over it, which for a muscle that brakes is too fast by half of what it takes off in a step.
+template <class T>
+void IslandStepper<T>::end_deviations(CharacterState<T>& s, int tree, T h) {
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    Deviation<T>& d = s.deviation[i];
+    if (d.on_animation || d.on_path) continue;
+    const std::array<T, 6> moved = joint_offset_value<T>(s.tree, i, s.problem.start[i], s.problem.local[i]);
+    for (int k = 0; k < s.tree.dof_count(i); ++k)
+      if (ends_.loose(tree, s.tree.first_dof[i] + k)) d.rate[k] += s.rate[i][k] - moved[k] / h;
+  }
+}
+
 /// Moves all trees' histories on to the solution.
 template <class T>
 void IslandStepper<T>::advance_one_step(T h) {
@@ -619,6 +653,7 @@ void IslandStepper<T>::advance_one_step(T h) {
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     ends_.write(static_cast<int>(n), s.history, s.rate);
+    if (!s.limp()) end_deviations(s, static_cast<int>(n), h);
   }
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->clear();  // in the parts to come nothing strikes
 }
@@ -657,6 +692,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::find_sets();                                                        \
   template void IslandStepper<T>::predict_all(T);                                                     \
   template void IslandStepper<T>::predict_euler_all(T);                                               \
+  template void IslandStepper<T>::end_deviations(CharacterState<T>&, int, T);                         \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
   template void IslandStepper<T>::strike_all();                                                       \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \

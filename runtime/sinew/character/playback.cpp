@@ -31,6 +31,7 @@ void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const
 
 template <class T>
 bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h) {
+  if (s.is_struck(T(world.accuracy.return_time))) return false;
   TreeProblem<T>& p = s.problem;
   const Vec3<T> origin = s.target[0].translation;
   inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
@@ -75,7 +76,8 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   if (s.undisturbed())
     p.target = s.wanted;
   else
-    choose_targets<T>(s, T(world.accuracy.return_time), h);
+    choose_targets<T>(s, T(world.accuracy.return_time),
+                      height_of_floor<T>(world, double(p.common_origin.z())), h);
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.played_from[i] = p.start[i];
     s.local[i] = p.target[i];

@@ -28,13 +28,14 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   visit_enum("level", l.level, Level::kSubsteps, stream);
   visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
   visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
-  std::uint8_t flags =
-      static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) + (l.wake ? 4 : 0));
-  stream.value("asleep, baked, to be woken", flags);
+  std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
+                                                 (l.wake ? 4 : 0) + (s.pushed ? 8 : 0));
+  stream.value("asleep, baked, to be woken, pushed", flags);
   if (stream.reading()) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
+    s.pushed = (flags & 8) != 0;
   }
   const CharacterDetail usual;
   const bool detailed =

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 
 #include "sinew/character/contact_finder.h"
 
@@ -11,6 +13,8 @@ namespace {
 
 /// rad (0.1°) and m. A joint is on its animation again within these at 1/60 s; in shorter steps within less,
 /// so that what is left out is an acceleration that muscles do not notice.
+constexpr double kHalfTurn = std::numbers::pi;  ///< rad
+constexpr double kFelt = 1e-3 * 2.718;          ///< m · e: see is_struck()
 constexpr double kSnapAngle = 2e-3;
 constexpr double kSnapRate = 5e-2;  ///< 1/s
 constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
@@ -359,9 +363,49 @@ void CharacterState<T>::forget_contacts() {
   forget_energy();
 }
 
+namespace {
+
+/// The part of a joint's offset (see joint_offset) that is a rotation vector or angle.
 template <class T>
-void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& from_animation, T h, T return_time) {
+std::span<T> turn_of(JointType type, std::array<T, 6>& offset) {
+  const std::size_t first = type == JointType::kFree ? 3 : 0;
+  const bool ball = type == JointType::kBall || type == JointType::kFree;
+  return std::span(offset).subspan(first, ball ? 3 : type == JointType::kRevolute ? 1 : 0);
+}
+
+template <class T>
+T length(std::span<const T> v) {
+  T squares = T(0);
+  for (const T x : v) squares += x * x;
+  return std::sqrt(squares);
+}
+
+/// An offset that goes on from `near`, by the turn that a rotation does not show: a limb that swings through
+/// the far side of its animation does not leap to the other.
+template <class T>
+std::array<T, 6> continued(JointType type, std::array<T, 6> offset, std::array<T, 6> near) {
+  const std::span<T> turn = turn_of(type, offset), last = turn_of(type, near);
+  const T angle = length<T>(turn);
+  if (!(angle > T(kHalfTurn) / 4)) return offset;
+  const T other = 1 - T(2 * kHalfTurn) / angle;
+  T way = T(0), other_way = T(0);
+  for (std::size_t k = 0; k < turn.size(); ++k) {
+    way += (turn[k] - last[k]) * (turn[k] - last[k]);
+    other_way += (other * turn[k] - last[k]) * (other * turn[k] - last[k]);
+  }
+  if (other_way < way)
+    for (T& x : turn) x *= other;
+  return offset;
+}
+
+}  // namespace
+
+template <class T>
+void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured, T h, T return_time) {
   Deviation<T>& d = deviation[i];
+  std::array<T, 6> from_animation = continued(tree.type[i], measured, d.offset);
+  // The way back is no longer than three quarters of a turn.
+  const bool around = length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
   const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);
   d.on_path = true;
@@ -373,7 +417,7 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& from_ani
                          std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
     d.rate[k] =
         on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
-    d.offset[k] = from_animation[k];
+    d.offset[k] = around ? measured[k] : from_animation[k];
     d.on_path = d.on_path && on_path;
     offset = std::max(offset, std::abs(d.offset[k]));
     speed = std::max(speed, std::abs(d.rate[k]));
@@ -407,6 +451,16 @@ T CharacterState<T>::fastest() const {
   for (const Vec3<T>& v : owed.history ? motion.velocity : history.velocity)
     square = std::max(square, v.squaredNorm());
   return std::sqrt(square);
+}
+
+template <class T>
+bool CharacterState<T>::is_struck(T return_time) const {
+  if (impulses.empty()) return false;
+  if (limp()) return true;
+  const auto moves = [&](const ExternalForce<T>& impulse) {
+    return impulse.force.norm() * return_time > T(kFelt) * tree.mass[impulse.body];
+  };
+  return !pushed && std::any_of(impulses.begin(), impulses.end(), moves);
 }
 
 template <class T>

@@ -105,6 +105,7 @@ struct CharacterState {
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
   bool carried = false;  ///< in this step, see carry_over()
+  bool pushed = false;   ///< in the step before: what pushes again is a force, no hit
   bool calm = true;      ///< no joint deviates: see settle_deviations
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
@@ -211,10 +212,10 @@ struct CharacterState {
     energy_ceiling = std::numeric_limits<double>::infinity();
     lent = 0;
   }
-  /// After a step of h seconds: how far a joint is off what the animation wants (`from_animation`, a
+  /// After a step of h seconds: how far a joint is off what the animation wants (`measured`, a
   /// joint_offset), and how fast that changes; on the animation where both are next to nothing. `return_time`
   /// of the way back, s.
-  void update_deviation(int body, const std::array<T, 6>& from_animation, T h, T return_time);
+  void update_deviation(int body, const std::array<T, 6>& measured, T h, T return_time);
   /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
   Vec3<double> middle() const {
     return is_particles ? Vec3<double>(particles_middle.template cast<double>()) : history.place;
@@ -233,6 +234,12 @@ struct CharacterState {
   T fastest() const;
   /// No joint has a muscle, nothing drives the root.
   bool limp() const;
+  /// Whether the impulses of the coming step change velocities at its beginning: those on what no muscle
+  /// holds, and on others hits. No muscle is quick enough to do anything about a hit, while over a step it
+  /// would bear what it can stop in one. What has pushed in the step before is a force that lasts, and what
+  /// moves nothing by more than a millimetre until its muscles have brought it back (τ/e of its speed) is
+  /// left to them.
+  bool is_struck(T return_time) const;
   /// Nor is any joint put anywhere but by the solve: where the way back to the animation leads is not asked.
   bool only_falls() const {
     return limp() && levels.allowed >= Level::kPartial &&

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace sinew {
@@ -49,6 +50,21 @@ std::pair<Vec3<T>, Vec3<T>> on_the_way(const Vec3<T>& whole, const Vec3<T>& leav
           (6 * u * (1 - u)) * whole + (1 - u * (4 - 3 * u)) * leaving - (u * (2 - 3 * u)) * arriving};
 }
 
+/// How far a pose takes what may stand on the floor below it, m.
+template <class T>
+T below_floor(CharacterState<T>& s, std::span<const Transform<T>> pose, T ground) {
+  forward_kinematics<T>(s.tree, pose, s.problem.common_origin, s.guessed);
+  const SupportPoints<T>& support = s.rig->support;
+  T lowest = ground;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int k = support.first[i]; k < support.first[i + 1]; ++k) {
+      const auto& point = support.points[k];
+      lowest = std::min(
+          lowest, s.guessed.origin[i].z() + s.guessed.rotation[i].row(2).dot(point.local) - point.radius);
+    }
+  return ground - lowest;
+}
+
 }  // namespace
 
 template <class T>
@@ -67,7 +83,7 @@ JointJet<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, 
 }
 
 template <class T>
-void choose_targets(CharacterState<T>& s, T return_time, T h) {
+void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
   TreeProblem<T>& p = s.problem;
   if (s.only_falls()) {
     std::copy(s.wanted.begin(), s.wanted.end(), p.target.begin());
@@ -85,7 +101,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T h) {
       const T now = d.offset[k];
       offset[k] = (now + (d.rate[k] + now / return_time) * h) * decay;
       const T limit = now > T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-      if (!(limit > T(0)) || std::isinf(limit)) continue;
+      if (now == T(0) || !(limit > T(0)) || std::isinf(limit)) continue;
       if (!summed) sum_subtrees(s);
       summed = true;
       const T inertia = inertia_of(p, i, dof);
@@ -95,13 +111,17 @@ void choose_targets(CharacterState<T>& s, T return_time, T h) {
     }
     p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], offset);
   }
+  const bool stands = s.settings.root == RootDrive::kAssisted && s.settings.ground_contact && s.floats;
+  if (s.calm || !stands || std::isinf(ground) || s.rig->support.points.empty()) return;
+  const T deeper = below_floor<T>(s, p.target, ground) - below_floor<T>(s, s.wanted, ground);
+  p.target[0].translation.z() += std::max(deeper, T(0));
 }
 
 template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
                                                  float);
 template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
                                                    double);
-template void choose_targets<float>(CharacterState<float>&, float, float);
-template void choose_targets<double>(CharacterState<double>&, double, double);
+template void choose_targets<float>(CharacterState<float>&, float, float, float);
+template void choose_targets<double>(CharacterState<double>&, double, double, double);
 
 }  // namespace sinew

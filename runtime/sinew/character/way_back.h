@@ -2,17 +2,27 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "sinew/character/state.h"
 
 namespace sinew {
 
+/// From the common origin, at `origin_height` in the world (m); −∞ without a floor.
+template <class T>
+T height_of_floor(const WorldSettings& world, double origin_height) {
+  return world.ground ? T(world.ground_height - origin_height) : -std::numeric_limits<T>::infinity();
+}
+
 /// Writes `problem.target` for a part of h seconds that ends at `state.wanted`. The way back is critically
 /// damped with time constant `return_time` (s), e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the offset from the
 /// animation; and no faster than the muscle can stop again with a third of its strength, or a return time far
-/// below the step would fling the joint across. `problem.kinematics` must be those at `problem.start`.
+/// below the step would fling the joint across. An assisted root goes back over the floor: it is raised by
+/// what the joints' ways back would take feet into it, or it would press them there for good. `ground` is the
+/// floor's height from the common origin (m), −∞ without one. `problem.kinematics` must be those at
+/// `problem.start`.
 template <class T>
-void choose_targets(CharacterState<T>& state, T return_time, T h);
+void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
 
 /// Whether the rates (per frame) at both ends of a frame do not belong to the motion `whole` in it: a host
 /// that stopped its clip, or knows none. A motion that turns back has rates that are larger than what they
@@ -33,7 +43,7 @@ extern template JointJet<float> animation_within<float>(const JointJet<float>&, 
                                                         float);
 extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
                                                           double, double);
-extern template void choose_targets<float>(CharacterState<float>&, float, float);
-extern template void choose_targets<double>(CharacterState<double>&, double, double);
+extern template void choose_targets<float>(CharacterState<float>&, float, float, float);
+extern template void choose_targets<double>(CharacterState<double>&, double, double, double);
 
 }  // namespace sinew

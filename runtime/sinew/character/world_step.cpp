@@ -101,6 +101,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
+    s->pushed = !s->impulses.empty();
     s->impulses.clear();
     s->target_stands = true;
     s->report.carried = s->carried;

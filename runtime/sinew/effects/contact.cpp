@@ -5,12 +5,6 @@
 #include "sinew/effects/static_shape.h"
 
 namespace sinew {
-namespace {
-
-constexpr double kCornerShare = 0.05;   ///< rounding of a box's corners, of its smallest half extent
-constexpr double kCornerRadius = 0.01;  ///< m, at most
-
-}  // namespace
 
 template <class T>
 SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point) {
@@ -84,8 +78,7 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
       break;
     }
     case Shape::kBox: {
-      // Rounded: a corner that stands exactly above another box's edge stays on its face.
-      const double round = std::min(kCornerShare * s.minCoeff(), kCornerRadius);
+      const double round = box_rounding(s);
       const Vec3<double> in = s.array() - round;
       for (int corner = 0; corner < 8; ++corner)
         add(PointKind::kCorner,
@@ -169,6 +162,75 @@ void share_stiffness(std::vector<ContactPoint<T>>& points) {
   for (ContactPoint<T>& p : points) p.share = T(4) / std::max(T(4), touching(p.body));
 }
 
+namespace {
+
+template <class T>
+Mat3<T> rotation_of(const Kinematics<T>* k, int body) {
+  return k ? k->rotation[body] : Mat3<T>(Mat3<T>::Identity());
+}
+
+/// What a distance in axes that are turned by `rotation` says of how the contact's surface bends.
+template <class T>
+void bend(const Mat3<T>& rotation, const SignedDistance<T>& d, Contact<T>& c) {
+  c.bends = d.curvature > T(0);
+  if (!c.bends) return;
+  const Vec3<T> straight = rotation * d.straight;
+  c.bending =
+      d.curvature * (Mat3<T>::Identity() - c.normal * c.normal.transpose() - straight * straight.transpose());
+}
+
+/// A point of a against a shape of b.
+template <class T>
+void measure_point(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
+  const Mat3<T> rotation = rotation_of(b, c.body_b) * c.shape_pose.rotation.toRotationMatrix();
+  const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
+  SignedDistance<T> d;
+  if (c.half_axis_a.isZero(T(0)) || c.shape == Shape::kBox) {
+    const Vec3<T> at = rotation.transpose() * (c.point - origin);
+    d = signed_distance<T>(c.shape, c.size, at);
+    if (c.face >= 0 && d.distance < T(0)) d = below_face(c.face, c.size, at);
+  } else {
+    const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
+    T along = T(0);
+    d = axis_distance<T>(c.size, c.shape == Shape::kCapsule ? c.size.z() : T(0),
+                         rotation.transpose() * (c.point - origin), rotation.transpose() * axis, along);
+    c.point += along * axis;
+  }
+  c.normal = rotation * d.normal;
+  c.gap = d.distance - c.radius + c.offset;
+  bend(rotation, d, c);
+}
+
+/// A corner of b against a shape of a: the force acts where that is nearest.
+template <class T>
+void measure_corner(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
+  const Mat3<T> rotation = a.rotation[c.body_a] * c.shape_pose.rotation.toRotationMatrix();
+  const Vec3<T> corner = at(b, c.body_b, c.local_b);
+  const SignedDistance<T> d = signed_distance<T>(
+      c.shape, c.size, rotation.transpose() * (corner - at(&a, c.body_a, c.shape_pose.translation)));
+  c.normal = -(rotation * d.normal);
+  c.point = corner + d.distance * c.normal;
+  c.gap = d.distance - c.radius + c.offset;
+  bend(rotation, d, c);
+}
+
+/// Two lines: their signed distance along what is square to both.
+template <class T>
+void measure_edges(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
+  const Vec3<T> axis_a = a.rotation[c.body_a] * c.half_axis_a,
+                axis_b = rotation_of(b, c.body_b) * c.half_axis_b,
+                apart = at(b, c.body_b, c.local_b) - c.point;
+  const Vec3<T> across = c.side * axis_a.cross(axis_b);
+  const T size = across.norm();
+  if (size > std::numeric_limits<T>::epsilon() * axis_a.norm() * axis_b.norm()) c.normal = across / size;
+  // Where a solve turns them parallel the nearest point goes to infinity.
+  c.point += std::clamp(nearest_along(axis_a, axis_b, apart)[0], T(-2), T(2)) * axis_a;
+  c.gap = -c.normal.dot(apart) - c.radius + c.offset;
+  c.bends = false;
+}
+
+}  // namespace
+
 template <class T>
 void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.point = at(&a, c.body_a, c.local_a);
@@ -182,30 +244,12 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
     c.normal = d.normal.template cast<T>();
     c.gap = T(d.distance) - c.radius + c.offset;
     c.bends = false;
+  } else if (c.meeting == Meeting::kPoint) {
+    measure_point(a, b, c);
+  } else if (c.meeting == Meeting::kCorner) {
+    measure_corner(a, b, c);
   } else {
-    const Mat3<T> rotation =
-        (b ? b->rotation[c.body_b] : Mat3<T>(Mat3<T>::Identity())) * c.shape_pose.rotation.toRotationMatrix();
-    const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
-    SignedDistance<T> d;
-    if (c.half_axis_a.isZero(T(0)) || c.shape == Shape::kBox) {
-      const Vec3<T> at = rotation.transpose() * (c.point - origin);
-      d = signed_distance<T>(c.shape, c.size, at);
-      if (c.face >= 0 && d.distance < T(0)) d = below_face(c.face, c.size, at);
-    } else {
-      const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
-      T along = T(0);
-      d = axis_distance<T>(c.size, c.shape == Shape::kCapsule ? c.size.z() : T(0),
-                           rotation.transpose() * (c.point - origin), rotation.transpose() * axis, along);
-      c.point += along * axis;
-    }
-    c.normal = rotation * d.normal;
-    c.gap = d.distance - c.radius + c.offset;
-    c.bends = d.curvature > T(0);
-    if (c.bends) {
-      const Vec3<T> straight = rotation * d.straight;
-      c.bending = d.curvature *
-                  (Mat3<T>::Identity() - c.normal * c.normal.transpose() - straight * straight.transpose());
-    }
+    measure_edges(a, b, c);
   }
   c.material_point = at(&a, c.body_a, c.material_a);
   c.material_point_b = at(b, c.body_b, c.material_b);

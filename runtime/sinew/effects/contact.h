@@ -1,6 +1,7 @@
 // Contact points against the floor, static obstacles and other bodies, with friction.
 //
-// A contact is a small sphere (or bare point) fixed to one body against a shape with a signed distance. Its
+// A contact is a small sphere (or bare point) fixed to one body against a shape with a signed distance, or a
+// pair of edges that cross (crossing_edges.h). Its
 // energy is one-sided in the gap at the END of the step, ½k·gap² with a cubic start, so stiffness costs no
 // stability. A surface is damped: its force is that of the gap a damping time τ later, f(gap + τ·gap'), with
 // gap' = (gap₁ − gap₀)/h and never a pull. In a step that is the same law in a stretched gap, convex as
@@ -12,8 +13,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "sinew/residual/tree.h"
@@ -70,17 +73,42 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
 template <class T>
 void share_stiffness(std::vector<ContactPoint<T>>& points);
 
+/// m, of the corners of a box with such half extents: one that stands exactly above another box's edge stays
+/// on its face.
+inline double box_rounding(const Vec3<double>& size) {
+  return std::min(0.05 * size.minCoeff(), 0.01);
+}
+
+/// How far along two axes a and b, in parts of them, lie the nearest points of the lines p + s·a and q + t·b;
+/// r = q − p. Not of parallel ones.
+template <class T>
+std::array<T, 2> nearest_along(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& r) {
+  const T aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
+  const T determinant = std::max(aa * bb - ab * ab, std::numeric_limits<T>::epsilon() * aa * bb);
+  return {(bb * a.dot(r) - ab * b.dot(r)) / determinant, (ab * a.dot(r) - aa * b.dot(r)) / determinant};
+}
+
 class StaticShape;
+
+/// What of the two sides of a contact meets.
+enum class Meeting : std::uint8_t {
+  kPoint,   ///< a point of body a, or the nearest of an axis, meets a shape
+  kCorner,  ///< a point of b meets a shape of body a, in whose axes shape_pose is then
+  kEdges,   ///< a line of each; fixed when the step begins, and as if they had no ends
+};
 
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
 template <class T>
 struct Contact {
   int tree_a = 0, body_a = 0;
   int tree_b = -1, body_b = -1;
+  Meeting meeting = Meeting::kPoint;
   std::uint64_t id = 0;  ///< same pair of features in the next step: carries λ over
   Vec3<T> local_a = Vec3<T>::Zero();
   Vec3<T> half_axis_a =
       Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
+  Vec3<T> local_b = Vec3<T>::Zero(), half_axis_b = Vec3<T>::Zero();  ///< kCorner, kEdges: of b
+  T side = T(1);                                                     ///< kEdges: see EdgePair
   T radius = T(0);
   Shape shape = Shape::kSphere;
   const StaticShape* host = nullptr;          ///< instead of a shape; shape_pose.translation then shifts it
@@ -130,6 +158,8 @@ struct Contact {
   bool acts() const { return damped_gap() < T(0) || grip > T(0); }
   /// Half the thickness of what is met, m.
   T half_thickness() const;
+  /// Puts side b elsewhere by so much in its axes (without a body, the world's), m.
+  void shift_b(const Vec3<T>& by) { (meeting == Meeting::kPoint ? shape_pose.translation : local_b) += by; }
 
   bool bends = false;                 ///< the surface is curved at the contact
   Mat3<T> bending = Mat3<T>::Zero();  ///< ∇²distance, 1/m

@@ -47,7 +47,9 @@ T time_of_impact(std::span<const IslandTree<T>> trees, const Contact<T>& c) {
   Contact<T> probe = c;
   T t = T(0);
   for (int n = 0; n < kMostAdvances && t < T(1); ++n) {
-    probe.shape_pose.translation = c.shape_pose.translation - t * in_shape;
+    probe.shape_pose.translation = c.shape_pose.translation;
+    probe.local_b = c.local_b;
+    probe.shift_b(-t * in_shape);
     measure<T>(a.problem.kinematics, b, probe);
     if (probe.gap < T(kClose)) return t;
     t += probe.gap / length;

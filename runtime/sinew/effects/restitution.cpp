@@ -21,6 +21,12 @@ double energy(std::span<const IslandTree<T>> trees, const Vec3<double>& gravity)
   return sum;
 }
 
+/// Where the surfaces meet.
+template <class T>
+Vec3<T> touch(const Contact<T>& c) {
+  return c.point - c.radius * c.normal;
+}
+
 }  // namespace
 
 template <class T>
@@ -31,9 +37,10 @@ void Restitution<T>::reserve(const SolveRoom& room) {
   mass_.reserve(dofs, room.path_entries);
   first_.reserve(room.trees);
   impacts_.reserve(kMost);
-  rows_.reserve(std::size_t(kMost) * dofs);
-  answers_.reserve(std::size_t(kMost) * dofs);
-  delassus_.reserve(kMost * kMost);
+  impulse_.reserve(kMostRows);
+  rows_.reserve(std::size_t(kMostRows) * dofs);
+  answers_.reserve(std::size_t(kMostRows) * dofs);
+  delassus_.reserve(kMostRows * kMostRows);
   change_.reserve(dofs);
   turn_.reserve(room.bodies);
   slide_.reserve(room.bodies);
@@ -58,10 +65,14 @@ void Restitution<T>::collect(Trees trees, std::span<Contact<T>> contacts, const 
     const T arrives = c.restitution * c.restitution *
                       std::max(c.approach * c.approach + 2 * pull * std::max(c.start_gap, T(0)), T(0));
     const T speed = std::sqrt(std::max(arrives - 2 * pull * c.gap, T(0)));
-    Vec3<T> parting = trees[c.tree_a].point_velocity(c.body_a, c.point);
-    if (c.tree_b >= 0) parting -= trees[c.tree_b].point_velocity(c.body_b, c.point);
-    const T left = parting.dot(c.normal);
-    impacts_.push_back({&c, left, speed - left, T(0)});
+    const auto parting = [&](const Vec3<T>& at) {
+      Vec3<T> v = trees[c.tree_a].point_velocity(c.body_a, at);
+      if (c.tree_b >= 0) v -= trees[c.tree_b].point_velocity(c.body_b, at);
+      return v;
+    };
+    const T left = parting(c.point).dot(c.normal);
+    const Vec3<T> slip = parting(touch(c));
+    impacts_.push_back({&c, left, speed - left, {slip.dot(c.frame.col(0)), slip.dot(c.frame.col(1))}});
   }
 }
 
@@ -90,32 +101,55 @@ bool Restitution<T>::factorise(Trees trees) {
   return mass_.factorise();
 }
 
-/// Parting speed of a contact per unit of each unknown's speed.
+/// Speed of a contact's sides against each other along a direction, at a point, per unit of each unknown's.
 template <class T>
-void Restitution<T>::project(Trees trees, const Contact<T>& c, std::span<T> row) const {
+void Restitution<T>::project(Trees trees, const Contact<T>& c, const Vec3<T>& direction, const Vec3<T>& at,
+                             std::span<T> row) const {
   std::fill(row.begin(), row.end(), T(0));
   const auto side = [&](int n, int body, T sign) {
     const TreeProblem<T>& p = trees[n].problem;
-    const Vec3<T> moment = c.point.cross(c.normal);
+    const Vec3<T> moment = at.cross(direction);
     for (int k = unknown_above<T>(*p.tree, body, unknowns_, first_[n]); k >= 0;
          k = unknowns_.pattern.parent[k]) {
       const int dof = unknowns_.dof[k];
-      row[k] += sign * (p.kinematics.v[dof].dot(c.normal) + p.kinematics.w[dof].dot(moment));
+      row[k] += sign * (p.kinematics.v[dof].dot(direction) + p.kinematics.w[dof].dot(moment));
     }
   };
   side(c.tree_a, c.body_a, T(1));
   if (c.tree_b >= 0) side(c.tree_b, c.body_b, T(-1));
 }
 
+/// What a row's impulse has to change yet of a speed that all impulses shall change by `wanted`, m/s.
+template <class T>
+T Restitution<T>::missing(std::size_t row, T wanted) const {
+  for (std::size_t j = 0; j < impulse_.size(); ++j)
+    wanted -= delassus_[row * impulse_.size() + j] * impulse_[j];
+  return wanted;
+}
+
+/// The tangential impulses of an impact: against its slip, within the cone.
+template <class T>
+void Restitution<T>::rub(std::size_t impact) {
+  const std::size_t m = impulse_.size(), row = 3 * impact;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const T own = delassus_[(row + 1 + k) * (m + 1)]; own > T(0))
+      impulse_[row + 1 + k] += missing(row + 1 + k, -impacts_[impact].slip[k]) / own;
+  const T size = std::hypot(impulse_[row + 1], impulse_[row + 2]);
+  const T most = impacts_[impact].contact->friction * impulse_[row];
+  if (!(size > most)) return;
+  impulse_[row + 1] *= most / size;
+  impulse_[row + 2] *= most / size;
+}
+
 template <class T>
 void Restitution<T>::solve_impulses() {
-  const std::size_t m = impacts_.size();
+  const std::size_t m = impulse_.size();
   for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (std::size_t i = 0; i < m; ++i) {
-      if (!(delassus_[i * m + i] > T(0))) continue;
-      T missing = impacts_[i].wanted;
-      for (std::size_t j = 0; j < m; ++j) missing -= delassus_[i * m + j] * impacts_[j].impulse;
-      impacts_[i].impulse = std::max(T(0), impacts_[i].impulse + missing / delassus_[i * m + i]);
+    for (std::size_t i = 0; i < impacts_.size(); ++i) {
+      const std::size_t row = 3 * i;
+      if (const T own = delassus_[row * (m + 1)]; own > T(0))
+        impulse_[row] = std::max(T(0), impulse_[row] + missing(row, impacts_[i].wanted) / own);
+      rub(i);
     }
 }
 
@@ -124,9 +158,9 @@ void Restitution<T>::solve_impulses() {
 /// comes back as for what begins inside something.
 template <class T>
 void Restitution<T>::unload(Trees trees) {
-  for (const Impact& impact : impacts_) {
-    if (!(impact.impulse > T(0))) continue;
-    Contact<T>& c = *impact.contact;
+  for (std::size_t i = 0; i < impacts_.size(); ++i) {
+    if (!(impulse_[3 * i] > T(0))) continue;
+    Contact<T>& c = *impacts_[i].contact;
     trees[c.tree_a].elastic_energy -= double(stored_energy(c));
     c.offset -= c.gap;
     c.gap = T(0);
@@ -137,12 +171,12 @@ void Restitution<T>::unload(Trees trees) {
 /// the work is s·pᵀJv + ½s²·pᵀJM⁻¹Jᵀp.
 template <class T>
 T Restitution<T>::affordable(double allowed) const {
-  const std::size_t m = impacts_.size();
+  const std::size_t m = impulse_.size();
   double linear = 0, quadratic = 0;
   for (std::size_t i = 0; i < m; ++i) {
-    linear += double(impacts_[i].impulse * impacts_[i].left);
-    for (std::size_t j = 0; j < m; ++j)
-      quadratic += double(impacts_[i].impulse * delassus_[i * m + j] * impacts_[j].impulse);
+    const Impact& impact = impacts_[i / 3];
+    linear += double(impulse_[i] * (i % 3 == 0 ? impact.left : impact.slip[i % 3 - 1]));
+    for (std::size_t j = 0; j < m; ++j) quadratic += double(impulse_[i] * delassus_[i * m + j] * impulse_[j]);
   }
   if (!(quadratic > 0)) return T(0);
   const double root = linear * linear + 2 * quadratic * std::max(allowed, 0.0);
@@ -180,13 +214,18 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
                                    T h, double budget) {
   collect(trees, contacts, gravity, h);
   if (impacts_.empty() || !factorise(trees)) return false;
-  const std::size_t m = impacts_.size(), n = unknowns_.pattern.size;
+  const std::size_t m = 3 * impacts_.size(), n = unknowns_.pattern.size;
+  impulse_.assign(m, T(0));
   rows_.assign(m * n, T(0));
   answers_.assign(m * n, T(0));
   delassus_.assign(m * m, T(0));
   for (std::size_t i = 0; i < m; ++i) {
     const std::span<T> row(rows_.data() + i * n, n), answer(answers_.data() + i * n, n);
-    project(trees, *impacts_[i].contact, row);
+    const Contact<T>& c = *impacts_[i / 3].contact;
+    if (i % 3 == 0)
+      project(trees, c, c.normal, c.point, row);
+    else
+      project(trees, c, c.frame.col(static_cast<Eigen::Index>(i % 3) - 1), touch(c), row);
     std::copy(row.begin(), row.end(), answer.begin());
     mass_.solve(answer);
   }
@@ -198,7 +237,7 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
   const T share = affordable(budget - energy<T>(trees, gravity));
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t k = 0; k < n; ++k) change_[k] += share * impacts_[i].impulse * answers_[i * n + k];
+    for (std::size_t k = 0; k < n; ++k) change_[k] += share * impulse_[i] * answers_[i * n + k];
   for (std::size_t t = 0; t < trees.size(); ++t) {
     const IslandTree<T>& tree = trees[t];
     move(tree, first_[t]);

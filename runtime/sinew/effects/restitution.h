@@ -5,7 +5,9 @@
 // Gauss–Seidel on
 //     J M⁻¹ Jᵀ p ≥ e·u − J v,   p ≥ 0, complementary,
 // M the trees' mass matrix over the unknowns. No step gains energy: p is scaled to what the impact took.
-// Simultaneous impacts after Newton's hypothesis; friction does not bounce.
+// Simultaneous impacts after Newton's hypothesis. What they press rubs as well: in the same sweeps two
+// impulses along each surface, |p_t| ≤ μp, that leave no slip where they can. What the solve itself pressed
+// has rubbed in it (end_velocities.h).
 #pragma once
 
 #include <span>
@@ -23,22 +25,27 @@ class Restitution final : public IslandEffect<T> {
   void reserve(const SolveRoom& room) override;
   std::size_t bytes(const SolveRoom& room) const override {
     return sizeof *this + room.path_entries * 7 * sizeof(T) +
-           room.dofs * ((2 * kMost + 2) * sizeof(T) + 8 * sizeof(int)) + room.bodies * 2 * sizeof(Vec3<T>) +
-           kMost * (sizeof(Impact) + kMost * sizeof(T));
+           room.dofs * ((2 * kMostRows + 2) * sizeof(T) + 8 * sizeof(int)) +
+           room.bodies * 2 * sizeof(Vec3<T>) + kMost * sizeof(Impact) +
+           kMostRows * (kMostRows + 1) * sizeof(T);
   }
 
   /// Whether any contact both bounces and closed in this step.
   bool may_change_speeds(std::span<const Contact<T>> contacts) const override;
-  /// Costs one tree solve per bouncing contact.
+  /// Costs three tree solves per bouncing contact.
   bool change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h,
                      double budget) override;
 
  private:
-  static constexpr int kMost = 48;  ///< bouncing contacts of one step; more stay inelastic
+  static constexpr int kMost = 48;             ///< bouncing contacts of one step; more stay inelastic
+  static constexpr int kMostRows = 3 * kMost;  ///< the normal of each, and two tangents
 
   void collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h);
   bool factorise(Trees trees);
-  void project(Trees trees, const Contact<T>& contact, std::span<T> row) const;
+  void project(Trees trees, const Contact<T>& contact, const Vec3<T>& direction, const Vec3<T>& at,
+               std::span<T> row) const;
+  T missing(std::size_t row, T wanted) const;
+  void rub(std::size_t impact);
   void solve_impulses();
   void unload(Trees trees);
   T affordable(double allowed) const;
@@ -46,9 +53,9 @@ class Restitution final : public IslandEffect<T> {
 
   struct Impact {
     Contact<T>* contact = nullptr;
-    T left = T(0);     ///< parting speed that the solve left, m/s
-    T wanted = T(0);   ///< what is missing to the bounce's, m/s
-    T impulse = T(0);  ///< N·s
+    T left = T(0);             ///< parting speed that the solve left, m/s
+    T wanted = T(0);           ///< what is missing to the bounce's, m/s
+    T slip[2] = {T(0), T(0)};  ///< along the contact's tangents, m/s
   };
 
   Unknowns unknowns_;
@@ -56,8 +63,9 @@ class Restitution final : public IslandEffect<T> {
   TreeMatrix<T> mass_{unknowns_.pattern};
   std::vector<int> first_;  ///< [tree] where its part of the unknowns' map begins
   std::vector<Impact> impacts_;
-  std::vector<T> rows_, answers_;      ///< [impact][unknown] J and M⁻¹Jᵀ
-  std::vector<T> delassus_;            ///< [impact][impact]
+  std::vector<T> impulse_;             ///< [row] N·s; three rows of each impact: normal, two tangents
+  std::vector<T> rows_, answers_;      ///< [row][unknown] J and M⁻¹Jᵀ
+  std::vector<T> delassus_;            ///< [row][row]
   std::vector<T> change_;              ///< [unknown] of its speed
   std::vector<Vec3<T>> turn_, slide_;  ///< [body]
 };

@@ -462,11 +462,11 @@ void EndVelocities<T>::press() {
   spread();
 }
 
+/// The unknowns' rates as those of joint offsets: the other way round than read_near().
 template <class T>
-void EndVelocities<T>::write(int n, History<T>& history, std::span<std::array<T, 6>> rate) {
+void EndVelocities<T>::read_rates(int n, std::span<std::array<T, 6>> rate) {
   const Part& part = parts_[n];
   const Tree<T>& tree = *problems_[n]->tree;
-  const Kinematics<T>& k = problems_[n]->kinematics;
   for (int u = 0; u < part.count; ++u) {
     const int dof = dof_[part.first + u], body = tree.dof_body[dof];
     rate[body][dof - tree.first_dof[body]] = rates(n)[u];
@@ -477,6 +477,20 @@ void EndVelocities<T>::write(int n, History<T>& history, std::span<std::array<T,
         problems_[n]->local[i].rotation.conjugate() * Vec3<T>(rate[i][3], rate[i][4], rate[i][5]);
     for (int a = 0; a < 3; ++a) rate[i][3 + a] = turned[a];
   }
+}
+
+template <class T>
+void EndVelocities<T>::answered(int n, std::span<std::array<T, 6>> rate) {
+  std::fill(rate.begin(), rate.end(), std::array<T, 6>{});
+  read_rates(n, rate);
+}
+
+template <class T>
+void EndVelocities<T>::write(int n, History<T>& history, std::span<std::array<T, 6>> rate) {
+  const Part& part = parts_[n];
+  const Tree<T>& tree = *problems_[n]->tree;
+  const Kinematics<T>& k = problems_[n]->kinematics;
+  read_rates(n, rate);
   move(n);
   for (int i = 0; i < tree.bodies; ++i) {
     const Twist<T>& twist = twist_[part.first_body + i];

@@ -46,6 +46,10 @@ class EndVelocities {
   /// matrix. `moved` and `turned` [body] are written. O(bodies).
   void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
 
+  /// Joint rates [body] of the last answer of respond() for this tree, as joint offsets'; 0 where no unknown
+  /// moves the joint.
+  void answered(int tree, std::span<std::array<T, 6>> rate);
+
   /// Takes out of generalised forces or impulses [dof] what the matrix' floor (composite.h) keeps from moving
   /// anything, as it does for respond(): M of what its factor makes of them. O(bodies).
   void settle(int tree, std::span<T> force);
@@ -72,6 +76,8 @@ class EndVelocities {
   void write(int tree, History<T>& history, std::span<std::array<T, 6>> rate);
 
  private:
+  void read_rates(int tree, std::span<std::array<T, 6>> rate);
+
   static constexpr std::size_t kMost = 3 * 64;  ///< rows: that may not close, or slide
 
   struct Part {

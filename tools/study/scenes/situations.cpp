@@ -1,0 +1,353 @@
+// What is asked in each situation.
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "study/scenes/situation.h"
+
+namespace sinew::study {
+namespace {
+
+using scene::Scene;
+
+int seeds(bool quick, int full, int shortened = 1) {
+  return quick ? shortened : full;
+}
+
+/// Everybody thrown otherwise.
+Scene reseeded(Scene scene, int seed) {
+  for (scene::SceneCharacter& c : scene.characters)
+    if (c.speeds.random > 0) c.speeds.seed += 100u * static_cast<unsigned>(seed);
+  return scene;
+}
+
+Scene alone(Scene scene) {
+  scene.characters.resize(1);
+  scene.props.clear();
+  std::erase_if(scene.pushes, [](const scene::Push& p) { return p.character != 0; });
+  return scene;
+}
+
+double furthest_apart(const Played& a, const Played& b, int member = 0) {
+  double most = 0;
+  for (int f = 0; f < a.judge().frames(); ++f)
+    most = std::max(most, apart(a.recording, member, b.recording, member, f));
+  return most;
+}
+
+double deepest_between(const Judge& judge, int first, int last) {
+  return judge.worst(first, last, [&](int f) { return judge.depth_between(f); });
+}
+
+double fastest_of(const Judge& judge, int first, int last, int member = -1) {
+  return judge.worst(first, last, [&](int f) { return judge.fastest(f, member); });
+}
+
+void note_times(const Played& played, Findings& found) {
+  double most = 0, sum = 0;
+  for (const scene::TelemetryRow& row : played.telemetry.rows) {
+    most = std::max(most, 1e-3 * row.microseconds);
+    sum += 1e-3 * row.microseconds;
+  }
+  found.note("longest step (ms)", most);
+  found.note("mean step (ms)", sum / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
+}
+
+constexpr double kBeside = 0.1;  ///< m: nearer than that it is no bystander
+
+void bystanders(const Scene& scene, bool quick, Findings& found) {
+  for (int seed = 0; seed < seeds(quick, 8, 2); ++seed) {
+    const Scene thrown = reseeded(scene, seed);
+    const Played with(thrown), without(alone(thrown));
+    found.sound(with, 5e-3);
+    if (!found.refused().empty()) return;
+    const Judge judge = with.judge();
+    int last = 0;  // that it may be compared in
+    while (last + 1 < judge.frames() && judge.distance_from_others(last + 1, 0) > kBeside) ++last;
+    found.at_least("compared before anybody is near (s)", last * judge.step(), 0.7);
+    double away = 0;
+    for (int f = 0; f <= last; ++f) away = std::max(away, apart(with.recording, 0, without.recording, 0, f));
+    found.at_most("away from where it is alone (m)", away, 0);
+  }
+}
+
+void levels(const Scene& scene, bool, Findings& found) {
+  Scene capped = scene;
+  capped.characters[1].settings.detail.most = Level::kPlayback;
+  const Played full(scene), cut(capped);
+  found.sound(full, 5e-3);
+  found.at_most("away from where it is otherwise (m)", furthest_apart(full, cut), 0);
+}
+
+void corner(const Scene& scene, bool quick, Findings& found) {
+  for (const double hz : {60.0, 30.0, 15.0})
+    for (int seed = 0; seed < seeds(quick, 4); ++seed) {
+      Scene thrown = reseeded(scene, seed);
+      thrown.frame_rate = hz;
+      const Played played(thrown);
+      found.sound(played, 0.02);
+      const Judge judge = played.judge();
+      found.at_most("in each other at the end (m)", judge.depth_between(judge.frames() - 1), 0.01);
+      found.at_most("fastest body after the first second (m/s)",
+                    fastest_of(judge, judge.frame_at(1), judge.frames() - 1), 8);
+    }
+}
+
+void pit(const Scene& scene, bool quick, Findings& found) {
+  Scene shortened = scene;
+  if (quick) shortened.duration = 1;
+  const Played played(shortened);
+  found.sound(played, 0.02);
+  const Judge judge = played.judge();
+  found.at_most("in each other (m)", deepest_between(judge, 1, judge.frames() - 1), 0.03);
+  found.at_most("fastest body (m/s)", fastest_of(judge, 1, judge.frames() - 1), 15);
+  note_times(played, found);
+}
+
+void nosing(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 5e-3);
+  const Judge judge = played.judge();
+  const int end = judge.frames() - 1;
+  found.at_most("sinks from where it stands (m)",
+                judge.center_of_mass(0, 0).z() - judge.center_of_mass(end, 0).z(), 0.01);
+  found.at_most("moves at the end (m/s)", judge.fastest(end), 0.01);
+}
+
+void narrow(const Scene& scene, bool, Findings& found) {
+  for (const double hz : {60.0, 30.0}) {
+    Scene at = scene;
+    at.frame_rate = hz;
+    const Played played(at);
+    found.sound(played, 5e-3);
+    const Judge judge = played.judge();
+    const int end = judge.frames() - 1;
+    found.at_most("in each other (m)", deepest_between(judge, 1, end), 5e-3);
+    static constexpr const char* kWho[] = {"crate", "plank", "plank across", "staff", "staff across", "slab"};
+    for (int m = 0; m < judge.members(); ++m) {
+      const double sank = judge.center_of_mass(0, m).z() - judge.center_of_mass(end, m).z();
+      found.at_most((std::string(kWho[m]) + " falls (m)").c_str(), sank, 0.01);
+    }
+  }
+}
+
+void tumbling_crates(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 5e-3);
+  const Judge judge = played.judge();
+  found.at_most("in each other (m)", deepest_between(judge, 1, judge.frames() - 1), 5e-3);
+  found.at_most("fastest at the end (m/s)", judge.fastest(judge.frames() - 1), 0.02);
+}
+
+void pile(const Scene& scene, bool quick, Findings& found) {
+  for (int seed = 0; seed < seeds(quick, 3); ++seed) {
+    const Played played(reseeded(scene, seed));
+    found.sound(played, 5e-3);
+    const Judge judge = played.judge();
+    const int end = judge.frames() - 1;
+    found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.01);
+    found.at_most("fastest body at the end (m/s)", judge.fastest(end), 0.1);
+    note_times(played, found);
+  }
+}
+
+void crowd_pushed(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 0.01);
+  const Judge judge = played.judge();
+  const int end = judge.frames() - 1;
+  found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.02);
+  found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 15);
+  double away = 0;
+  for (int m = 0; m < judge.members(); ++m)
+    away = std::max(away, (judge.center_of_mass(end, m) - judge.center_of_mass(0, m)).norm());
+  found.at_most("away from its place at the end (m)", away, 0.01);
+  note_times(played, found);
+}
+
+void back_from_ragdoll(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 5e-3);
+  const Judge judge = played.judge();
+  double lay = 1e9, away = 0;
+  for (int f = judge.frame_at(2.5); f <= judge.frame_at(3); ++f)
+    lay = std::min(lay, judge.center_of_mass(f, 0).z());
+  found.at_most("height at which it lay (m)", lay, 0.35);
+  for (int f = judge.frame_at(4); f < judge.frames(); ++f) {
+    const auto& now = played.recording.frames[static_cast<std::size_t>(f)].characters[0].model;
+    const auto& first = played.recording.frames[0].characters[0].model;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      away = std::max(away, double((now[i].translation - first[i].translation).norm()));
+  }
+  found.at_most("away from its target a second later (m)", away, 1e-3);
+}
+
+void led_through(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 0.02);
+  const Judge judge = played.judge();
+  const int end = judge.frames() - 1;
+  double crates = 0;
+  for (int m = 2; m < judge.members(); ++m) crates = std::max(crates, fastest_of(judge, 1, end, m));
+  found.at_most("fastest crate (m/s)", crates, 4);
+  found.at_most("fastest body of who lies (m/s)", fastest_of(judge, 1, end, 1), 6);
+  found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.03);
+}
+
+void in_one_another(const Scene& scene, bool, Findings& found) {
+  const Played played(scene);
+  found.sound(played, 1e-3);
+  const Judge judge = played.judge();
+  const int end = judge.frames() - 1;
+  found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 2);
+  found.at_most("in each other at the end (m)", judge.depth_between(end), 5e-3);
+}
+
+/// The same scene for a figure of `size` times the lengths and its cube times the masses.
+Scene scaled(Scene scene, double size) {
+  for (scene::SceneCharacter& c : scene.characters) {
+    auto asset = std::make_shared<Asset>(*c.asset);
+    Skeleton& s = asset->skeleton;
+    for (Joint& joint : s.joints) {
+      joint.rest.translation *= size;
+      joint.center_of_mass *= size;
+      joint.mass *= std::pow(size, 3);
+      joint.inertia *= std::pow(size, 5);
+      for (DofLimits& dof : joint.dofs) {
+        dof.torque_minus *= std::pow(size, 4);
+        dof.torque_plus *= std::pow(size, 4);
+        dof.dry_friction *= std::pow(size, 4);
+        dof.damping *= std::pow(size, 4.5);
+      }
+    }
+    for (Collider& collider : s.colliders) {
+      collider.local.translation *= size;
+      collider.size *= size;
+    }
+    c.asset = asset;
+    c.position *= size;
+    c.speeds.random /= std::sqrt(size);
+  }
+  scene.duration *= std::sqrt(size);
+  scene.frame_rate /= std::sqrt(size);
+  return scene;
+}
+
+void collapse(const Scene& scene, bool, Findings& found) {
+  const Played human(scene);
+  found.sound(human, 2e-3);
+  const Judge of_human = human.judge();
+  for (const double size : {1.0 / 15, 0.2, 3.0, 10.0}) {
+    const Played other(scaled(scene, size));
+    if (!other.refused.empty()) return found.refuse(other.refused);
+    const Judge judge = other.judge();
+    double most = 0;
+    for (int f = 0; f < std::min(judge.frames(), of_human.frames()); ++f)
+      most = std::max(most, (judge.center_of_mass(f, 0) / size - of_human.center_of_mass(f, 0)).norm());
+    found.at_most("centre of mass, from the human's (human's m)", most, 0.05);
+    found.at_most(
+        "deepest in the floor (human's m)",
+        judge.worst(1, judge.frames() - 1, [&](int f) { return judge.depth_in_surroundings(f) / size; }),
+        5e-3);
+  }
+}
+
+void hit_on_the_hand(const Scene& scene, bool, Findings& found) {
+  const auto way = [&](double hz, double share) {
+    Scene at = scene;
+    at.frame_rate = hz;
+    at.pushes[0].impulse *= share;
+    const Played played(at);
+    const Judge judge = played.judge();
+    const auto hand = static_cast<std::size_t>(scene.pushes[0].joint);
+    const auto place = [&](double t) {
+      return Vec3<double>(played.recording.frames[static_cast<std::size_t>(judge.frame_at(t))]
+                              .characters[0]
+                              .model[hand]
+                              .translation.cast<double>());
+    };
+    return (place(scene.pushes[0].time + 0.1) - place(scene.pushes[0].time)).norm();
+  };
+  const auto compare = [&](const char* name, double share) {
+    const double truth = way(1920, share);
+    for (const double hz : {120.0, 60.0, 30.0})
+      found.at_most(name, std::abs(way(hz, share) / truth - 1), 0.05);
+  };
+  compare("hand's way after 0.1 s, from that at 1/1920 s", 1);
+  compare("the same of a sixth of the hit", 1.0 / 6);
+}
+
+void thrown_at_each_other(const Scene& scene, bool quick, Findings& found) {
+  for (const double hz : {60.0, 30.0})
+    for (int seed = 0; seed < seeds(quick, 6, 2); ++seed) {
+      Scene at = reseeded(scene, seed);
+      at.frame_rate = hz;
+      const Played played(at);
+      found.sound(played, 5e-3);
+      const Judge judge = played.judge();
+      const int end = judge.frames() - 1;
+      found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.01);
+      double start = 0, most = 0;
+      for (int m = 0; m < 2; ++m) start += judge.kinetic(1, m);
+      for (int f = 1; f <= judge.frame_at(0.6); ++f)
+        most = std::max(most, judge.kinetic(f, 0) + judge.kinetic(f, 1));
+      found.at_most("kinetic energy, of what they began with", most / start, 1.15);
+    }
+}
+
+void long_rest(const Scene& scene, bool quick, Findings& found) {
+  Scene shortened = scene;
+  if (quick) shortened.duration = 12;
+  const Played played(shortened);
+  found.sound(played, 5e-3);
+  const Judge judge = played.judge();
+  const int end = judge.frames() - 1, settled = judge.frame_at(8);
+  double drift = 0;
+  for (int m = 0; m < judge.members(); ++m)
+    drift = std::max(drift, (judge.center_of_mass(end, m) - judge.center_of_mass(settled, m)).norm());
+  found.at_most("creeps after 8 s (m)", drift, 0.01);
+  found.at_most("in each other at the end (m)", judge.depth_between(end), 5e-3);
+}
+
+void bouncing_ball(const Scene& scene, bool, Findings& found) {
+  for (const double hz : {120.0, 60.0, 30.0}) {
+    Scene at = scene;
+    at.frame_rate = hz;
+    const Played played(at);
+    found.sound(played, 5e-3);
+    const Judge judge = played.judge();
+    const Eigen::Vector3d before = judge.velocity(1, 0), after = judge.velocity(judge.frames() - 1, 0);
+    found.at_most("speed along the floor, from 5/7 of what it had",
+                  std::abs(after.x() / before.x() / (5.0 / 7) - 1), 0.03);
+  }
+}
+
+}  // namespace
+
+std::vector<Situation> situations() {
+  return {
+      {"bystanders", "what is near and never touches changes nothing, to the bit", bystanders},
+      {"levels", "another's detail changes nothing", levels},
+      {"corner", "ten figures at 15 m/s stay above the floor and before the walls", corner},
+      {"pit", "twelve figures and 300 balls", pit},
+      {"nosing", "feet stand on the edge of a step", nosing},
+      {"narrow", "what lies on something narrower than itself stays there", narrow},
+      {"tumbling_crates", "crates fall edge first and come to rest on each other", tumbling_crates},
+      {"pile", "ten limp figures come to rest on each other", pile},
+      {"crowd_pushed", "twenty figures are hit at once and stand up again", crowd_pushed},
+      {"back_from_ragdoll", "who lay limp is on its animation a second after it may", back_from_ragdoll},
+      {"led_through", "a led figure walks through crates and over one who lies", led_through},
+      {"in_one_another", "what was made in one another parts at a walking pace", in_one_another},
+      {"collapse", "a giant and a mouse collapse as a human does, in their own time", collapse},
+      {"hit_on_the_hand", "a hit has the effect of fine steps at 120, 60 and 30 Hz", hit_on_the_hand},
+      {"thrown_at_each_other", "two figures collide at 8 m/s", thrown_at_each_other},
+      {"long_rest", "limp figures lie still", long_rest},
+      {"bouncing_ball", "5/7 of the speed along the floor is left", bouncing_ball},
+  };
+}
+
+const char* known_to_fail(const std::string&) {
+  return nullptr;
+}
+
+}  // namespace sinew::study
