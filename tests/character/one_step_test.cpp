@@ -294,7 +294,7 @@ std::vector<Transform<double>> swung(int parts, bool as_steps) {
     EXPECT_TRUE(hero.set_target(jets).ok());
     if (n == 0) hero.reset();
     if (n / steps == 6) {
-      EXPECT_TRUE(hero.apply_impulse(2, hero.model()[2].translation, Vec3<double>(60, 20, 0) / steps).ok());
+      EXPECT_TRUE(hero.apply_force(2, hero.model()[2].translation, 60 * Vec3<double>(60, 20, 0)).ok());
     }
     if (n > 0) {
       EXPECT_TRUE(playing.world.step(1 / (60.0 * steps)).ok());

@@ -116,7 +116,8 @@ std::vector<Impulse> Play<T>::pushes(double from, double to) {
     }
     if (impulse.isZero(0)) continue;
     const Transform<double> joint = world_.character(p.character).model()[p.joint].template cast<double>();
-    out.push_back({p.character, p.joint, joint * p.point, impulse});
+    const bool lasts = p.duration > 0 || !p.force.empty();
+    out.push_back({p.character, p.joint, joint * p.point, impulse, lasts});
   }
   return out;
 }

@@ -9,11 +9,20 @@
 
 namespace sinew::scene {
 
-/// An impulse (N·s) of a push on a world point of a joint, spread over one step.
+/// What a push does to a world point of a joint in one step.
 struct Impulse {
   int character = 0, joint = 0;
-  Vec3<double> point = Vec3<double>::Zero(), impulse = Vec3<double>::Zero();
+  Vec3<double> point = Vec3<double>::Zero(), impulse = Vec3<double>::Zero();  ///< N·s
+  bool lasts = false;  ///< a force over the step, no hit
 };
+/// Applies it to a step of h seconds.
+template <class T>
+Status apply(const Impulse& p, T h, World<T>& world) {
+  Character<T> character = world.character(p.character);
+  const Vec3<T> point = p.point.cast<T>(), impulse = p.impulse.cast<T>();
+  return p.lasts ? character.apply_force(p.joint, point, impulse / h)
+                 : character.apply_impulse(p.joint, point, impulse);
+}
 
 /// Scene and world must outlive it.
 template <class T>

@@ -77,8 +77,7 @@ class Runner {
 
   convert::Error push(double from, double to) {
     for (const Impulse& p : play_.pushes(from, to)) {
-      const Status status =
-          world_.character(p.character).apply_impulse(p.joint, p.point.cast<T>(), p.impulse.cast<T>());
+      const Status status = apply(p, T(to - from), world_);
       if (!status) return {"push at " + std::to_string(from) + " s: " + status.reason};
     }
     return {};

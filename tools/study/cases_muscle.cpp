@@ -78,8 +78,8 @@ struct TwistedLink {
     const Vec3<double> arm = 0.05 * couple.unitOrthogonal(),
                        force = couple.cross(arm) / (2 * arm.squaredNorm());
     const Vec3<double> at = stage.character(0).model()[1].translation.template cast<double>();
-    stage.push(0, 1, at + arm, force * h);
-    stage.push(0, 1, at - arm, -force * h);
+    stage.press(0, 1, at + arm, force, h);
+    stage.press(0, 1, at - arm, -force, h);
     return stage.step(h);
   }
   Vec3<double> torque() {
@@ -235,8 +235,8 @@ Verdict ragdoll_and_back_each_second(const Trial& t) {
     was_limp = is_limp;
     stage.character(0).set_strength(T(is_limp ? 0 : 1));
     if (is_limp)
-      stage.push(0, 0, stage.character(0).model()[0].translation.template cast<double>(),
-                 Vec3<double>(50, 20 * std::sin(time), 0) * t.h);
+      stage.press(0, 0, stage.character(0).model()[0].translation.template cast<double>(),
+                  Vec3<double>(50, 20 * std::sin(time), 0), t.h);
   });
   Verdict v(stage.measured());
   v.sound();

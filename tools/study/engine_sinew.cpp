@@ -66,7 +66,7 @@ class SinewEngine : public Engine {
   void push(int figure, int joint, const Vec3<double>& impulse) override {
     const Character<T> c = character(figure);
     const Vec3<T> at = c.model()[joint] * c.skeleton().joints[joint].center_of_mass.template cast<T>();
-    (void)character(figure).apply_impulse(joint, at, impulse.cast<T>());
+    (void)character(figure).apply_force(joint, at, impulse.cast<T>() / T(h_));
   }
   double energy() const override { return energy_; }
   std::vector<Transform<double>> pose(int figure) const override {

@@ -153,9 +153,9 @@ void Stage<T>::add_obstacle(const Collider& obstacle) {
 }
 
 template <class T>
-void Stage<T>::push(int c, int joint, const Vec3<double>& point, const Vec3<double>& impulse) {
-  const Status status =
-      character(c).apply_impulse(joint, point.template cast<T>(), impulse.template cast<T>());
+void Stage<T>::push(const scene::Impulse& push, double h) {
+  const auto& [c, joint, point, impulse, lasts] = push;
+  const Status status = scene::apply(push, T(h), *world_);
   if (!status) {
     m_.refused = status.reason;
     return;
@@ -246,8 +246,7 @@ bool Stage<T>::follow_script(double h) {
     refuse(error.message);
     return false;
   }
-  for (const scene::Impulse& p : script_->play.pushes(from, to))
-    push(p.character, p.joint, p.point, p.impulse);
+  for (const scene::Impulse& p : script_->play.pushes(from, to)) push(p, h);
   return m_.refused.empty();
 }
 

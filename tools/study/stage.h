@@ -58,7 +58,13 @@ class Stage {
   void add_obstacle(const Collider& obstacle);
 
   /// Impulse (N·s) at a world point of a joint during the next step; its work is booked.
-  void push(int character, int joint, const Vec3<double>& point, const Vec3<double>& impulse);
+  void push(int character, int joint, const Vec3<double>& point, const Vec3<double>& impulse) {
+    push({character, joint, point, impulse, false}, 1);
+  }
+  /// A force (N) over the next step, of h seconds.
+  void press(int character, int joint, const Vec3<double>& point, const Vec3<double>& force, double h) {
+    push({character, joint, point, h * force, true}, h);
+  }
   /// The state has been set from outside (teleport, reset): the books start afresh at the next step.
   void forget() { fresh_ = true; }
 
@@ -109,6 +115,7 @@ class Stage {
   void enter(const PropSettings& prop);
   bool follow_script(double h);
 
+  void push(const scene::Impulse& push, double h);
   double work_of_pushes(double h);
   double work_of_muscles();
   void measure_gaps(int index);

@@ -216,7 +216,7 @@ bool touched(const Tree<T>& tree, std::span<const Contact<T>> contacts, int inde
 template <class T>
 void choose_baked(CharacterState<T>& s, int bake_every, T h) {
   const bool asked = s.detail.bake || std::min(s.detail.most, s.levels.cap) <= Level::kPartial;
-  const bool bakes = asked && bake_every > 1 && !s.is_prop && s.impulses.empty() &&
+  const bool bakes = asked && bake_every > 1 && !s.is_prop && !s.pushed() &&
                      s.levels.steps % static_cast<std::uint32_t>(bake_every) != 0;
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.baked[i] = 0;

@@ -127,20 +127,39 @@ void Character<T>::set_root_drive(RootDrive drive) {
   state_->levels.wake = true;
 }
 
+namespace {
+
+/// Appends an impulse or force at a world point on the body of a joint to those of a character.
+template <class T>
+Status push(CharacterState<T>& s, int joint, const Vec3<T>& point, const Vec3<T>& vector,
+            std::vector<ExternalForce<T>>& pushes) {
+  if (joint < 0 || joint >= static_cast<int>(s.local.size()))
+    return Status::error(Code::kInvalidArgument, "no such joint", joint);
+  if (pushes.capacity() == 0)
+    return Status::error(Code::kInvalidArgument, "the world declares no Impulses", joint);
+  if (pushes.size() == pushes.capacity())
+    return Status::error(Code::kOutOfRange, "more than 64 impulses or forces in one step", joint);
+  const int body = s.body_of(joint);
+  pushes.push_back({body, s.model()[body].inverse() * point, vector});
+  return {};
+}
+
+}  // namespace
+
 template <class T>
 Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse) {
-  if (joint < 0 || joint >= static_cast<int>(state_->local.size()))
-    return Status::error(Code::kInvalidArgument, "no such joint", joint);
   if (!point.allFinite() || !impulse.allFinite())
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
-  if (state_->impulses.capacity() == 0)
-    return Status::error(Code::kInvalidArgument, "the world declares no Impulses", joint);
   if (impulse.norm() > T(1e5)) return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s", joint);
-  if (state_->impulses.size() == state_->impulses.capacity())
-    return Status::error(Code::kOutOfRange, "more than 64 impulses in one step", joint);
-  const int body = state_->body_of(joint);
-  state_->impulses.push_back({body, state_->model()[body].inverse() * point, impulse});
-  return {};
+  return push(*state_, joint, point, impulse, state_->impulses);
+}
+
+template <class T>
+Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force) {
+  if (!point.allFinite() || !force.allFinite())
+    return Status::error(Code::kNotFinite, "force is not finite", joint);
+  if (force.norm() > T(6e6)) return Status::error(Code::kOutOfRange, "force above 6e6 N", joint);
+  return push(*state_, joint, point, force, state_->forces);
 }
 
 template <class T>

@@ -33,6 +33,8 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
     m.velocity = s.owed.history ? s.motion.velocity[body] : s.history.velocity[body];
     m.any = std::min(h * spin, T(2)) * arm;  // a chord
   }
+  for (const ExternalForce<T>& force : s.forces)
+    m.any += h * h * force.force.norm() / std::max(s.tree.mass[force.body], std::numeric_limits<T>::min());
   for (const ExternalForce<T>& impulse : s.impulses)
     m.any += h * impulse.force.norm() / std::max(s.tree.mass[impulse.body], std::numeric_limits<T>::min());
   return m;

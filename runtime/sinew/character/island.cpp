@@ -243,6 +243,17 @@ void IslandStepper<T>::find_contacts(T h) {
   contacts_ = contacts_.first(static_cast<std::size_t>(rest - contacts_.begin()));
 }
 
+/// The host's forces of this step, and the impulses that do not strike, as forces over it, times `emphasis`.
+template <class T>
+void IslandStepper<T>::write_pushes(CharacterState<T>& s, T emphasis) const {
+  std::vector<ExternalForce<T>>& pushes = s.problem.pushes;
+  pushes.clear();
+  for (const ExternalForce<T>& f : s.forces) pushes.push_back({f.body, f.local, emphasis * f.force});
+  if (!settings_.plan->scheme && s.is_struck(return_time())) return;  // see strike()
+  for (const ExternalForce<T>& j : s.impulses)
+    pushes.push_back({j.body, j.local, emphasis / frame_ * j.force});
+}
+
 /// Sets the problems up for one part of the step, which ends at `fraction` of it, and finds what may touch.
 template <class T>
 void IslandStepper<T>::begin_part(T h, T fraction) {
@@ -268,10 +279,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     choose_baked<T>(*s, world.detail.bake_every, h);
     choose_unknowns(*s);
     first_guess(*s, h);
-    s->problem.pushes.clear();
-    if (!settings_.plan->scheme && s->is_struck(return_time())) continue;  // see strike()
-    for (const ExternalForce<T>& j : s->impulses)
-      s->problem.pushes.push_back({j.body, j.local, j.force / frame_});
+    write_pushes(*s, T(1));
   }
   if (!settings_.plan->scheme) drop_played();
   find_contacts(h);

@@ -89,6 +89,7 @@ class IslandStepper {
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);
   void forget_contacts();
+  void write_pushes(CharacterState<T>& state, T emphasis) const;
   void stop_lost();
   void hold_lost(bool no_pose);
   T return_time() const { return T(world_->accuracy.return_time); }

@@ -24,7 +24,7 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return s->impulses.empty() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+    return !s->pushed() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 

@@ -148,9 +148,7 @@ void IslandStepper<T>::predict_all(T h) {
                 std::span(struck_momentum_).subspan(body, s.tree.bodies)};
     body += s.tree.bodies;
     predict_bossak<T>(s.tree, s.history, strike, radius_[set_[n]], h, settings_.common_origin, p.prediction);
-    const T emphasis = constant_emphasis(p.prediction.weight, h);
-    for (std::size_t j = 0; j < p.pushes.size(); ++j)
-      p.pushes[j].force = emphasis / frame_ * s.impulses[j].force;
+    if (s.pushed()) write_pushes(s, constant_emphasis(p.prediction.weight, h));
   }
 }
 
@@ -160,7 +158,7 @@ void IslandStepper<T>::predict_euler_all(T h) {
   for (CharacterState<T>* s : states_) {
     TreeProblem<T>& p = s->problem;
     predict_euler<T>(s->tree, s->history, h, settings_.common_origin, p.prediction);
-    for (std::size_t j = 0; j < p.pushes.size(); ++j) p.pushes[j].force = s->impulses[j].force / frame_;
+    if (s->pushed()) write_pushes(*s, T(1));
   }
 }
 

@@ -123,8 +123,7 @@ void IslandStepper<T>::find_accelerations() {
     first_guess(*s, h);
     forward_kinematics<T>(s->tree, p.start, p.common_origin, p.kinematics);
     s->history.accelerates = trial.converged;
-    if (s->is_struck(return_time())) continue;
-    for (const ExternalForce<T>& j : s->impulses) p.pushes.push_back({j.body, j.local, j.force / frame_});
+    write_pushes(*s, T(1));
   }
   if (trial.converged) begin_loaded(h);
 }

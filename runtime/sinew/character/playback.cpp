@@ -38,6 +38,8 @@ bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& p
                        p.force, p.moment);
   for (const ExternalForce<T>& j : s.impulses)
     plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
+  for (const ExternalForce<T>& f : s.forces)
+    plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
   if (plan.support && world.ground && world.ground_support && s.settings.ground_contact)
     plan.support->share(s.rig->support, p.kinematics, T(world.ground_height) - origin.z(), s.standing,
                         p.force, p.moment);

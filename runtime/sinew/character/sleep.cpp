@@ -9,7 +9,7 @@ namespace {
 /// A state whose target moves is not at rest, however slow it is, unless it has no use for a target.
 template <class T>
 bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
-  if (!s.impulses.empty() || s.crowded) return false;
+  if (s.pushed() || s.crowded) return false;
   for (const Effect<T>* effect : s.problem.effects)
     if (!effect->passive()) return false;  // wind rises again
   if (!s.limp()) {
@@ -29,7 +29,7 @@ bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
 
 template <class T>
 bool is_woken(const CharacterState<T>& s) {
-  return s.levels.wake || !s.impulses.empty();
+  return s.levels.wake || s.pushed();
 }
 
 template <class T>

@@ -28,14 +28,13 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   visit_enum("level", l.level, Level::kSubsteps, stream);
   visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
   visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
-  std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
-                                                 (l.wake ? 4 : 0) + (s.pushed ? 8 : 0));
-  stream.value("asleep, baked, to be woken, pushed", flags);
+  std::uint8_t flags =
+      static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) + (l.wake ? 4 : 0));
+  stream.value("asleep, baked, to be woken", flags);
   if (stream.reading()) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
-    s.pushed = (flags & 8) != 0;
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -200,8 +199,23 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   s.owed = {};
   s.settle_deviations();
   s.impulses.clear();
+  s.forces.clear();
   s.refresh_limits();
   s.pose_changed();
+}
+
+/// Impulses, or forces.
+template <class T>
+void visit_pushes(const CharacterState<T>& s, std::vector<ExternalForce<T>>& pushes, ByteStream& stream) {
+  std::uint32_t count = static_cast<std::uint32_t>(pushes.size());
+  stream.value("number of impulses or forces", count);
+  if (stream.reading()) pushes.resize(std::min<std::size_t>(count, pushes.capacity()));
+  for (ExternalForce<T>& push : pushes) {
+    stream.value("its body", push.body);
+    if (stream.reading()) push.body = std::clamp(push.body, 0, s.tree.bodies - 1);
+    stream.vector("its point", push.local);
+    stream.vector("impulse or force", push.force);
+  }
 }
 
 template <class T>
@@ -215,15 +229,8 @@ void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
     stream.vector("target velocity", jet.velocity);
     stream.vector("target acceleration", jet.acceleration);
   }
-  std::uint32_t count = static_cast<std::uint32_t>(s.impulses.size());
-  stream.value("number of impulses", count);
-  if (stream.reading()) s.impulses.resize(std::min<std::size_t>(count, s.impulses.capacity()));
-  for (ExternalForce<T>& impulse : s.impulses) {
-    stream.value("impulse's body", impulse.body);
-    if (stream.reading()) impulse.body = std::clamp(impulse.body, 0, s.tree.bodies - 1);
-    stream.vector("impulse's point", impulse.local);
-    stream.vector("impulse", impulse.force);
-  }
+  visit_pushes(s, s.impulses, stream);
+  visit_pushes(s, s.forces, stream);
 }
 
 namespace {
@@ -343,7 +350,8 @@ std::size_t bytes_at_most(const MovingParts<T>& world, Content content) {
   std::size_t room = kHeaderBytes + stream.position();
   if (content == Content::kInputs)
     for (const auto& s : world.states)
-      room += (s->impulses.capacity() - s->impulses.size()) * (sizeof(int) + 6 * sizeof(T));
+      for (const auto* v : {&s->impulses, &s->forces})
+        room += (v->capacity() - v->size()) * (sizeof(int) + 6 * sizeof(T));
   return room;
 }
 

@@ -109,7 +109,8 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       baked(tree.bodies, 0),
       wanted(tree.bodies) {
   floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
-  if (plan.impulses) impulses.reserve(64);
+  if (plan.impulses)
+    for (auto* v : {&impulses, &forces}) v->reserve(64);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Transform<T> rest = skeleton.joints[i].rest.template cast<T>();
     target[i].rotation = rest.rotation;
@@ -460,7 +461,7 @@ bool CharacterState<T>::is_struck(T return_time) const {
   const auto moves = [&](const ExternalForce<T>& impulse) {
     return impulse.force.norm() * return_time > T(kFelt) * tree.mass[impulse.body];
   };
-  return !pushed && std::any_of(impulses.begin(), impulses.end(), moves);
+  return std::any_of(impulses.begin(), impulses.end(), moves);
 }
 
 template <class T>

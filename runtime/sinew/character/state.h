@@ -105,7 +105,6 @@ struct CharacterState {
   bool parked = false;   ///< out of the world
   bool crowded = false;  ///< near one whom it was not solved together with: the island was full
   bool carried = false;  ///< in this step, see carry_over()
-  bool pushed = false;   ///< in the step before: what pushes again is a force, no hit
   bool calm = true;      ///< no joint deviates: see settle_deviations
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
@@ -128,6 +127,7 @@ struct CharacterState {
   std::vector<T> torque, load, limit;              ///< [dof]
   std::vector<T> smooth, lasting, lasting_before;  ///< [dof] of limits and springs: see Contact
   std::vector<std::uint8_t> unknown;               ///< [dof]
+  std::vector<ExternalForce<T>> forces;            ///< N, over the next step
   std::vector<ExternalForce<T>> impulses;          ///< N·s, waiting for the next step
 
   TreeProblem<T> problem;
@@ -232,13 +232,13 @@ struct CharacterState {
   bool joint_is_limited(int body) const;
   /// Speed of the fastest body, m/s.
   T fastest() const;
+  /// The host pushes it in the coming step.
+  bool pushed() const { return !impulses.empty() || !forces.empty(); }
   /// No joint has a muscle, nothing drives the root.
   bool limp() const;
-  /// Whether the impulses of the coming step change velocities at its beginning: those on what no muscle
-  /// holds, and on others hits. No muscle is quick enough to do anything about a hit, while over a step it
-  /// would bear what it can stop in one. What has pushed in the step before is a force that lasts, and what
-  /// moves nothing by more than a millimetre until its muscles have brought it back (τ/e of its speed) is
-  /// left to them.
+  /// Whether the impulses of the coming step change velocities at its beginning: no muscle is quick enough to
+  /// do anything about them, while over a step it would bear what it can stop in one. What moves nothing by
+  /// more than a millimetre until its muscles have brought it back (τ/e of its speed) is left to them.
   bool is_struck(T return_time) const;
   /// Nor is any joint put anywhere but by the solve: where the way back to the animation leads is not asked.
   bool only_falls() const {

@@ -362,7 +362,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     bool plays = true;
     for (const int n : islands.members(i)) {
       room += states[n]->problem.room;
-      plays = plays && !states[n]->tied && states[n]->undisturbed() && states[n]->impulses.empty();
+      plays = plays && !states[n]->tied && states[n]->undisturbed() && !states[n]->pushed();
     }
     for (const int n : islands.ties(i)) room += couplings.room(n);
     (!room.fits(small_room) ? large : plays && room.trees == 1 ? light : heavy).push_back(i);

@@ -153,9 +153,12 @@ class Character {
   void set_root_drive(RootDrive drive);
   Status set_detail(const CharacterDetail& detail);
   const CharacterDetail& detail() const;
-  /// Impulse (N·s, world) at a world point on the body of a joint, spread over the next step; at its
-  /// beginning where no muscle holds the character.
+  /// A hit: impulse (N·s, world) at a world point on the body of a joint, at the beginning of the next step,
+  /// whatever muscles hold it; they bring it back. One that moves nothing by a millimetre is left to them.
   Status apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse);
+  /// A load: force (N, world) at a world point on the body of a joint, during the next step. Muscles bear it
+  /// as far as they can. What pushes for longer is applied in every step.
+  Status apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force);
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
   std::span<const Transform<T>> model() const;  ///< [joint] joint → world

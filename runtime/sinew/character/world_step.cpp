@@ -50,7 +50,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members, Wo
   };
   if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
-  const bool checks = s.levels.steps % every == 0 || !s.impulses.empty() || s.levels.level > Level::kChecked;
+  const bool checks = s.levels.steps % every == 0 || s.pushed() || s.levels.level > Level::kChecked;
   if (checks && !play(s, settings, plan, h)) return false;
   if (!checks) follow(s, settings, h);
   s.levels.did = checks ? Level::kChecked : Level::kPlayback;
@@ -101,8 +101,8 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
-    s->pushed = !s->impulses.empty();
     s->impulses.clear();
+    s->forces.clear();
     s->target_stands = true;
     s->report.carried = s->carried;
   }

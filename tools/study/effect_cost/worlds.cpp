@@ -66,7 +66,7 @@ struct Checked : Work {
   void prepare() override {
     Character<float> figure = world.character(0);
     for (int i = 0; effect == "impulses" && i < instances; ++i)
-      check(figure.apply_impulse(i + 1, figure.model()[i + 1].translation, {0.1f, 0, 0.1f}));
+      check(figure.apply_force(i + 1, figure.model()[i + 1].translation, {0.1f / kStep, 0, 0.1f / kStep}));
   }
   void step() override { (void)world.step(kStep); }
   std::size_t bytes() const override { return effect_bytes; }
