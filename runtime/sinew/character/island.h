@@ -102,7 +102,6 @@ class IslandStepper {
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   void drop_played();
   void strike_all();
-  void end_deviations(CharacterState<T>& state, int tree, T h);
   void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();

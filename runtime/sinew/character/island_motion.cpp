@@ -600,19 +600,6 @@ void IslandStepper<T>::number_bodies() {
   impulse_.resize(dofs);
 }
 
-/// What has left the animation goes back from the speed that it has at the end of the step: until here it is
-/// the mean over it, which for a muscle that brakes is too fast by half of what it takes off in a step.
-template <class T>
-void IslandStepper<T>::end_deviations(CharacterState<T>& s, int tree, T h) {
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    Deviation<T>& d = s.deviation[i];
-    if (d.on_animation || d.on_path) continue;
-    const std::array<T, 6> moved = joint_offset_value<T>(s.tree, i, s.problem.start[i], s.problem.local[i]);
-    for (int k = 0; k < s.tree.dof_count(i); ++k)
-      if (ends_.loose(tree, s.tree.first_dof[i] + k)) d.rate[k] += s.rate[i][k] - moved[k] / h;
-  }
-}
-
 /// Moves all trees' histories on to the solution.
 template <class T>
 void IslandStepper<T>::advance_one_step(T h) {
@@ -651,7 +638,6 @@ void IslandStepper<T>::advance_one_step(T h) {
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     ends_.write(static_cast<int>(n), s.history, s.rate);
-    if (!s.limp()) end_deviations(s, static_cast<int>(n), h);
   }
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->clear();  // in the parts to come nothing strikes
 }
@@ -690,7 +676,6 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::find_sets();                                                        \
   template void IslandStepper<T>::predict_all(T);                                                     \
   template void IslandStepper<T>::predict_euler_all(T);                                               \
-  template void IslandStepper<T>::end_deviations(CharacterState<T>&, int, T);                         \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
   template void IslandStepper<T>::strike_all();                                                       \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \

@@ -405,8 +405,9 @@ template <class T>
 void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured, T h, T return_time) {
   Deviation<T>& d = deviation[i];
   std::array<T, 6> from_animation = continued(tree.type[i], measured, d.offset);
-  // The way back is no longer than three quarters of a turn.
-  const bool around = length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
+  // The way back is no longer than three quarters of a turn, nor than need be where no muscle has begun it.
+  const bool around =
+      !joint_is_driven(i) || length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
   const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
   T offset = T(0), speed = T(0);
   d.on_path = true;
