@@ -111,9 +111,10 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
+    s.local[i] = p.local[i];
+    if (falls) continue;
     const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, s.wanted[i], p.local[i]);
-    const std::array<T, 6> from_target =
-        falls ? from_animation : joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
+    const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
     T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
@@ -126,9 +127,14 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     if (!s.baked[i] || s.joint_is_driven(i))
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
-    s.local[i] = p.local[i];
   }
-  s.settle_deviations();
+  if (!falls) {
+    s.settle_deviations();
+  } else if (!s.owed.deviations) {
+    s.owed.deviations = true;
+    std::fill(s.deviation.begin(), s.deviation.end(), Deviation<T>{});
+    std::fill(s.load.begin(), s.load.end(), T(0));
+  }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step_before = s.rate_step;

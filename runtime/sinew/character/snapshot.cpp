@@ -28,13 +28,14 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   visit_enum("level", l.level, Level::kSubsteps, stream);
   visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
   visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
-  std::uint8_t flags =
-      static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) + (l.wake ? 4 : 0));
-  stream.value("asleep, baked, to be woken", flags);
+  std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
+                                                 (l.wake ? 4 : 0) + (s.owed.deviations ? 8 : 0));
+  stream.value("asleep, baked, to be woken, only falling", flags);
   if (stream.reading()) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
+    s.owed = {.deviations = (flags & 8) != 0};
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -196,7 +197,6 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_joints(s, stream);
   visit_history(s, stream);
   if (!stream.reading()) return;
-  s.owed = {};
   s.settle_deviations();
   s.impulses.clear();
   s.refresh_limits();
