@@ -58,6 +58,7 @@ bool carry_over(CharacterState<T>& s, T h) {
 
 template <class T>
 void meet_cuts(CharacterState<T>& s, T h) {
+  if (s.target_stands) return;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
     const Transform<T> before = a_step_ago(now, h);

@@ -434,8 +434,10 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
   measure_constant(s, p, tree, p.kinematics);
   const T share = lasting_share(p.prediction.weight, h);
+  bool bears = any;
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     if (p.free[dof]) {
+      bears = bears || others_[dof] != T(0);
       const T now = others_[dof], lasts = lasting(now, s.smooth[dof], share);
       T smooth = limited(lasts, s.lasting[dof], s.lasting_before[dof]);
       smooth = std::clamp(smooth, std::min(now, T(0)), std::max(now, T(0)));
@@ -456,6 +458,13 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
     constant_[dof] /= p.prediction.weight;
     impulse[dof] = jump_force_[dof] / h;
     jump_force_[dof] += constant_[dof];
+  }
+  if (!bears && !any_constant && p.prediction.rho > T(0)) {
+    // No more than what the solve left unbalanced, below its tolerance: velocities go without what the scheme
+    // makes of it, JᵀmJM⁻¹ being 1.
+    const T made = p.prediction.momentum_step * p.prediction.weight;
+    for (int dof = 0; dof < s.tree.dofs; ++dof) impulse[dof] -= made * jump_force_[dof];
+    return {};
   }
   for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
   ends_.respond(tree, jump_force_, moved_, turned_);

@@ -46,14 +46,16 @@ struct ArticulatedParts {
 };
 
 template <class T>
-[[gnu::always_inline]] inline SpatialVector<T> spatial(const Vec3<T>& a, const Vec3<T>& b) {
+[[gnu::always_inline]] inline SpatialVector<T> spatial(const T& a, const T& b, const T& c, const T& d,
+                                                       const T& e, const T& f) {
   SpatialVector<T> s;
-  for (int c = 0; c < 3; ++c) {
-    s[c] = a[c];
-    s[3 + c] = b[c];
-  }
+  s[0] = a, s[1] = b, s[2] = c, s[3] = d, s[4] = e, s[5] = f;
   if constexpr (std::is_arithmetic_v<T>) s[6] = s[7] = T(0);
   return s;
+}
+template <class T>
+[[gnu::always_inline]] inline SpatialVector<T> spatial(const Vec3<T>& a, const Vec3<T>& b) {
+  return spatial<T>(a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
 /// f(count), where a joint has so many unknowns. Of scalars the usual counts are constants: short loops that
@@ -100,13 +102,14 @@ SpatialForm<T> form_of(const Composite<T>& c, bool geometric) {
     arm -= c.force;
   }
   const Vec3<T>& f = c.first;
+  const Mat3<T>& t = turning;
   const T zero = T(0);
-  return {spatial<T>(turning.col(0), Vec3<T>(zero, -f.z(), f.y())),
-          spatial<T>(turning.col(1), Vec3<T>(f.z(), zero, -f.x())),
-          spatial<T>(turning.col(2), Vec3<T>(-f.y(), f.x(), zero)),
-          spatial<T>(Vec3<T>(zero, arm.z(), -arm.y()), Vec3<T>(c.mass, zero, zero)),
-          spatial<T>(Vec3<T>(-arm.z(), zero, arm.x()), Vec3<T>(zero, c.mass, zero)),
-          spatial<T>(Vec3<T>(arm.y(), -arm.x(), zero), Vec3<T>(zero, zero, c.mass))};
+  return {spatial<T>(t(0, 0), t(1, 0), t(2, 0), zero, -f.z(), f.y()),
+          spatial<T>(t(0, 1), t(1, 1), t(2, 1), f.z(), zero, -f.x()),
+          spatial<T>(t(0, 2), t(1, 2), t(2, 2), -f.y(), f.x(), zero),
+          spatial<T>(zero, arm.z(), -arm.y(), c.mass, zero, zero),
+          spatial<T>(-arm.z(), zero, arm.x(), zero, c.mass, zero),
+          spatial<T>(arm.y(), -arm.x(), zero, zero, zero, c.mass)};
 }
 
 /// What stands under the diagonal entry of an unknown with the axis (w, v): see add_floor.
