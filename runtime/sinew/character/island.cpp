@@ -226,9 +226,11 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
+  const bool falls = s.only_falls();  // then what moves follows no animation, the last frame's neither
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
-    const JointJet<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction) : now;
+    const bool within = fraction < T(1) && !(falls && s.tree.dof_count(i) > 0);
+    const JointJet<T> wanted = within ? animation_within<T>(before, now, frame_, fraction) : now;
     s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
   }
 }

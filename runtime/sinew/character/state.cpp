@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/cut.h"
 
 namespace sinew {
 namespace {
@@ -390,10 +391,11 @@ template <class T>
 void CharacterState<T>::keep_deviations(T h) {
   if (!owed.deviations || only_falls()) return;
   owed.deviations = false;
-  const auto pose_of = [](const JointJet<T>& jet) { return Transform<T>{jet.rotation, jet.translation}; };
   for (int i = 0; i < tree.bodies; ++i) {
-    const Transform<T> before = in_solve(i, pose_of(last_target()[i]), history.place),
-                       after = in_solve(i, pose_of(target[i]), history.place);
+    const JointJet<T>& jet = target[i];
+    const Transform<T> ago = a_step_ago(jet, h), before = in_solve(i, ago, history.place),
+                       after = in_solve(i, {jet.rotation, jet.translation}, history.place);
+    if (tree.dof_count(i) > 0) restart(ago, jet, own_last_target()[i]);
     Transform<T> now = local[i];
     if (i == 0 && floats) now.translation.setZero();
     std::array<T, 6> coasting = rate[i];
