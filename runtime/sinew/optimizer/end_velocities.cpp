@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "sinew/optimizer/bossak.h"
-#include "sinew/residual/turned_form.h"
 
 namespace sinew {
 namespace {
@@ -27,9 +26,10 @@ template <class T>
 void factorise_masses(TreeProblem<T>& p, std::span<const int> dofs, ArticulatedParts<T>& out) {
   const Tree<T>& tree = *p.tree;
   for (int i = 0; i < tree.bodies; ++i) {
+    const Mat3<T> turned = p.kinematics.rotation[i].lazyProduct(tree.inertia[i]);
     p.composite[i] = {};
     p.composite[i].add_body(tree.mass[i], p.kinematics.center[i],
-                            turned_form<T>(p.kinematics.rotation[i], tree.inertia[i]));
+                            turned.lazyProduct(p.kinematics.rotation[i].transpose()));
   }
   assemble_joints<T>(tree, p.kinematics, p.composite, dofs, false, out);
   std::copy_n(out.own.begin(), dofs.size(), out.factor.begin());

@@ -8,7 +8,6 @@
 
 #include "sinew/effects/gravity.h"
 #include "sinew/optimizer/bossak.h"
-#include "sinew/residual/turned_form.h"
 
 namespace sinew {
 
@@ -39,6 +38,13 @@ namespace {
 
 constexpr int kMostRotationParts = 64;  ///< of a free body's turn in one step
 
+template <class T>
+Mat3<T> world_inertia(const Tree<T>& tree, const History<T>& history, int i) {
+  const Mat3<T>& r = history.rotation[i];
+  const Mat3<T> turned = r.lazyProduct(tree.inertia[i]);
+  return turned.lazyProduct(r.transpose());
+}
+
 /// Of the whole tree, were its joints locked, about its centre of mass (m, from the history's place); world
 /// axes.
 template <class T>
@@ -46,7 +52,7 @@ Mat3<T> locked_inertia(const Tree<T>& tree, const History<T>& history, const Vec
   Mat3<T> sum = Mat3<T>::Zero();
   for (int i = 0; i < tree.bodies; ++i) {
     const Vec3<T> arm = history.center[i] - center;
-    sum += turned_form<T>(history.rotation[i], tree.inertia[i]) +
+    sum += world_inertia(tree, history, i) +
            tree.mass[i] * (arm.squaredNorm() * Mat3<T>::Identity() - arm * arm.transpose());
   }
   return sum;
