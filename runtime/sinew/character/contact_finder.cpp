@@ -563,6 +563,8 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   left_out_ = 0;
   bounds_.clear();
   first_bound_.clear();
+  const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
+  if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;
   for (const CharacterState<T>* s : states) {
     first_bound_.push_back(static_cast<int>(bounds_.size()));
     bound(*s, h);

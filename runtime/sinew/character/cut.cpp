@@ -7,26 +7,11 @@ namespace {
 
 constexpr double kCut = 0.2;  ///< rad and m: an animation that leaps further than this in one step was cut
 
-/// Where a joint's animation was a step ago, going by its velocity.
-template <class T>
-Transform<T> a_step_ago(const JointJet<T>& now, T h) {
-  return {now.rotation * rotation_exp<T>(-h * now.omega), now.translation - h * now.velocity};
-}
-
 template <class T>
 bool leaps(const Transform<T>& before, const JointJet<T>& last) {
   const T cut_cosine = std::cos(T(kCut / 2));
   return (before.translation - last.translation).norm() >= T(kCut) ||
          std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
-}
-
-/// The last target becomes one that led to `now`.
-template <class T>
-void restart(const Transform<T>& before, const JointJet<T>& now, JointJet<T>& last) {
-  last.rotation = before.rotation;
-  last.translation = before.translation;
-  last.omega = now.omega;
-  last.velocity = now.velocity;
 }
 
 template <class T>
@@ -58,6 +43,7 @@ bool carry_over(CharacterState<T>& s, T h) {
 
 template <class T>
 void meet_cuts(CharacterState<T>& s, T h) {
+  if (s.target_stands) return;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
     const Transform<T> before = a_step_ago(now, h);

@@ -5,6 +5,21 @@
 
 namespace sinew {
 
+/// Where a joint's animation was h seconds ago, going by its velocity.
+template <class T>
+Transform<T> a_step_ago(const JointJet<T>& now, T h) {
+  return {now.rotation * rotation_exp<T>(-h * now.omega), now.translation - h * now.velocity};
+}
+
+/// The last target becomes one that led to `now`.
+template <class T>
+void restart(const Transform<T>& before, const JointJet<T>& now, JointJet<T>& last) {
+  last.rotation = before.rotation;
+  last.translation = before.translation;
+  last.omega = now.omega;
+  last.velocity = now.velocity;
+}
+
 /// A driven root whose animation leaps further than it could have moved takes the character along: everything
 /// is set down where the new animation was a step ago, going by its velocity, and what hangs limp keeps its
 /// motion relative to the root. True if it did. Costs one comparison else.

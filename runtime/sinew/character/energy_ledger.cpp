@@ -187,7 +187,8 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
     share = std::clamp(std::min(loose, 1.0) * missing / rigid.relative_energy, -kMostTaken, kMostGiven);
   if (share == 0 && turn.isZero(kNoSpin)) return;
   change(s, rigid, T(std::sqrt(1 + share)), turn);
-  s.report_totals(gravity);
+  s.report.kinetic_energy += turned + share * rigid.relative_energy;
+  s.report.angular_momentum += rigid.inertia * turn;
 }
 
 template <class T>

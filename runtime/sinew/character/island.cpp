@@ -112,9 +112,10 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     s.rate_before[i] = s.rate[i];
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
+    s.local[i] = p.local[i];
+    if (falls) continue;
     const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, s.wanted[i], p.local[i]);
-    const std::array<T, 6> from_target =
-        falls ? from_animation : joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
+    const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
     T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
@@ -127,9 +128,14 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     if (!s.baked[i] || s.joint_is_driven(i))
       s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
-    s.local[i] = p.local[i];
   }
-  s.settle_deviations();
+  if (!falls) {
+    s.settle_deviations();
+  } else if (!s.owed.deviations) {
+    s.owed.deviations = true;
+    std::fill(s.deviation.begin(), s.deviation.end(), Deviation<T>{});
+    std::fill(s.load.begin(), s.load.end(), T(0));
+  }
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.rate_step_before = s.rate_step;
@@ -221,9 +227,11 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
+  const bool falls = s.only_falls();  // then what moves follows no animation, the last frame's neither
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
-    const JointJet<T> wanted = fraction < T(1) ? animation_within<T>(before, now, frame_, fraction) : now;
+    const bool within = fraction < T(1) && !(falls && s.tree.dof_count(i) > 0);
+    const JointJet<T> wanted = within ? animation_within<T>(before, now, frame_, fraction) : now;
     s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
   }
 }

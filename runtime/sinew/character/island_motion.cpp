@@ -45,6 +45,7 @@ void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) 
 /// ball joint, about each of its axes.
 template <class T>
 bool holds(const CharacterState<T>& s, int dof) {
+  if (!s.problem.law.present.muscles) return false;
   const int i = s.tree.dof_body[dof];
   const bool each = s.tree.type[i] == JointType::kBall && !s.problem.law.ellipsoidal[i];
   const auto load = s.load.begin();
@@ -452,8 +453,10 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
   measure_constant(s, p, tree, p.kinematics);
   const T share = lasting_share(p.prediction.weight, h);
+  bool bears = any;
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     if (p.free[dof]) {
+      bears = bears || others_[dof] != T(0);
       const T now = others_[dof], lasts = lasting(now, s.smooth[dof], share);
       T smooth = limited(lasts, s.lasting[dof], s.lasting_before[dof]);
       smooth = std::clamp(smooth, std::min(now, T(0)), std::max(now, T(0)));
@@ -475,18 +478,27 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
     impulse[dof] = jump_force_[dof] / h;
     jump_force_[dof] += constant_[dof];
   }
+  if (!bears && !any_constant && p.prediction.rho > T(0)) {
+    // No more than what the solve left unbalanced, below its tolerance: velocities go without what the scheme
+    // makes of it, JᵀmJM⁻¹ being 1.
+    const T made = p.prediction.momentum_step * p.prediction.weight;
+    for (int dof = 0; dof < s.tree.dofs; ++dof) impulse[dof] -= made * jump_force_[dof];
+    return {};
+  }
   for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
   ends_.respond(tree, jump_force_, moved_, turned_);
   if (!(p.prediction.rho > T(0))) {  // implicit Euler has all forces act at once
     std::fill(impulse.begin(), impulse.end(), T(0));
-  } else if (any_constant) {
+  } else if (!any_constant) {
+    ends_.settle(tree, impulse, 1 / h);
+  } else {
     speed_share_.resize(s.tree.dofs);
     speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
     for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
     const T started = choose_start(s, tree);
     for (int dof = 0; dof < s.tree.dofs; ++dof) impulse[dof] += (1 - started) / h * constant_[dof];
+    ends_.settle(tree, impulse, T(0));  // its floor's share is missing in `moved_`, too
   }
-  ends_.settle(tree, impulse);  // its floor's share is missing in `moved_`, too
   return {moved_, turned_};
 }
 

@@ -28,13 +28,14 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   visit_enum("level", l.level, Level::kSubsteps, stream);
   visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
   visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
-  std::uint8_t flags =
-      static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) + (l.wake ? 4 : 0));
-  stream.value("asleep, baked, to be woken", flags);
+  std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
+                                                 (l.wake ? 4 : 0) + (s.owed.deviations ? 8 : 0));
+  stream.value("asleep, baked, to be woken, only falling", flags);
   if (stream.reading()) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
+    s.owed = {.deviations = (flags & 8) != 0};
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -93,8 +94,10 @@ void visit_flags(CharacterState<T>& s, ByteStream& stream) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& last = s.own_last_target()[i];
     Deviation<T>& d = s.deviation[i];
-    const bool elsewhere =
-        last.rotation.coeffs() != s.local[i].rotation.coeffs() || last.translation != s.local[i].translation;
+    // Of what only falls nobody asks where its animation was.
+    const bool asked = !s.owed.deviations || s.tree.dof_count(i) == 0;
+    const bool elsewhere = asked && (last.rotation.coeffs() != s.local[i].rotation.coeffs() ||
+                                     last.translation != s.local[i].translation);
     const bool deviates = !same_bits(d.offset, none) || !same_bits(d.rate, none);
     s.baked[i] =
         static_cast<std::uint8_t>((d.on_animation ? kOnAnimation : 0) + (d.released ? kReleased : 0) +
@@ -185,18 +188,23 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_strengths("strength of a joint", s.joint_strength);
   visit_strengths("strength of a muscle", s.muscle_strength);
   stream.value("contacts that touched", s.contact_signature);
-  stream.value("limits that bore", s.limit_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
   stream.value("steps of passing", s.passing);
   stream.value("energy ceiling", s.energy_ceiling);
-  stream.value("energy lent by surfaces", s.lent);
-  stream.value("stored energy", s.report.elastic_energy);
+  {
+    ResidualCoder<double> coder("energy lent by surfaces, stored energy", stream, true);
+    coder.value(s.lent, 0);
+    coder.value(s.report.elastic_energy, 0);
+  }
+  {
+    ResidualCoder<std::uint64_t> coder("limits that bore", stream, true);
+    coder.value(s.limit_signature, 0);
+  }
   visit_levels(s, stream);
   visit_pose(s, stream);
   visit_joints(s, stream);
   visit_history(s, stream);
   if (!stream.reading()) return;
-  s.owed = {};
   s.settle_deviations();
   s.impulses.clear();
   s.forces.clear();

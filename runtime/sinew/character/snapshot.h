@@ -2,9 +2,10 @@
 //
 // One list of fields (visit_state) serves all that is done with them: bounding, writing, reading, and naming
 // the field that a byte belongs to. What follows from the rest is left out: deviations of joints on the
-// animation. What nearly follows is written as its distance from what it would be (residual_coder.h): masses'
-// places from the pose, velocities from the joints' speeds. Whoever reads must compute these alike, as
-// whoever replays must.
+// animation; of what only falls all deviations and last targets, for nobody asks for them until it is held.
+// What nearly follows is written as its distance from what it would be (residual_coder.h): masses' places
+// from the pose, velocities from the joints' speeds. Whoever reads must compute these alike, as whoever
+// replays must.
 #pragma once
 
 #include <cstddef>

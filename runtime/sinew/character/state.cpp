@@ -7,6 +7,7 @@
 #include <span>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/cut.h"
 
 namespace sinew {
 namespace {
@@ -433,6 +434,30 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
 }
 
 template <class T>
+void CharacterState<T>::keep_deviations(T h) {
+  if (!owed.deviations || only_falls()) return;
+  owed.deviations = false;
+  for (int i = 0; i < tree.bodies; ++i) {
+    const JointJet<T>& jet = target[i];
+    const Transform<T> ago = a_step_ago(jet, h), before = in_solve(i, ago, history.place),
+                       after = in_solve(i, {jet.rotation, jet.translation}, history.place);
+    if (tree.dof_count(i) > 0) restart(ago, jet, own_last_target()[i]);
+    Transform<T> now = local[i];
+    if (i == 0 && floats) now.translation.setZero();
+    std::array<T, 6> coasting = rate[i];
+    for (T& r : coasting) r *= h;
+    Deviation<T>& d = deviation[i];
+    d = {};
+    d.offset = joint_offset_value<T>(tree, i, before, now);
+    d.rate = joint_offset_value<T>(tree, i, after, at_offset<T>(tree, i, now, coasting));
+    for (int k = 0; k < 6; ++k) d.rate[k] = (d.rate[k] - d.offset[k]) / h;
+    d.released = tree.dof_count(i) > 0;
+    d.on_animation = !d.released;
+  }
+  settle_deviations();
+}
+
+template <class T>
 void CharacterState<T>::settle_deviations() {
   calm = std::all_of(deviation.begin(), deviation.end(),
                      [](const Deviation<T>& d) { return d.on_animation && !d.released; });
@@ -440,9 +465,9 @@ void CharacterState<T>::settle_deviations() {
 
 template <class T>
 bool CharacterState<T>::joint_is_driven(int body) const {
-  bool all = true;
-  for (int dof = tree.first_dof[body]; dof < tree.first_dof[body + 1]; ++dof)
-    all = all && problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
+  bool all = problem.law.present.muscles || tree.dof_count(body) == 0;
+  for (int dof = tree.first_dof[body]; all && dof < tree.first_dof[body + 1]; ++dof)
+    all = problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
   return all;
 }
 

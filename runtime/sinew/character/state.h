@@ -32,7 +32,10 @@ struct Owed {
   bool history = false;  ///< all of it but `place` and velocity[0]
   bool motion = false;   ///< nor has anybody measured how the bodies move: played without a check
   bool totals = false;   ///< the report's energies and momenta
-  T h = T(0);            ///< s, of the step
+  /// Deviations, by a step in which it only fell: nobody asks until something holds it again. They are those
+  /// of a joint on the animation meanwhile.
+  bool deviations = false;
+  T h = T(0);  ///< s, of the step
   Vec3<double> gravity = Vec3<double>::Zero();
 };
 
@@ -216,6 +219,9 @@ struct CharacterState {
   /// joint_offset), and how fast that changes; on the animation where both are next to nothing. `return_time`
   /// of the way back, s.
   void update_deviation(int body, const std::array<T, 6>& measured, T h, T return_time);
+  /// Before a step of h seconds, with its target set: the deviations that are owed, where the step asks for
+  /// them. Their rates are those with which the joints leave what the animation does in the step.
+  void keep_deviations(T h);
   /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
   Vec3<double> middle() const {
     return is_particles ? Vec3<double>(particles_middle.template cast<double>()) : history.place;
@@ -223,7 +229,7 @@ struct CharacterState {
   /// m/s: of the root, or of the fastest particle.
   T pace() const;
   /// Every joint is on the animation, and none is released.
-  bool undisturbed() const { return calm && !is_prop; }
+  bool undisturbed() const { return calm && !owed.deviations && !is_prop; }
   /// After deviations changed: sums them up for undisturbed(), which is asked in every step.
   void settle_deviations();
   /// Every degree of freedom of a joint has a muscle, in both directions.

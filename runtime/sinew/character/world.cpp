@@ -349,7 +349,10 @@ void World<T>::Impl::keep_sleepers() {
 template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   h = step;
-  for (const auto& s : states) s->carried = !s->parked && carry_over(*s, h);
+  for (const auto& s : states) {
+    s->keep_deviations(h);
+    s->carried = !s->parked && carry_over(*s, h);
+  }
   couplings.begin_step(states);
   islands.find(states, couplings, h, settings.island_dofs, settings.body_contact ? plan.contacts : nullptr);
   large.clear();

@@ -17,11 +17,7 @@ std::array<T, 6> offset_value_of(const Tree<Number<T>>& tree, int i, const Trans
   const Vec3<T> shift = local.translation - reference.translation;
   const auto turn = [&](const Vec3<T>& axis) {
     // Twists add on the right, so the angle from rest does not see what the reference does across the axis.
-    const T angle =
-        twist_angle<T>(unrest * local.rotation, axis) - twist_angle<T>(unrest * reference.rotation, axis);
-    constexpr auto pi = Number<T>(3.14159265358979323846);
-    const T once = select(angle > T(pi), T(angle - T(2 * pi)), angle);
-    return select(once < T(-pi), T(once + T(2 * pi)), once);
+    return twist_between<T>(unrest * reference.rotation, unrest * local.rotation, axis);
   };
   switch (tree.type[i]) {
     case JointType::kFixed:

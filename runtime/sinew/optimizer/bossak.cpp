@@ -20,9 +20,8 @@ Vec3<T> spin_of(const Tree<T>& tree, int i, const Mat3<T>& rotation, const Vec3<
 template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
   T fastest = T(0);
-  for (int i = 0; i < tree.bodies; ++i)
-    fastest = std::max(fastest, spin_of<T>(tree, i, history.rotation[i], history.momentum[i]).squaredNorm());
-  return h * std::sqrt(fastest);
+  for (int i = 0; i < tree.bodies; ++i) fastest = std::max(fastest, history.rotation_rate[i].squaredNorm());
+  return h * std::sqrt(fastest / 2);
 }
 
 template <class T>
@@ -45,7 +44,10 @@ T share_turning_faster(const Tree<T>& tree, const History<T>& history, T speed) 
 
 template <class T>
 Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum) {
-  return skew<T>(spin_of<T>(tree, body, rotation, momentum)) * rotation;
+  const Vec3<T> spin = spin_of<T>(tree, body, rotation, momentum);
+  Mat3<T> rate;
+  for (int a = 0; a < 3; ++a) rate.col(a) = spin.cross(rotation.col(a));
+  return rate;
 }
 
 template <class T>
@@ -125,7 +127,6 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
     }
     history.center[i] = c1;
     history.rotation[i] = r;
-    history.rotation_rate[i] = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
   history.step_before = h;
   history.accelerates = true;

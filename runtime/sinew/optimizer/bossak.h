@@ -56,7 +56,7 @@ T lasting_share(T weight, T h) {
   return std::min(2 / (weight * h * h), T(1));
 }
 
-/// rad: the furthest that a body of the tree turns in a step of h seconds, going by its angular momentum.
+/// rad: the furthest that a body of the tree turns in a step of h seconds at its rate.
 template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
 
@@ -99,10 +99,11 @@ struct Jumps {
   std::span<const Vec3<T>> turned;  ///< [body] Δφ, rad, world axes
 };
 
-/// Moves the history on to the solution `kinematics`. `torque` [body] is the rotational part of the inertial
-/// gradient there (about each centre of mass). What impulses and constant forces leave as speed is still to
-/// be added (EndVelocities::project). From a prediction of implicit Euler's velocities are those of the step,
-/// whatever moved it, and accelerations those of its smooth forces.
+/// Moves the history on to the solution `kinematics`, but for the rotations' rates: velocities are still to
+/// be those of the joints (EndVelocities). `torque` [body] is the rotational part of the inertial gradient
+/// there (about each centre of mass). What impulses and constant forces leave as speed is still to be added
+/// (EndVelocities::project). From a prediction of implicit Euler's velocities are those of the step, whatever
+/// moved it, and accelerations those of its smooth forces.
 template <class T>
 void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const Prediction<T>& prediction,
                     std::span<const Vec3<T>> torque, const Jumps<T>& jumps, T h,

@@ -148,15 +148,19 @@ void EndVelocities<T>::respond(int n, std::span<const T> force, std::span<Vec3<T
 }
 
 template <class T>
-void EndVelocities<T>::settle(int n, std::span<T> force) {
+void EndVelocities<T>::settle(int n, std::span<T> force, T answered) {
   const Part& part = parts_[n];
   const TreeProblem<T>& p = *problems_[n];
-  for (int u = 0; u < part.count; ++u) rates(n)[u] = force[dof_[part.first + u]];
-  solve_by_joints<T>(part.matrix, rates(n));
+  const bool anew = answered == T(0);
+  if (anew) {
+    for (int u = 0; u < part.count; ++u) rates(n)[u] = force[dof_[part.first + u]];
+    solve_by_joints<T>(part.matrix, rates(n));
+  }
   for (int u = 0; u < part.count; ++u) {
     const int dof = dof_[part.first + u];
     const Composite<T>& subtree = p.composite[p.tree->dof_body[dof]];
-    force[dof] -= joint_floor<T>(subtree, p.kinematics.w[dof], p.kinematics.v[dof]) * rates(n)[u];
+    const T rate = anew ? rates(n)[u] : answered * rates(n)[u];
+    force[dof] -= joint_floor<T>(subtree, p.kinematics.w[dof], p.kinematics.v[dof]) * rate;
   }
 }
 

@@ -51,8 +51,9 @@ class EndVelocities {
   void answered(int tree, std::span<std::array<T, 6>> rate);
 
   /// Takes out of generalised forces or impulses [dof] what the matrix' floor (composite.h) keeps from moving
-  /// anything, as it does for respond(): M of what its factor makes of them. O(bodies).
-  void settle(int tree, std::span<T> force);
+  /// anything, as it does for respond(): M of what its factor makes of them. `answered`: they are so many
+  /// times what respond() has just been asked about; 0: something else. O(bodies).
+  void settle(int tree, std::span<T> force, T answered);
 
   /// Finds the rates of a tree's unknowns from the momenta of its history and the impulses `impulse` [dof]
   /// (N·m·s, N·s; empty: none), whose response M⁻¹ need not be found to be projected: JᵀmJM⁻¹ is 1. Joints

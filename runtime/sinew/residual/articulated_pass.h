@@ -46,18 +46,33 @@ struct ArticulatedParts {
 };
 
 template <class T>
-SpatialVector<T> spatial(const Vec3<T>& a, const Vec3<T>& b) {
+[[gnu::always_inline]] inline SpatialVector<T> spatial(const T& a, const T& b, const T& c, const T& d,
+                                                       const T& e, const T& f) {
   SpatialVector<T> s;
-  if constexpr (std::is_arithmetic_v<T>)
-    s << a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), T(0), T(0);
-  else
-    s << a.x(), a.y(), a.z(), b.x(), b.y(), b.z();
+  s[0] = a, s[1] = b, s[2] = c, s[3] = d, s[4] = e, s[5] = f;
+  if constexpr (std::is_arithmetic_v<T>) s[6] = s[7] = T(0);
   return s;
+}
+template <class T>
+[[gnu::always_inline]] inline SpatialVector<T> spatial(const Vec3<T>& a, const Vec3<T>& b) {
+  return spatial<T>(a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+}
+
+/// f(count), where a joint has so many unknowns. Of scalars the usual counts are constants: short loops that
+/// the compiler does not unroll cost more than what they do.
+template <class T, class F>
+[[gnu::always_inline]] inline void for_count(int count, const F& f) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    if (count == 1) return f(std::integral_constant<int, 1>());
+    if (count == 3) return f(std::integral_constant<int, 3>());
+    if (count == 6) return f(std::integral_constant<int, 6>());
+  }
+  f(count);
 }
 
 /// The sums of a vector of four, in which two zeros take part: packs have the bits of scalars.
 template <class T>
-T spatial_dot(const SpatialVector<T>& a, const SpatialVector<T>& b) {
+[[gnu::always_inline]] inline T spatial_dot(const SpatialVector<T>& a, const SpatialVector<T>& b) {
   if constexpr (std::is_arithmetic_v<T>) {
     const Eigen::Array<T, 4, 1> sum =
         a.template head<4>() * b.template head<4>() + a.template tail<4>() * b.template tail<4>();
@@ -70,7 +85,8 @@ T spatial_dot(const SpatialVector<T>& a, const SpatialVector<T>& b) {
 }
 
 template <class T>
-SpatialVector<T> spatial_product(const SpatialForm<T>& form, const SpatialVector<T>& x) {
+[[gnu::always_inline]] inline SpatialVector<T> spatial_product(const SpatialForm<T>& form,
+                                                               const SpatialVector<T>& x) {
   return ((form[0] * x[0] + form[1] * x[1]) + (form[2] * x[2] + form[3] * x[3])) +
          (form[4] * x[4] + form[5] * x[5]);
 }
@@ -86,13 +102,14 @@ SpatialForm<T> form_of(const Composite<T>& c, bool geometric) {
     arm -= c.force;
   }
   const Vec3<T>& f = c.first;
+  const Mat3<T>& t = turning;
   const T zero = T(0);
-  return {spatial<T>(turning.col(0), Vec3<T>(zero, -f.z(), f.y())),
-          spatial<T>(turning.col(1), Vec3<T>(f.z(), zero, -f.x())),
-          spatial<T>(turning.col(2), Vec3<T>(-f.y(), f.x(), zero)),
-          spatial<T>(Vec3<T>(zero, arm.z(), -arm.y()), Vec3<T>(c.mass, zero, zero)),
-          spatial<T>(Vec3<T>(-arm.z(), zero, arm.x()), Vec3<T>(zero, c.mass, zero)),
-          spatial<T>(Vec3<T>(arm.y(), -arm.x(), zero), Vec3<T>(zero, zero, c.mass))};
+  return {spatial<T>(t(0, 0), t(1, 0), t(2, 0), zero, -f.z(), f.y()),
+          spatial<T>(t(0, 1), t(1, 1), t(2, 1), f.z(), zero, -f.x()),
+          spatial<T>(t(0, 2), t(1, 2), t(2, 2), -f.y(), f.x(), zero),
+          spatial<T>(zero, arm.z(), -arm.y(), c.mass, zero, zero),
+          spatial<T>(-arm.z(), zero, arm.x(), zero, c.mass, zero),
+          spatial<T>(arm.y(), -arm.x(), zero, zero, zero, c.mass)};
 }
 
 /// What stands under the diagonal entry of an unknown with the axis (w, v): see add_floor.
@@ -116,20 +133,26 @@ void assemble_joints(const Tree<Number<T>>& tree, const K& kin, std::span<Compos
     m.blocks[i] = {tree.parent[i], next, end - next, false};
     if (end > next) {
       const SpatialForm<T> form = form_of(c, geometric);
-      const bool one_rotation_vector = tree.type[i] == JointType::kBall || tree.type[i] == JointType::kFree;
-      for (int k = next; k < end; ++k) {
-        const Vec3<T>&w = kin.w[dofs[k]], &v = kin.v[dofs[k]];
-        m.first[k] = next;
-        m.axes[k] = spatial<T>(w, v);
-        m.moved[k] = spatial_product<T>(form, m.axes[k]);
-        for (int l = next; l <= k; ++l) {
-          T& entry = m.own_entry(k, l) = spatial_dot<T>(m.axes[l], m.moved[k]);
-          // One rotation vector: neither axis acts first.
-          if (one_rotation_vector && l < k && !slides(tree, dofs[l]))
-            entry = T(0.5) * (entry + spatial_dot<T>(m.axes[k], m.moved[l]));
+      // One rotation vector: neither axis acts first. What the turning of axes adds is all that is not
+      // symmetric.
+      const bool ball = tree.type[i] == JointType::kBall, free = tree.type[i] == JointType::kFree;
+      for_count<T>(end - next, [&, first = next](auto count) {
+        SpatialVector<T>*const axes = m.axes.data() + first, *const moved = m.moved.data() + first;
+        JointBlockRow<T>* const own = m.own.data() + first;
+        for (int k = 0; k < count; ++k) {
+          const int dof = dofs[first + k];
+          m.first[first + k] = first;
+          axes[k] = spatial<T>(kin.w[dof], kin.v[dof]);
+          moved[k] = spatial_product<T>(form, axes[k]);
+          for (int l = 0; l <= k; ++l) own[k][l] = spatial_dot<T>(axes[l], moved[k]);
+          own[k][k] += joint_floor<T>(c, kin.w[dof], kin.v[dof]);
         }
-        m.own_entry(k, k) += joint_floor<T>(c, w, v);
-      }
+        if (!geometric || !(ball || free)) return;
+        for (int k = 1; k < count; ++k)
+          for (int l = 0; l < k; ++l)
+            if (ball || dofs[first + l] >= tree.first_dof[i] + 3)
+              own[k][l] = T(0.5) * (own[k][l] + spatial_dot<T>(axes[k], moved[l]));
+      });
     }
     if (const int p = tree.parent[i]; p >= 0) bodies[p] += c;
   }
@@ -173,60 +196,68 @@ auto factorise_joints(const ArticulatedParts<T>& m) {
   constexpr auto kRounding = Number<T>(sizeof(Number<T>) == 4 ? 1e-5 : 1e-12);  // of the diagonal
   auto definite = T(1) > T(0);
   for (int i = 0; i < m.bodies; ++i) m.blocks[i].laden = false;
-  for (int i = m.bodies - 1; i >= 0; --i) {
+  for (int i = m.bodies - 1; i >= 0 && any(definite); --i) {
     const JointBlock& b = m.blocks[i];
     const SpatialForm<T>& e = m.eliminated[i];
-    for (int k = b.first; k < b.first + b.count; ++k) {
-      JointBlockRow<T>& row = m.factor[k];
-      const int own = k - b.first;
-      const T least = kRounding * row[own];
-      SpatialVector<T> y = m.moved[k];
-      if (b.laden) {
-        const SpatialVector<T> taken = spatial_product<T>(e, m.axes[k]);
-        y -= taken;
-        for (int l = 0; l <= own; ++l) row[l] -= spatial_dot<T>(m.axes[b.first + l], taken);
+    for_count<T>(b.count, [&](auto count) {
+      const SpatialVector<T>*const axes = m.axes.data() + b.first, *const moved = m.moved.data() + b.first;
+      SpatialVector<T>* const reduced = m.reduced.data() + b.first;
+      JointBlockRow<T>* const rows = m.factor.data() + b.first;
+      for (int k = 0; k < count; ++k) {
+        JointBlockRow<T>& row = rows[k];
+        const T least = kRounding * row[k];
+        SpatialVector<T> y = moved[k];
+        if (b.laden) {
+          const SpatialVector<T> taken = spatial_product<T>(e, axes[k]);
+          y -= taken;
+          for (int l = 0; l <= k; ++l) row[l] -= spatial_dot<T>(axes[l], taken);
+        }
+        for (int l = 0; l < k; ++l) {
+          for (int n = 0; n < l; ++n) row[l] -= row[n] * rows[l][n];
+          row[l] *= rows[l][l];
+          row[k] -= row[l] * row[l];
+          y -= row[l] * reduced[l];
+        }
+        const T pivot = largest(row[k], least);
+        definite = both(definite, both(row[k] > -least, pivot > T(0)));  // not so where they are NaN
+        if (!any(definite)) return;
+        row[k] = T(1) / sqrt(pivot);
+        reduced[k] = y * row[k];
       }
-      for (int l = 0; l < own; ++l) {
-        const JointBlockRow<T>& before = m.factor[b.first + l];
-        for (int n = 0; n < l; ++n) row[l] -= row[n] * before[n];
-        row[l] *= before[l];
-        row[own] -= row[l] * row[l];
-        y -= row[l] * m.reduced[b.first + l];
+      if (b.parent < 0) return;
+      const bool laden = m.blocks[b.parent].laden;
+      SpatialForm<T>& above = m.eliminated[b.parent];
+      for (int c = 0; c < 6; ++c) {
+        SpatialVector<T> column = SpatialVector<T>::Zero();
+        if (laden) column = above[c];
+        if (b.laden) column += e[c];
+        for (int k = 0; k < count; ++k) column += reduced[k][c] * reduced[k];
+        above[c] = column;
       }
-      const T pivot = largest(row[own], least);
-      definite = both(definite, both(row[own] > -least, pivot > T(0)));  // not so where they are NaN
-      if (!any(definite)) return definite;
-      row[own] = T(1) / sqrt(pivot);
-      m.reduced[k] = y * row[own];
-    }
-    if (b.parent < 0) continue;
-    JointBlock& parent = m.blocks[b.parent];
-    SpatialForm<T>& above = m.eliminated[b.parent];
-    for (int c = 0; c < 6; ++c) {
-      SpatialVector<T> column = SpatialVector<T>::Zero();
-      if (parent.laden) column = above[c];
-      if (b.laden) column += e[c];
-      for (int k = b.first; k < b.first + b.count; ++k) column += m.reduced[k][c] * m.reduced[k];
-      above[c] = column;
-    }
-    parent.laden = parent.laden || b.laden || b.count > 0;
+    });
+    if (b.parent >= 0) m.blocks[b.parent].laden |= b.laden || b.count > 0;
   }
   return definite;
 }
 
 /// Body i's part of reduce_by_joints, after those below it.
 template <class T>
-void reduce_joint(const ArticulatedParts<T>& m, int i, std::span<T> x) {
+[[gnu::always_inline]] inline void reduce_joint(const ArticulatedParts<T>& m, int i, std::span<T> x) {
   const JointBlock& b = m.blocks[i];
   const SpatialVector<T> below = m.force[i];
   SpatialVector<T> force = below;
-  for (int k = b.first; k < b.first + b.count; ++k) {
-    const JointBlockRow<T>& row = m.factor[k];
-    x[k] -= spatial_dot<T>(m.axes[k], below);
-    for (int l = b.first; l < k; ++l) x[k] -= row[l - b.first] * x[l];
-    x[k] *= row[k - b.first];
-    force += x[k] * m.reduced[k];
-  }
+  for_count<T>(b.count, [&](auto count) {
+    const SpatialVector<T>*const axes = m.axes.data() + b.first, *const reduced = m.reduced.data() + b.first;
+    const JointBlockRow<T>* const rows = m.factor.data() + b.first;
+    T* const mine = x.data() + b.first;
+    for (int k = 0; k < count; ++k) {
+      T value = mine[k] - spatial_dot<T>(axes[k], below);
+      for (int l = 0; l < k; ++l) value -= rows[k][l] * mine[l];
+      value *= rows[k][k];
+      mine[k] = value;
+      force += value * reduced[k];
+    }
+  });
   if (b.parent >= 0) m.force[b.parent] += force;
 }
 
@@ -246,12 +277,19 @@ void expand_by_joints(const ArticulatedParts<T>& m, std::span<T> x) {
     SpatialVector<T> motion = SpatialVector<T>::Zero();
     if (b.parent >= 0) motion = m.motion[b.parent];
     const SpatialVector<T> above = motion;
-    for (int k = b.first + b.count - 1; k >= b.first; --k) {
-      x[k] -= spatial_dot<T>(m.reduced[k], above);
-      for (int l = k + 1; l < b.first + b.count; ++l) x[k] -= m.factor[l][k - b.first] * x[l];
-      x[k] *= m.factor[k][k - b.first];
-      motion += x[k] * m.axes[k];
-    }
+    for_count<T>(b.count, [&](auto count) {
+      const SpatialVector<T>*const axes = m.axes.data() + b.first, *const reduced =
+                                                                       m.reduced.data() + b.first;
+      const JointBlockRow<T>* const rows = m.factor.data() + b.first;
+      T* const mine = x.data() + b.first;
+      for (int k = count - 1; k >= 0; --k) {
+        T value = mine[k] - spatial_dot<T>(reduced[k], above);
+        for (int l = k + 1; l < count; ++l) value -= rows[l][k] * mine[l];
+        value *= rows[k][k];
+        mine[k] = value;
+        motion += value * axes[k];
+      }
+    });
     m.motion[i] = motion;
   }
 }

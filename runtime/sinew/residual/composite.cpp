@@ -19,12 +19,13 @@ void Unknowns::clear() {
 template <class T>
 int append_unknowns(const Tree<T>& tree, std::span<const std::uint8_t> free, Unknowns& out) {
   const int first = static_cast<int>(out.of_dof.size());
+  out.of_dof.resize(first + tree.dofs, -1);
+  int* const of_dof = out.of_dof.data() + first;
   for (int d = 0; d < tree.dofs; ++d) {
-    out.of_dof.push_back(-1);
     if (!free[d]) continue;
     int above = tree.dof_parent[d];
-    while (above >= 0 && out.of_dof[first + above] < 0) above = tree.dof_parent[above];
-    out.of_dof.back() = out.pattern.add(above < 0 ? -1 : out.of_dof[first + above]);
+    while (above >= 0 && of_dof[above] < 0) above = tree.dof_parent[above];
+    of_dof[d] = out.pattern.add(above < 0 ? -1 : of_dof[above]);
     out.dof.push_back(d);
   }
   return first;

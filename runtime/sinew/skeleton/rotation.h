@@ -161,4 +161,13 @@ T twist_angle(const Quat<T>& q, const Vec3<T>& axis) {
   return select(angle > T(pi), T(angle - T(2 * pi)), select(angle <= T(-pi), T(angle + T(2 * pi)), angle));
 }
 
+/// Angle about the unit vector `axis` by which the part of `to` that turns about it is ahead of that of
+/// `from`, in (−π, π].
+template <class T>
+T twist_between(const Quat<T>& from, const Quat<T>& to, const Vec3<T>& axis) {
+  const T sine0 = from.vec().dot(axis), sine1 = to.vec().dot(axis);
+  const T cosine = from.w() * to.w() + sine0 * sine1, sine = from.w() * sine1 - to.w() * sine0;
+  return twist_angle<T>(Quat<T>(cosine, sine * axis.x(), sine * axis.y(), sine * axis.z()), axis);
+}
+
 }  // namespace sinew
