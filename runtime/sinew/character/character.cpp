@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  ///< m; beyond this float has no millimetres left
 constexpr double kFastest = 1e5;   ///< m/s and rad/s
+constexpr double kHardest = 1e5;   ///< N·s of a human
 constexpr double kSharpest = 1e8;  ///< m/s² and rad/s²; far beyond, a residual's square leaves float
 
 template <class T>
@@ -135,7 +136,10 @@ Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
   if (state_->impulses.capacity() == 0)
     return Status::error(Code::kInvalidArgument, "the world declares no Impulses", joint);
-  if (impulse.norm() > T(1e5)) return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s", joint);
+  const Scale<T>& scale = state_->tree.scale;
+  const T most = T(kHardest) * std::max(T(1), scale.energy / scale.time);
+  if (impulse.norm() > most)
+    return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s of a figure of human size", joint);
   if (state_->impulses.size() == state_->impulses.capacity())
     return Status::error(Code::kOutOfRange, "more than 64 impulses in one step", joint);
   const int body = state_->body_of(joint);

@@ -48,7 +48,8 @@ template <class T>
 void stiffen(Contact<T>& c, T stiffness) {
   if (!(stiffness > c.stiffness)) return;
   if (c.gap < T(0)) {
-    const T gap = -ContactLaw<T>::depth(stiffness, ContactLaw<T>::force(c.stiffness, c.gap));
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap, c.width());
+    const T gap = -ContactLaw<T>::depth(stiffness, force, c.width());
     c.offset += gap - c.gap;
     c.gap = gap;
   }
@@ -59,7 +60,7 @@ void stiffen(Contact<T>& c, T stiffness) {
 /// surface is where the feature is, and comes back at a walking pace.
 template <class T>
 void begin_inside(Contact<T>& c) {
-  if (c.gap >= T(-kLeftInside)) return;
+  if (c.gap >= T(-kLeftInside) * c.length_scale) return;
   c.offset -= c.gap;
   c.gap = T(0);
 }
@@ -85,7 +86,7 @@ void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
     b.center = s.problem.kinematics.origin[body] + s.problem.kinematics.rotation[body] * s.bound_center[c];
     b.radius = s.bound_radius[c];
     const T arm = (b.center - s.problem.kinematics.center[body]).norm() + b.radius;
-    b.reach = T(kMargin) +
+    b.reach = T(kMargin) * s.tree.scale.length +
               h * (s.history.velocity[body].norm() + s.history.rotation_rate[body].norm() * arm + T(5) * h);
     for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
       b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
@@ -103,6 +104,8 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.radius = point.radius;
   c.restitution = point.restitution;
   c.stiffness = point.share * states_[n]->contact_stiffness(*world_, bears_);
+  c.length_scale = states_[n]->tree.scale.length;
+  c.speed_scale = states_[n]->tree.scale.time;
   return c;
 }
 
@@ -155,7 +158,8 @@ void ContactFinder<T>::begin_all() {
     }
     c.start_gap = c.gap;
     // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
-    if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kDepenetrationSpeed)), h_);
+    if (c.offset <= T(kLeftInside) * c.length_scale)
+      c.damp(std::max(damping_time_ * c.speed_scale, -c.gap / (T(kDepenetrationSpeed) * c.speed_scale)), h_);
   }
 }
 
@@ -163,17 +167,18 @@ void ContactFinder<T>::begin_all() {
 /// along at the walking pace, the lighter of two: in what is wedged they would store ever more.
 template <class T>
 void ContactFinder<T>::depenetrate(Contact<T>& c) const {
-  T back = std::min(T(kDepenetrationSpeed) * h_, c.offset - T(kLeftInside));
+  const double speed = kDepenetrationSpeed * double(c.speed_scale);
+  T back = std::min(T(speed) * h_, c.offset - T(kLeftInside) * c.length_scale);
   if (!(back > T(0))) return;  // as a rule: nothing is inside
   const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(depenetrating_[n], 1)); };
   const T mass = c.tree_b < 0 ? share(c.tree_a) : std::min(share(c.tree_a), share(c.tree_b));
-  const double work = kDepenetrationSpeed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
-  const T enough = mass * T(kMostStored * kDepenetrationSpeed * work);
-  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough) + c.gap), T(0));
-  const T stored = ContactLaw<T>::energy(c.stiffness, c.gap);
+  const double work = speed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
+  const T enough = mass * T(kMostStored * speed * work);
+  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough, c.width()) + c.gap), T(0));
+  const T stored = stored_energy(c);
   c.offset -= back;
   c.gap -= back;
-  c.depenetration_work = ContactLaw<T>::energy(c.stiffness, c.gap) - stored;
+  c.depenetration_work = stored_energy(c) - stored;
 }
 
 /// How many contacts bring each tree out of something.
@@ -181,8 +186,9 @@ template <class T>
 void ContactFinder<T>::count_depenetrating() {
   depenetrating_.assign(states_.size(), 0);
   for (const LaggedForce<T>& f : lagged_) {
-    if (!(f.offset > T(kLeftInside))) continue;
-    for (std::size_t n = 0; n < states_.size(); ++n) depenetrating_[n] += is_of_tree(f.id, indices_[n]);
+    for (std::size_t n = 0; n < states_.size(); ++n)
+      depenetrating_[n] +=
+          is_of_tree(f.id, indices_[n]) && f.offset > T(kLeftInside) * states_[n]->tree.scale.length;
   }
 }
 
@@ -203,14 +209,14 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   depenetrate(c);
   stiffen(c, own);
   // Friction of impulses is theirs (end_velocities.h).
-  c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.stiffness);
+  c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   Vec3<T> closing = states_[c.tree_a]->point_velocity(c.body_a, c.point);
-  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth);
+  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth) * c.length_scale;
   if (c.tree_b >= 0) {
     closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
@@ -218,7 +224,8 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   const T approach = -closing.dot(c.normal);
   const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
   const bool reached = approach > T(0) && c.gap < h_ * approach;
-  if (reached && c.gap > T(0) && is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth), bore))
+  if (reached && c.gap > T(0) &&
+      is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore))
     return;  // slides on to it
   c.approach = approach;
   thickness = std::min(thickness, c.half_thickness());
@@ -253,16 +260,17 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
 /// that it stands on, into the floor. `pose` is about the common origin, `local` what is changed with `size`.
 template <class T>
-void ContactFinder<T>::go_on_below(const Transform<T>& pose, Vec3<T>& size, Transform<T>& local) const {
+void ContactFinder<T>::go_on_below(T unit, const Transform<T>& pose, Vec3<T>& size,
+                                   Transform<T>& local) const {
   if (!world_->ground) return;
   const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
   Eigen::Index axis = 0;
   if (down.cwiseAbs().maxCoeff(&axis) < T(kFacesDown)) return;
   const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
   const T height = (pose * Vec3<T>(size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
-  if (height > T(kOnFloor)) return;
-  local.translation += local.rotation * Vec3<T>(T(kBelowFloor) / 2 * face);
-  size[axis] += T(kBelowFloor) / 2;
+  if (height > T(kOnFloor) * unit) return;
+  local.translation += local.rotation * Vec3<T>(T(kBelowFloor) / 2 * unit * face);
+  size[axis] += T(kBelowFloor) / 2 * unit;
 }
 
 template <class T>
@@ -332,7 +340,7 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
       if (distance > b.radius + b.reach) continue;
       int face = -1;
       if (obstacle.shape == Shape::kBox && distance < b.radius) {
-        go_on_below(pose, size, pose);
+        go_on_below(s.tree.scale.length, pose, size, pose);
         face = way_out(n, static_cast<int>(collider), size, pose);
       }
       for (int k = s.first_point[collider]; k < s.first_point[collider + 1]; ++k) {
@@ -367,9 +375,11 @@ bool ContactFinder<T>::kept_apart(int n, int body, int m, int other) const {
 template <class T>
 void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
-  const T reach = a.reach + b.reach - T(2 * kMargin - kMarginBetween);
-  if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
+
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
+  const T units = s.tree.scale.length + t.tree.scale.length;
+  const T reach = a.reach + b.reach - T(kMargin - kMarginBetween / 2) * units;
+  if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
   const Collider& shape = t.colliders[other];
   if (kept_apart(n, s.colliders[collider].joint, m, shape.joint)) return;
   const Kinematics<T>& k_other = t.problem.kinematics;
@@ -378,7 +388,7 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   int face = -1;
   if (shape.shape == Shape::kBox && (a.center - b.center).norm() < a.radius + b.radius) {
     const Transform<T> body{Quat<T>(k_other.rotation[shape.joint]), k_other.origin[shape.joint]};
-    go_on_below(body * local, size, local);
+    go_on_below(std::max(s.tree.scale.length, t.tree.scale.length), body * local, size, local);
     face = way_out(n, collider, size, body * local);
   }
   // Two axes need to meet once only.
@@ -394,6 +404,8 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
     c.shape_pose = local;
     c.face = face;
     c.stiffness = std::min(c.stiffness, t.contact_stiffness(*world_, bears_));
+    c.length_scale = std::min(c.length_scale, t.tree.scale.length);
+    c.speed_scale = std::min(c.speed_scale, t.tree.scale.time);
     c.friction = std::sqrt(point.friction * T(shape.friction));
     c.restitution = std::max(c.restitution, T(shape.restitution));
     c.id = contact_id(indices_[n], k, indices_[m], other | (face < 0 ? 0 : kByOneFace));
@@ -465,7 +477,7 @@ template <class T>
 bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
                    std::vector<MovingCollider<T>>& room) {
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
-  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
+  const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>();
   room.clear();
   const auto movers = [&] {
@@ -478,10 +490,11 @@ bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
       const Collider& obstacle = around.obstacles[o];
       const SignedDistance<double> d =
           signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
-      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h));
+      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h, s.tree.scale.length));
     });
   return near || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
-           return o.shape->distance(center).distance < double(reach) && comes_close(movers(), *o.shape, h);
+           return o.shape->distance(center).distance < double(reach) &&
+                  comes_close(movers(), *o.shape, h, s.tree.scale.length);
          });
 }
 
