@@ -186,6 +186,7 @@ template <class T>
 void ContactFinder<T>::count_depenetrating() {
   depenetrating_.assign(states_.size(), 0);
   for (const LaggedForce<T>& f : lagged_) {
+    if (!(f.offset > T(0))) continue;
     for (std::size_t n = 0; n < states_.size(); ++n)
       depenetrating_[n] +=
           is_of_tree(f.id, indices_[n]) && f.offset > T(kLeftInside) * states_[n]->tree.scale.length;

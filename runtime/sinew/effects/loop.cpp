@@ -1,5 +1,6 @@
 #include "sinew/effects/loop.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sinew {
@@ -45,7 +46,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   loop.speed_scale = T(std::sqrt(unit));
   for (const V& x : held) {
     Stencil<T>& e = loop.stencils.emplace_back();
-    e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / (kSink * unit));
+    e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / (kSink * std::min(unit, 1.0)));
     if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope)
       e.length = T(settings.length);
     e.only_pulls = settings.kind == LoopKind::kRope;

@@ -64,7 +64,9 @@ Scale<double> scale_of(const Skeleton& skeleton) {
   scale.length = share_of(length, kHumanLength);
   if (!bends) scale.length = std::clamp(1.0, scale.length / kLargeThing, scale.length / kSmallThing);
   scale.time = std::sqrt(scale.length);
-  scale.energy = bends ? share_of(mass, kHumanMass) * scale.length : scale.length;
+  // What is lighter for its length, as a chain, rounds its energy no finer.
+  const double of_length = scale.length * scale.length * scale.length * scale.length;
+  scale.energy = bends ? std::max(share_of(mass, kHumanMass) * scale.length, of_length) : scale.length;
   scale.load = share_of(load, kHumanLoad);
   return scale;
 }
