@@ -16,7 +16,7 @@ template <class T>
 struct Scale {
   T length = T(1);  ///< of the furthest body from the centre of mass, at rest
   T time = T(1);    ///< √length; of speeds too
-  T energy = T(1);  ///< total mass · length
+  T energy = T(1);  ///< total mass · length, or length⁴ where that is more
   T load = T(1);    ///< most that hangs on one joint: mass · distance. Of torques that hold it
 };
 
