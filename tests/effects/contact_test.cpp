@@ -80,19 +80,19 @@ TEST(ContactPoints, SpanTheCollider) {
 
 TEST(ContactLaw, ForceAndCurvatureAreDerivativesAndContinuous) {
   using Law = ContactLaw<double>;
-  constexpr double k = 1e5, step = 1e-8;
+  constexpr double k = 1e5, step = 1e-8, width = 5e-4;
   for (const double gap : {1e-3, -1e-5, -2e-4, -4.9e-4, -5.1e-4, -3e-3}) {
-    EXPECT_NEAR(-(Law::energy(k, gap + step) - Law::energy(k, gap - step)) / (2 * step), Law::force(k, gap),
-                1e-4);
-    EXPECT_NEAR(-(Law::force(k, gap + step) - Law::force(k, gap - step)) / (2 * step), Law::curvature(k, gap),
-                1e-3 * k);
+    EXPECT_NEAR(-(Law::energy(k, gap + step, width) - Law::energy(k, gap - step, width)) / (2 * step),
+                Law::force(k, gap, width), 1e-4);
+    EXPECT_NEAR(-(Law::force(k, gap + step, width) - Law::force(k, gap - step, width)) / (2 * step),
+                Law::curvature(k, gap, width), 1e-3 * k);
   }
-  for (const double gap : {0.0, -Law::width}) {  // C² where pieces meet: differences of order k·1e-10/width
-    EXPECT_NEAR(Law::energy(k, gap + 1e-10), Law::energy(k, gap - 1e-10), 1e-8);
-    EXPECT_NEAR(Law::force(k, gap + 1e-10), Law::force(k, gap - 1e-10), 1e-4);
-    EXPECT_NEAR(Law::curvature(k, gap + 1e-10), Law::curvature(k, gap - 1e-10), 1e-6 * k);
+  for (const double gap : {0.0, -width}) {  // C² where pieces meet: differences of order k·1e-10/width
+    EXPECT_NEAR(Law::energy(k, gap + 1e-10, width), Law::energy(k, gap - 1e-10, width), 1e-8);
+    EXPECT_NEAR(Law::force(k, gap + 1e-10, width), Law::force(k, gap - 1e-10, width), 1e-4);
+    EXPECT_NEAR(Law::curvature(k, gap + 1e-10, width), Law::curvature(k, gap - 1e-10, width), 1e-6 * k);
   }
-  EXPECT_EQ(Law::force(k, 1e-9), 0);
+  EXPECT_EQ(Law::force(k, 1e-9, width), 0);
 }
 
 TEST(FrictionLaw, IsTwiceContinuouslyDifferentiable) {

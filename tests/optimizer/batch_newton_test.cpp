@@ -31,7 +31,6 @@ struct Characters {
     Random random(seed + 100);
     settings.plan = &standard_plan<float>();
     settings.gravity = {0.3f, -0.2f, -9.81f};
-    settings.kink_width = 1e-3f / 60;
     for (int n = 0; n < count; ++n) {
       TreeProblem<float>& p = *problems.emplace_back(std::make_unique<TreeProblem<float>>(tree, skeleton));
       p.common_origin = random.vector(1).cast<float>();

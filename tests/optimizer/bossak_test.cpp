@@ -76,7 +76,7 @@ TEST(Bossak, ALimiterTakesAwayWhatHasJustComeOrTurned) {
 Contact<double> bearing(double force, double last, double before, double smooth) {
   Contact<double> c;
   c.stiffness = 1e5;
-  c.gap = -ContactLaw<double>::depth(c.stiffness, force);
+  c.gap = -ContactLaw<double>::depth(c.stiffness, force, c.width());
   c.lagged_normal_force = c.lasting_last = last;
   c.lasting_before = before;
   c.smooth_before = smooth;

@@ -28,7 +28,7 @@ struct Scene {
     settings.plan = &standard_plan<double>();
     settings.gravity = {0.3, -0.2, -9.81};
     problem.common_origin = {2, -1, 0.5};
-    settings.kink_width = 0.2;  // wide, so that poses fall on both sides of the rounding
+    problem.kink_width = 0.2;  // wide, so that poses fall on both sides of the rounding
     problem.start = fixtures::random_pose(tree, random, 0.5);
     problem.target = near_start(spread);
     problem.local = near_start(spread);

@@ -117,7 +117,7 @@ Pull<T> pull_of(const StepSettings<T>& settings, TreeProblem<T>& p, int i, const
     const T plus = larger * (limp ? friction : p.law.torque_plus[first + a]);
     if (p.law.ellipsoidal[i])
       pull.torque[a] = asked[a] / std::max(load, T(1));
-    else if (std::abs(pull.off[a]) > settings.kink_width)
+    else if (std::abs(pull.off[a]) > p.kink_width)
       pull.torque[a] = pull.off[a] > T(0) ? -minus : plus;
     else
       pull.torque[a] = std::clamp(asked[a], -minus, plus);
@@ -154,7 +154,7 @@ struct Way {
 /// What joint i moves by so that what is asked becomes what is given, along those degrees of freedom where it
 /// is not; and no further than to its target, if it is not there.
 template <class T>
-Way<T> way_to(const StepSettings<T>& settings, OwnEquations<T> own, const Pull<T>& pull) {
+Way<T> way_to(const TreeProblem<T>& p, OwnEquations<T> own, const Pull<T>& pull) {
   Column<T> missing = pull.torque - own.torque;
   for (int a = 0; a < missing.size(); ++a) {
     if (missing[a] != T(0)) continue;
@@ -165,7 +165,7 @@ Way<T> way_to(const StepSettings<T>& settings, OwnEquations<T> own, const Pull<T
   Column<T> way = solve_positive(own.matrix, missing);
   const T asked = furthest<T>(way);
   for (int a = 0; a < way.size(); ++a) {
-    if (pull.torque[a] == T(0) || std::abs(pull.off[a]) <= settings.kink_width) continue;
+    if (pull.torque[a] == T(0) || std::abs(pull.off[a]) <= p.kink_width) continue;
     if (way[a] * pull.off[a] < T(0))
       way[a] = pull.off[a] > T(0) ? std::max(way[a], -pull.off[a]) : std::min(way[a], -pull.off[a]);
   }
@@ -177,7 +177,7 @@ void move_by_itself(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
   for (int round = 0; round < kRounds; ++round) {
     place_hanging(p, i);
     const OwnEquations<T> own = own_equations(settings, p, i);
-    const Way<T> way = way_to(settings, own, pull_of(settings, p, i, own.torque));
+    const Way<T> way = way_to(p, own, pull_of(settings, p, i, own.torque));
     if (way.asked > T(0)) p.local[i] = displaced<T>(*p.tree, i, p.local[i], way.change.data());
     if (way.asked < T(kSettled)) break;
   }
@@ -249,7 +249,7 @@ bool release_baked(CharacterState<T>& s, const StepSettings<T>& settings) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
     OwnEquations<T> own = own_equations(settings, p, i);
     std::copy_n(p.gradient.begin() + first, count, own.torque.data());
-    const T missed = way_to(settings, own, pull_of(settings, p, i, own.torque)).asked;
+    const T missed = way_to(p, own, pull_of(settings, p, i, own.torque)).asked;
     if (missed < T(kMissed) && !bears_at_limit(settings, p, i)) continue;
     s.baked[i] = 0;
     ++s.unbaked;

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  ///< m; beyond this float has no millimetres left
 constexpr double kFastest = 1e5;   ///< m/s and rad/s
+constexpr double kHardest = 1e5;   ///< N·s of a human
 constexpr double kSharpest = 1e8;  ///< m/s² and rad/s²; far beyond, a residual's square leaves float
 
 template <class T>
@@ -150,7 +151,9 @@ template <class T>
 Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse) {
   if (!point.allFinite() || !impulse.allFinite())
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
-  if (impulse.norm() > T(1e5)) return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s", joint);
+  const Scale<T>& scale = state_->tree.scale;
+  if (impulse.norm() > T(kHardest) * std::max(T(1), scale.energy / scale.time))
+    return Status::error(Code::kOutOfRange, "impulse above 1e5 N·s of a figure of human size", joint);
   return push(*state_, joint, point, impulse, state_->impulses);
 }
 
@@ -158,7 +161,9 @@ template <class T>
 Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force) {
   if (!point.allFinite() || !force.allFinite())
     return Status::error(Code::kNotFinite, "force is not finite", joint);
-  if (force.norm() > T(6e6)) return Status::error(Code::kOutOfRange, "force above 6e6 N", joint);
+  const Scale<T>& scale = state_->tree.scale;
+  if (force.norm() > T(60 * kHardest) * std::max(T(1), scale.energy / scale.length))
+    return Status::error(Code::kOutOfRange, "force above 6e6 N of a figure of human size", joint);
   return push(*state_, joint, point, force, state_->forces);
 }
 

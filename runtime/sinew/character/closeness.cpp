@@ -25,7 +25,7 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
   m.radius = s.bound_radius[collider];
   if (s.owed.motion) {
     m.velocity = s.history.velocity[0];
-    m.any = h * T(kLimbSpeed);
+    m.any = h * T(kLimbSpeed) * s.tree.scale.time;
   } else {
     const T arm = (s.bound_center[collider] - s.tree.center_of_mass[body]).norm() + m.radius;
     const T spin = s.owed.history ? s.motion.omega[body].norm()
@@ -117,18 +117,18 @@ bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingColl
 }
 
 template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h) {
+bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h, T unit) {
   MovingCollider<T> still;
   still.collider = &obstacle;
   still.pose = obstacle.local.template cast<T>();
   still.center = still.pose.translation;
   still.radius = T(bounding_radius(obstacle));
-  return come_close<T>(colliders, std::span(&still, 1), h, T(kCloseMargin));
+  return come_close<T>(colliders, std::span(&still, 1), h, T(kCloseMargin) * unit);
 }
 
 template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h) {
-  const T margin = T(kCloseMargin) + T(kSurprise) * h * h;
+bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit) {
+  const T margin = T(kCloseMargin) * unit + T(kSurprise) * h * h;
   return std::any_of(colliders.begin(), colliders.end(), [&](const MovingCollider<T>& c) {
     const SignedDistance<double> d = shape.distance(c.center.template cast<double>());
     const T closing = std::max(-c.velocity.dot(d.normal.template cast<T>()), T(0));

@@ -25,7 +25,8 @@ struct MovingCollider {
 template <class T>
 void append_moving(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
 
-constexpr double kCloseMargin = 0.03;  ///< m beyond what they move by: solved together, or not played
+constexpr double kCloseMargin =
+    0.03;  ///< m of a human beyond what they move by: solved together, or not played
 
 /// Whether some of two states' colliders come within `margin` (m) of each other in h seconds, as their bodies
 /// move now, or faster by what accelerates them (kSurprise). By their distances, in the direction in which
@@ -34,16 +35,17 @@ constexpr double kCloseMargin = 0.03;  ///< m beyond what they move by: solved t
 template <class T>
 bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin);
 
-/// Whether some come within a few centimetres of an obstacle, or of a shape of the host's.
+/// Whether some come within a few centimetres (times `unit`, see Scale::length) of an obstacle, or of a shape
+/// of the host's.
 template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h);
+bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h, T unit);
 template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h);
+bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit);
 
-#define SINEW_CLOSENESS_INSTANCES(prefix, T)                                             \
-  prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);  \
-  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const Collider&, T);    \
-  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T); \
+#define SINEW_CLOSENESS_INSTANCES(prefix, T)                                                \
+  prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);     \
+  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const Collider&, T, T);    \
+  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T, T); \
   prefix bool come_close<T>(std::span<const MovingCollider<T>>, std::span<const MovingCollider<T>>, T, T);
 SINEW_CLOSENESS_INSTANCES(extern template, float)
 SINEW_CLOSENESS_INSTANCES(extern template, double)

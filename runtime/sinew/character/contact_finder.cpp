@@ -55,7 +55,8 @@ template <class T>
 void stiffen(Contact<T>& c, T stiffness) {
   if (!(stiffness > c.stiffness)) return;
   if (c.gap < T(0)) {
-    const T gap = -ContactLaw<T>::depth(stiffness, ContactLaw<T>::force(c.stiffness, c.gap));
+    const T force = ContactLaw<T>::force(c.stiffness, c.gap, c.width());
+    const T gap = -ContactLaw<T>::depth(stiffness, force, c.width());
     c.offset += gap - c.gap;
     c.gap = gap;
   }
@@ -66,7 +67,7 @@ void stiffen(Contact<T>& c, T stiffness) {
 /// surface is where the feature is, and comes back at a walking pace.
 template <class T>
 void begin_inside(Contact<T>& c) {
-  if (c.gap >= T(-kLeftInside)) return;
+  if (c.gap >= T(-kLeftInside) * c.length_scale) return;
   c.offset -= c.gap;
   c.gap = T(0);
 }
@@ -92,7 +93,7 @@ void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
     b.center = s.problem.kinematics.origin[body] + s.problem.kinematics.rotation[body] * s.bound_center[c];
     b.radius = s.bound_radius[c];
     const T arm = (b.center - s.problem.kinematics.center[body]).norm() + b.radius;
-    b.reach = T(kMargin) +
+    b.reach = T(kMargin) * s.tree.scale.length +
               h * (s.history.velocity[body].norm() + s.history.rotation_rate[body].norm() * arm + T(5) * h);
     for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
       b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
@@ -110,6 +111,8 @@ Contact<T> ContactFinder<T>::contact_of(int n, const ContactPoint<T>& point) con
   c.radius = point.radius;
   c.restitution = point.restitution;
   c.stiffness = point.share * states_[n]->contact_stiffness(*world_, bears_);
+  c.length_scale = states_[n]->tree.scale.length;
+  c.speed_scale = states_[n]->tree.scale.time;
   return c;
 }
 
@@ -119,6 +122,8 @@ Contact<T> ContactFinder<T>::contact_of(int n, const Collider& collider) const {
   c.tree_a = n;
   c.body_a = collider.joint;
   c.restitution = T(collider.restitution);
+  c.length_scale = states_[n]->tree.scale.length;
+  c.speed_scale = states_[n]->tree.scale.time;
   c.stiffness = states_[n]->contact_stiffness(*world_, bears_);
   return c;
 }
@@ -172,7 +177,8 @@ void ContactFinder<T>::begin_all() {
     }
     c.start_gap = c.gap;
     // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
-    if (c.offset <= T(kLeftInside)) c.damp(std::max(damping_time_, -c.gap / T(kDepenetrationSpeed)), h_);
+    if (c.offset <= T(kLeftInside) * c.length_scale)
+      c.damp(std::max(damping_time_ * c.speed_scale, -c.gap / (T(kDepenetrationSpeed) * c.speed_scale)), h_);
   }
 }
 
@@ -180,17 +186,18 @@ void ContactFinder<T>::begin_all() {
 /// along at the walking pace, the lighter of two: in what is wedged they would store ever more.
 template <class T>
 void ContactFinder<T>::depenetrate(Contact<T>& c) const {
-  T back = std::min(T(kDepenetrationSpeed) * h_, c.offset - T(kLeftInside));
+  const double speed = kDepenetrationSpeed * double(c.speed_scale);
+  T back = std::min(T(speed) * h_, c.offset - T(kLeftInside) * c.length_scale);
   if (!(back > T(0))) return;  // as a rule: nothing is inside
   const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(depenetrating_[n], 1)); };
   const T mass = c.tree_b < 0 ? share(c.tree_a) : std::min(share(c.tree_a), share(c.tree_b));
-  const double work = kDepenetrationSpeed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
-  const T enough = mass * T(kMostStored * kDepenetrationSpeed * work);
-  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough) + c.gap), T(0));
-  const T stored = ContactLaw<T>::energy(c.stiffness, c.gap);
+  const double work = speed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
+  const T enough = mass * T(kMostStored * speed * work);
+  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough, c.width()) + c.gap), T(0));
+  const T stored = stored_energy(c);
   c.offset -= back;
   c.gap -= back;
-  c.depenetration_work = ContactLaw<T>::energy(c.stiffness, c.gap) - stored;
+  c.depenetration_work = stored_energy(c) - stored;
 }
 
 /// How many contacts bring each tree out of something.
@@ -198,8 +205,10 @@ template <class T>
 void ContactFinder<T>::count_depenetrating() {
   depenetrating_.assign(states_.size(), 0);
   for (const LaggedForce<T>& f : lagged_) {
-    if (!(f.offset > T(kLeftInside))) continue;
-    for (std::size_t n = 0; n < states_.size(); ++n) depenetrating_[n] += is_of_tree(f.id, indices_[n]);
+    if (!(f.offset > T(0))) continue;
+    for (std::size_t n = 0; n < states_.size(); ++n)
+      depenetrating_[n] +=
+          is_of_tree(f.id, indices_[n]) && f.offset > T(kLeftInside) * states_[n]->tree.scale.length;
   }
 }
 
@@ -220,14 +229,14 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   depenetrate(c);
   stiffen(c, own);
   // Friction of impulses is theirs (end_velocities.h).
-  c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.stiffness);
+  c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   Vec3<T> closing = states_[c.tree_a]->point_velocity(c.body_a, c.point);
-  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth);
+  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth) * c.length_scale;
   if (c.tree_b >= 0) {
     closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
@@ -235,7 +244,8 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   const T approach = -closing.dot(c.normal);
   const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
   const bool reached = approach > T(0) && c.gap < h_ * approach;
-  if (reached && c.gap > T(0) && is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth), bore))
+  if (reached && c.gap > T(0) &&
+      is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore))
     return;  // slides on to it
   c.approach = approach;
   thickness = std::min(thickness, c.half_thickness());
@@ -270,7 +280,7 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
 /// that it stands on, into the floor.
 template <class T>
-void ContactFinder<T>::go_on_below(Met& box) const {
+void ContactFinder<T>::go_on_below(T unit, Met& box) const {
   if (!world_->ground) return;
   const Transform<T> pose = pose_of(box);
   const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
@@ -279,9 +289,9 @@ void ContactFinder<T>::go_on_below(Met& box) const {
   const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
   const T height =
       (pose * Vec3<T>(box.size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
-  if (height > T(kOnFloor)) return;
-  box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * face);
-  box.size[axis] += T(kBelowFloor) / 2;
+  if (height > T(kOnFloor) * unit) return;
+  box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * unit * face);
+  box.size[axis] += T(kBelowFloor) / 2 * unit;
 }
 
 /// About the common origin.
@@ -301,8 +311,12 @@ template <class T>
 Contact<T> ContactFinder<T>::contact_with(const Met& met, Contact<T> c, T friction) const {
   c.tree_b = met.tree;
   c.body_b = met.body;
-  if (met.tree >= 0)
-    c.stiffness = std::min(c.stiffness, states_[met.tree]->contact_stiffness(*world_, bears_));
+  if (met.tree >= 0) {
+    const CharacterState<T>& other = *states_[met.tree];
+    c.stiffness = std::min(c.stiffness, other.contact_stiffness(*world_, bears_));
+    c.length_scale = std::min(c.length_scale, other.tree.scale.length);
+    c.speed_scale = std::min(c.speed_scale, other.tree.scale.time);
+  }
   c.friction = std::sqrt(friction * met.friction);
   c.restitution = std::max(c.restitution, met.restitution);
   return c;
@@ -317,7 +331,8 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
     const Transform<T> pose = pose_of(met);
     const Vec3<T> apart = pose.rotation.conjugate() * (bound.center - pose.translation);
     if (signed_distance<T>(Shape::kBox, met.size, apart).distance < bound.radius) {
-      go_on_below(met);
+      const T own = states_[n]->tree.scale.length;
+      go_on_below(met.tree < 0 ? own : std::max(own, states_[met.tree]->tree.scale.length), met);
       face = way_out(n, collider, met.size, pose_of(met));
     }
   }
@@ -353,8 +368,9 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
   const Kinematics<T>& k = s.problem.kinematics;
   const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
-  const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>()),
-      b(Shape::kBox, met.size, pose_of(met));
+  const T unit = s.tree.scale.length;
+  const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), unit),
+      b(Shape::kBox, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length);
   Vec3<T> motion = s.point_velocity(own.joint, a.center);
   const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
   if (other) motion -= states_[met.tree]->point_velocity(met.body, a.center);
@@ -393,7 +409,7 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   c.shape_pose = own.local.template cast<T>();
   c.size = own.size.template cast<T>();
   if (own.shape == Shape::kBox) {  // as rounded as its own corners
-    c.radius = T(box_rounding(own.size));
+    c.radius = T(box_rounding(own.size, double(states_[n]->tree.scale.length)));
     c.size.array() -= c.radius;
   }
   for (int corner = 0; corner < 8; ++corner) {
@@ -499,7 +515,8 @@ bool ContactFinder<T>::kept_apart(int n, int body, int m, int other) const {
 template <class T>
 void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
-  const T reach = a.reach + b.reach - T(2 * kMargin - kMarginBetween);
+  const T units = states_[n]->tree.scale.length + states_[m]->tree.scale.length;
+  const T reach = a.reach + b.reach - T(kMargin - kMarginBetween / 2) * units;
   if ((!a.moved && !b.moved) || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
   const Collider& shape = states_[m]->colliders[other];
   if (kept_apart(n, states_[n]->colliders[collider].joint, m, shape.joint)) return;
@@ -582,7 +599,7 @@ template <class T>
 bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
                    std::vector<MovingCollider<T>>& room) {
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
-  const T reach = s.radius + T(0.1) + 2 * h * s.history.velocity[0].norm();
+  const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>();
   room.clear();
   const auto movers = [&] {
@@ -595,10 +612,11 @@ bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
       const Collider& obstacle = around.obstacles[o];
       const SignedDistance<double> d =
           signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
-      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h));
+      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h, s.tree.scale.length));
     });
   return near || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
-           return o.shape->distance(center).distance < double(reach) && comes_close(movers(), *o.shape, h);
+           return o.shape->distance(center).distance < double(reach) &&
+                  comes_close(movers(), *o.shape, h, s.tree.scale.length);
          });
 }
 

@@ -143,7 +143,7 @@ class ContactFinder final : public ContactSearch<T> {
   void add(Contact<T>& contact, T reach);
   bool make_room();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
-  void go_on_below(Met& box) const;
+  void go_on_below(T unit, Met& box) const;
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
@@ -159,8 +159,9 @@ class ContactFinder final : public ContactSearch<T> {
   std::span<const BodyPair> apart_;
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), bears_ = T(0);  ///< s; kg
-  T damping_time_ = T(0);      ///< of contacts, s
-  T most_sunk_ = T(0);         ///< m: a normal force that sinks a contact deeper adds nothing to its friction
+  T damping_time_ = T(0);      ///< of a human's contacts, s
+  T most_sunk_ =
+      T(0);  ///< m of a human: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
   std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
   std::vector<T> gaps_;              ///< m, for make_room()
@@ -189,7 +190,7 @@ struct ContactTerm {
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);
   // See contact.h.
-  void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index);
+  void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index, double unit);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);
   void (*measure)(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
 };

@@ -8,9 +8,9 @@ namespace {
 constexpr double kCut = 0.2;  ///< rad and m: an animation that leaps further than this in one step was cut
 
 template <class T>
-bool leaps(const Transform<T>& before, const JointJet<T>& last) {
+bool leaps(const Transform<T>& before, const JointJet<T>& last, T unit) {
   const T cut_cosine = std::cos(T(kCut / 2));
-  return (before.translation - last.translation).norm() >= T(kCut) ||
+  return (before.translation - last.translation).norm() >= T(kCut) * unit ||
          std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
 }
 
@@ -30,7 +30,7 @@ template <class T>
 bool carry_over(CharacterState<T>& s, T h) {
   if (!s.root_is_kinematic() || !s.floats) return false;
   const Transform<T> before = a_step_ago(s.target[0], h);
-  if (!leaps(before, s.last_target()[0])) return false;
+  if (!leaps(before, s.last_target()[0], s.tree.scale.length)) return false;
   s.keep_record();
   turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
@@ -47,7 +47,7 @@ void meet_cuts(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
     const Transform<T> before = a_step_ago(now, h);
-    if (!leaps(before, s.last_target()[i])) continue;
+    if (!leaps(before, s.last_target()[i], s.tree.scale.length)) continue;
     restart(before, now, s.own_last_target()[i]);
     Deviation<T>& d = s.deviation[i];
     if (d.on_animation) continue;

@@ -13,6 +13,7 @@
 #include "sinew/character/way_back.h"
 #include "sinew/optimizer/error_estimate.h"
 #include "sinew/optimizer/time_scheme.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 namespace {
@@ -119,14 +120,15 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     T missed = T(0), load = T(0);
     const int first = s.tree.first_dof[i];
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      missed = std::max(missed, std::abs(from_target[k]));
+      const T unit = slides(s.tree, first + k) ? s.tree.scale.length : T(1);
+      missed = std::max(missed, std::abs(from_target[k]) / unit);
       s.load[first + k] = std::min(p.law.load(s.tree, i, first + k, s.torque), T(1));
       load = std::max(load, s.load[first + k]);
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
     if (!s.baked[i] || s.joint_is_driven(i))
-      s.deviation[i].released = free && !(missed < T(4) * settings_.kink_width && load < T(kCertified));
+      s.deviation[i].released = free && !(missed < T(4) * p.kink_width && load < T(kCertified));
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
   }
   if (!falls) {
@@ -272,9 +274,9 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   settings_.constant_muscles = !settings_.plan->scheme;
   settings_.common_origin = states_[0]->history.place;
   settings_.stick = T(world.accuracy.stick_speed) * h;
-  settings_.kink_width = kink_width<T>(h, T(world.accuracy.tolerance));
   for (CharacterState<T>* s : states_) {
     problems_.push_back(&s->problem);
+    s->problem.kink_width = kink_width<T>(h / s->tree.scale.time, T(world.accuracy.tolerance));
     s->problem.common_origin =
         s->floats ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(settings_.common_origin.template cast<T>());
     choose_wanted(*s, fraction);

@@ -50,9 +50,10 @@ bool IslandStepper<T>::turns_far(T h) const {
 template <class T>
 bool IslandStepper<T>::strikes_in_long(T h) const {
   const double most = world_->accuracy.impact_step;
-  if (!(most > 0) || h < T(1.2 * most) || !may_halve(h)) return false;
+  if (!(most > 0) || !may_halve(h)) return false;
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    return c.fresh && c.approach > T(kImpactSpeed) && c.start_gap < h * c.approach &&
+    return c.fresh && !(h < T(1.2 * most) * c.speed_scale) && c.approach > T(kImpactSpeed) * c.speed_scale &&
+           c.start_gap < h * c.approach &&
            (falls(*states_[c.tree_a]) || (c.tree_b >= 0 && falls(*states_[c.tree_b])));
   });
 }
@@ -60,8 +61,9 @@ bool IslandStepper<T>::strikes_in_long(T h) const {
 /// Whether what strikes would be deep inside by the end of the step, at the speed that it has.
 template <class T>
 bool IslandStepper<T>::strikes_deep(T h) const {
-  return std::any_of(contacts_.begin(), contacts_.end(),
-                     [&](const Contact<T>& c) { return c.fresh && h * c.approach - c.start_gap > T(kDeep); });
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+    return c.fresh && h * c.approach - c.start_gap > T(kDeep) * c.length_scale;
+  });
 }
 
 /// A guess that goes deep into something is up a hill of the energy, with other minima beside it. Where the

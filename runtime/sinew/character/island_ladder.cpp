@@ -58,9 +58,9 @@ double IslandStepper<T>::excess() const {
 /// J that what stands still stores in its contacts: no more than a solve that failed may leave.
 template <class T>
 double IslandStepper<T>::standing() const {
-  double mass = 0;
-  for (const CharacterState<T>* s : states_) mass += s->total_mass;
-  return mass * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
+  double moments = 0;
+  for (const CharacterState<T>* s : states_) moments += s->total_mass * double(s->tree.scale.length);
+  return moments * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
 }
 
 /// A solve descends from its guess, and from a guess deep inside something it may converge to a minimum in

@@ -138,7 +138,7 @@ void IslandStepper<T>::begin_loaded(T h) {
   for (const Contact<T>& c : contacts_) {
     const T force = normal_force(c);
     if (!(force > T(0))) continue;
-    if (std::abs(c.approach) < kResting) {
+    if (std::abs(c.approach) < kResting * c.speed_scale) {
       lagged_.push_back({c.id, force, c.stiffness, c.offset, force, force, force});
       continue;
     }

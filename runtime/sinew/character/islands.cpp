@@ -120,13 +120,16 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
   const auto meet = [&](int n, int other) {
-    const T margin = states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin);
+    const T margin = (states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin)) *
+                     std::max(states[n]->tree.scale.length, states[other]->tree.scale.length);
     return contacts->come_close(moving(*states[n], n, *contacts, h),
                                 moving(*states[other], other, *contacts, h), h, margin);
   };
   const auto center = [&](int n) { return states[n]->middle(); };
   // Together they leave a decimetre, and twice what both may move by.
-  const auto reach = [&](int n) { return double(states[n]->radius + T(0.05) + 2 * h * states[n]->pace()); };
+  const auto reach = [&](int n) {
+    return double(states[n]->radius + T(0.05) * states[n]->tree.scale.length + 2 * h * states[n]->pace());
+  };
   for (int n = 0; n < count; ++n) {
     CharacterState<T>& s = *states[n];
     parent_[n] = n;

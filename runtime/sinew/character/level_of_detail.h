@@ -58,6 +58,7 @@ struct LevelOfDetail {
   double dwell = 1;
   /// s at rest after which what is limp, or follows a target that stands still, falls asleep, together with
   /// everything near it. 0: never. Touch, a push, a new target, strength or drive wake it.
+  /// These three are a figure's of human size; others' are in proportion (residual/scale.h).
   double sleep_after = 0;
   double sleep_speed = 0.01;  ///< m/s of every body's centre; below, it rests
   double sleep_spin = 0.05;   ///< rad/s

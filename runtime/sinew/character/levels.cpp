@@ -31,10 +31,11 @@ template <class T>
 Level allowed_level(const CharacterState<T>& s) {
   const Level cap = std::min(s.detail.most, s.levels.cap);
   // What holds no joint of its own can be on no clip; nor what is tied to something or thrown about.
-  const auto far = [](const Deviation<T>& d) {
+  const double time = double(s.tree.scale.time);
+  const auto far = [time](const Deviation<T>& d) {
     const auto above = [](double most) { return [most](T x) { return std::abs(double(x)) > most; }; };
     return std::any_of(d.offset.begin(), d.offset.end(), above(kCalmOffset)) ||
-           std::any_of(d.rate.begin(), d.rate.end(), above(kCalmRate));
+           std::any_of(d.rate.begin(), d.rate.end(), above(kCalmRate / time));
   };
   const bool thrown = cap < Level::kPartial && std::any_of(s.deviation.begin(), s.deviation.end(), far);
   return std::max(cap, s.driven && !s.tied && !thrown ? Level::kPlayback : Level::kPartial);

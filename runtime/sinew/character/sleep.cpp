@@ -18,9 +18,11 @@ bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
     };
     if (!std::equal(s.target.begin(), s.target.end(), s.last_target().begin(), same)) return false;
   }
+  const double time = double(s.tree.scale.time), speed = detail.sleep_speed * time,
+               spin = detail.sleep_spin / time;
   for (int i = 0; i < s.tree.bodies; ++i)
-    if (s.history.velocity[i].squaredNorm() > T(detail.sleep_speed * detail.sleep_speed) ||
-        s.history.rotation_rate[i].squaredNorm() > T(2 * detail.sleep_spin * detail.sleep_spin))
+    if (s.history.velocity[i].squaredNorm() > T(speed * speed) ||
+        s.history.rotation_rate[i].squaredNorm() > T(2 * spin * spin))
       return false;
   return true;
 }
@@ -42,7 +44,7 @@ void put_to_sleep(std::span<CharacterState<T>* const> members, std::span<const i
     if (s->driven && s->undisturbed()) return;
   for (CharacterState<T>* s : members) {
     s->levels.still = may && rests(*s, detail) ? s->levels.still + static_cast<float>(h) : 0;
-    all = all && double(s->levels.still) >= detail.sleep_after;
+    all = all && double(s->levels.still) >= detail.sleep_after * double(s->tree.scale.time);
   }
   if (!all) return;
   for (CharacterState<T>* s : members) {

@@ -8,6 +8,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/cut.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 namespace {
@@ -24,7 +25,7 @@ constexpr double kSamePath = 4e-3;  ///< 1/s; four times the muscles' rounding
 
 template <class T>
 Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
-    : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()) {
+    : skeleton(s), tree(skeleton), total_mass(skeleton.total_mass()), radius(T(0.1) * tree.scale.length) {
   for (std::size_t n = 0; n < skeleton.colliders.size(); ++n) {
     Collider on_body = skeleton.colliders[n];
     while (on_body.joint >= skeleton.body_count) {
@@ -32,7 +33,8 @@ Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
       on_body.joint = skeleton.joints[on_body.joint].parent;
     }
     first_point.push_back(static_cast<int>(points.size()));
-    if (plan.contacts) plan.contacts->append_points(on_body, points, static_cast<int>(n));
+    if (plan.contacts)
+      plan.contacts->append_points(on_body, points, static_cast<int>(n), double(tree.scale.length));
     colliders.push_back(on_body);
     bound_center.push_back(on_body.local.translation.template cast<T>());
     bound_radius.push_back(T(bounding_radius(on_body)));
@@ -131,7 +133,7 @@ void Rig<T>::choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& 
     while (body > 0 && tree.dof_count(body) == 0) body = tree.parent[body];
     return body;
   };
-  constexpr double clearance = 0.01;  // m
+  const double clearance = 0.01 * double(tree.scale.length);  // m
   for (int a = 0; a < count; ++a)
     for (int b = 0; b < count; ++b) {
       const int i = moving(colliders[a].joint), j = moving(colliders[b].joint);
@@ -409,23 +411,26 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
   // The way back is no longer than three quarters of a turn, nor than need be where no muscle has begun it.
   const bool around =
       !joint_is_driven(i) || length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
-  const T decay = std::exp(-h / return_time), same = T(kSamePath) * h;
+  const T time = tree.scale.time;
+  return_time *= time;
+  const T decay = std::exp(-h / return_time), same = T(kSamePath) * (h / time);
   T offset = T(0), speed = T(0);
   d.on_path = true;
   for (int k = 0; k < tree.dof_count(i); ++k) {
     // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
     // would start the next part of the path too fast or too slow by an error of first order.
     const T pull = d.rate[k] + d.offset[k] / return_time;
+    const T unit = slides(tree, tree.first_dof[i] + k) ? tree.scale.length : T(1);
     const bool on_path = !d.on_animation && load[tree.first_dof[i] + k] < T(0.99) &&
-                         std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same;
+                         std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same * unit;
     d.rate[k] =
         on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
     d.offset[k] = around ? measured[k] : from_animation[k];
     d.on_path = d.on_path && on_path;
-    offset = std::max(offset, std::abs(d.offset[k]));
-    speed = std::max(speed, std::abs(d.rate[k]));
+    offset = std::max(offset, std::abs(d.offset[k]) / unit);
+    speed = std::max(speed, time * std::abs(d.rate[k]) / unit);
   }
-  const T fine = std::min(60 * h, T(1));
+  const T fine = std::min(60 * (h / time), T(1));
   const T snap = std::max(T(kSnapAngle) * fine * fine, 16 * std::numeric_limits<T>::epsilon());
   d.on_animation = !d.released && offset < snap && speed < T(kSnapRate) * fine;
   if (!d.on_animation) return;
@@ -473,7 +478,7 @@ bool CharacterState<T>::joint_is_driven(int body) const {
 
 template <class T>
 T CharacterState<T>::fastest() const {
-  if (owed.motion) return history.velocity[0].norm() + T(kLimbSpeed);
+  if (owed.motion) return history.velocity[0].norm() + T(kLimbSpeed) * tree.scale.time;
   T square = T(0);
   for (const Vec3<T>& v : owed.history ? motion.velocity : history.velocity)
     square = std::max(square, v.squaredNorm());
@@ -485,7 +490,8 @@ bool CharacterState<T>::is_struck(T return_time) const {
   if (impulses.empty()) return false;
   if (limp()) return true;
   const auto moves = [&](const ExternalForce<T>& impulse) {
-    return impulse.force.norm() * return_time > T(kFelt) * tree.mass[impulse.body];
+    return impulse.force.norm() * return_time * tree.scale.time >
+           T(kFelt) * tree.scale.length * tree.mass[impulse.body];
   };
   return std::any_of(impulses.begin(), impulses.end(), moves);
 }

@@ -71,7 +71,7 @@ struct Rig {
   SupportPoints<T> support;             ///< those that may stand on the ground
   std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
   std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
-  T radius = T(0.1);                    ///< m, from the root's origin to the furthest collider at rest
+  T radius;                             ///< m, from the root's origin to the furthest collider at rest
 
   Rig(const Skeleton& skeleton, const StepPlan<T>& plan);
 
@@ -80,7 +80,7 @@ struct Rig {
   void choose_baked();
 };
 
-constexpr double kLimbSpeed = 6;  ///< m/s against the root, where nobody has measured it
+constexpr double kLimbSpeed = 6;  ///< m/s of a human against the root, where nobody has measured it
 
 template <class T>
 struct CharacterState {
@@ -157,7 +157,8 @@ struct CharacterState {
   /// most a hundred times its own) sinks it by the accuracy's depth.
   T contact_stiffness(const WorldSettings& world, T heaviest) const {
     const double bears = std::clamp(double(heaviest), total_mass, 100 * total_mass);
-    return T(bears * std::max(1.0, world.gravity.norm()) / world.accuracy.sink_depth);
+    return T(bears * std::max(1.0, world.gravity.norm()) /
+             (world.accuracy.sink_depth * double(tree.scale.length)));
   }
   /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
   T muscle_limit(int muscle, double limit_at_rest) const;
@@ -217,7 +218,7 @@ struct CharacterState {
   }
   /// After a step of h seconds: how far a joint is off what the animation wants (`measured`, a
   /// joint_offset), and how fast that changes; on the animation where both are next to nothing. `return_time`
-  /// of the way back, s.
+  /// of a human's way back, s.
   void update_deviation(int body, const std::array<T, 6>& measured, T h, T return_time);
   /// Before a step of h seconds, with its target set: the deviations that are owed, where the step asks for
   /// them. Their rates are those with which the joints leave what the animation does in the step.

@@ -1,9 +1,12 @@
 #include "sinew/character/touch_digest.h"
 
+#include "sinew/residual/tree_pass.h"
+
 namespace sinew {
 namespace {
 
-constexpr double kTouch = 5e-5;  ///< m; shallower contacts bear half a percent of the weight: no impact
+constexpr double kTouch =
+    5e-5;  ///< m of a human, or rad; shallower contacts bear half a percent of the weight: no impact
 
 std::uint64_t mixed(std::uint64_t id) {
   id ^= id >> 31;
@@ -17,7 +20,7 @@ template <class T>
 std::uint64_t touching(std::span<const Contact<T>> contacts, int tree) {
   std::uint64_t digest = 0;
   for (const Contact<T>& c : contacts)
-    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(-kTouch)) digest ^= mixed(c.id);
+    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(-kTouch) * c.length_scale) digest ^= mixed(c.id);
   return digest;
 }
 
@@ -32,7 +35,7 @@ std::uint64_t touching_soon(std::span<const Contact<T>> contacts, int tree,
     if (c.tree_a != tree && c.tree_b != tree) continue;
     T gap = c.gap + h * c.normal.dot(speed(c.tree_a, c.body_a, c.point));
     if (c.tree_b >= 0) gap -= h * c.normal.dot(speed(c.tree_b, c.body_b, c.point));
-    if (gap < T(-kTouch)) digest ^= mixed(c.id);
+    if (gap < T(-kTouch) * c.length_scale) digest ^= mixed(c.id);
   }
   return digest;
 }
@@ -41,7 +44,8 @@ template <class T>
 std::uint64_t bearing(const TreeProblem<T>& problem) {
   std::uint64_t digest = 0;
   for (const JointRow<T>& row : problem.rows)
-    if (row.kind == RowKind::kOneSided && row.value > T(kTouch))
+    if (row.kind == RowKind::kOneSided &&
+        row.value > T(kTouch) * (slides(*problem.tree, row.dof) ? problem.tree->scale.length : T(1)))
       digest ^= mixed(64 * std::uint64_t(row.dof) + 8 * std::uint64_t(row.scalar) +
                       2 * std::uint64_t(row.component) + (row.sign < T(0)));
   return digest;

@@ -89,6 +89,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
     std::copy(s.wanted.begin(), s.wanted.end(), p.target.begin());
     return;
   }
+  return_time *= s.tree.scale.time;
   const T decay = std::exp(-h / return_time);
   bool summed = false;
   for (int i = 0; i < s.tree.bodies; ++i) {

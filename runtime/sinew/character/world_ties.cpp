@@ -68,9 +68,11 @@ int World<T>::add_loop(const LoopSettings& loop, Status& status) {
   if (status && a.state < 0 && b.state < 0)
     status = Status::error(Code::kInvalidArgument, "a loop from the world to the world");
   if (!status) return -1;
-  const double weight = std::max(impl_->weight_of(a), impl_->weight_of(b));
+  const double of_a = impl_->weight_of(a), of_b = impl_->weight_of(b);
+  const int heavier = of_a < of_b ? b.state : a.state;
+  const double unit = heavier < 0 ? 1 : double(impl_->states[heavier]->tree.scale.length);
   impl_->declare(Ties<T>::declare);
-  const int coupling = impl_->tie(make_loop<T>(loop, a, b, weight), status);
+  const int coupling = impl_->tie(make_loop<T>(loop, a, b, std::max(of_a, of_b), unit), status);
   if (!status) return -1;
   impl_->loops.push_back(coupling);
   if (!loop.collide && a.state >= 0 && b.state >= 0)

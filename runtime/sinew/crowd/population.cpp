@@ -10,7 +10,7 @@ namespace sinew {
 namespace {
 
 constexpr float kMargin =
-    0.3f;  ///< m beyond what two may move by, at which a neighbour is called into the world
+    0.3f;  ///< m of a human, beyond what two may move by, at which a neighbour is called into the world
 
 }  // namespace
 
@@ -18,6 +18,7 @@ struct Population::Impl {
   std::unique_ptr<Crowd> crowd;
   std::unique_ptr<World<float>> world;
   int capacity = 0, joints = 0;
+  float margin = 0;                  ///< m, see kMargin
   float radius = 0;                  ///< m, of a character about its root
   std::vector<int> place_of;         ///< [character] in the world, or −1
   std::vector<int> character_of;     ///< [place], or −1
@@ -56,6 +57,7 @@ std::unique_ptr<Population> Population::create(const Skeleton& skeleton, const P
   }
   impl->capacity = crowd.capacity;
   impl->joints = static_cast<int>(skeleton.joints.size());
+  impl->margin = kMargin * static_cast<float>(scale_of(skeleton).length);
   for (const Transform<float>& t : impl->world->character(0).model())
     impl->radius =
         std::max(impl->radius, (t.translation - impl->world->character(0).model()[0].translation).norm());
@@ -107,7 +109,7 @@ void Population::Impl::call_neighbours(double h) {
     const Character<float> c = world->character(static_cast<int>(place));
     if (c.on_animation()) continue;
     const Vec3<double> center = c.model()[0].translation.cast<double>();
-    grid.add(character_of[place], center, double(radius + kMargin));
+    grid.add(character_of[place], center, double(radius + margin));
     any = true;
   }
   if (!any) return;

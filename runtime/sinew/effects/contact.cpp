@@ -49,7 +49,8 @@ T Contact<T>::half_thickness() const {
 }
 
 template <class T>
-void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index) {
+void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index,
+                           double unit) {
   const auto add = [&](PointKind kind, const Vec3<double>& in_shape, double radius, double half) {
     ContactPoint<T> point;
     point.body = collider.joint;
@@ -72,13 +73,13 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
       add(PointKind::kTip, {0, 0, s.z()}, s.x(), 0);
       if (s.z() > 0) add(PointKind::kTip, {0, 0, -s.z()}, s.x(), 0);
       add(PointKind::kAxis, Vec3<double>::Zero(), s.x(), s.z());
-      const int inner = static_cast<int>(std::min(s.z() / std::max(s.x(), 1e-3), 6.0));
+      const int inner = static_cast<int>(std::min(s.z() / std::max(s.x(), 1e-3 * unit), 6.0));
       for (int n = 1; n <= inner; ++n)
         add(PointKind::kInner, {0, 0, s.z() * (2.0 * n / (inner + 1) - 1)}, s.x(), 0);
       break;
     }
     case Shape::kBox: {
-      const double round = box_rounding(s);
+      const double round = box_rounding(s, unit);
       const Vec3<double> in = s.array() - round;
       for (int corner = 0; corner < 8; ++corner)
         add(PointKind::kCorner,

@@ -64,19 +64,20 @@ struct ContactPoint {
   }
 };
 
-/// Appends the points of a collider, the `index`th of its skeleton.
+/// Appends the points of a collider, the `index`th of its skeleton; `unit`: Scale::length.
 template <class T>
-void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index = 0);
+void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index = 0,
+                           double unit = 1);
 
 /// A body sinks as deep on many points as on four: sets the shares of those that can touch a plane at once
 /// (half of a box's corners), beyond four per body.
 template <class T>
 void share_stiffness(std::vector<ContactPoint<T>>& points);
 
-/// m, of the corners of a box with such half extents: one that stands exactly above another box's edge stays
-/// on its face.
-inline double box_rounding(const Vec3<double>& size) {
-  return std::min(0.05 * size.minCoeff(), 0.01);
+/// m, of the corners of a box with such half extents, on a rig of so many times a human's size: one that
+/// stands exactly above another box's edge stays on its face.
+inline double box_rounding(const Vec3<double>& size, double unit) {
+  return std::min(0.05 * size.minCoeff(), 0.01 * unit);
 }
 
 /// How far along two axes a and b, in parts of them, lie the nearest points of the lines p + s·a and q + t·b;
@@ -119,10 +120,12 @@ struct Contact {
   Vec3<T> size = Vec3<T>::Zero();
   int face =
       -1;  ///< of a box, that the point leaves it by: 2 axis + 1 for the side below; −1: by the nearest
-  T stiffness = T(1e5);                          ///< N/m
-  T friction = T(0.8);                           ///< μ
-  T lagged_normal_force = T(0);                  ///< λ, N
-  T grip = T(0);                                 ///< N, most that friction can do: μλ
+  T length_scale = T(1);         ///< of the smaller of the two that touch, by a human's: see Scale
+  T speed_scale = T(1);          ///< its root; of times too
+  T stiffness = T(1e5);          ///< N/m
+  T friction = T(0.8);           ///< μ
+  T lagged_normal_force = T(0);  ///< λ, N
+  T grip = T(0);                 ///< N, most that friction can do: μλ
   T lasting_last = T(0), lasting_before = T(0);  ///< N; see lasting(): of the last step and the one before
   T lasting_force = T(0);                        ///< N; at the end of this one
   T smooth_before = T(0);                        ///< N; what of λ no impulse was: see split()
@@ -154,6 +157,8 @@ struct Contact {
   }
   /// gap + τ·gap', m: what the normal force is a function of. Above the gap where the contact opens.
   T damped_gap() const { return stretch * gap + lag; }
+  /// m, see ContactLaw.
+  T width() const { return T(5e-4) * length_scale; }
   /// Whether it bears or rubs.
   bool acts() const { return damped_gap() < T(0) || grip > T(0); }
   /// Half the thickness of what is met, m.
@@ -165,33 +170,31 @@ struct Contact {
   Mat3<T> bending = Mat3<T>::Zero();  ///< ∇²distance, 1/m
 };
 
-/// Normal energy of a gap (m) and its derivatives; `width` of the cubic start is 0.5 mm (fewer
-/// factorisations: 3.4 against 3.7 per step, solver-prototype table 4).
+/// Normal energy of a gap (m) and its derivatives; `width` (m) is that of the cubic start: 0.5 mm of a
+/// human's (fewer factorisations: 3.4 against 3.7 per step, solver-prototype table 4).
 template <class T>
 struct ContactLaw {
-  static constexpr T width = T(5e-4);
-
-  static T energy(T k, T gap) {
+  static T energy(T k, T gap, T width) {
     const T p = -gap;
     if (p <= T(0)) return T(0);
     return p < width ? k * p * p * p / (6 * width) : k * (p * p / 2 - p * width / 2 + width * width / 6);
   }
   /// Normal force, ≥ 0.
-  static T force(T k, T gap) {
+  static T force(T k, T gap, T width) {
     const T p = -gap;
     if (p <= T(0)) return T(0);
     return p < width ? k * p * p / (2 * width) : k * (p - width / 2);
   }
   /// How deep a force sinks: the inverse of force(k, −depth).
-  static T depth(T k, T force) {
+  static T depth(T k, T force, T width) {
     return force < k * width / 2 ? std::sqrt(2 * width * force / k) : force / k + width / 2;
   }
   /// How deep is what stores an energy: the inverse of energy(k, −depth).
-  static T depth_storing(T k, T energy) {
+  static T depth_storing(T k, T energy, T width) {
     return energy < k * width * width / 6 ? std::cbrt(6 * width * energy / k)
                                           : width / 2 + std::sqrt(2 * energy / k - width * width / 12);
   }
-  static T curvature(T k, T gap) {
+  static T curvature(T k, T gap, T width) {
     const T p = -gap;
     if (p <= T(0)) return T(0);
     return p < width ? k * p / width : k;
@@ -214,22 +217,23 @@ struct FrictionLaw {
 /// What a contact stores at the present gap (J).
 template <class T>
 T stored_energy(const Contact<T>& c) {
-  return ContactLaw<T>::energy(c.stiffness, c.gap);
+  return ContactLaw<T>::energy(c.stiffness, c.gap, c.width());
 }
 
 /// Normal force at the present gap, ≥ 0 (N).
 template <class T>
 T normal_force(const Contact<T>& c) {
-  return ContactLaw<T>::force(c.stiffness, c.damped_gap());
+  return ContactLaw<T>::force(c.stiffness, c.damped_gap(), c.width());
 }
 
-/// Normal and friction potential of the step at the present gap and slip (J).
+/// Normal and friction potential of the step at the present gap and slip (J); `stick` (m per step): a
+/// human's.
 template <class T>
 T contact_energy(const Contact<T>& c, T stick) {
-  T energy = ContactLaw<T>::energy(c.stiffness, c.damped_gap()) / c.stretch;
+  T energy = ContactLaw<T>::energy(c.stiffness, c.damped_gap(), c.width()) / c.stretch;
   if (c.grip > T(0))
-    energy +=
-        c.grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]), stick);
+    energy += c.grip * FrictionLaw<T>::energy(std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]),
+                                              c.speed_scale * stick);
   return energy;
 }
 
@@ -244,7 +248,7 @@ template <class T>
 Vec3<T> friction_gradient(const Contact<T>& c, T stick) {
   if (c.grip <= T(0)) return Vec3<T>::Zero();
   const T slip = std::sqrt(c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1]);
-  const T scale = c.grip * FrictionLaw<T>::slope_over_slip(slip, stick);
+  const T scale = c.grip * FrictionLaw<T>::slope_over_slip(slip, c.speed_scale * stick);
   return scale * (c.slip[0] * c.frame.col(0) + c.slip[1] * c.frame.col(1));
 }
 
@@ -280,12 +284,12 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact
 template <class T>
 void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
 
-#define SINEW_CONTACT_INSTANCES(prefix, T)                                                   \
-  prefix struct Contact<T>;                                                                  \
-  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);        \
-  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int); \
-  prefix void share_stiffness<T>(std::vector<ContactPoint<T>>&);                             \
-  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);           \
+#define SINEW_CONTACT_INSTANCES(prefix, T)                                                           \
+  prefix struct Contact<T>;                                                                          \
+  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);                \
+  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int, double); \
+  prefix void share_stiffness<T>(std::vector<ContactPoint<T>>&);                                     \
+  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);                   \
   prefix void begin_step<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);
 SINEW_CONTACT_INSTANCES(extern template, float)
 SINEW_CONTACT_INSTANCES(extern template, double)

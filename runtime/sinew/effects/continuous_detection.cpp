@@ -42,7 +42,7 @@ T time_of_impact(std::span<const IslandTree<T>> trees, const Contact<T>& c) {
   const T length = motion.norm();
   if (length <= safe_motion(c)) return T(1);
   // What touches already is held by its row, unless it is pushed right through.
-  if (c.gap < T(kClose)) return -motion.dot(c.normal) > safe_motion(c) ? T(0) : T(1);
+  if (c.gap < T(kClose) * c.length_scale) return -motion.dot(c.normal) > safe_motion(c) ? T(0) : T(1);
   const Vec3<T> in_shape = b ? Vec3<T>(b->rotation[c.body_b].transpose() * motion) : motion;
   Contact<T> probe = c;
   T t = T(0);
@@ -51,7 +51,7 @@ T time_of_impact(std::span<const IslandTree<T>> trees, const Contact<T>& c) {
     probe.local_b = c.local_b;
     probe.shift_b(-t * in_shape);
     measure<T>(a.problem.kinematics, b, probe);
-    if (probe.gap < T(kClose)) return t;
+    if (probe.gap < T(kClose) * c.length_scale) return t;
     t += probe.gap / length;
   }
   return std::min(t, T(1));

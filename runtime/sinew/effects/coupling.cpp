@@ -176,9 +176,10 @@ void lead_out(T h, Coupling<T>& c) {
   c.led = c.closes();
   for (Stencil<T>& e : c.stencils) {
     const Vec3<T> open = reach(c, e);
-    if ((open - e.offset).norm() > e.length + T(kTorn)) e.offset = open * (T(1) - e.length / open.norm());
-    const T left = e.offset.norm();
-    e.offset *= left > T(kClosingSpeed) * h ? T(1) - T(kClosingSpeed) * h / left : T(0);
+    if ((open - e.offset).norm() > e.length + T(kTorn) * c.length_scale)
+      e.offset = open * (T(1) - e.length / open.norm());
+    const T left = e.offset.norm(), closes = T(kClosingSpeed) * c.speed_scale * h;
+    e.offset *= left > closes ? T(1) - closes / left : T(0);
   }
   c.led = c.led || c.closes();
 }

@@ -85,9 +85,10 @@ struct Coupling {
   std::vector<Stencil<T>> stencils;
   std::vector<Tetrahedron<T>> tetrahedra;
   bool active = true;
-  bool leads_out = false;  ///< stencils that begin open close at a walking pace (loops)
-  bool led = false;        ///< in this step: its velocities are led, too
-  double energy = 0;       ///< J, when last measured
+  bool leads_out = false;                     ///< stencils that begin open close at a walking pace (loops)
+  bool led = false;                           ///< in this step: its velocities are led, too
+  T length_scale = T(1), speed_scale = T(1);  ///< of what it ties, by a human's: see Scale
+  double energy = 0;                          ///< J, when last measured
 
   /// Whether something that began open is still being led out: that does work.
   bool closes() const {
@@ -129,9 +130,10 @@ constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, a
 
 /// m/s: how fast what is still open of an element is led in.
 template <class T>
-Vec3<T> closing_velocity(const Stencil<T>& e) {
+Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
   const T open = e.offset.norm();
-  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) / open)) : Vec3<T>(Vec3<T>::Zero());
+  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
+                     : Vec3<T>(Vec3<T>::Zero());
 }
 
 /// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a

@@ -47,7 +47,7 @@ int supporting(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards, 
 template <class T>
 T inner_part(const PlacedShape<T>& s, const Edge<T>& e) {
   if (s.shape != Shape::kBox) return T(1);
-  return T(1) - T(box_rounding(s.size.template cast<double>())) / e.half_axis.norm();
+  return T(1) - T(box_rounding(s.size.template cast<double>(), double(s.unit))) / e.half_axis.norm();
 }
 
 }  // namespace

@@ -15,9 +15,14 @@ struct PlacedShape {
   Vec3<T> size = Vec3<T>::Zero();  ///< as Collider::size
   Vec3<T> center = Vec3<T>::Zero();
   Mat3<T> rotation = Mat3<T>::Identity();
+  T unit = T(1);  ///< see box_rounding()
 
-  PlacedShape(Shape of, const Vec3<T>& measures, const Transform<T>& pose)
-      : shape(of), size(measures), center(pose.translation), rotation(pose.rotation.toRotationMatrix()) {}
+  PlacedShape(Shape of, const Vec3<T>& measures, const Transform<T>& pose, T length_unit)
+      : shape(of),
+        size(measures),
+        center(pose.translation),
+        rotation(pose.rotation.toRotationMatrix()),
+        unit(length_unit) {}
 };
 
 /// An edge of a box, or the axis of a capsule.

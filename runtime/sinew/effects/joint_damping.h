@@ -24,7 +24,7 @@ struct JointDampingRows {
     if (const Number<T> friction = joint.law.dry_friction[dof]; friction > 0) {
       JointRow<T> row = joint.row(from_start, RowScalar::kFromStart, k);
       row.minus = row.plus = joint.emphasis * friction;
-      row.width = 10 * joint.kink_width;
+      row.width = 10 * joint.kink_width * joint.unit(k);
       rows.add_row(row, always);
     }
     if (const Number<T> damping = joint.law.damping[dof]; damping > 0) {

@@ -9,15 +9,15 @@
 
 namespace sinew {
 
-/// Rows of a scalar between two bounds, of which each may be there or not. `at_start` tells the scalar when
-/// the step began, and is asked only where the bound is near.
+/// Rows of a scalar between two bounds, of which each may be there or not; `unit`: see JointStep. `at_start`
+/// tells the scalar when the step began, and is asked only where the bound is near.
 template <class T, class Law, class Present, class AtStart, class Rows>
 void append_bounds(const JointStep<T, Law>& joint, const T& scalar, Number<T> lower, const Present& has_lower,
                    Number<T> upper, const Present& has_upper, const AtStart& at_start, JointRow<T> row,
-                   Rows& rows) {
-  constexpr auto near = Number<T>(0.05);  // rad or m
+                   Rows& rows, Number<T> unit = Number<T>(1)) {
+  const Number<T> near = Number<T>(0.05) * unit;  // rad or m
   row.kind = RowKind::kOneSided;
-  row.stiffness = joint.limit_stiffness;
+  row.stiffness = joint.limit_stiffness / (unit * unit);
   const auto append = [&](Number<T> sign, Number<T> bound, const Present& present) {
     if (!any(present)) return;
     row.value = T(sign) * (scalar - T(bound));
@@ -56,7 +56,7 @@ struct JointLimitRows {
     };
     append_bounds(joint, from_rest.value[k], lower, lower > -most ? always : !always, upper,
                   upper < most ? always : !always, at_start, joint.row(from_rest, RowScalar::kFromRest, k),
-                  rows);
+                  rows, joint.unit(k));
   }
   static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
 

@@ -12,6 +12,7 @@
 #include "sinew/muscle/joint_coordinates_pass.h"
 #include "sinew/muscle/joint_law.h"
 #include "sinew/muscle/joint_rows.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 
@@ -23,10 +24,10 @@ struct JointStep {
   int body = 0;
   const Transform<T>&local, &target, &start;  ///< now, where muscles pull, when the step began
   Number<T> h = 0;                            ///< s
-  Number<T> kink_width = 0;                   ///< rad: muscles and dry friction are rounded over it
-  Number<T> limit_stiffness = 0;              ///< N·m/rad
-  Number<T> limit_damping = 0;                ///< s
-  T emphasis = T(1);                          ///< of muscles, friction and damping: see StepSettings
+  Number<T> kink_width = 0;       ///< rad: muscles and dry friction are rounded over it; see kink()
+  Number<T> limit_stiffness = 0;  ///< N·m/rad, of this tree
+  Number<T> limit_damping = 0;    ///< s
+  T emphasis = T(1);              ///< of muscles, friction and damping: see StepSettings
 
   int first_dof() const { return tree.first_dof[body]; }
   int dofs() const { return tree.dof_count(body); }
@@ -41,6 +42,8 @@ struct JointStep {
       if (any(is(dof))) return true;
     return false;
   }
+  /// m by rad: 1 where the kth degree of freedom turns, the tree's unit of length where it slides.
+  Number<T> unit(int k) const { return slides(tree, first_dof() + k) ? tree.scale.length : Number<T>(1); }
   /// A row of the kth offset, with its value and gradient.
   JointRow<T> row(const JointOffset<T>& offset, RowScalar scalar, int k) const {
     const int rotations = rotational();

@@ -1,12 +1,14 @@
 #include "sinew/effects/loop.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sinew {
 namespace {
 
-constexpr double kSink = 1e-4;  ///< m
-constexpr double kArm = 0.2;    ///< m, of the points that hold an axis: a weight at 1 m turns it by 1 mrad
+constexpr double kSink = 1e-4;  ///< m of a human
+constexpr double kArm =
+    0.2;  ///< m of a human, of the points that hold an axis: a weight at 1 m turns it by 1 mrad
 
 bool is_rotation(const Quat<double>& q) {
   return q.coeffs().allFinite() && std::abs(q.norm() - 1) < 1e-6;
@@ -28,20 +30,23 @@ Status check(const LoopSettings& s) {
 }
 
 template <class T>
-Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight) {
+Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight,
+                      double unit) {
   using V = Vec3<double>;
-  const double half = 0.5 * kArm, root = std::sqrt(0.75) * kArm;
-  const V hinge[] = {{0, 0, kArm}, {0, 0, -kArm}};
-  const V weld[] = {{kArm, 0, 0}, {-half, root, 0}, {-half, -root, 0}};
+  const double arm = kArm * unit, half = 0.5 * arm, root = std::sqrt(0.75) * arm;
+  const V hinge[] = {{0, 0, arm}, {0, 0, -arm}};
+  const V weld[] = {{arm, 0, 0}, {-half, root, 0}, {-half, -root, 0}};
   const V point[] = {V::Zero()};
   std::span<const V> held = point;
   if (settings.kind == LoopKind::kHinge) held = hinge;
   if (settings.kind == LoopKind::kWeld) held = weld;
   Coupling<T> loop;
   loop.leads_out = true;
+  loop.length_scale = T(unit);
+  loop.speed_scale = T(std::sqrt(unit));
   for (const V& x : held) {
     Stencil<T>& e = loop.stencils.emplace_back();
-    e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / kSink);
+    e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / (kSink * std::min(unit, 1.0)));
     if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope)
       e.length = T(settings.length);
     e.only_pulls = settings.kind == LoopKind::kRope;
@@ -58,7 +63,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   return loop;
 }
 
-template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double);
-template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double);
+template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
+template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
 
 }  // namespace sinew

@@ -32,9 +32,10 @@ Status check(const LoopSettings& settings);
 /// The elements between two places. `weight` (N): of the heavier side, for the stiffness that settings leave
 /// open.
 template <class T>
-Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight);
+Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight,
+                      double unit);
 
-extern template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double);
-extern template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double);
+extern template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
+extern template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
 
 }  // namespace sinew

@@ -28,7 +28,7 @@ struct MuscleRows {
     JointRow<T> row = joint.row(from_target, RowScalar::kFromTarget, k);
     row.minus = joint.emphasis * joint.law.torque_minus[dof];
     row.plus = joint.emphasis * joint.law.torque_plus[dof];
-    row.width = joint.kink_width;
+    row.width = joint.kink_width * joint.unit(k);
     row.muscle = true;
     rows.add_row(row, pulls);
   }

@@ -49,15 +49,15 @@ void Restitution<T>::reserve(const SolveRoom& room) {
 template <class T>
 bool Restitution<T>::may_change_speeds(std::span<const Contact<T>> contacts) const {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact<T>& c) {
-    return c.fresh && c.restitution > T(0) && c.gap < T(0) && c.approach > T(kSlowest);
+    return c.fresh && c.restitution > T(0) && c.gap < T(0) && c.approach > T(kSlowest) * c.speed_scale;
   });
 }
 
 template <class T>
 void Restitution<T>::collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h) {
   impacts_.clear();
-  const T slowest = std::max(T(kSlowest), 2 * h * T(gravity.norm()));
   for (Contact<T>& c : contacts) {
+    const T slowest = std::max(T(kSlowest) * c.speed_scale, 2 * h * T(gravity.norm()));
     if (!c.fresh || c.gap >= T(0) || c.restitution <= T(0) || c.approach < slowest) continue;
     if (impacts_.size() == kMost) return;
     // The fall over what was left of the gap belongs to the impact, the rise from the depth to the bounce.

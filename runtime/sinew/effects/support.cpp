@@ -6,7 +6,7 @@ namespace sinew {
 
 template <class T>
 SupportPoints<T>::SupportPoints(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts)
-    : first(tree.bodies + 1, 0), bound(tree.bodies, T(0)) {
+    : first(tree.bodies + 1, 0), unit(tree.scale.length), bound(tree.bodies, T(0)) {
   const auto stands = [&](const ContactPoint<T>& c) { return c.body < tree.bodies && c.meets_plane(); };
   for (const ContactPoint<T>& contact : contacts)
     if (stands(contact)) ++first[contact.body + 1];

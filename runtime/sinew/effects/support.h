@@ -18,8 +18,10 @@
 namespace sinew {
 
 struct SupportSettings {
-  double reach = 0.025;  ///< m; a point this high above the floor bears nothing, at the floor it bears fully
-  double lean = 0.4;     ///< most that a force leans towards the hip, horizontal by vertical
+  /// m of a figure of human size; a point this high above the floor bears nothing, at the floor it bears
+  /// fully
+  double reach = 0.025;
+  double lean = 0.4;  ///< most that a force leans towards the hip, horizontal by vertical
 };
 
 /// The points of a tree that may stand on the ground, by body.
@@ -32,6 +34,7 @@ struct SupportPoints {
   std::vector<Point> points;
   std::vector<int> first;  ///< [body + 1]
   std::vector<int> limb;   ///< [body] where its limb leaves the root
+  T unit = T(1);           ///< see Scale::length
   std::vector<T> bound;    ///< [body] m, from the joint's origin to the furthest of its points
 
   SupportPoints() = default;
@@ -63,7 +66,7 @@ void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<
                    std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
   using std::sqrt;
   const int bodies = int(rotation.size());
-  const Number<T> reach = Number<T>(settings.reach);
+  const Number<T> reach = Number<T>(settings.reach) * points.unit, area = points.unit * points.unit;
   const T zero = T(0), one = T(1);
   Vec3<T> total = Vec3<T>::Zero(), tilt = Vec3<T>::Zero();
   for (int i = 0; i < bodies; ++i) {
@@ -93,8 +96,8 @@ void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<
   const auto standing = both(total.z() > zero, sum > T(Number<T>(1e-3)));
   if (!any(standing)) return;
   // One point alone can't hold a tilt. The symmetric matrix's inverse by cofactors.
-  const T slack = T(Number<T>(1e-6)) * (one + (sum + yy + xx));
-  const T a = sum + slack, b = y_sum, c = -x_sum, d = yy + slack, e = -xy, f = xx + slack;
+  const T slack = T(Number<T>(1e-6)) * (one + (sum + yy / T(area) + xx / T(area))), wide = slack * T(area);
+  const T a = sum + slack, b = y_sum, c = -x_sum, d = yy + wide, e = -xy, f = xx + wide;
   const T c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d, c11 = a * f - c * c,
           c12 = b * c - a * e, c22 = a * d - b * b;
   const T inverse = one / (a * c00 + b * c01 + c * c02);

@@ -104,10 +104,11 @@ struct JointRow {
   T beyond(T s) const { return stretch * s - lag; }
 };
 
-/// Over what a muscle's kink is rounded in a step (rad): 1e-3 rad/s. The way back starts from a joint's own
-/// rate, so a muscle that gives way gains up to this much per step beyond what its limit allows: below 1/60 s
-/// the width falls with the square of the step, which makes it an acceleration of 0.06 rad/s². Not below what
-/// the scalar and the solver's tolerance (m, at a metre) resolve; a correction's square is what it leaves.
+/// Over what a muscle's kink is rounded in a step of h seconds of a human's time (rad): 1e-3 rad/s. The way
+/// back starts from a joint's own rate, so a muscle that gives way gains up to this much per step beyond what
+/// its limit allows: below 1/60 s the width falls with the square of the step, which makes it an acceleration
+/// of 0.06 rad/s². Not below what the scalar and the solver's tolerance (m, at a metre) resolve; a
+/// correction's square is what it leaves.
 template <class T>
 T kink_width(T h, T tolerance) {
   const T resolved = std::max(8 * std::numeric_limits<T>::epsilon(), tolerance / 16);

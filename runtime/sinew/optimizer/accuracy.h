@@ -3,7 +3,9 @@
 
 namespace sinew {
 
-/// Lengths in metres, angles in radians, speeds in m/s.
+/// Lengths in metres, angles in radians, speeds in m/s. All lengths, times, speeds and stiffnesses are those
+/// of a figure of human size; of others they are in proportion to length, mass and weight (residual/scale.h),
+/// so that all sizes move alike.
 struct Accuracy {
   double tolerance = 3e-5;  ///< stop when the last correction moves no body by more (m)
   int max_iterations =

@@ -69,6 +69,7 @@ class ContactRows final : public ContactModel<T> {
     int contact = 0;
     Side side[2];
     T stiffness = T(0), grip = T(0);  ///< N/m, μλ in N
+    T width = T(0), stick = T(0);     ///< m; m per step
     T stretch = T(1);                 ///< change of the damped gap by the gap
     T gap = T(0), slip[2]{};          ///< at the inner solution so far; the gap is the damped one
     T d_gap = T(0), d_slip[2]{};      ///< along the direction looked at
@@ -94,7 +95,6 @@ class ContactRows final : public ContactModel<T> {
   std::vector<T> gap_, slip_[2],
       move_[3];  ///< [entry] change per unknown; move_: of the contact point, world
   int most_entries_ = 0;
-  T stick_ = T(0);
   bool coupled_ = false;
 };
 
@@ -176,15 +176,16 @@ void ContactRows<T>::collect(Trees trees, std::span<const Contact<T>> contacts, 
   rows_.clear();
   unknown_.clear();
   for (auto* v : {&gap_, &slip_[0], &slip_[1], &move_[0], &move_[1], &move_[2]}) v->clear();
-  stick_ = stick;
   coupled_ = false;
   for (std::size_t n = 0; n < contacts.size(); ++n) {
     const Contact<T>& c = contacts[n];
-    if (c.gap > near) continue;
+    if (c.gap > c.length_scale * near) continue;
     Row row;
     row.contact = static_cast<int>(n);
     row.stiffness = c.stiffness;
     row.grip = c.grip;
+    row.width = c.width();
+    row.stick = c.speed_scale * stick;
     row.stretch = c.stretch;
     row.gap = c.damped_gap();
     row.slip[0] = c.slip[0];
@@ -243,10 +244,11 @@ template <class T>
 T ContactRows<T>::slope(T t) const {
   T slope = T(0);
   for (const Row& row : rows_) {
-    slope -= ContactLaw<T>::force(row.stiffness, row.gap + t * row.d_gap) * row.d_gap / row.stretch;
+    slope -=
+        ContactLaw<T>::force(row.stiffness, row.gap + t * row.d_gap, row.width) * row.d_gap / row.stretch;
     if (row.grip <= T(0)) continue;
     const T s0 = row.slip[0] + t * row.d_slip[0], s1 = row.slip[1] + t * row.d_slip[1];
-    slope += row.grip * FrictionLaw<T>::slope_over_slip(std::sqrt(s0 * s0 + s1 * s1), stick_) *
+    slope += row.grip * FrictionLaw<T>::slope_over_slip(std::sqrt(s0 * s0 + s1 * s1), row.stick) *
              (s0 * row.d_slip[0] + s1 * row.d_slip[1]);
   }
   return slope;
@@ -293,17 +295,17 @@ template <class T>
 void ContactRows<T>::expect_forces(std::span<Contact<T>> contacts) const {
   for (Contact<T>& c : contacts) c.expected_force = T(0);
   for (const Row& row : rows_)
-    contacts[row.contact].expected_force = ContactLaw<T>::force(row.stiffness, row.gap);
+    contacts[row.contact].expected_force = ContactLaw<T>::force(row.stiffness, row.gap, row.width);
 }
 
 template <class T>
 void ContactRows<T>::add_gradient(std::span<T> gradient) const {
   for (const Row& row : rows_) {
-    const T pressure = ContactLaw<T>::force(row.stiffness, row.gap);
+    const T pressure = ContactLaw<T>::force(row.stiffness, row.gap, row.width);
     T drag[2] = {};
     if (row.grip > T(0)) {
       const T slip = std::sqrt(row.slip[0] * row.slip[0] + row.slip[1] * row.slip[1]);
-      const T scale = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);
+      const T scale = row.grip * FrictionLaw<T>::slope_over_slip(slip, row.stick);
       drag[0] = scale * row.slip[0];
       drag[1] = scale * row.slip[1];
     } else if (pressure <= T(0)) {
@@ -318,13 +320,13 @@ void ContactRows<T>::add_gradient(std::span<T> gradient) const {
 template <class T>
 typename ContactRows<T>::Block ContactRows<T>::block(const Row& row, T drag) const {
   Block b;
-  b.normal = row.stretch * ContactLaw<T>::curvature(row.stiffness, row.gap);
+  b.normal = row.stretch * ContactLaw<T>::curvature(row.stiffness, row.gap, row.width);
   if (row.grip <= T(0)) return b;
   const T slip = std::sqrt(row.slip[0] * row.slip[0] + row.slip[1] * row.slip[1]);
-  const T across = row.grip * FrictionLaw<T>::slope_over_slip(slip, stick_);
+  const T across = row.grip * FrictionLaw<T>::slope_over_slip(slip, row.stick);
   b.slip11 = b.slip22 = across;
   if (slip <= T(0)) return b;
-  const T along = std::max(row.grip * FrictionLaw<T>::curvature(slip, stick_), drag * across) - across;
+  const T along = std::max(row.grip * FrictionLaw<T>::curvature(slip, row.stick), drag * across) - across;
   const T x = row.slip[0] / slip, y = row.slip[1] / slip;
   b.slip11 += along * x * x;
   b.slip12 = along * x * y;

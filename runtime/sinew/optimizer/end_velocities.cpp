@@ -261,6 +261,7 @@ typename EndVelocities<T>::Row* EndVelocities<T>::add_point(const Contact<T>& c,
                                                             const Vec3<T>& direction) {
   Row* row = open_row(c.tree_a, c.tree_b);
   if (!row) return nullptr;
+  row->unit = c.speed_scale;
   const auto given = [&](int n, int body) {
     const Tree<T>& tree = *problems_[n]->tree;
     Vec3<T> sum = Vec3<T>::Zero();
@@ -304,6 +305,8 @@ template <class T>
 void EndVelocities<T>::add(int tree, const JointRow<T>& joint, T most) {
   Row* row = open_row(tree, -1);
   if (!row) return;
+  const Tree<T>& of = *problems_[tree]->tree;
+  row->unit = slides(of, joint.dof) ? of.scale.time : 1 / of.scale.time;
   row->most = most;
   begin_side(tree);
   for (int a = 0; a < joint.count; ++a) {
@@ -327,6 +330,7 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
   Row* const row = trees[0] < 0 ? nullptr : open_row(trees[0], trees[1] < 0 ? trees[0] : trees[1]);
   if (!row) return;
   row->given = -speed;
+  row->unit = coupling.speed_scale;
   row->least = least;
   row->most = std::numeric_limits<T>::max();
   bool room = true;
@@ -348,7 +352,7 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
 template <class T>
 void EndVelocities<T>::add(const Coupling<T>& coupling, const Stencil<T>& e) {
   constexpr T kAnything = std::numeric_limits<T>::max();
-  const Vec3<T> leads = closing_velocity(e);
+  const Vec3<T> leads = closing_velocity(coupling, e);
   if (!(e.length > T(0))) {
     for (int a = 0; a < 3; ++a) add_stencil(coupling, e, Vec3<T>::Unit(a), leads[a], -kAnything);
     return;
@@ -434,11 +438,12 @@ void EndVelocities<T>::press() {
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
       Row& row = pressed_[at];
       const T opens = opening(row);
-      const bool acts = opens < T(-kLeft) || (row.least < T(0) && opens > T(kLeft)) || row.impulse != T(0);
+      const bool acts = opens < T(-kLeft) * row.unit || (row.least < T(0) && opens > T(kLeft) * row.unit) ||
+                        row.impulse != T(0);
       if (row.most > T(0) && acts && reduce(row)) {
         const T change = std::clamp(row.impulse - opens / row.mobility, row.least, row.most) - row.impulse;
         push(row, change);
-        most = std::max(most, std::abs(change * row.mobility));
+        most = std::max(most, std::abs(change * row.mobility) / row.unit);
       }
       const T grip = row.friction * row.impulse + row.cone;
       if (row.grips < 2 || !(grip > T(0))) continue;
@@ -448,7 +453,7 @@ void EndVelocities<T>::press() {
       const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
       const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
               against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
-      if (speed < T(kStill) && used <= grip) continue;
+      if (speed < T(kStill) * row.unit && used <= grip) continue;
       const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
       if (all && against > T(kUsed) * used * speed) continue;
       T wanted[2];
@@ -458,7 +463,7 @@ void EndVelocities<T>::press() {
       for (int a = 0; a < 2; ++a) {
         const T change = share * wanted[a] - rubs[a].impulse;
         push(rubs[a], change);
-        most = std::max(most, std::abs(change * rubs[a].mobility));
+        most = std::max(most, std::abs(change * rubs[a].mobility) / row.unit);
       }
     }
     if (most < T(kLeft)) break;

@@ -92,6 +92,7 @@ class EndVelocities {
     int grips = 0;                   ///< 2: the next two rows are those of its friction
     T friction = T(0), cone = T(0);  ///< μ; N·s, beside what its own impulse allows
     T given = T(0);     ///< m/s or rad/s, of joints that no unknown moves; then of all, before impulses
+    T unit = T(1);      ///< m/s or rad/s, by a human's: see Scale
     T mobility = T(0);  ///< 1/kg
     T impulse = T(0);   ///< N·s, N·m·s
     T least = T(0), most = T(0);  ///< of it

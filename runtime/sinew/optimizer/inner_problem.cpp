@@ -478,7 +478,8 @@ T InnerProblem<T>::displacement(std::span<const T> direction) const {
       turn_[i] = w;
       slide_[i] = v;
       if (tree.mass[i] <= T(0)) continue;  // nobody sees where a massless link spins between ball joints
-      const T moved = (v + w.cross(p->kinematics.center[i])).norm() + T(kRotationArm) * w.norm();
+      const T moved =
+          (v + w.cross(p->kinematics.center[i])).norm() / tree.scale.length + T(kRotationArm) * w.norm();
       finite = finite && std::isfinite(moved);
       largest = std::max(largest, moved);
     }

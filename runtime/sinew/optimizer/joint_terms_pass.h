@@ -28,9 +28,9 @@ auto joint_step(const StepSettings<Number<T>>& settings, const Problem& p, int i
                                                             p.target[i],
                                                             p.start[i],
                                                             settings.h,
-                                                            settings.kink_width,
-                                                            settings.limit_stiffness,
-                                                            settings.limit_damping,
+                                                            p.kink_width,
+                                                            settings.limit_stiffness * p.tree->scale.load,
+                                                            settings.limit_damping * p.tree->scale.time,
                                                             emphasis<T>(settings, p.prediction.weight)};
 }
 

@@ -6,6 +6,7 @@
 
 #include "sinew/optimizer/newton_constants.h"
 #include "sinew/optimizer/problem_pass.h"
+#include "sinew/residual/tree_pass.h"
 
 namespace sinew {
 template <class T>
@@ -76,7 +77,9 @@ bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy, b
     return std::abs(inner_.slope_now(inner_.correction())) <= T(0.9) * std::abs(slope);
   };
   if (lacks_energy(*trees_[0])) return calmer();
-  const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (1 + std::abs(energy));
+  T unit = T(0);
+  for (const TreeProblem<T>* p : trees_) unit = std::max(unit, p->tree->scale.energy);
+  const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (double(unit) + std::abs(energy));
   return new_energy <= energy + 1e-4 * double(t * slope) ||
          (new_energy <= energy + noise && (slight || calmer()));
 }
@@ -150,6 +153,22 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
   }
 }
 
+/// Of the correction's degrees of freedom, rad or the tree's unit of length: a rotation vector is good for
+/// about one radian.
+template <class T>
+T NewtonSolver<T>::longest_correction() const {
+  T longest = T(0);
+  for (const TreeProblem<T>* p : trees_) {
+    const Tree<T>& tree = *p->tree;
+    for (int dof = 0; dof < tree.dofs; ++dof)
+      if (const int k = inner_.unknown(*p, dof); k >= 0) {
+        const T size = std::abs(inner_.correction()[k]);
+        longest = std::max(longest, slides(tree, dof) ? size / tree.scale.length : size);
+      }
+  }
+  return longest;
+}
+
 /// Whether contacts bear much more at the first guess than they can in the end: it is where inertia leads.
 template <class T>
 bool NewtonSolver<T>::forces_mislead() const {
@@ -196,9 +215,7 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
     }
     if (!inner.solved) break;
     inner_.expect_forces(contacts_);
-    // A rotation vector is good for about one radian.
-    T longest = T(0);
-    for (const T d : inner_.correction()) longest = std::max(longest, std::abs(d));
+    const T longest = longest_correction();
     if (longest > T(1))
       for (T& d : inner_.correction()) d /= longest;
     const double length = inner.straight && !(longest > T(1))

@@ -72,6 +72,7 @@ class NewtonSolver {
   void try_step(T t);
   bool converge_by_chords(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
+  T longest_correction() const;
   bool correct_step(T tolerance, double energy, double& new_energy);
   Outcome line_search(T tolerance, bool slight, double& energy);
 

@@ -1,4 +1,5 @@
-// Where Newton's method stops and turns: one solve and packs of them decide alike. Internal to the optimizer.
+// Where Newton's method stops and turns: one solve and packs of them decide alike. Lengths are those of a
+// figure of human size; others' are in proportion (residual/scale.h). Internal to the optimizer.
 #pragma once
 
 namespace sinew {

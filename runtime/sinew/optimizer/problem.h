@@ -41,6 +41,7 @@ struct TreeProblem : JointRowList<T> {
   std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
   bool stiff = false;                          ///< some of them is not zero
   SolveRoom room;                              ///< what this tree brings to a solve
+  T kink_width = T(1e-3) / 60;                 ///< rad per step: muscles and dry friction are rounded over it
   int first_unknown_map = 0;                   ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
@@ -48,7 +49,7 @@ struct TreeProblem : JointRowList<T> {
   void plan(Effect<T>& effect);
 };
 
-/// Values that all trees of a solve share.
+/// Values that all trees of a solve share; of a human where they are lengths, times or stiffnesses (Scale).
 template <class T>
 struct StepSettings {
   const StepPlan<T>* plan = &StepPlan<T>::none();     ///< what is declared
@@ -61,7 +62,6 @@ struct StepSettings {
   /// Muscles and dry friction are constant over the step: see constant_emphasis in bossak.h. With other
   /// schemes they act as all forces do.
   bool constant_muscles = false;
-  T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
 };
 
 /// What the problem's effects see of it.

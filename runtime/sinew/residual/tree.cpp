@@ -34,6 +34,8 @@ Mat3<double> held_by_parent(const Joint& joint) {
 
 template <class T>
 Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
+  const Scale<double> in_double = scale_of(skeleton);
+  scale = {T(in_double.length), T(in_double.time), T(in_double.energy), T(in_double.load)};
   for (int i = 0; i < bodies; ++i) {
     const Joint& joint = skeleton.joints[i];
     parent.push_back(joint.parent);

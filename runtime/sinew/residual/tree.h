@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/residual/scale.h"
 #include "sinew/skeleton/rotation.h"
 #include "sinew/skeleton/skeleton.h"
 
@@ -37,6 +38,8 @@ struct Tree {
   std::vector<Mat3<T>> held_axes;  ///< [body] columns: axes that stay with the parent, in its axes: the first
                                    ///< of a universal joint, all of a planar one
   std::vector<Mat3<T>> second_moment;  ///< [body] P = ½ tr(I)·1 − I
+
+  Scale<T> scale;  ///< that its settings and thresholds are given in
 
   std::vector<Mat3<T>> inverse_inertia;  ///< [body] pseudo-inverse: a thin rod's is zero along its axis
 

@@ -86,7 +86,7 @@ class PackNewton {
   Live accepted(const P& slope, const Wide& energy, const Wide& new_energy, const Live& slight) const {
     const P now = inner_.slope_now(inner_.correction());
     const Live calmer = either(slight, abs(now) <= P(0.9f) * abs(slope));
-    const Wide noise = 2e-5 * (Wide(1) + abs(energy));
+    const Wide noise = 2e-5 * (Wide(double(problem_.tree->scale.energy)) + abs(energy));
     const Live lower = narrowed(new_energy <= energy + 1e-4 * widened(slope));
     const Live level = both(narrowed(new_energy <= energy + noise), calmer);
     return both(narrowed(finite(new_energy)), either(lower, level));
@@ -98,7 +98,8 @@ class PackNewton {
     inner_.build();
     active = inner_.minimise(active, float(tolerance_));
     P longest = P(0);
-    for (const P& d : inner_.correction()) longest = largest(longest, abs(d));
+    inner_.for_each_correction(
+        [&](const P& d, float unit) { longest = largest(longest, P(abs(d) / P(unit))); });
     if (const Live far = longest > P(1); any(far))
       for (P& d : inner_.correction()) d = select(far, P(d / longest), d);
     const Wide length = widened(inner_.displacement(inner_.correction()));

@@ -103,6 +103,13 @@ class PackInner {
     }
     return solved;
   }
+  /// With the unit of each: 1 of turns, the rig's length of what slides.
+  template <class Visit>
+  void for_each_correction(const Visit& visit) const {
+    const Tree<float>& tree = *problem_->tree;
+    for (int k = 0; k < size(); ++k)
+      visit(correction_[k], slides(tree, unknowns_->dof[k]) ? tree.scale.length : 1.0f);
+  }
   /// m, of the first Newton step of minimise().
   const auto& first_length() const { return first_length_; }
   /// Lanes in which that was all: no row bore on its way.
@@ -147,7 +154,8 @@ class PackInner {
         v += p.kinematics.v[dof] * direction[k];
       }
       if (tree.mass[i] <= 0) continue;
-      const P moved = (v + w.cross(p.kinematics.center[i])).norm() + P(float(kRotationArm)) * w.norm();
+      const P moved = (v + w.cross(p.kinematics.center[i])).norm() / P(tree.scale.length) +
+                      P(float(kRotationArm)) * w.norm();
       valid = both(valid, finite(moved));
       most = largest(most, moved);
     }

@@ -133,6 +133,7 @@ struct PackLaw {
 template <class P>
 struct PackProblem {
   const Tree<float>* tree = nullptr;
+  float kink_width = 0;
   JointTerms<P, PackLaw<P>, PackProblem> terms;  ///< those that are declared for scalars
   PackLaw<P> law;
   PackPrediction<P> prediction;
@@ -218,6 +219,7 @@ struct PackProblem {
     declare(batch.settings->plan->joints);
     const TreeProblem<float>& first = *batch.problems[0];
     tree = first.tree;
+    kink_width = first.kink_width;
     law.dry_friction = first.law.dry_friction;
     law.damping = first.law.damping;
     law.lower = first.law.lower;
