@@ -52,6 +52,13 @@ bool is_level_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts,
          });
 }
 
+constexpr double kImpactSpeed = 0.2;  ///< m/s of a human; what closes more slowly is no impact
+/// Whether a contact that bears nothing yet is about to strike within h seconds, at the speed that it has.
+template <class T>
+bool strikes_within(const Contact<T>& c, T h) {
+  return c.fresh && c.approach > T(kImpactSpeed) * c.speed_scale && c.start_gap < h * c.approach;
+}
+
 /// A shape of the host's, and what it is made of.
 struct HostObstacle {
   const StaticShape* shape = nullptr;

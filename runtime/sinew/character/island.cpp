@@ -72,6 +72,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   for (auto* v : {&missed_, &unturned_}) v->reserve(room.bodies);
   led_rates_.reserve(room.bodies);
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(room.bodies);
+  kept_.reserve(room.bodies);
   momenta_.reserve(room.trees);
   ends_.reserve(room);
   struck_.reserve(room.trees);
@@ -79,10 +80,10 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
 
 template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
-  std::size_t sum = EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
-                    room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(std::array<T, 6>)) +
-                    (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) +
-                    room.contacts * sizeof(LaggedForce<T>);
+  std::size_t sum =
+      EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
+      room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + sizeof(std::array<T, 6>)) +
+      (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
 }
@@ -145,7 +146,7 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
   const bool touched = std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
-  s.left_to_gravity = !touched && !is_held_[tree] && couplings_.empty() && flies(s);
+  s.left_to_gravity = !touched && !landed_ && !is_held_[tree] && couplings_.empty() && flies(s);
 }
 
 /// Moves all trees' histories on to the solution.
@@ -163,8 +164,8 @@ void IslandStepper<T>::advance_all(T h) {
     return std::span(all).subspan(first_body_[n], states_[n]->tree.bodies);
   };
   for (std::size_t n = 0; n < states_.size() && estimates; ++n)
-    begin_error<T>(*problems_[n], states_[n]->history, h, settings_.common_origin, bodies(missed_, n),
-                   bodies(unturned_, n));
+    begin_error<T>(*problems_[n], states_[n]->history, h, settings_.common_origin, strike_of(n),
+                   bodies(missed_, n), bodies(unturned_, n));
   if (settings_.plan->scheme)
     advance_by(*settings_.plan->scheme, h);
   else
@@ -218,7 +219,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of<T>(couplings_, tree);
-  const bool unchanged = signature == s.contact_signature && limits == s.limit_signature;
+  const bool unchanged = !landed_ && signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = unchanged ? s.steps_unchanged + 1 : 0;
   if (!is_held_[tree] && s.passing > 0) --s.passing;
   s.contact_signature = signature;
@@ -378,18 +379,21 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   if (strikes_in_long(h)) return halve(splits_left);
   closed_ = passive();
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
+  land(h);
   const bool closed = closed_;
   SolveReport solved = attempt(splits_left > 0);
   if (passes_left_ <= 0) splits_left = 0;
   total_.add(solved);
   const bool may_restart = closed && !settings_.plan->scheme;
   if (may_restart && (solved.converged || splits_left == 0) && excess() > 0) {
+    take_back_landing();
     solved = solve_from_start();
     total_.add(solved);
     ++restarts_;
   }
   if (!solved.converged && splits_left > 0) {
     ++splits_;
+    take_back_landing();
     return halve(splits_left - 1);
   }
   all_converged_ = all_converged_ && solved.converged;

@@ -61,6 +61,13 @@ class IslandStepper {
   int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr);
 
  private:
+  /// A body's motion before land().
+  struct Landing {
+    Vec3<T> velocity, momentum, struck_velocity, struck_momentum;
+    Mat3<T> rotation_rate;
+    std::array<T, 6> rate;
+  };
+
   int parts_of() const;
   bool may_divide() const;
   bool starts() const;
@@ -102,7 +109,12 @@ class IslandStepper {
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   void drop_played();
   void strike_all();
+  Strike<T> strike_of(std::size_t tree) const;
   void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
+  bool may_land() const;
+  void land(T h);
+  void take_landing();
+  void take_back_landing();
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
   void take_over(Contact<T>& contact) const;
@@ -170,6 +182,8 @@ class IslandStepper {
   std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
   std::vector<std::array<T, 6>> jumps_;           ///< [body] of one tree, of its joint rates
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
+  bool landed_ = false;                                     ///< land() has changed velocities
+  std::vector<Landing> kept_;                               ///< [body, the same] before it did
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;
   std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts

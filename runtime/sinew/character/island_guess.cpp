@@ -8,8 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kImpactSpeed = 0.2;  ///< m/s; slower ones are no work for the solver
-constexpr double kDeep = 0.03;        ///< m; guesses that go no deeper are left again in a pass or two
+constexpr double kDeep = 0.03;  ///< m; guesses that go no deeper are left again in a pass or two
 
 constexpr double kSharesTurn = 0.1;  ///< of a figure's kinetic energy; whatever less does is not worth a part
 
@@ -52,8 +51,7 @@ bool IslandStepper<T>::strikes_in_long(T h) const {
   const double most = world_->accuracy.impact_step;
   if (!(most > 0) || !may_halve(h)) return false;
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    return c.fresh && !(h < T(1.2 * most) * c.speed_scale) && c.approach > T(kImpactSpeed) * c.speed_scale &&
-           c.start_gap < h * c.approach &&
+    return !(h < T(1.2 * most) * c.speed_scale) && strikes_within(c, h) &&
            (falls(*states_[c.tree_a]) || (c.tree_b >= 0 && falls(*states_[c.tree_b])));
   });
 }

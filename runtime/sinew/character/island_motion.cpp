@@ -139,16 +139,12 @@ void IslandStepper<T>::predict_all(T h) {
     T& radius = radius_[set_[n]];
     radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
   }
-  std::size_t body = 0;
+  number_bodies();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     TreeProblem<T>& p = s.problem;
-    Strike<T> strike;
-    if (!struck_velocity_.empty())
-      strike = {std::span(struck_velocity_).subspan(body, s.tree.bodies),
-                std::span(struck_momentum_).subspan(body, s.tree.bodies)};
-    body += s.tree.bodies;
-    predict_bossak<T>(s.tree, s.history, strike, radius_[set_[n]], h, settings_.common_origin, p.prediction);
+    predict_bossak<T>(s.tree, s.history, strike_of(n), radius_[set_[n]], h, settings_.common_origin,
+                      p.prediction);
     if (s.pushed()) write_pushes(s, constant_emphasis(p.prediction.weight, h));
   }
 }
@@ -201,6 +197,8 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
     s.history.velocity[i] += velocity[i];
     s.history.momentum[i] += momentum[i];
     s.history.rotation_rate[i] += skew<T>(turned_[i]) * r;
+    velocity[i] /= 2;  // they act all along the step
+    momentum[i] /= 2;
   }
   if (limp) return;
   jumps_.resize(s.tree.bodies);
@@ -230,6 +228,16 @@ void IslandStepper<T>::strike_all() {
       strike(*s, std::span(struck_velocity_).subspan(body), std::span(struck_momentum_).subspan(body));
     body += s->tree.bodies;
   }
+}
+
+/// What impulses keep a tree's bodies from in this step. The bodies are numbered.
+template <class T>
+Strike<T> IslandStepper<T>::strike_of(std::size_t n) const {
+  if (struck_velocity_.empty()) return {};
+  const auto bodies = [&](const auto& all) {
+    return std::span(all).subspan(first_body_[n], states_[n]->tree.bodies);
+  };
+  return {bodies(struck_velocity_), bodies(struck_momentum_)};
 }
 
 /// Friction is constant over a step, as far as it is a force.
@@ -690,6 +698,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::predict_euler_all(T);                                               \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
   template void IslandStepper<T>::strike_all();                                                       \
+  template Strike<T> IslandStepper<T>::strike_of(std::size_t) const;                                  \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \
   template void IslandStepper<T>::drop_played();                                                      \
   template void IslandStepper<T>::begin_ends();                                                       \

@@ -72,9 +72,9 @@ void predict_bossak(const Tree<T>& tree, const History<T>& history, const Strike
     out.center[i] = place + history.center[i] + h * (history.velocity[i] + ahead * history.acceleration[i]);
     out.momentum[i] = history.momentum[i] + of_torque * history.torque[i];
     Vec3<T> momentum = history.momentum[i] + ahead * history.torque[i];
-    if (!strike.velocity.empty()) {  // half of what it will have made of the speed
-      out.center[i] -= h / 2 * strike.velocity[i];
-      momentum -= strike.momentum[i] / 2;
+    if (!strike.velocity.empty()) {
+      out.center[i] -= h * strike.velocity[i];
+      momentum -= strike.momentum[i];
     }
     const Vec3<T> spin = tree.inverse_inertia[i] * (r0.transpose() * momentum);
     if (h * spin.norm() < T(kMostFreeTurn))

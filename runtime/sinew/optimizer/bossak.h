@@ -74,7 +74,8 @@ Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation,
 template <class T>
 T spectral_radius(T largest_turn);
 
-/// What impulses have added to a tree's history just before a step, of which they act all along.
+/// What bodies move less in a step than at the velocities that impulses have left in a tree's history just
+/// before it, for these act within it.
 template <class T>
 struct Strike {
   std::span<const Vec3<T>> velocity;  ///< [body] m/s; empty: nothing

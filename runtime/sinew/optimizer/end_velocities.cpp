@@ -9,9 +9,11 @@ namespace sinew {
 namespace {
 
 constexpr int kSweeps = 30;
-constexpr double kUsed = 0.98;   ///< of friction: all
-constexpr double kStill = 1e-4;  ///< m/s: what slides as slowly is held by the next step's friction
-constexpr double kLeft = 1e-5;   ///< m/s, rad/s: of what closes
+constexpr double kUsed = 0.98;     ///< of friction: all
+constexpr double kStill = 1e-4;    ///< m/s: what slides as slowly is held by the next step's friction
+constexpr double kLeft = 1e-5;     ///< m/s, rad/s: of what closes
+constexpr int kStrikes = 32;       ///< in a step; more are left to the solve
+constexpr double kTouches = 1e-6;  ///< m of a human
 
 /// Of as many entries as a has.
 template <class T>
@@ -53,14 +55,14 @@ void EndVelocities<T>::reserve(const SolveRoom& room) {
   rows_.reserve(kMost * room.dofs);
   row_.reserve(room.dofs);
   on_path_.reserve(room.bodies);
-  done_.resize(room.dofs);
+  for (auto* v : {&done_, &late_, &before_}) v->resize(room.dofs);
   disturbed_.reserve(room.trees);
 }
 
 template <class T>
 std::size_t EndVelocities<T>::bytes(const SolveRoom& room) {
   return room.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs) +
-         room.dofs * (5 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
+         room.dofs * (7 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
          kMost * (sizeof(Row) + sizeof(T) * room.dofs);
 }
 
@@ -427,48 +429,138 @@ void EndVelocities<T>::spread() {
 }
 
 template <class T>
-void EndVelocities<T>::press() {
-  if (pressed_.empty()) return;
+void EndVelocities<T>::begin_pressing() {
   disturbed_.assign(parts_.size(), 0);
   std::fill(done_.begin(), done_.end(), T(0));
   for (Row& row : pressed_)
     for (int n = 0; n < row.sides(); ++n) row.given += dot<T>(side(row, n), rates(row.tree[n]));
+}
+
+/// One row's turn, with its friction: by how much the speeds of these changed at most.
+template <class T>
+T EndVelocities<T>::press_row(Row& row) {
+  T most = T(0);
+  const T opens = opening(row) - row.floor;
+  const bool acts = opens < T(-kLeft) * row.unit || (row.least < T(0) && opens > T(kLeft) * row.unit) ||
+                    row.impulse != T(0);
+  if (row.most > T(0) && acts && reduce(row)) {
+    const T change = std::clamp(row.impulse - opens / row.mobility, row.least, row.most) - row.impulse;
+    push(row, change);
+    most = std::max(most, std::abs(change * row.mobility) / row.unit);
+  }
+  const T grip = row.friction * row.impulse + row.cone;
+  if (row.grips < 2 || !(grip > T(0))) return most;
+  Row* const rubs = &row + 1;
+  const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
+  // Already as much as it can be, and against the motion.
+  const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
+  const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
+          against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
+  if (speed < T(kStill) * row.unit && used <= grip) return most;
+  const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
+  if (all && against > T(kUsed) * used * speed) return most;
+  T wanted[2];
+  for (int a = 0; a < 2; ++a)
+    wanted[a] = reduce(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
+  const T size = length(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
+  for (int a = 0; a < 2; ++a) {
+    const T change = share * wanted[a] - rubs[a].impulse;
+    push(rubs[a], change);
+    most = std::max(most, std::abs(change * rubs[a].mobility) / row.unit);
+  }
+  return most;
+}
+
+template <class T>
+void EndVelocities<T>::press() {
+  if (pressed_.empty()) return;
+  begin_pressing();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     T most = T(0);
-    for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
-      Row& row = pressed_[at];
-      const T opens = opening(row);
-      const bool acts = opens < T(-kLeft) * row.unit || (row.least < T(0) && opens > T(kLeft) * row.unit) ||
-                        row.impulse != T(0);
-      if (row.most > T(0) && acts && reduce(row)) {
-        const T change = std::clamp(row.impulse - opens / row.mobility, row.least, row.most) - row.impulse;
-        push(row, change);
-        most = std::max(most, std::abs(change * row.mobility) / row.unit);
-      }
-      const T grip = row.friction * row.impulse + row.cone;
-      if (row.grips < 2 || !(grip > T(0))) continue;
-      Row* const rubs = &row + 1;
-      const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
-      // Already as much as it can be, and against the motion.
-      const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
-      const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
-              against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
-      if (speed < T(kStill) * row.unit && used <= grip) continue;
-      const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
-      if (all && against > T(kUsed) * used * speed) continue;
-      T wanted[2];
-      for (int a = 0; a < 2; ++a)
-        wanted[a] = reduce(rubs[a]) ? rubs[a].impulse - slides[a] / rubs[a].mobility : T(0);
-      const T size = length(wanted[0], wanted[1]), share = size > grip ? grip / size : T(1);
-      for (int a = 0; a < 2; ++a) {
-        const T change = share * wanted[a] - rubs[a].impulse;
-        push(rubs[a], change);
-        most = std::max(most, std::abs(change * rubs[a].mobility) / row.unit);
-      }
-    }
+    for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips)
+      most = std::max(most, press_row(pressed_[at]));
     if (most < T(kLeft)) break;
   }
   spread();
+}
+
+/// The unknowns' rates as those of joint offsets: the other way round than read_near().
+template <class T>
+void EndVelocities<T>::add_striking(const Contact<T>& c, T drift) {
+  const std::size_t at = pressed_.size();
+  add(c, std::numeric_limits<T>::max(), T(0), Vec3<T>::Zero());
+  if (pressed_.size() == at) return;
+  pressed_[at].gap = c.start_gap;
+  pressed_[at].drift = drift;
+}
+
+template <class T>
+void EndVelocities<T>::add_bearing(const Contact<T>& c) {
+  const std::size_t at = pressed_.size();
+  add(c, std::numeric_limits<T>::max(), T(0), Vec3<T>::Zero());
+  if (pressed_.size() > at) pressed_[at].bears = true;
+}
+
+/// s until the next strike, less than `left`; `left`: none.
+template <class T>
+T EndVelocities<T>::wait_for_strike(T left, T slow) {
+  for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
+    Row& row = pressed_[at];
+    const T opens = opening(row), speed = opens + row.drift;
+    if (row.bears || opens > -slow * row.unit) continue;
+    if (!(row.gap > T(0)))
+      left = T(0);
+    else if (speed < T(0))
+      left = std::min(left, row.gap / -speed);
+  }
+  return left;
+}
+
+template <class T>
+bool EndVelocities<T>::strike(T h, T slow) {
+  begin_pressing();
+  std::fill(late_.begin(), late_.end(), T(0));
+  const auto for_each = [&](const auto& act) {
+    for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) act(pressed_[at]);
+  };
+  for_each([&](Row& row) {
+    if (row.bears) row.floor = std::min(opening(row), T(0));
+  });
+  const int unknowns = parts_.back().first + parts_.back().count;
+  T now = T(0);
+  for (int n = 0; n < kStrikes; ++n) {
+    const T wait = wait_for_strike(h - now, slow);
+    if (!(wait < h - now)) break;
+    now += wait;
+    for_each([&](Row& row) { row.gap += row.bears ? T(0) : wait * (opening(row) + row.drift); });
+    for (Row& row : pressed_) row.impulse = T(0);
+    std::copy_n(done_.begin(), unknowns, before_.begin());
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      T most = T(0);
+      for_each([&](Row& row) {
+        most = row.gap > T(kTouches) * row.unit * row.unit ? most : std::max(most, press_row(row));
+      });
+      if (most < T(kLeft)) break;
+    }
+    for (int u = 0; u < unknowns; ++u) late_[u] += now / h * (done_[u] - before_[u]);
+  }
+  spread();
+  return std::any_of(disturbed_.begin(), disturbed_.end(), [](std::uint8_t x) { return x != 0; });
+}
+
+template <class T>
+void EndVelocities<T>::missed(int n, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned) {
+  const Part& part = parts_[n];
+  const int bodies = problems_[n]->tree->bodies;
+  std::copy_n(late_.begin() + part.first, part.count, rates(n).begin());
+  expand_by_joints<T>(part.matrix, rates(n));
+  std::fill_n(led_.begin() + part.first_body, bodies, Twist<T>());
+  move(n);
+  for (int i = 0; i < bodies; ++i) {
+    const Twist<T>& twist = twist_[part.first_body + i];
+    turned[i] = twist.w;
+    moved[i] = twist.at(problems_[n]->kinematics.center[i]);
+  }
 }
 
 /// The unknowns' rates as those of joint offsets: the other way round than read_near().

@@ -73,6 +73,20 @@ class EndVelocities {
   /// Impulses that see to that. O(those that act · the depth of their bodies).
   void press();
 
+  /// A contact that may strike within a step that begins here, after its gap, at its speed and `drift` (m/s).
+  void add_striking(const Contact<T>& contact, T drift);
+  /// One that bears: what strikes elsewhere lets it close no faster than it does.
+  void add_bearing(const Contact<T>& contact);
+  /// Lets contacts that close faster than `slow` (m/s) strike one after the other within h: each is stopped,
+  /// with what friction its impulse allows, and with it all that lies on by then. False: none does. O(those
+  /// that strike · those that lie on · the depth of their bodies).
+  bool strike(T h, T slow);
+  /// Whether that has changed a tree's velocities.
+  bool struck(int tree) const { return disturbed_[tree] != 0; }
+  /// By how much the bodies [body] move less in the step than at the velocities that it left, m/s and rad/s,
+  /// for those come about within it. After write().
+  void missed(int tree, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
+
   /// The velocities into a tree's history, and those of its unknowns into `rate` [body].
   void write(int tree, History<T>& history, std::span<std::array<T, 6>> rate);
 
@@ -96,6 +110,9 @@ class EndVelocities {
     T mobility = T(0);  ///< 1/kg
     T impulse = T(0);   ///< N·s, N·m·s
     T least = T(0), most = T(0);  ///< of it
+    T gap = T(0), drift = T(0);   ///< m, m/s; see add_striking()
+    T floor = T(0);               ///< m/s or rad/s: that it opens by at least
+    bool bears = false;           ///< see add_bearing()
     bool reduced = false;         ///< its entries and mobility are known
     int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
@@ -109,6 +126,9 @@ class EndVelocities {
   void add_stencil(const Coupling<T>& coupling, const Stencil<T>& element, const Vec3<T>& direction, T speed,
                    T least);
   T opening(Row& row);
+  void begin_pressing();
+  T press_row(Row& row);
+  T wait_for_strike(T left, T slow);
   void spread();
   bool reduce(Row& row);
   void push(Row& row, T change);
@@ -131,6 +151,8 @@ class EndVelocities {
   std::vector<T> row_;                 ///< [unknown] of one side
   std::vector<std::uint8_t> on_path_;  ///< [body] the same
   std::vector<T> done_;  ///< [unknown] L⁻ᵀ times the impulses: M⁻¹ of them is L⁻¹ of this
+  std::vector<T> before_,
+      late_;  ///< [unknown] the same before a strike; of all, by the share of h until then
   std::vector<std::uint8_t> disturbed_;  ///< [tree] it is not 0
 };
 

@@ -41,12 +41,14 @@ BossakWeights<T> weights_of(const TreeProblem<T>& p) {
 
 template <class T>
 void begin_error(const TreeProblem<T>& problem, const History<T>& history, T h,
-                 const Vec3<double>& common_origin, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned) {
+                 const Vec3<double>& common_origin, const Strike<T>& strike, std::span<Vec3<T>> moved,
+                 std::span<Vec3<T>> turned) {
   const Tree<T>& tree = *problem.tree;
   const Vec3<T> place = (history.place - common_origin).template cast<T>();
   const T ahead = problem.prediction.rho > T(0) ? h * (T(0.5) - weights_of(problem).kappa) : T(0);
   for (int i = 0; i < tree.bodies; ++i) {
     moved[i] = problem.kinematics.center[i] - place - history.center[i] - h / 2 * history.velocity[i];
+    if (!strike.velocity.empty()) moved[i] += h * strike.velocity[i];
     // The free turn, which is exact, is that of the predicted momentum.
     const Mat3<T> turn = problem.prediction.rotation[i].transpose() * problem.kinematics.rotation[i];
     const Vec3<T> predicted = history.momentum[i] + ahead * history.torque[i];

@@ -9,17 +9,19 @@
 // (CharacterReport::converged says so), and which of two ways an impact goes.
 #pragma once
 
+#include "sinew/optimizer/bossak.h"
 #include "sinew/optimizer/problem.h"
-#include "sinew/optimizer/scheme.h"
 
 namespace sinew {
 
 /// First half, before `history` moves on from the start of the step of `h` seconds that `problem` holds the
 /// solution of: what of their way bodies have not gone at half the speeds of the start, into `moved` (m,
-/// world) and `turned` (rad, the body's axes, beside the free turn) [body].
+/// world) and `turned` (rad, the body's axes, beside the free turn) [body]. What impulses just before the
+/// step keep them from is not missing.
 template <class T>
 void begin_error(const TreeProblem<T>& problem, const History<T>& history, T h,
-                 const Vec3<double>& common_origin, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
+                 const Vec3<double>& common_origin, const Strike<T>& strike, std::span<Vec3<T>> moved,
+                 std::span<Vec3<T>> turned);
 
 /// Root mean square over all mass (m) of the local error of that step, with `history` at its end. `load`
 /// [dof]: |torque| / limit of the muscles. Bodies that hang on played or unsaturated joints alone are where
@@ -30,7 +32,7 @@ double integration_error(const TreeProblem<T>& problem, const History<T>& histor
 
 #define SINEW_ERROR_INSTANCES(prefix, T)                                                              \
   prefix void begin_error<T>(const TreeProblem<T>&, const History<T>&, T, const Vec3<double>&,        \
-                             std::span<Vec3<T>>, std::span<Vec3<T>>);                                 \
+                             const Strike<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>);               \
   prefix double integration_error<T>(const TreeProblem<T>&, const History<T>&, std::span<const T>, T, \
                                      std::span<const Vec3<T>>, std::span<const Vec3<T>>);
 SINEW_ERROR_INSTANCES(extern template, float)
