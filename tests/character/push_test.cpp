@@ -34,5 +34,40 @@ TEST(Push, GivesALimpFigureInFlightItsWholeMomentum) {
   EXPECT_LT((pushed_in_flight<float>(impulse) - impulse).norm(), 1e-3 * impulse.norm());
 }
 
+/// How far a hand has moved (m) a tenth of a second after a hit or, for a tenth of a second, under a load.
+double moved(int hz, const Vec3<float>& hit, const Vec3<float>& load) {
+  WorldSettings settings;
+  settings.gravity.setZero();
+  settings.ground = false;
+  World<float> world(settings);
+  const Skeleton body = fixtures::humanoid();
+  Status status;
+  EXPECT_EQ(world.add_character(body, {}, status), 0) << status.reason;
+  Character<float> figure = world.character(0);
+  const int hand = body.find("hand_l");
+  const Vec3<float> before = figure.model()[hand].translation;
+  for (int n = 0; n < hz / 10; ++n) {
+    const Vec3<float> now = figure.model()[hand].translation;
+    if (n == 0) {
+      EXPECT_TRUE(figure.apply_impulse(hand, now, hit).ok());
+    }
+    EXPECT_TRUE(figure.apply_force(hand, now, load).ok());
+    EXPECT_TRUE(world.step(1 / float(hz)).ok());
+  }
+  return double((figure.model()[hand].translation - before).norm());
+}
+
+TEST(Push, OfMusclesHasTheSameEffectAtAnyRate) {
+  const double truth = moved(1200, {1, 0, 0}, Vec3<float>::Zero());
+  EXPECT_GT(truth, 0.03);
+  for (const int hz : {20, 30, 60, 120})
+    EXPECT_NEAR(moved(hz, {1, 0, 0}, Vec3<float>::Zero()) / truth, 1, 0.01) << hz << " Hz";
+}
+
+TEST(Push, IsBorneByMusclesAsALoad) {
+  for (const int hz : {30, 60, 120})
+    EXPECT_EQ(moved(hz, Vec3<float>::Zero(), {60, 0, 0}), 0) << "60 N: as much as a hit of 1 N·s in 1/60 s";
+}
+
 }  // namespace
 }  // namespace sinew

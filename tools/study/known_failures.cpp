@@ -20,9 +20,6 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"ragdoll_hit_in_the_same_frame",
      "one step needs more passes than its budget; and its push is booked as force times chord: it acts at "
      "once, on a hand that then turns 20 rad"},
-    {"piston",
-     "double: one step that does not converge flings a foot at 28 m/s, where fine steps' fastest is 14; of "
-     "240 starts a millimetre apart nine in ten stay below 13"},
     {"baked_limbs",
      "hits act at once on what muscles hold: hands are thrown further, and baked ones are 5.4 degrees off, 3 "
      "wanted"},

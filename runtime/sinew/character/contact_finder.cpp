@@ -248,7 +248,7 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
       is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore))
     return;  // slides on to it
   c.approach = approach;
-  thickness = std::min(thickness, c.half_thickness());
+  thickness = std::min(thickness, half_thickness(c));
   const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }

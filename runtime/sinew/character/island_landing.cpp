@@ -45,7 +45,7 @@ void IslandStepper<T>::land(T h) {
     settings_.plan->contacts->measure(states_[c.tree_a]->guessed,
                                       c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, guessed);
     if (guessed.gap > T(0) && strikes_within(c, h)) continue;  // passes by
-    const bool beyond = guessed.normal.dot(c.normal) < T(kSamePlane) || -guessed.gap > c.half_thickness();
+    const bool beyond = guessed.normal.dot(c.normal) < T(kSamePlane) || -guessed.gap > half_thickness(c);
     ends_.add_striking(c, beyond ? T(0) : (guessed.gap - c.start_gap) / h + c.approach);
   }
   landed_ = ends_.strike(h, T(kImpactSpeed));

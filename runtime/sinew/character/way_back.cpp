@@ -5,6 +5,9 @@
 #include <span>
 #include <utility>
 
+#include "sinew/muscle/joint_coordinates.h"
+#include "sinew/skeleton/rotation.h"
+
 namespace sinew {
 namespace {
 
@@ -48,6 +51,48 @@ std::pair<Vec3<T>, Vec3<T>> on_the_way(const Vec3<T>& whole, const Vec3<T>& leav
   if (are_foreign(whole, leaving, arriving)) return {u * whole, whole};
   return {(u * u * (3 - 2 * u)) * whole + (u * (1 - u)) * ((1 - u) * leaving - u * arriving),
           (6 * u * (1 - u)) * whole + (1 - u * (4 - 3 * u)) * leaving - (u * (2 - 3 * u)) * arriving};
+}
+
+/// How far a joint's pose is beyond its limits (joint_limit.h), rad or m; 0 within.
+template <class T>
+T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
+  const JointLaw<T>& law = s.problem.law;
+  const Transform<T> rest = s.tree.rest[i].template cast<T>();
+  T most = T(0);
+  if (law.swing_limit[i] >= T(0)) {
+    const Quat<T> relative = rest.rotation.conjugate() * local.rotation;
+    const Vec3<T> a = law.swing_axis[i].template cast<T>(), b = relative * a;
+    most = std::max(most, std::atan2(T(a.cross(b).norm()), T(a.dot(b))) - T(law.swing_limit[i]));
+    const T twist = twist_angle<T>(relative, a);
+    return std::max({most, twist - T(law.twist_upper[i]), T(law.twist_lower[i]) - twist});
+  }
+  if (s.tree.type[i] == JointType::kFree) return most;
+  const std::array<T, 6> offset = joint_offset_value<T>(s.tree, i, rest, local);
+  for (int k = 0; k < s.tree.dof_count(i); ++k) {
+    const int dof = s.tree.first_dof[i] + k;
+    most = std::max({most, offset[k] - T(law.upper[dof]), T(law.lower[dof]) - offset[k]});
+  }
+  return most;
+}
+
+/// Where a way back goes in a step, no further beyond a joint's limits than the joint is or its animation
+/// wants.
+template <class T>
+std::array<T, 6> within_limits(const CharacterState<T>& s, int i, const std::array<T, 6>& offset) {
+  constexpr int kHalvings = 10;
+  const std::array<T, 6>& now = s.deviation[i].offset;
+  std::array<T, 6> part = offset;
+  const auto beyond = [&] { return beyond_limits(s, i, at_offset<T>(s.tree, i, s.wanted[i], part)); };
+  const T most = std::max(beyond_limits(s, i, s.wanted[i]), beyond_limits(s, i, s.problem.start[i]));
+  if (!(beyond() > most)) return offset;
+  T low = T(0), high = T(1);
+  for (int n = 0; n < kHalvings; ++n) {
+    const T middle = (low + high) / 2;
+    for (std::size_t k = 0; k < part.size(); ++k) part[k] = now[k] + middle * (offset[k] - now[k]);
+    (beyond() > most ? high : low) = middle;
+  }
+  for (std::size_t k = 0; k < part.size(); ++k) part[k] = now[k] + low * (offset[k] - now[k]);
+  return part;
 }
 
 /// How far a pose takes what may stand on the floor below it, m.
@@ -110,7 +155,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
       const T most = h * stoppable<T>(now, T(kBraking) * limit / inertia, h);
       offset[k] = now > T(0) ? std::max(offset[k], now - most) : std::min(offset[k], now + most);
     }
-    p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], offset);
+    p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], within_limits(s, i, offset));
   }
   const bool stands = s.settings.root == RootDrive::kAssisted && s.settings.ground_contact && s.floats;
   if (s.calm || !stands || std::isinf(ground) || s.rig->support.points.empty()) return;

@@ -17,10 +17,10 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
 /// Writes `problem.target` for a part of h seconds that ends at `state.wanted`. The way back is critically
 /// damped with time constant `return_time` (s, of a human), e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the
 /// offset from the animation; and no faster than the muscle can stop again with a third of its strength, or a
-/// return time far below the step would fling the joint across. An assisted root goes back over the floor: it
-/// is raised by what the joints' ways back would take feet into it, or it would press them there for good.
-/// `ground` is the floor's height from the common origin (m), −∞ without one. `problem.kinematics` must be
-/// those at `problem.start`.
+/// return time far below the step would fling the joint across. It leads no joint further beyond its limits
+/// than it is. An assisted root goes back over the floor: it is raised by what the joints' ways back would
+/// take feet into it, or it would press them there for good. `ground` is the floor's height from the common
+/// origin (m), −∞ without one. `problem.kinematics` must be those at `problem.start`.
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
 

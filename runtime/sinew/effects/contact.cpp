@@ -42,13 +42,6 @@ SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T
 }
 
 template <class T>
-T Contact<T>::half_thickness() const {
-  if (plane) return T(1e9);
-  if (host) return T(host->half_thickness());
-  return shape == Shape::kBox ? size.minCoeff() : size.x();
-}
-
-template <class T>
 void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>>& out, int index,
                            double unit) {
   const auto add = [&](PointKind kind, const Vec3<double>& in_shape, double radius, double half) {

@@ -161,8 +161,6 @@ struct Contact {
   T width() const { return T(5e-4) * length_scale; }
   /// Whether it bears or rubs.
   bool acts() const { return damped_gap() < T(0) || grip > T(0); }
-  /// Half the thickness of what is met, m.
-  T half_thickness() const;
   /// Puts side b elsewhere by so much in its axes (without a body, the world's), m.
   void shift_b(const Vec3<T>& by) { (meeting == Meeting::kPoint ? shape_pose.translation : local_b) += by; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/effects/static_shape.h"
+
 namespace sinew {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr int kMostAdvances = 48;
 /// Motion below which a feature cannot get to the far side of the shape, m.
 template <class T>
 T safe_motion(const Contact<T>& c) {
-  return T(0.5) * (c.half_thickness() + c.radius);
+  return T(0.5) * (half_thickness(c) + c.radius);
 }
 
 /// Whether the speeds at the beginning of the step can carry a contact's feature through the shape.

@@ -23,6 +23,14 @@ class StaticShape {
   virtual double half_thickness() const noexcept { return 1e9; }
 };
 
+/// Half the thickness of what a contact meets, m.
+template <class T>
+T half_thickness(const Contact<T>& c) {
+  if (c.plane) return T(1e9);
+  if (c.host) return T(c.host->half_thickness());
+  return c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x();
+}
+
 /// Heights z over a grid in x and y, interpolated by Catmull–Rom patches: smooth, and the samples are met.
 /// Solid below; beyond its edges the border's height goes on.
 class HeightField final : public StaticShape {
