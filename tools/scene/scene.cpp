@@ -168,7 +168,7 @@ std::vector<Vec3<double>> grid_of(const json& entry, const std::string& where) {
   std::vector<Vec3<double>> places;
   for (int z = 0; z < count.z(); ++z)
     for (int y = 0; y < count.y(); ++y)
-      for (int x = 0; x < count.x(); ++x) places.push_back(spacing.cwiseProduct(Vec3<double>(x, y, z)));
+      for (int x = 0; x < count.x(); ++x) places.emplace_back(spacing.cwiseProduct(Vec3<double>(x, y, z)));
   return places;
 }
 

@@ -283,11 +283,12 @@ double apart(const scene::Recording& a, int member_a, const scene::Recording& b,
     const auto characters = static_cast<int>(r.characters.size());
     std::vector<Vector3d> all;
     if (member >= characters) {
-      all.push_back(at.props[static_cast<std::size_t>(member - characters)].world.translation.cast<double>());
+      all.emplace_back(
+          at.props[static_cast<std::size_t>(member - characters)].world.translation.cast<double>());
       return all;
     }
     for (const Transform<float>& joint : at.characters[member].model)
-      all.push_back(joint.translation.cast<double>());
+      all.emplace_back(joint.translation.cast<double>());
     return all;
   };
   const std::vector<Vector3d> p = points(a, member_a), q = points(b, member_b);
