@@ -11,8 +11,9 @@ namespace {
 /// m/s²: what two bodies approach faster by after a step than before, over the step. Falling takes a third of
 /// it; who is struck may do more and is met a step later, inside.
 constexpr double kSurprise = 30;
-constexpr int kSections = 16;      ///< of an axis: to a thousandth of its length
-constexpr double kGolden = 0.618;  ///< of what is left
+constexpr int kSections = 16;       ///< of an axis: to a thousandth of its length
+constexpr double kGolden = 0.618;   ///< of what is left
+constexpr double kParallel = 1e-3;  ///< sine, of two boxes' edges
 
 template <class T>
 MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T h) {
@@ -21,7 +22,6 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
   const int body = m.collider->joint;
   const Transform<T>& joint = s.model()[body];
   m.pose = joint * m.collider->local.template cast<T>();
-  m.center = joint * s.bound_center[collider];
   m.radius = s.bound_radius[collider];
   if (s.owed.motion) {
     m.velocity = s.history.velocity[0];
@@ -67,27 +67,42 @@ SignedDistance<T> axis_to_shape(const Transform<T>& pose, T half, const Transfor
   return at((low + high) / 2);
 }
 
-/// Distance of a collider to a convex shape, m, and the direction (world) in which it leaves that. Of a box,
-/// its bounding sphere's.
+/// Distance of a sphere or capsule to a convex shape, m, and the direction in which it leaves that.
 template <class T>
-SignedDistance<T> distance_to(const MovingCollider<T>& a, const MovingCollider<T>& b) {
+SignedDistance<T> distance_to(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
   const Collider& c = *a.collider;
   const T half = c.shape == Shape::kCapsule ? T(c.size.z()) : T(0);
   SignedDistance<T> d = axis_to_shape<T>(a.pose, half, b.pose, *b.collider);
-  d.distance -= c.shape == Shape::kBox ? a.radius : T(c.size.x());
+  d.distance -= T(c.size.x());
   d.normal = b.pose.rotation * d.normal;
   return d;
 }
 
-/// The same of either to the other.
+/// Two boxes by the axis along which they are furthest apart (Gottschalk, Lin and Manocha, "OBBTree", 1996).
 template <class T>
-SignedDistance<T> distance_between(const MovingCollider<T>& a, const MovingCollider<T>& b) {
-  if (a.collider->shape != Shape::kBox) return distance_to(a, b);
-  SignedDistance<T> d = distance_to(b, a);
-  d.normal = -d.normal;
-  if (b.collider->shape != Shape::kBox) return d;
-  const SignedDistance<T> other = distance_to(a, b);  // both are at most what it is
-  return other.distance > d.distance ? other : d;
+SignedDistance<T> boxes_apart(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
+  const Mat3<T> axes_a = a.pose.rotation.toRotationMatrix(), axes_b = b.pose.rotation.toRotationMatrix();
+  const Vec3<T> size_a = a.collider->size.template cast<T>(), size_b = b.collider->size.template cast<T>(),
+                between = a.pose.translation - b.pose.translation;
+  SignedDistance<T> best;
+  best.distance = -std::numeric_limits<T>::infinity();
+  const auto look_along = [&](const Vec3<T>& axis) {
+    const T sine = axis.norm();
+    if (sine < T(kParallel)) return;  // as far apart along a face's normal
+    const T side = axis.dot(between) < T(0) ? -1 / sine : 1 / sine;
+    const T apart =
+        side * axis.dot(between) - std::abs(side) * ((axes_a.transpose() * axis).cwiseAbs().dot(size_a) +
+                                                     (axes_b.transpose() * axis).cwiseAbs().dot(size_b));
+    if (apart <= best.distance) return;
+    best.distance = apart;
+    best.normal = side * axis;
+  };
+  for (int i = 0; i < 3; ++i) {
+    look_along(axes_a.col(i));
+    look_along(axes_b.col(i));
+    for (int j = 0; j < 3; ++j) look_along(axes_a.col(i).cross(axes_b.col(j)));
+  }
+  return best;
 }
 
 template <class T>
@@ -95,12 +110,21 @@ bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T 
   const Vec3<T> velocity = a.velocity - b.velocity;
   const T any = margin + a.any + b.any, most = any + h * velocity.norm();
   const T reach = a.radius + b.radius + most;
-  if ((a.center - b.center).squaredNorm() > reach * reach) return false;
-  const SignedDistance<T> d = distance_between(a, b);
+  if ((a.pose.translation - b.pose.translation).squaredNorm() > reach * reach) return false;
+  const SignedDistance<T> d = distance_between<T>(a, b);
   return d.distance < any + h * std::max(-velocity.dot(d.normal), T(0));
 }
 
 }  // namespace
+
+template <class T>
+SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
+  if (a.collider->shape != Shape::kBox) return distance_to(a, b);
+  if (b.collider->shape == Shape::kBox) return boxes_apart(a, b);
+  SignedDistance<T> d = distance_to(b, a);
+  d.normal = -d.normal;
+  return d;
+}
 
 template <class T>
 void append_moving(CharacterState<T>& s, T h, std::vector<MovingCollider<T>>& out) {
@@ -117,20 +141,10 @@ bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingColl
 }
 
 template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const Collider& obstacle, T h, T unit) {
-  MovingCollider<T> still;
-  still.collider = &obstacle;
-  still.pose = obstacle.local.template cast<T>();
-  still.center = still.pose.translation;
-  still.radius = T(bounding_radius(obstacle));
-  return come_close<T>(colliders, std::span(&still, 1), h, T(kCloseMargin) * unit);
-}
-
-template <class T>
 bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit) {
   const T margin = T(kCloseMargin) * unit + T(kSurprise) * h * h;
   return std::any_of(colliders.begin(), colliders.end(), [&](const MovingCollider<T>& c) {
-    const SignedDistance<double> d = shape.distance(c.center.template cast<double>());
+    const SignedDistance<double> d = shape.distance(c.pose.translation.template cast<double>());
     const T closing = std::max(-c.velocity.dot(d.normal.template cast<T>()), T(0));
     return T(d.distance) < c.radius + margin + c.any + h * closing;
   });

@@ -41,7 +41,7 @@ int feature(int own, int others, int collider) {
 
 bool is_of_tree(std::uint64_t id, int tree) {
   const std::uint64_t number = first_contact_id(tree) >> 48;
-  return id >> 48 == number || ((id >> 16) & 0xffff) == number;
+  return id >> 48 == number || other_tree(id) == tree;
 }
 
 template <class T>
@@ -596,25 +596,40 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
 }
 
 template <class T>
-bool near_obstacle(CharacterState<T>& s, const Surroundings& around, T h,
-                   std::vector<MovingCollider<T>>& room) {
+bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleRoom<T>& room) {
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
   const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.local[0].translation.template cast<double>();
-  room.clear();
-  const auto movers = [&] {
-    if (room.empty()) append_moving(s, h, room);
-    return std::span<const MovingCollider<T>>(room);
+  const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
+  room.moving.clear();
+  room.from.clear();
+  room.to.clear();
+  const auto paths = [&] {
+    if (room.from.empty()) {
+      place_colliders<T>(s, s.local, origin, origin, room.from);
+      for (int i = 0; i < s.tree.bodies; ++i)
+        s.problem.target[i] = {s.target[i].rotation, s.target[i].translation};
+      place_colliders<T>(s, s.problem.target, s.target[0].translation.template cast<double>(), origin,
+                         room.to);
+    }
+    return ColliderPaths<T>{room.from, room.to};
   };
-  bool near = false;
+  bool meets = false;
   if (!around.obstacles.empty())
     around.grid->overlapping(center, double(reach), [&](int o) {
       const Collider& obstacle = around.obstacles[o];
       const SignedDistance<double> d =
           signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
-      near = near || (d.distance < double(reach) && comes_close(movers(), obstacle, h, s.tree.scale.length));
+      if (meets || d.distance > double(reach)) return;
+      Transform<double> pose = obstacle.local;
+      pose.translation -= origin;
+      room.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
+      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle});
     });
-  return near || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
+  const auto movers = [&] {
+    if (room.moving.empty()) append_moving(s, h, room.moving);
+    return std::span<const MovingCollider<T>>(room.moving);
+  };
+  return meets || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
            return o.shape->distance(center).distance < double(reach) &&
                   comes_close(movers(), *o.shape, h, s.tree.scale.length);
          });
@@ -628,9 +643,9 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{make_finder<T>, near_obstacle<T>,         append_moving<T>,
-                                   come_close<T>,  append_contact_points<T>, share_stiffness<T>,
-                                   measure<T>};
+constexpr ContactTerm<T> kContacts{
+    make_finder<T>,      meets_obstacle<T>,        append_moving<T>,   come_close<T>, place_colliders<T>,
+    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
 
 }  // namespace
 

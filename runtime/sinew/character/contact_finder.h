@@ -8,6 +8,7 @@
 #include "sinew/character/closeness.h"
 #include "sinew/character/neighbour_grid.h"
 #include "sinew/character/state.h"
+#include "sinew/character/touching.h"
 #include "sinew/effects/crossing_edges.h"
 #include "sinew/effects/static_shape.h"
 
@@ -27,6 +28,10 @@ struct LaggedForce {
 /// Identities of the contacts of a world's nth tree begin here and end where the next one's begin.
 constexpr std::uint64_t first_contact_id(int n) {
   return std::uint64_t(n + 1) << 48;
+}
+/// The number of the second tree of a contact; −1: the static world.
+constexpr int other_tree(std::uint64_t id) {
+  return static_cast<int>((id >> 16) & 0xffff) - 1;
 }
 constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
@@ -180,22 +185,37 @@ class ContactFinder final : public ContactSearch<T> {
   std::vector<int> depenetrating_;  ///< [state] contacts through which it is brought out of something
 };
 
-/// Whether an obstacle may be in the way of the animation within h seconds: by its distance from the
-/// colliders as they move (closeness.h), for which `room` is. O(colliders) for each obstacle that is within
-/// their reach.
+/// Room for meets_obstacle().
 template <class T>
-bool near_obstacle(CharacterState<T>& state, const Surroundings& around, T h,
-                   std::vector<MovingCollider<T>>& room);
+struct ObstacleRoom {
+  std::vector<MovingCollider<T>> moving;
+  std::vector<PlacedCollider<T>> from, to, obstacle;
+
+  void reserve(int colliders) {
+    moving.reserve(colliders);
+    for (auto* v : {&from, &to}) v->reserve(colliders);
+    obstacle.reserve(1);
+  }
+};
+
+/// Whether the animation meets an obstacle on its way to the target, within h seconds; or comes within a few
+/// centimetres of a shape of the host's. O(colliders) for each obstacle that is within their reach.
+template <class T>
+bool meets_obstacle(CharacterState<T>& state, const Surroundings& around, T h, ObstacleRoom<T>& room);
 
 /// What a world's step asks of contacts.
 template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
-  bool (*near_obstacle)(CharacterState<T>& state, const Surroundings& around, T h,
-                        std::vector<MovingCollider<T>>& room);
+  bool (*meets_obstacle)(CharacterState<T>& state, const Surroundings& around, T h, ObstacleRoom<T>& room);
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);
+  // See touching.h.
+  void (*place_colliders)(CharacterState<T>& state, std::span<const Transform<T>> pose,
+                          const Vec3<double>& root, const Vec3<double>& origin,
+                          std::vector<PlacedCollider<T>>& out);
+  bool (*touch_on_the_way)(const ColliderPaths<T>& a, const ColliderPaths<T>& b);
   // See contact.h.
   void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index, double unit);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);

@@ -5,7 +5,7 @@ namespace {
 
 template <class... Vectors>
 std::size_t held(const Vectors&... v) {
-  return (std::size_t{0} + ... + (v.capacity() * sizeof(typename Vectors::value_type)));
+  return (std::size_t{0} + ... + bytes_held(v));
 }
 
 template <class T>
@@ -31,8 +31,6 @@ template <class T>
 std::size_t bytes_of(const CharacterState<T>& s) {
   const TreeProblem<T>& p = s.problem;
   const JointLaw<T>& law = p.law;
-  const History<T>& h = s.history;
-  const Motion<T>& m = s.motion;
   return sizeof s +
          held(s.target, s.target_before, s.local, s.model_pose, s.played_from, s.rate, s.rate_before,
               s.deviation, s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.smooth,
@@ -42,10 +40,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum) +
          held(p.local, p.target, p.start, p.free, p.pushes, p.force, p.moment, p.body_force, p.couple,
               p.gradient, p.rows, p.ellipsoids, p.composite, p.joint_curvature) +
-         held_by(p.kinematics) + held_by(s.guessed) +
-         held(h.center, h.velocity, h.rotation, h.rotation_rate, h.momentum, h.acceleration, h.torque,
-              h.other) +
-         held(m.body, m.omega, m.velocity, m.origin_velocity);
+         held_by(p.kinematics) + held_by(s.guessed) + bytes_held(s.history) + bytes_held(s.motion);
 }
 
 template <class T>

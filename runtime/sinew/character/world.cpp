@@ -82,12 +82,14 @@ WorldMemory World<T>::Impl::memory() const {
   WorldMemory bytes;
   for (const auto& rig : rigs) bytes.rigs += bytes_of(*rig);
   for (const auto& s : states) bytes.characters += bytes_of(*s);
+  for (const KeptStep<T>& step : kept) bytes.characters += sizeof step + step.bytes();
   for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   bytes.characters += rooms.all.colliders * sizeof(MovingCollider<T>);
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
-    bytes.solving += workers[n]->stepper.bytes(n == 0 ? most : small);
+    bytes.solving +=
+        workers[n]->stepper.bytes(n == 0 ? most : small) + workers[n]->sets.bytes(n == 0 ? most : small);
   if (plan.make_batches) bytes.solving += workers.size() * workers[0]->batch->bytes(batch_room);
   return bytes;
 }
@@ -100,7 +102,8 @@ void World<T>::Impl::reserve() {
   for (std::size_t n = 0; n < workers.size(); ++n) {
     const SolveRoom& room = n == 0 ? most : small_room;
     workers[n]->stepper.reserve(room, static_cast<int>(obstacles.size()));
-    workers[n]->moving.reserve(rooms.largest.colliders);
+    workers[n]->obstacle_room.reserve(rooms.largest.colliders);
+    workers[n]->sets.reserve(room);
     workers[n]->members.reserve(room.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
@@ -137,6 +140,7 @@ bool World<T>::Impl::over_cap() const {
 template <class T>
 void World<T>::Impl::drop_last() {
   states.pop_back();
+  if (kept.size() > states.size()) kept.pop_back();
   if (rigs.back().use_count() == 1) rigs.pop_back();
 }
 
@@ -179,6 +183,7 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
     drop_last();
     return Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
   }
+  kept.emplace_back(added);
   reserve();
   return {};
 }

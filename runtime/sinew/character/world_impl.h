@@ -9,6 +9,7 @@
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/snapshot.h"
+#include "sinew/character/touching_sets.h"
 #include "sinew/effects/particles.h"
 #include "sinew/optimizer/batch_newton.h"
 
@@ -45,7 +46,8 @@ struct World<T>::Impl {
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
-    std::vector<MovingCollider<T>> moving;  ///< for near_obstacle()
+    ObstacleRoom<T> obstacle_room;
+    TouchingSets<T> sets;
   };
 
   WorldSettings settings;
@@ -53,6 +55,7 @@ struct World<T>::Impl {
   std::vector<std::shared_ptr<const Rig<T>>> rigs;
   std::vector<std::unique_ptr<CharacterState<T>>>
       states;                          ///< characters and props in the order they were added
+  std::vector<KeptStep<T>> kept;       ///< [state]
   std::vector<int> characters, props;  ///< into states
   Couplings<T> couplings;
   std::vector<int> loops;  ///< into couplings
@@ -91,7 +94,9 @@ struct World<T>::Impl {
   void meet_surroundings();
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
-  bool play_island(std::span<CharacterState<T>* const> members, Worker& worker);
+  bool play_set(std::span<CharacterState<T>* const> members, Worker& worker);
+  int step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
+               std::span<Coupling<T>* const> ties, Worker& worker, std::span<LaggedForce<T>> lagged_out);
   bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,

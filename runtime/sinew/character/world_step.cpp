@@ -31,9 +31,9 @@ std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
 
 }  // namespace
 
-/// Plays an island where that will do. False, with nothing moved, where it has to be solved.
+/// Plays who is stepped together where that will do. False, with nothing moved, where they have to be solved.
 template <class T>
-bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members, Worker& worker) {
+bool World<T>::Impl::play_set(std::span<CharacterState<T>* const> members, Worker& worker) {
   bool follows = true;
   for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
   if (follows) {
@@ -46,7 +46,7 @@ bool World<T>::Impl::play_island(std::span<CharacterState<T>* const> members, Wo
   }
   CharacterState<T>& s = *members[0];
   const auto in_the_way = [&](CharacterState<T>& of) {
-    return plan.contacts && plan.contacts->near_obstacle(of, surroundings(), h, worker.moving);
+    return plan.contacts && plan.contacts->meets_obstacle(of, surroundings(), h, worker.obstacle_room);
   };
   if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
   const auto every = static_cast<std::uint32_t>(s.detail.check_every);
@@ -65,6 +65,19 @@ bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) c
   return false;
 }
 
+/// Steps who touches or is tied. Returns how many contact forces it has written.
+template <class T>
+int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
+                             std::span<Coupling<T>* const> ties, Worker& worker,
+                             std::span<LaggedForce<T>> lagged_out) {
+  if (play_set(members, worker)) return 0;
+  for (CharacterState<T>* s : members) catch_up(*s, worker.jets);
+  const int count =
+      worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out);
+  for (CharacterState<T>* s : members) s->levels.did = level_of(*s);
+  return count;
+}
+
 template <class T>
 void World<T>::Impl::step_island(int island, Worker& worker) {
   const double begin = now(settings.detail.budget);
@@ -75,13 +88,26 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : indices) worker.members.push_back(states[n].get());
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
-  if (!play_island(worker.members, worker)) {
-    for (CharacterState<T>* s : worker.members) catch_up(*s, worker.jets);
-    if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
-        batches(*worker.members[0], worker))
-      return wait(island, worker, now(settings.detail.budget) - begin);
-    lagged_count[island] = worker.stepper.end(lagged_of(island));
-    for (CharacterState<T>* s : worker.members) s->levels.did = level_of(*s);
+  if (worker.members.size() == 1) {
+    if (!play_set(worker.members, worker)) {
+      catch_up(*worker.members[0], worker.jets);
+      if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
+          batches(*worker.members[0], worker))
+        return wait(island, worker, now(settings.detail.budget) - begin);
+      lagged_count[island] = worker.stepper.end(lagged_of(island));
+      worker.members[0]->levels.did = level_of(*worker.members[0]);
+    }
+  } else if (worker.sets.begin(worker.members, indices, worker.ties, lagged)) {
+    const std::span<const LaggedForce<T>> forces =
+        worker.sets.step_all(*plan.contacts, kept,
+                             [&](std::span<CharacterState<T>* const> members, std::span<const int> numbers,
+                                 std::span<Coupling<T>* const> ties, std::span<LaggedForce<T>> out) {
+                               return step_set(members, numbers, ties, worker, out);
+                             });
+    std::copy(forces.begin(), forces.end(), lagged_of(island).begin());
+    lagged_count[island] = static_cast<int>(forces.size());
+  } else {
+    lagged_count[island] = step_set(worker.members, indices, worker.ties, worker, lagged_of(island));
   }
   close_island(island, worker.members, worker.ties, now(settings.detail.budget) - begin);
 }

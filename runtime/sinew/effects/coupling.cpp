@@ -175,6 +175,7 @@ void lead_out(T h, Coupling<T>& c) {
   if (!c.leads_out) return;
   c.led = c.closes();
   for (Stencil<T>& e : c.stencils) {
+    e.offset_before = e.offset;
     const Vec3<T> open = reach(c, e);
     if ((open - e.offset).norm() > e.length + T(kTorn) * c.length_scale)
       e.offset = open * (T(1) - e.length / open.norm());

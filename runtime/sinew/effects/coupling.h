@@ -64,6 +64,7 @@ struct Stencil {
   bool only_pulls = false;                  ///< no energy while shorter than `length`
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
+  Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
 };
 
 /// Four nodes; the rest shape enters through the gradients of its linear shape functions.

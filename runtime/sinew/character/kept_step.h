@@ -1,0 +1,47 @@
+// What a step changes of a character: kept before it is taken, so that it can be taken again with others.
+// Internal to the character layer.
+#pragma once
+
+#include <tuple>
+
+#include "sinew/character/memory.h"
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// All that a step changes and reads, or leaves for whoever asks. What is left out is a rig's, the host's, or
+/// room that every step writes before it reads it: what snapshots restore is among these.
+template <class T>
+auto changed_by_steps(CharacterState<T>& s) {
+  return std::tie(s.calm, s.left_to_gravity, s.target_before, s.target_stands, s.local, s.played_from, s.owed,
+                  s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque, s.load,
+                  s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.motion, s.baked,
+                  s.unbaked, s.contact_signature, s.limit_signature, s.steps_unchanged, s.passing,
+                  s.energy_ceiling, s.lent, s.levels, s.report);
+}
+
+template <class T>
+class KeptStep {
+ public:
+  /// Set-up; keep() and restore() allocate nothing afterwards.
+  explicit KeptStep(CharacterState<T>& state) : members_(changed_by_steps(state)) {}
+  void keep(CharacterState<T>& state) { members_ = changed_by_steps(state); }
+  void restore(CharacterState<T>& state) const {
+    changed_by_steps(state) = members_;
+    state.pose_changed();
+  }
+  /// Beside itself.
+  std::size_t bytes() const {
+    return std::apply([](const auto&... member) { return (std::size_t{0} + ... + bytes_held(member)); },
+                      members_);
+  }
+
+ private:
+  template <class... Members>
+  static std::tuple<Members...> values(std::tuple<Members&...>);
+  using Values = decltype(values(changed_by_steps(std::declval<CharacterState<T>&>())));
+
+  Values members_;
+};
+
+}  // namespace sinew
