@@ -18,7 +18,8 @@ constexpr int kByOneFace = 0x8000;                   ///< of contact identities:
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
 constexpr int kFirstHost = 0x4000;                   ///< of contact identities
-constexpr double kMostPiled = 8;    ///< of the heaviest body: what a contact may bear of a pile
+constexpr double kPiled =
+    8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
@@ -558,7 +559,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   // Of an oscillator that sinks as deep under its weight, whatever the weight.
   damping_time_ = T(2 * world.accuracy.contact_damping *
                     std::sqrt(world.accuracy.sink_depth / std::max(1.0, world.gravity.norm())));
-  T heaviest = T(0), together = T(0);
+  T heaviest = T(0);
   most_ = 0;
   most_sunk_ = std::numeric_limits<T>::infinity();
   for (const CharacterState<T>* s : states) {
@@ -570,9 +571,8 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
       continue;
     }
     heaviest = std::max(heaviest, T(s->total_mass));
-    together += T(s->total_mass);
   }
-  bears_ = std::min(together, T(kMostPiled) * heaviest);
+  bears_ = states.size() > 1 ? T(kPiled) * heaviest : heaviest;
   most_ = std::min(most_, room_);
   count_depenetrating();
   contacts_.clear();
@@ -623,7 +623,7 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       Transform<double> pose = obstacle.local;
       pose.translation -= origin;
       room.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
-      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle});
+      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle}, T(0));
     });
   const auto movers = [&] {
     if (room.moving.empty()) append_moving(s, h, room.moving);
@@ -643,9 +643,10 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{
-    make_finder<T>,      meets_obstacle<T>,        append_moving<T>,   come_close<T>, place_colliders<T>,
-    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
+constexpr ContactTerm<T> kContacts{make_finder<T>,      meets_obstacle<T>,        append_moving<T>,
+                                   come_close<T>,       place_colliders<T>,       predict_colliders<T>,
+                                   touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>,
+                                   measure<T>};
 
 }  // namespace
 

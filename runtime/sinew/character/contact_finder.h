@@ -215,7 +215,10 @@ struct ContactTerm {
   void (*place_colliders)(CharacterState<T>& state, std::span<const Transform<T>> pose,
                           const Vec3<double>& root, const Vec3<double>& origin,
                           std::vector<PlacedCollider<T>>& out);
-  bool (*touch_on_the_way)(const ColliderPaths<T>& a, const ColliderPaths<T>& b);
+  void (*predict_colliders)(CharacterState<T>& state, std::span<const PlacedCollider<T>> from,
+                            const Vec3<double>& origin, const Vec3<T>& gravity, T h,
+                            std::vector<PlacedCollider<T>>& out);
+  bool (*touch_on_the_way)(const ColliderPaths<T>& a, const ColliderPaths<T>& b, T depth);
   // See contact.h.
   void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index, double unit);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);

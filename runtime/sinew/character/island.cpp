@@ -502,13 +502,13 @@ void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T
 }
 
 template <class T>
-int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first) {
+int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first, int spent) {
   const WorldSettings& world = *world_;
   first_ = first;
   const int parts = parts_of();
   const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
-  passes_left_ = parts * world.accuracy.max_passes;
+  passes_left_ = std::max(parts * world.accuracy.max_passes - spent, 0);
   for (int n = 0; n < parts; ++n)
     advance_part(T(n) / T(parts), n + 1 == parts ? T(1) : T(n + 1) / T(parts), splits);
   for (CharacterState<T>* s : states_) {
@@ -536,9 +536,9 @@ template <class T>
 int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
                            std::span<CharacterState<T>* const> states, std::span<const int> indices,
                            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-                           std::span<LaggedForce<T>> lagged_out) {
+                           std::span<LaggedForce<T>> lagged_out, int spent) {
   (void)begin(world, surroundings, h, states, indices, couplings, lagged);
-  return end(lagged_out);
+  return end(lagged_out, nullptr, spent);
 }
 
 template class IslandStepper<float>;

@@ -33,11 +33,12 @@ class IslandStepper {
 
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
-  /// sorted by id; new ones are written to `lagged_out`, as many as it takes. Returns how many.
+  /// sorted by id; new ones are written to `lagged_out`, as many as it takes. `spent`: passes of the step's
+  /// budget that are gone. Returns how many.
   int step(const WorldSettings& world, const Surroundings& surroundings, T h,
            std::span<CharacterState<T>* const> states, std::span<const int> indices,
            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-           std::span<LaggedForce<T>> lagged_out);
+           std::span<LaggedForce<T>> lagged_out, int spent = 0);
 
   // The same in two halves, so that the first solves of several islands can be made at once.
 
@@ -58,7 +59,7 @@ class IslandStepper {
   void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
   /// The rest. `first`: what the first solve reported, whose solution the tree's problem holds; null: there
   /// was none yet.
-  int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr);
+  int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr, int spent = 0);
 
  private:
   /// A body's motion before land().

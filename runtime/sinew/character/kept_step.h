@@ -9,15 +9,16 @@
 
 namespace sinew {
 
-/// All that a step changes and reads, or leaves for whoever asks. What is left out is a rig's, the host's, or
-/// room that every step writes before it reads it: what snapshots restore is among these.
+/// All that a step changes and reads, or leaves for whoever asks; what snapshots restore is among these. What
+/// is left out is a rig's, the host's, or room that is written before it is read, `motion` too: who owes a
+/// history works it out from the target.
 template <class T>
 auto changed_by_steps(CharacterState<T>& s) {
   return std::tie(s.calm, s.left_to_gravity, s.target_before, s.target_stands, s.local, s.played_from, s.owed,
                   s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque, s.load,
-                  s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.motion, s.baked,
-                  s.unbaked, s.contact_signature, s.limit_signature, s.steps_unchanged, s.passing,
-                  s.energy_ceiling, s.lent, s.levels, s.report);
+                  s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.baked, s.unbaked,
+                  s.contact_signature, s.limit_signature, s.steps_unchanged, s.passing, s.energy_ceiling,
+                  s.lent, s.levels, s.report);
 }
 
 template <class T>

@@ -30,19 +30,19 @@ PlacedCollider<T> halfway(const PlacedCollider<T>& from, const PlacedCollider<T>
   return middle;
 }
 
-/// `apart`, `apart_after` (m): at the ends.
+/// `apart`, `apart_after` (m): at the ends. They touch where they are no more than 0 apart, `depth` added.
 template <class T>
 bool touch(const PlacedCollider<T>& a, const PlacedCollider<T>& a_after, const PlacedCollider<T>& b,
-           const PlacedCollider<T>& b_after, T apart, T apart_after, int halvings) {
+           const PlacedCollider<T>& b_after, T apart, T apart_after, T depth, int halvings) {
   if (!(apart > T(0)) || !(apart_after > T(0))) return true;
   // Both ways in b's: what moves along with each other does not come nearer.
   const Vec3<T> common = b_after.pose.translation - b.pose.translation;
   if (way(a, a_after, common) + way(b, b_after, common) < apart + apart_after) return false;
   if (halvings == 0) return true;
   const PlacedCollider<T> a_middle = halfway(a, a_after), b_middle = halfway(b, b_after);
-  const T between = distance_between(a_middle, b_middle).distance;
-  return touch(a, a_middle, b, b_middle, apart, between, halvings - 1) ||
-         touch(a_middle, a_after, b_middle, b_after, between, apart_after, halvings - 1);
+  const T between = distance_between(a_middle, b_middle).distance + depth;
+  return touch(a, a_middle, b, b_middle, apart, between, depth, halvings - 1) ||
+         touch(a_middle, a_after, b_middle, b_after, between, apart_after, depth, halvings - 1);
 }
 
 /// A ball about all of a way.
@@ -75,13 +75,35 @@ void place_colliders(CharacterState<T>& s, std::span<const Transform<T>> pose, c
 }
 
 template <class T>
-bool touch_on_the_way(const ColliderPaths<T>& a, const ColliderPaths<T>& b) {
+void predict_colliders(CharacterState<T>& s, std::span<const PlacedCollider<T>> from,
+                       const Vec3<double>& origin, const Vec3<T>& gravity, T h,
+                       std::vector<PlacedCollider<T>>& out) {
+  if (s.undisturbed() && s.driven) {
+    for (int i = 0; i < s.tree.bodies; ++i)
+      s.problem.target[i] = {s.target[i].rotation, s.target[i].translation};
+    return place_colliders<T>(s, s.problem.target, s.target[0].translation.template cast<double>(), origin,
+                              out);
+  }
+  for (const PlacedCollider<T>& at : from) {
+    const int body = at.collider->joint;
+    const Mat3<T> spin = s.history.rotation_rate[body] * s.history.rotation[body].transpose();
+    const Vec3<T> omega(spin(2, 1), spin(0, 2), spin(1, 0));
+    PlacedCollider<T>& placed = out.emplace_back(at);
+    const Vec3<T> velocity =
+        s.history.velocity[body] + omega.cross(at.pose.translation - s.guessed.center[body]);
+    placed.pose.translation += h * velocity + h * h / 2 * gravity;
+    placed.pose.rotation = (rotation_exp<T>(h * omega) * at.pose.rotation).normalized();
+  }
+}
+
+template <class T>
+bool touch_on_the_way(const ColliderPaths<T>& a, const ColliderPaths<T>& b, T depth) {
   for (std::size_t i = 0; i < a.from.size(); ++i)
     for (std::size_t j = 0; j < b.from.size(); ++j) {
       const PlacedCollider<T>&one = a.from[i], &other = b.from[j];
       if (!ways_meet(one, a.to[i], other, b.to[j])) continue;
-      if (touch(one, a.to[i], other, b.to[j], distance_between(one, other).distance,
-                distance_between(a.to[i], b.to[j]).distance, kHalvings))
+      if (touch(one, a.to[i], other, b.to[j], distance_between(one, other).distance + depth,
+                distance_between(a.to[i], b.to[j]).distance + depth, depth, kHalvings))
         return true;
     }
   return false;

@@ -5,10 +5,16 @@
 #include "sinew/character/couplings.h"
 
 namespace sinew {
+namespace {
+
+/// m of a human: whose bodies go so deep into each other if nothing stops them will touch.
+constexpr double kBoundToTouch = 5e-3;
+
+}  // namespace
 
 template <class T>
 void TouchingSets<T>::reserve(const SolveRoom& room) {
-  for (auto* v : {&set_, &its_indices_}) v->reserve(room.trees);
+  for (auto* v : {&set_, &spent_, &its_indices_}) v->reserve(room.trees);
   for (auto* v : {&stepped_, &changed_}) v->reserve(room.trees);
   for (auto* v : {&from_, &to_, &placed_}) v->reserve(room.colliders);
   first_collider_.reserve(room.trees + 1);
@@ -19,7 +25,7 @@ void TouchingSets<T>::reserve(const SolveRoom& room) {
 
 template <class T>
 std::size_t TouchingSets<T>::bytes(const SolveRoom& room) const {
-  return room.trees * (3 * sizeof(int) + 2 + sizeof(void*)) + 3 * room.colliders * sizeof(PlacedCollider<T>) +
+  return room.trees * (4 * sizeof(int) + 2 + sizeof(void*)) + 3 * room.colliders * sizeof(PlacedCollider<T>) +
          room.loaded * sizeof(LaggedForce<T>) + room.nodes * sizeof(void*);
 }
 
@@ -37,8 +43,10 @@ int TouchingSets<T>::member_of(int index) const {
 }
 
 template <class T>
-bool TouchingSets<T>::begin(std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                            std::span<Coupling<T>* const> ties, std::span<const LaggedForce<T>> lagged) {
+bool TouchingSets<T>::begin(const ContactTerm<T>* contacts, std::span<CharacterState<T>* const> states,
+                            std::span<const int> indices, std::span<Coupling<T>* const> ties,
+                            std::span<const LaggedForce<T>> lagged, const Vec3<T>& gravity, T h) {
+  contacts_ = contacts;
   states_ = states;
   indices_ = indices;
   ties_ = ties;
@@ -56,13 +64,31 @@ bool TouchingSets<T>::begin(std::span<CharacterState<T>* const> states, std::spa
     for (; force != lagged.end() && force->id < end; ++force)
       if (const int other = member_of(other_tree(force->id)); other >= 0) unite(n, other);
   }
-  const auto first = [&](int n) { return set_of(n) == 0; };
-  for (int n = 1; n < count; ++n)
-    if (!first(n)) {
-      origin_ = states[0]->history.place;
-      return true;
-    }
-  return false;
+  const auto one_set = [&] {
+    for (int n = 1; n < count; ++n)
+      if (set_of(n) != 0) return false;
+    return true;
+  };
+  if (!contacts_ || one_set()) return false;
+  predict(gravity, h);
+  return !one_set();
+}
+
+/// Unites who is bound to touch.
+template <class T>
+void TouchingSets<T>::predict(const Vec3<T>& gravity, T h) {
+  origin_ = states_[0]->history.place;
+  from_.clear();
+  to_.clear();
+  first_collider_.assign(1, 0);
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    place(static_cast<int>(n));
+    from_.insert(from_.end(), placed_.begin(), placed_.end());
+    contacts_->predict_colliders(*states_[n], placed_, origin_, gravity, h, to_);
+    first_collider_.push_back(static_cast<int>(from_.size()));
+  }
+  for (auto* v : {&stepped_, &changed_}) v->assign(states_.size(), 1);
+  join_touching(T(kBoundToTouch));
 }
 
 /// The members of a set, and what ties them.
@@ -82,29 +108,31 @@ void TouchingSets<T>::gather(int set) {
 
 /// A member's colliders where it is now into `placed_`.
 template <class T>
-void TouchingSets<T>::place(const ContactTerm<T>& contacts, int member) {
+void TouchingSets<T>::place(int member) {
   CharacterState<T>& s = *states_[member];
   placed_.clear();
-  contacts.place_colliders(s, s.local, s.history.place, origin_, placed_);
+  contacts_->place_colliders(s, s.local, s.history.place, origin_, placed_);
 }
 
 template <class T>
-bool TouchingSets<T>::touch(const ContactTerm<T>& contacts, int a, int b) const {
+bool TouchingSets<T>::touch(int a, int b, T depth) const {
   const auto paths = [&](int n) {
     const std::size_t first = first_collider_[n], count = first_collider_[n + 1] - first;
     return ColliderPaths<T>{std::span(from_).subspan(first, count), std::span(to_).subspan(first, count)};
   };
-  return contacts.touch_on_the_way(paths(a), paths(b));
+  depth *= std::min(states_[a]->tree.scale.length, states_[b]->tree.scale.length);
+  return contacts_->touch_on_the_way(paths(a), paths(b), depth);
 }
 
-/// Unites the sets that have touched each other. False where none have.
+/// Unites the sets that have touched each other, or lay deeper in each other than `depth` (m of a human).
+/// False where none have.
 template <class T>
-bool TouchingSets<T>::join_touching(const ContactTerm<T>& contacts) {
+bool TouchingSets<T>::join_touching(T depth) {
   bool any = false;
   const int count = static_cast<int>(states_.size());
   for (int a = 0; a < count; ++a)
     for (int b = a + 1; b < count; ++b) {
-      if ((!changed_[a] && !changed_[b]) || set_of(a) == set_of(b) || !touch(contacts, a, b)) continue;
+      if ((!changed_[a] && !changed_[b]) || set_of(a) == set_of(b) || !touch(a, b, depth)) continue;
       stepped_[set_of(a)] = stepped_[set_of(b)] = 0;
       unite(a, b);
       any = true;
@@ -120,6 +148,7 @@ void TouchingSets<T>::take_back(std::span<KeptStep<T>> kept) {
     const int set = set_of(n);
     if (stepped_[set]) continue;
     stepped_[n] = 0;
+    spent_[n] += states_[n]->report.outer_passes;
     kept[indices_[n]].restore(*states_[n]);
     const auto its = [id = first_contact_id(indices_[n])](const LaggedForce<T>& f) {
       return f.id >> 48 == id >> 48;

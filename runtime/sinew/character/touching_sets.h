@@ -12,10 +12,13 @@
 
 namespace sinew {
 
+constexpr double kGrazing = 1e-5;  ///< m of a human: what so little depth bears is a thousandth of a weight
+
 /// Every set of an island's members is stepped by itself, as if the others were not there. Where colliders of
 /// two sets have touched on their ways, both steps are taken back, and the two are stepped together; so on
 /// until nobody touches anybody of another set. Sets begin with those who are tied together, and those who
-/// bore on each other at the end of the last step. So whoever is only near has the bits that it has alone.
+/// bore on each other at the end of the last step, or are bound to by how their bodies move. So whoever is
+/// only near has the bits that it has alone.
 template <class T>
 class TouchingSets {
  public:
@@ -25,14 +28,15 @@ class TouchingSets {
   /// An island's members (ascending by their numbers in the world, `indices`), what ties them, and the
   /// world's contact forces of the last step, sorted by id. False where all are in one set from the
   /// beginning.
-  bool begin(std::span<CharacterState<T>* const> states, std::span<const int> indices,
-             std::span<Coupling<T>* const> ties, std::span<const LaggedForce<T>> lagged);
+  bool begin(const ContactTerm<T>* contacts, std::span<CharacterState<T>* const> states,
+             std::span<const int> indices, std::span<Coupling<T>* const> ties,
+             std::span<const LaggedForce<T>> lagged, const Vec3<T>& gravity, T h);
 
-  /// Steps all. `kept` [world's number]; step(states, indices, ties, lagged_out) steps one set and returns
-  /// how many forces it has written. Returns all of them, of every set.
+  /// Steps all. `kept` [world's number]; step(states, indices, ties, spent, lagged_out) steps one set, whose
+  /// steps that were taken back have taken `spent` passes, and returns how many forces it has written.
+  /// Returns all of them, of every set.
   template <class Step>
-  std::span<const LaggedForce<T>> step_all(const ContactTerm<T>& contacts, std::span<KeptStep<T>> kept,
-                                           const Step& step);
+  std::span<const LaggedForce<T>> step_all(std::span<KeptStep<T>> kept, const Step& step);
 
  private:
   int set_of(int member) {
@@ -42,17 +46,20 @@ class TouchingSets {
   void unite(int a, int b);
   int member_of(int index) const;
   void gather(int set);
-  void place(const ContactTerm<T>& contacts, int member);
-  bool touch(const ContactTerm<T>& contacts, int a, int b) const;
-  bool join_touching(const ContactTerm<T>& contacts);
+  void place(int member);
+  void predict(const Vec3<T>& gravity, T h);
+  bool touch(int a, int b, T depth) const;
+  bool join_touching(T depth);
   void take_back(std::span<KeptStep<T>> kept);
 
+  const ContactTerm<T>* contacts_ = nullptr;
   std::span<CharacterState<T>* const> states_;
   std::span<const int> indices_;
   std::span<Coupling<T>* const> ties_;
   Vec3<double> origin_ = Vec3<double>::Zero();   ///< m, world; of the placed colliders
   std::vector<int> set_;                         ///< [member] union-find; towards the smallest
   std::vector<std::uint8_t> stepped_, changed_;  ///< [member] its set has been stepped; in this round
+  std::vector<int> spent_;                       ///< [member] passes of its steps that were taken back
   std::vector<PlacedCollider<T>> from_, to_;     ///< of all members
   std::vector<PlacedCollider<T>> placed_;        ///< of one
   std::vector<int> first_collider_;              ///< [member + 1]
@@ -65,38 +72,34 @@ class TouchingSets {
 
 template <class T>
 template <class Step>
-std::span<const LaggedForce<T>> TouchingSets<T>::step_all(const ContactTerm<T>& contacts,
-                                                          std::span<KeptStep<T>> kept, const Step& step) {
+std::span<const LaggedForce<T>> TouchingSets<T>::step_all(std::span<KeptStep<T>> kept, const Step& step) {
   const int count = static_cast<int>(states_.size());
-  from_.clear();
-  first_collider_.assign(1, 0);
-  for (int n = 0; n < count; ++n) {
-    kept[indices_[n]].keep(*states_[n]);
-    place(contacts, n);
-    from_.insert(from_.end(), placed_.begin(), placed_.end());
-    first_collider_.push_back(static_cast<int>(from_.size()));
-  }
-  to_ = from_;
+  for (int n = 0; n < count; ++n) kept[indices_[n]].keep(*states_[n]);
   lagged_.clear();
   stepped_.assign(count, 0);
+  spent_.assign(count, 0);
   do {
     changed_.assign(count, 0);
     for (int set = 0; set < count; ++set) {
       if (set_of(set) != set || stepped_[set]) continue;
       gather(set);
       const std::size_t had = lagged_.size();
-      int room = 0;
-      for (const CharacterState<T>* s : its_states_) room += s->problem.room.loaded;
+      int room = 0, spent = 0;
+      for (std::size_t k = 0; k < its_states_.size(); ++k) {
+        room += its_states_[k]->problem.room.loaded;
+        spent = std::max(spent, spent_[member_of(its_indices_[k])]);
+      }
       lagged_.resize(had + room);
-      lagged_.resize(had + step(its_states_, its_indices_, its_ties_, std::span(lagged_).subspan(had)));
+      lagged_.resize(had +
+                     step(its_states_, its_indices_, its_ties_, spent, std::span(lagged_).subspan(had)));
       for (int n = set; n < count; ++n) {
         if (set_of(n) != set) continue;
         stepped_[n] = changed_[n] = 1;
-        place(contacts, n);
+        place(n);
         std::copy(placed_.begin(), placed_.end(), to_.begin() + first_collider_[n]);
       }
     }
-  } while (join_touching(contacts) && (take_back(kept), true));
+  } while (join_touching(T(kGrazing)) && (take_back(kept), true));
   return lagged_;
 }
 

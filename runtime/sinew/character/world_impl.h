@@ -96,7 +96,8 @@ struct World<T>::Impl {
   void park(CharacterState<T>& state);
   bool play_set(std::span<CharacterState<T>* const> members, Worker& worker);
   int step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
-               std::span<Coupling<T>* const> ties, Worker& worker, std::span<LaggedForce<T>> lagged_out);
+               std::span<Coupling<T>* const> ties, int spent, Worker& worker,
+               std::span<LaggedForce<T>> lagged_out);
   bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,

@@ -65,15 +65,16 @@ bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) c
   return false;
 }
 
-/// Steps who touches or is tied. Returns how many contact forces it has written.
+/// Steps who touches or is tied, in `spent` passes less than a step may take. Returns how many contact forces
+/// it has written.
 template <class T>
 int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
-                             std::span<Coupling<T>* const> ties, Worker& worker,
+                             std::span<Coupling<T>* const> ties, int spent, Worker& worker,
                              std::span<LaggedForce<T>> lagged_out) {
   if (play_set(members, worker)) return 0;
   for (CharacterState<T>* s : members) catch_up(*s, worker.jets);
   const int count =
-      worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out);
+      worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);
   for (CharacterState<T>* s : members) s->levels.did = level_of(*s);
   return count;
 }
@@ -97,17 +98,17 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
       lagged_count[island] = worker.stepper.end(lagged_of(island));
       worker.members[0]->levels.did = level_of(*worker.members[0]);
     }
-  } else if (worker.sets.begin(worker.members, indices, worker.ties, lagged)) {
-    const std::span<const LaggedForce<T>> forces =
-        worker.sets.step_all(*plan.contacts, kept,
-                             [&](std::span<CharacterState<T>* const> members, std::span<const int> numbers,
-                                 std::span<Coupling<T>* const> ties, std::span<LaggedForce<T>> out) {
-                               return step_set(members, numbers, ties, worker, out);
-                             });
+  } else if (worker.sets.begin(plan.contacts, worker.members, indices, worker.ties, lagged,
+                               settings.gravity.template cast<T>(), h)) {
+    const std::span<const LaggedForce<T>> forces = worker.sets.step_all(
+        kept, [&](std::span<CharacterState<T>* const> members, std::span<const int> numbers,
+                  std::span<Coupling<T>* const> ties, int spent, std::span<LaggedForce<T>> out) {
+          return step_set(members, numbers, ties, spent, worker, out);
+        });
     std::copy(forces.begin(), forces.end(), lagged_of(island).begin());
     lagged_count[island] = static_cast<int>(forces.size());
   } else {
-    lagged_count[island] = step_set(worker.members, indices, worker.ties, worker, lagged_of(island));
+    lagged_count[island] = step_set(worker.members, indices, worker.ties, 0, worker, lagged_of(island));
   }
   close_island(island, worker.members, worker.ties, now(settings.detail.budget) - begin);
 }
