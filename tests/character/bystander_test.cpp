@@ -163,6 +163,59 @@ TEST(Bystander, AnObstacleBesideAFigureDoesNotEndItsPlayback) {
   EXPECT_GT(solved_beside({0.2, 0, 1.2}), 50) << "in its chest";
 }
 
+TEST(Bystander, AnObstacleEndsPlaybackOnlyWhereTheAnimationMeetsIt) {
+  EXPECT_EQ(solved_beside({0, 0.65, 1.1}), 0) << "a hand's breadth beside the arm";
+  EXPECT_EQ(solved_beside({0.42, 0, 1.1}), 0) << "before the chest";
+}
+
+TEST(Bystander, AFallTwoHandsBesideAFallIsAsAloneUntilTheyTouch) {
+  Scene alone, two;
+  const Vec3<double> near(0.55, 0, 2.2);
+  const Poses wanted = record_character(alone, alone.fall(kHere, 4), 12);
+  const int n = two.fall(kHere, 4);
+  two.box(near, {0, 0, 0.5}, {2, 3, 1});  // falls along, centimetres off
+  EXPECT_EQ(apart(record_character(two, n, 12), wanted), 0);
+}
+
+TEST(Bystander, WhoPassesAtArmsLengthIsPlayedAndEndsNobodysPlayback) {
+  World<float> world{WorldSettings()};
+  const Skeleton body = fixtures::humanoid();
+  Status status;
+  for (int n = 0; n < 2; ++n) ASSERT_EQ(world.add_character(body, {}, status), n) << status.reason;
+  for (int step = 0; step < 120; ++step) {
+    for (int n = 0; n < 2; ++n) {
+      std::vector<JointJet<float>> jets = fixtures::idle<float>(body, step / 60.0);
+      const float pace = n == 0 ? 1.5f : -1.5f;
+      jets[0].translation += Vec3<float>(pace * (float(step) / 60 - 1), 0.8f * float(n), 0);
+      jets[0].velocity.x() += pace;
+      ASSERT_TRUE(world.character(n).set_target(jets).ok());
+      if (step == 0) world.character(n).reset();
+    }
+    ASSERT_TRUE(world.step(kStep).ok());
+    for (int n = 0; n < 2; ++n) EXPECT_EQ(world.character(n).report().substeps, 0) << step;
+  }
+}
+
+TEST(Bystander, ABallThatStrikesEndsPlaybackInThatStep) {
+  fixtures::Playing<float> figure;
+  PropSettings ball;
+  ball.size = {0.1, 0, 0};
+  ball.mass = 3;
+  ball.pose.translation = {0.8, 0, 1.2};
+  ball.velocity = {-10, 0, 0};
+  Status status;
+  ASSERT_EQ(figure.world.add_prop(ball, status), 0) << status.reason;
+  int first = -1;
+  for (int n = 0; n < 10; ++n) {
+    figure.step();
+    if (first < 0 && figure.character().report().substeps > 0) first = n;
+    const float front = figure.world.prop_pose(0).translation.x();
+    EXPECT_GT(front, 0.1f) << "not through the chest, step " << n;
+  }
+  EXPECT_GE(first, 2);
+  EXPECT_LE(first, 5);
+}
+
 TEST(Bystander, WhoStandsASpanAwayDoesNotEndPlaybackEither) {
   World<float> world{WorldSettings()};
   const Skeleton body = fixtures::humanoid();

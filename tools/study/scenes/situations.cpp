@@ -351,8 +351,6 @@ const char* known_to_fail(const std::string& situation) {
     const char *name, *why;
   };
   static constexpr Known kKnown[] = {
-      {"bystanders", "a box that spins 0.4 m from a limb shares its island for a few steps: 0.03 mm"},
-      {"corner", "a hand is whipped to 9 m/s in the second after the impact"},
       {"pit", "a hand reaches 15.6 m/s, 15 wanted"},
       {"tumbling_crates", "crates that strike edge first at 4 m/s go in by 7 mm for a step"},
       {"crowd_pushed",
