@@ -14,7 +14,7 @@ namespace {
 /// particles leave the tree to conjugate gradients, that costs too much.
 constexpr double kNear = 0.3, kNearOthers = 0.1;
 constexpr int kMostProducts = 80;
-constexpr double kCgTolerance = 1e-3;  ///< of the preconditioned residual's norm
+constexpr double kCgTolerance = 1e-2;  ///< of the preconditioned residual's norm
 constexpr double kCgFar = 0.1;         ///< the same, for steps longer than
 constexpr double kFar = 1e-3;          ///< m: the next pass will see another problem anyway
 
