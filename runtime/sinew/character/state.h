@@ -44,13 +44,15 @@ struct LevelState {
   Level level = Level::kChecked;  ///< as reported
   Level cap = Level::kSubsteps;   ///< of the budget
   bool asleep = false;
-  float unneeded = 0;       ///< s since a level as high was needed
-  float cap_age = 1e6f;     ///< s since the cap changed
-  float still = 0;          ///< s at rest
-  float cost = 0;           ///< smoothed, as Budget::limit
-  float spared = 0;         ///< that the cap saves, as `cost`
-  std::int32_t nap = -1;    ///< who sleeps with it: all with the same number
-  std::uint32_t steps = 0;  ///< staggered from one character to the next
+  float unneeded = 0;            ///< s since a level as high was needed
+  Level lower = Level::kAsleep;  ///< the highest that was needed since
+  float lower_unneeded = 0;      ///< s since that was needed
+  float cap_age = 1e6f;          ///< s since the cap changed
+  float still = 0;               ///< s at rest
+  float cost = 0;                ///< smoothed, as Budget::limit
+  float spared = 0;              ///< that the cap saves, as `cost`
+  std::int32_t nap = -1;         ///< who sleeps with it: all with the same number
+  std::uint32_t steps = 0;       ///< staggered from one character to the next
   // Of the present step
   Level allowed = Level::kSubsteps, did = Level::kChecked;
   bool wake = false;           ///< the host changed something
