@@ -62,7 +62,7 @@ TEST(Population, ThePushedIsSolvedInTheSameStepReturnsAndLeaves) {
   ASSERT_TRUE(people.population->push(2, hand, {15, 0, 0}).ok());
   people.step();
   calm.step();
-  EXPECT_EQ(people.population->level(2), Level::kPartial);
+  EXPECT_EQ(people.population->level(2), Level::kSubsteps);  // a hand is flung
   EXPECT_NE(people.pose(2), calm.pose(2));
   int steps = 0;
   while (people.population->in_world(2) && steps < 300) {

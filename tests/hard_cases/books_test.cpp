@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "study/bodies.h"
+#include "study/impulse_work.h"
 
 namespace sinew::study {
 namespace {
@@ -39,6 +40,58 @@ TEST(Books, WorkOfAPushIsTheKineticEnergyThatItLeaves) {
   }
   EXPECT_NEAR(stage.kinetic(), 0.5 * 2 * 25, 0.1);
   EXPECT_NEAR(stage.measured().work, 25, 0.1);
+}
+
+TEST(Books, WorkOfAStrikeOnAFreeBodyIsTheTextbooks) {
+  // Off its centre, while it moves: J·v + ½J²/m + ½(r × J)·I⁻¹(r × J).
+  const Tree<double> tree(free_body(2, {0.1, 0.2, 0.3}));
+  const std::vector<Transform<double>> local{{Quat<double>::Identity(), {1, 2, 3}}};
+  const Vec3<double> arm(0.5, 0, 0), impulse(1, 3, 0), speed(4, 5, 6);
+  const PointImpulse struck{0, local[0].translation + arm, impulse, speed};
+  const double turned = arm.cross(impulse).z();
+  const double expected = impulse.dot(speed) + impulse.squaredNorm() / (2 * 2) + turned * turned / (2 * 0.3);
+  EXPECT_NEAR(work_of_impulses(tree, local, false, {&struck, 1}), expected, 1e-12);
+  // Led, it does not move but as it does anyhow.
+  EXPECT_NEAR(work_of_impulses(tree, local, true, {&struck, 1}), impulse.dot(speed), 1e-12);
+}
+
+TEST(Books, WorkOfAStrikeOnAHingedRodIsTheTextbooks) {
+  // At a distance r from the hinge the rod has the mass I/r², I = ml²/3 about the hinge. A couple of two
+  // impulses turns it by their sum.
+  const Skeleton body = chain({2, JointType::kRevolute, JointType::kFree, 0.6});
+  const Tree<double> tree(body);
+  const std::vector<JointJet<double>> rest = rest_jets<double>(body);
+  std::vector<Transform<double>> local;
+  for (const JointJet<double>& jet : rest) local.push_back({jet.rotation, jet.translation});
+  const Joint& rod = body.joints[1];
+  const Vec3<double> axis = (local[0].rotation * local[1].rotation) * rod.axis;
+  const Vec3<double> hinge = local[0] * local[1].translation;
+  const Vec3<double> along = (local[0].rotation * local[1].rotation) * rod.center_of_mass.normalized();
+  const Vec3<double> across = axis.cross(along).normalized();
+  const double about = axis.dot(rod.inertia * axis) + rod.mass * rod.center_of_mass.squaredNorm();
+  const auto at = [&](double r, double impulse) {
+    return PointImpulse{1, hinge + r * along, impulse * across, 7 * r * across};
+  };
+  const PointImpulse one = at(0.5, 3);
+  EXPECT_NEAR(work_of_impulses(tree, local, true, {&one, 1}), 3 * 7 * 0.5 + 1.5 * 1.5 / (2 * about), 1e-12);
+  const PointImpulse two[] = {at(0.5, 3), at(0.2, -2)};
+  const double torque = 0.5 * 3 - 0.2 * 2;
+  EXPECT_NEAR(work_of_impulses(tree, local, true, two), 7 * torque + torque * torque / (2 * about), 1e-12);
+}
+
+TEST(Books, AStrikeIsBookedWithTheEnergyThatItLeaves) {
+  // On the end of a chain that swings; steps so short that they lose nothing of it.
+  Stage<double> stage(weightless());
+  const Skeleton body = chain({4, JointType::kBall, JointType::kFree, 0.5});
+  std::vector<JointJet<double>> jets = rest_jets<double>(body);
+  randomise_speeds(body, jets, 2, 1);
+  stage.add(body, limp(), jets);
+  for (int n = 0; n < 10; ++n) stage.step(1e-4);
+  const double before = stage.kinetic();
+  stage.push(0, 3, stage.character(0).model()[3].translation, Vec3<double>(5, -2, 3));
+  stage.step(1e-4);
+  EXPECT_GT(stage.measured().work, 10);
+  EXPECT_NEAR(stage.kinetic() - before, stage.measured().work, 0.01 * stage.measured().work);
 }
 
 TEST(Books, JointGapSeesAnOpenJoint) {

@@ -7,8 +7,15 @@
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
 #include "sinew/muscle/joint_coordinates.h"
+#include "sinew/skeleton/rotation.h"
+#include "study/impulse_work.h"
 
 namespace sinew::study {
+namespace {
+
+constexpr double kBackwards = 1e-5;  ///< s: whence a start came, by its speeds
+
+}  // namespace
 
 int Measurement::passes_percentile(double share) const {
   int below = 0;
@@ -82,7 +89,9 @@ Energy energy_of(const Skeleton& skeleton, const std::vector<JointJet<T>>& jets,
 
 template <class T>
 Stage<T>::Stage(const WorldSettings& settings, Compared scheme)
-    : settings_(settings), world_(std::make_unique<World<T>>(settings)) {
+    : settings_(settings),
+      strikes_(scheme == Compared::kBossak),
+      world_(std::make_unique<World<T>>(settings)) {
   for (const Status& status :
        {declare_scheme(scheme, *world_), world_->template declare<ContinuousDetection>(),
         world_->template declare<Restitution>()})
@@ -97,17 +106,28 @@ Stage<T>::Stage(const scene::Scene& scene, Compared scheme) : Stage(scene.world,
     return;
   }
   for (std::size_t c = 0; c < scene.characters.size(); ++c)
-    enter(scene.characters[c].asset->skeleton, script_->play.start(static_cast<int>(c)));
+    enter(scene.characters[c].asset->skeleton, script_->play.start(static_cast<int>(c)),
+          RootDrive::kKinematic);
   for (const scene::SceneProp& prop : scene.props) enter(prop.settings);
 }
 
 /// Opens the books of a character that has been put into the world.
 template <class T>
-void Stage<T>::enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start) {
+void Stage<T>::enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start, RootDrive root) {
   const Energy e = energy_of<T>(skeleton, start, settings_.gravity);
   kinetic_ += e.kinetic;
   energy_ += e.kinetic + e.potential;
-  members_.push_back(std::make_unique<Member>(Member{Tree<T>(skeleton), {}}));
+  Member member{Tree<T>(skeleton), root, Tree<double>(skeleton), {}, {}, kBackwards};
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const JointJet<T>& jet = start[i];
+    const Quat<double> back = rotation_exp<double>(-kBackwards * jet.omega.template cast<double>());
+    const Vec3<double> way = kBackwards * jet.velocity.template cast<double>();
+    const Transform<double> ago{jet.rotation.template cast<double>() * back,
+                                jet.translation.template cast<double>() - way};
+    const int parent = skeleton.joints[i].parent;
+    member.earlier.push_back(parent < 0 ? ago : member.earlier[static_cast<std::size_t>(parent)] * ago);
+  }
+  members_.push_back(std::make_unique<Member>(std::move(member)));
 }
 
 template <class T>
@@ -131,7 +151,7 @@ int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,
   status = world_->character(index).set_target(start);
   if (!status) m_.refused = status.reason;
   world_->character(index).reset();
-  enter(skeleton, start);
+  enter(skeleton, start, settings.root);
   return index;
 }
 
@@ -161,15 +181,60 @@ void Stage<T>::push(const scene::Impulse& push, double h) {
     return;
   }
   const Transform<double> model = character(c).model()[joint].template cast<double>();
-  pushes_.push_back({c, joint, model.inverse() * point, point, impulse});
+  const Member& member = *members_[static_cast<std::size_t>(c)];
+  const Vec3<double> local = model.inverse() * point;
+  const Vec3<double> ago = member.earlier[static_cast<std::size_t>(joint)] * local;
+  pushes_.push_back({c, joint, local, point, impulse, (point - ago) / member.span, strikes_ && !lasts});
 }
 
-/// A push is a constant force over the step, so its work is force times the way of the point that it is fixed
-/// to.
+/// Whether a character's root goes where it is led in the step that is to come.
+template <class T>
+bool Stage<T>::root_is_led(int c) const {
+  const auto index = static_cast<std::size_t>(c);
+  if (!script_) return members_[index]->root == RootDrive::kKinematic;
+  return scene::value_at(script_->scene.characters[index].root, script_->time, RootDrive::kKinematic) ==
+         RootDrive::kKinematic;
+}
+
+/// Of the impulses on a character that act at once.
+template <class T>
+double Stage<T>::work_of_strikes(int c) const {
+  const Member& member = *members_[static_cast<std::size_t>(c)];
+  std::vector<PointImpulse> impulses;
+  for (const Push& p : pushes_)
+    if (p.character == c && p.strikes) {
+      int body = p.joint;
+      while (body >= member.exact.bodies) body = world_->character(c).skeleton().joints[body].parent;
+      impulses.push_back({body, p.before, p.impulse, p.speed});
+    }
+  if (impulses.empty()) return 0;
+  std::vector<Transform<double>> local;
+  for (int i = 0; i < member.exact.bodies; ++i) local.push_back(member.local[i].template cast<double>());
+  return work_of_impulses(member.exact, local, root_is_led(c), impulses);
+}
+
+/// Where everybody is before a step of h seconds.
+template <class T>
+void Stage<T>::remember_poses(double h) {
+  for (std::size_t c = 0; c < members_.size(); ++c) {
+    Member& member = *members_[c];
+    const auto local = character(static_cast<int>(c)).local();
+    member.local.assign(local.begin(), local.end());
+    member.earlier.clear();
+    for (const Transform<T>& model : character(static_cast<int>(c)).model())
+      member.earlier.push_back(model.template cast<double>());
+    member.span = h;
+  }
+}
+
+/// A load is a constant force over the step, so its work is force times the way of the point that it is fixed
+/// to. What strikes has done its work before the step.
 template <class T>
 double Stage<T>::work_of_pushes(double h) {
   double work = 0;
+  for (std::size_t c = 0; c < members_.size(); ++c) work += work_of_strikes(static_cast<int>(c));
   for (const Push& p : pushes_) {
+    if (p.strikes) continue;
     const Transform<double> model = character(p.character).model()[p.joint].template cast<double>();
     work += (p.impulse / h).dot(model * p.local - p.before);
   }
@@ -253,11 +318,8 @@ bool Stage<T>::follow_script(double h) {
 template <class T>
 bool Stage<T>::step(double h) {
   if (!m_.refused.empty()) return false;
-  for (std::size_t c = 0; c < members_.size(); ++c) {
-    const auto local = character(static_cast<int>(c)).local();
-    members_[c]->local.assign(local.begin(), local.end());
-  }
   if (script_ && !follow_script(h)) return false;
+  remember_poses(h);
   if (m_.steps == 0) base_ = energy_, m_.kinetic_start = m_.kinetic_most = kinetic_;
   const auto begin = std::chrono::steady_clock::now();
   const Status status = world_->step(T(h));

@@ -57,7 +57,7 @@ class Stage {
   int add_prop(const PropSettings& settings);
   void add_obstacle(const Collider& obstacle);
 
-  /// Impulse (N·s) at a world point of a joint during the next step; its work is booked.
+  /// Impulse (N·s) at a world point of a joint at the beginning of the next step; its work is booked.
   void push(int character, int joint, const Vec3<double>& point, const Vec3<double>& impulse) {
     push({character, joint, point, impulse, false}, 1);
   }
@@ -98,11 +98,17 @@ class Stage {
  private:
   struct Member {
     Tree<T> tree;
+    RootDrive root;                   ///< without a scene's timeline
+    Tree<double> exact;               ///< for the work of impulses
     std::vector<Transform<T>> local;  ///< before the step
+    /// [joint] joint → world, a step of `span` seconds before that; at the start by the speeds there.
+    std::vector<Transform<double>> earlier;
+    double span = 0;
   };
   struct Push {
     int character, joint;
-    Vec3<double> local, before, impulse;
+    Vec3<double> local, before, impulse, speed;  ///< the point's, before it
+    bool strikes;                                ///< acts at once; else over the step
   };
   struct Script {
     Script(const scene::Scene& of, World<T>& world) : scene(of), play(scene, world) {}
@@ -111,17 +117,21 @@ class Stage {
     double time = 0;  ///< s
   };
 
-  void enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start);
+  void enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start, RootDrive root);
   void enter(const PropSettings& prop);
   bool follow_script(double h);
 
   void push(const scene::Impulse& push, double h);
   double work_of_pushes(double h);
+  double work_of_strikes(int character) const;
+  bool root_is_led(int character) const;
+  void remember_poses(double h);
   double work_of_muscles();
   void measure_gaps(int index);
   void book(const CharacterReport& report);
 
   WorldSettings settings_;
+  bool strikes_;  ///< impulses act at once, as they do in the runtime's own scheme
   std::unique_ptr<World<T>> world_;
   std::unique_ptr<Script> script_;
   std::vector<std::unique_ptr<Member>> members_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sinew/optimizer/bossak.h"
 #include "sinew/optimizer/joint_terms_pass.h"
 #include "sinew/optimizer/problem_pass.h"
 
@@ -18,6 +19,9 @@ constexpr double kSettled = 1e-4;  ///< rad or m
 /// limp hands are 9 to 30° rms off the unbaked ones after six blows, at 0.01 one, with two more solves in a
 /// hundred.
 constexpr double kMissed = 0.01;
+/// rad that what a baked joint hangs on turns in one part of a step: where it goes is guessed along the
+/// straight, and from here on that is off by half of kMissed.
+constexpr double kExpectable = 0.1;
 
 template <class T>
 using Block = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
@@ -221,6 +225,8 @@ void choose_baked(CharacterState<T>& s, int bake_every, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.baked[i] = 0;
     if (!bakes || !s.rig->bakes[i]) continue;
+    if (const int parent = s.tree.parent[i]; parent >= 0 && turn_of<T>(s.history, parent, h) > T(kExpectable))
+      continue;
     const bool limp = has_no_muscle(s.problem, i);
     s.baked[i] = limp || (s.joint_is_driven(i) && s.deviation[i].released);
     if (!limp) continue;

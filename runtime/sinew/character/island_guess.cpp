@@ -34,13 +34,14 @@ bool IslandStepper<T>::may_halve(T h) const {
   return may_divide() && h * T(world_->accuracy.max_parts) > T(1.5) * frame_;
 }
 
-/// Whether a figure that falls has a body that turns too far in h.
+/// Whether a figure that falls, or is off its animation, has a body that turns too far in h.
 template <class T>
 bool IslandStepper<T>::turns_far(T h) const {
   const double most = world_->accuracy.max_rotation;
   if (!(most > 0) || !may_halve(h)) return false;
   return std::any_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
-    return falls(*s) && largest_turn<T>(s->tree, s->history, h) > T(most) &&
+    const bool moves = !s->is_prop && (s->limp() || !s->undisturbed());
+    return moves && largest_turn<T>(s->tree, s->history, h) > T(most) &&
            share_turning_faster<T>(s->tree, s->history, T(most) / h) > T(kSharesTurn);
   });
 }

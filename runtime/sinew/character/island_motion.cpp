@@ -205,8 +205,9 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
   ends_.answered(0, jumps_);
   for (int i = 0; i < s.tree.bodies; ++i) {
     Deviation<T>& d = s.deviation[i];
+    const std::array<T, 6> jump = rate_of_spin<T>(s.tree.type[i], d.offset, jumps_[i]);
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      d.rate[k] += jumps_[i][k];
+      d.rate[k] += jump[k];
       d.on_animation = d.on_animation && jumps_[i][k] == T(0);
     }
   }
@@ -575,7 +576,7 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
     }
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && loose == 0) continue;
-    std::array<T, 6> rate = d.rate;
+    std::array<T, 6> rate = spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
     if (loose > 0) {  // a ball joint that holds about some of its axes: as it went
       held = {};
       for (int k = 0; k < count; ++k) rate[k] = ends_.loose(tree, first + k) ? T(0) : s.rate[i][k];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sinew {
 namespace {
@@ -55,10 +56,18 @@ void settle_level(CharacterState<T>& s, Level needed, T h, double dwell) {
   LevelState& l = s.levels;
   ++l.steps;
   l.cap_age = std::min(l.cap_age + static_cast<float>(h), 1e6f);
-  l.unneeded = needed < l.level ? l.unneeded + static_cast<float>(h) : 0;
-  if (needed > l.level || double(l.unneeded) >= dwell || needed == Level::kAsleep) {
+  if (needed >= l.level || needed == Level::kAsleep) {
     l.level = needed;
-    l.unneeded = 0;
+    l.lower = Level::kAsleep;
+    l.unneeded = l.lower_unneeded = 0;
+  } else {
+    l.unneeded += static_cast<float>(h);
+    l.lower_unneeded = needed < l.lower ? l.lower_unneeded + static_cast<float>(h) : 0;
+    l.lower = std::max(l.lower, needed);
+    if (double(l.unneeded) >= dwell) {
+      l.level = std::exchange(l.lower, needed);
+      l.unneeded = std::exchange(l.lower_unneeded, 0.f);
+    }
   }
   l.level = std::min(l.level, std::max(l.allowed, needed));
 }

@@ -117,20 +117,21 @@ void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
     jet.rotation = s.local[i].rotation;
     jet.translation = s.local[i].translation;
     if (d.on_animation) continue;
+    const std::array<T, 6> rate = spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
     jet.omega = turned * jet.omega;
     switch (s.tree.type[i]) {
       case JointType::kRevolute:
-        jet.omega += s.tree.axis[i] * d.rate[0];
+        jet.omega += s.tree.axis[i] * rate[0];
         break;
       case JointType::kBall:
-        jet.omega += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        jet.omega += Vec3<T>(rate[0], rate[1], rate[2]);
         break;
       case JointType::kTranslation:
-        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
+        jet.velocity += Vec3<T>(rate[0], rate[1], rate[2]);
         break;
       case JointType::kFree:
-        jet.velocity += Vec3<T>(d.rate[0], d.rate[1], d.rate[2]);
-        jet.omega += Vec3<T>(d.rate[3], d.rate[4], d.rate[5]);
+        jet.velocity += Vec3<T>(rate[0], rate[1], rate[2]);
+        jet.omega += Vec3<T>(rate[3], rate[4], rate[5]);
         break;
       default:
         break;  // on the animation's speed

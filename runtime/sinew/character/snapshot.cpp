@@ -48,7 +48,14 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
     s.detail.significance = usual.significance;
     s.detail.check_every = usual.check_every;
   }
-  stream.value("time above the level", l.unneeded);
+  if (stream.part("is above what it needs", l.unneeded > 0)) {
+    stream.value("time above the level", l.unneeded);
+    visit_enum("level needed since", l.lower, Level::kSubsteps, stream);
+    stream.value("time above that", l.lower_unneeded);
+  } else if (stream.reading()) {
+    l.unneeded = l.lower_unneeded = 0;
+    l.lower = Level::kAsleep;
+  }
   stream.value("cost", l.cost);
   stream.value("steps", l.steps);
   if (stream.part("is capped", l.cap != Level::kSubsteps || l.cap_age < LevelState().cap_age)) {
@@ -166,6 +173,25 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   }
 }
 
+/// How the animation moved at the end of the last step, for parts of the next one: what is on it moves so.
+template <class T>
+void visit_last_speeds(CharacterState<T>& s, ByteStream& stream) {
+  if (s.owed.deviations && !stream.bounding()) return;  // what only falls follows none
+  const History<T>& h = s.history;
+  const auto spin = [&](int body) {
+    const Mat3<T>& r = h.rotation[body];
+    return Vec3<T>(s.tree.inverse_inertia[body] * (r.transpose() * h.momentum[body]));  // body axes
+  };
+  ResidualCoder<T> coder("last target's velocity", stream, true);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int parent = s.tree.parent[i];
+    const Quat<T> inward = s.local[i].rotation.conjugate();
+    const Vec3<T> carried = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(inward * spin(parent));
+    coder.values(s.own_last_target()[i].omega, Vec3<T>(spin(i) - carried));
+    coder.values(s.own_last_target()[i].velocity, Vec3<T>(Vec3<T>::Zero()));
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -204,6 +230,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_pose(s, stream);
   visit_joints(s, stream);
   visit_history(s, stream);
+  visit_last_speeds(s, stream);
   if (!stream.reading()) return;
   s.settle_deviations();
   s.impulses.clear();

@@ -377,6 +377,17 @@ std::span<T> turn_of(JointType type, std::array<T, 6>& offset) {
   return std::span(offset).subspan(first, ball ? 3 : type == JointType::kRevolute ? 1 : 0);
 }
 
+/// Rates, with a rotation vector's by a matrix of that.
+template <class T, class Matrix>
+std::array<T, 6> turned_by(JointType type, std::array<T, 6> offset, std::array<T, 6> rate,
+                           const Matrix& matrix_of) {
+  const std::span<T> turn = turn_of(type, offset), turning = turn_of(type, rate);
+  if (turn.size() < 3) return rate;
+  const Vec3<T> turned = matrix_of({turn[0], turn[1], turn[2]}) * Vec3<T>(turning[0], turning[1], turning[2]);
+  for (int a = 0; a < 3; ++a) turning[a] = turned[a];
+  return rate;
+}
+
 template <class T>
 T length(std::span<const T> v) {
   T squares = T(0);
@@ -405,6 +416,16 @@ std::array<T, 6> continued(JointType type, std::array<T, 6> offset, std::array<T
 }  // namespace
 
 template <class T>
+std::array<T, 6> spin_of_rate(JointType type, const std::array<T, 6>& offset, std::array<T, 6> rate) {
+  return turned_by(type, offset, rate, [](const Vec3<T>& v) { return right_jacobian<T>(v); });
+}
+
+template <class T>
+std::array<T, 6> rate_of_spin(JointType type, const std::array<T, 6>& offset, std::array<T, 6> spin) {
+  return turned_by(type, offset, spin, [](const Vec3<T>& v) { return right_jacobian_inverse<T>(v); });
+}
+
+template <class T>
 void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured, T h, T return_time) {
   Deviation<T>& d = deviation[i];
   std::array<T, 6> from_animation = continued(tree.type[i], measured, d.offset);
@@ -425,11 +446,13 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
                          std::abs(from_animation[k] - (d.offset[k] + pull * h) * decay) < same * unit;
     d.rate[k] =
         on_path ? (d.rate[k] - pull * h / return_time) * decay : (from_animation[k] - d.offset[k]) / h;
-    d.offset[k] = around ? measured[k] : from_animation[k];
     d.on_path = d.on_path && on_path;
-    offset = std::max(offset, std::abs(d.offset[k]) / unit);
+    offset = std::max(offset, std::abs(measured[k]) / unit);
     speed = std::max(speed, time * std::abs(d.rate[k]) / unit);
   }
+  if (around && from_animation != measured)
+    d.rate = rate_of_spin<T>(tree.type[i], measured, spin_of_rate<T>(tree.type[i], from_animation, d.rate));
+  d.offset = around ? measured : from_animation;
   const T fine = std::min(60 * (h / time), T(1));
   const T snap = std::max(T(kSnapAngle) * fine * fine, 16 * std::numeric_limits<T>::epsilon());
   d.on_animation = !d.released && offset < snap && speed < T(kSnapRate) * fine;
@@ -454,7 +477,8 @@ void CharacterState<T>::keep_deviations(T h) {
     Deviation<T>& d = deviation[i];
     d = {};
     d.offset = joint_offset_value<T>(tree, i, before, now);
-    d.rate = joint_offset_value<T>(tree, i, after, at_offset<T>(tree, i, now, coasting));
+    d.rate = continued(tree.type[i],
+                       joint_offset_value<T>(tree, i, after, at_offset<T>(tree, i, now, coasting)), d.offset);
     for (int k = 0; k < 6; ++k) d.rate[k] = (d.rate[k] - d.offset[k]) / h;
     d.released = tree.dof_count(i) > 0;
     d.on_animation = !d.released;
@@ -507,6 +531,8 @@ int CharacterState<T>::body_of(int joint) const {
   return joint;
 }
 
+SINEW_RATE_INSTANCES(template, float)
+SINEW_RATE_INSTANCES(template, double)
 template struct Rig<float>;
 template struct Rig<double>;
 template struct CharacterState<float>;

@@ -24,6 +24,13 @@ struct Deviation {
   bool on_path = false;       ///< went along the way back in the last step: `rate` is that path's
 };
 
+/// The rate of a deviation, whose turn is that of a rotation vector, with the child's angular velocity about
+/// its own axes instead; and back. They are the same near the animation.
+template <class T>
+std::array<T, 6> spin_of_rate(JointType type, const std::array<T, 6>& offset, std::array<T, 6> rate);
+template <class T>
+std::array<T, 6> rate_of_spin(JointType type, const std::array<T, 6>& offset, std::array<T, 6> spin);
+
 /// What a played step leaves undone until somebody asks: mostly nobody does. See keep_record(), catch_up().
 template <class T>
 struct Owed {
@@ -44,13 +51,15 @@ struct LevelState {
   Level level = Level::kChecked;  ///< as reported
   Level cap = Level::kSubsteps;   ///< of the budget
   bool asleep = false;
-  float unneeded = 0;       ///< s since a level as high was needed
-  float cap_age = 1e6f;     ///< s since the cap changed
-  float still = 0;          ///< s at rest
-  float cost = 0;           ///< smoothed, as Budget::limit
-  float spared = 0;         ///< that the cap saves, as `cost`
-  std::int32_t nap = -1;    ///< who sleeps with it: all with the same number
-  std::uint32_t steps = 0;  ///< staggered from one character to the next
+  float unneeded = 0;            ///< s since a level as high was needed
+  Level lower = Level::kAsleep;  ///< the highest that was needed since
+  float lower_unneeded = 0;      ///< s since that was needed
+  float cap_age = 1e6f;          ///< s since the cap changed
+  float still = 0;               ///< s at rest
+  float cost = 0;                ///< smoothed, as Budget::limit
+  float spared = 0;              ///< that the cap saves, as `cost`
+  std::int32_t nap = -1;         ///< who sleeps with it: all with the same number
+  std::uint32_t steps = 0;       ///< staggered from one character to the next
   // Of the present step
   Level allowed = Level::kSubsteps, did = Level::kChecked;
   bool wake = false;           ///< the host changed something
@@ -259,6 +268,11 @@ struct CharacterState {
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
 };
 
+#define SINEW_RATE_INSTANCES(prefix, T)                                                          \
+  prefix std::array<T, 6> spin_of_rate<T>(JointType, const std::array<T, 6>&, std::array<T, 6>); \
+  prefix std::array<T, 6> rate_of_spin<T>(JointType, const std::array<T, 6>&, std::array<T, 6>);
+SINEW_RATE_INSTANCES(extern template, float)
+SINEW_RATE_INSTANCES(extern template, double)
 extern template struct Rig<float>;
 extern template struct Rig<double>;
 extern template struct CharacterState<float>;

@@ -147,7 +147,9 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
       const T now = d.offset[k];
       offset[k] = (now + (d.rate[k] + now / return_time) * h) * decay;
       const T limit = now > T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-      if (now == T(0) || !(limit > T(0)) || std::isinf(limit)) continue;
+      // What is thrown through its target was thrown off it: how it came near is no way back to be braked.
+      const bool passes = now * d.rate[k] <= T(0) && h * std::abs(d.rate[k]) >= std::abs(now);
+      if (passes || !(limit > T(0)) || std::isinf(limit)) continue;
       if (!summed) sum_subtrees(s);
       summed = true;
       const T inertia = inertia_of(p, i, dof);

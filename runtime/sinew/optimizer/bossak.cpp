@@ -18,6 +18,11 @@ Vec3<T> spin_of(const Tree<T>& tree, int i, const Mat3<T>& rotation, const Vec3<
 }  // namespace
 
 template <class T>
+T turn_of(const History<T>& history, int body, T h) {
+  return h * std::sqrt(history.rotation_rate[body].squaredNorm() / 2);
+}
+
+template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h) {
   T fastest = T(0);
   for (int i = 0; i < tree.bodies; ++i) fastest = std::max(fastest, history.rotation_rate[i].squaredNorm());

@@ -56,6 +56,10 @@ T lasting_share(T weight, T h) {
   return std::min(2 / (weight * h * h), T(1));
 }
 
+/// rad: how far a body turns in a step of h seconds at its rate.
+template <class T>
+T turn_of(const History<T>& history, int body, T h);
+
 /// rad: the furthest that a body of the tree turns in a step of h seconds at its rate.
 template <class T>
 T largest_turn(const Tree<T>& tree, const History<T>& history, T h);
@@ -111,6 +115,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
                     const Vec3<double>& common_origin, History<T>& history);
 
 #define SINEW_BOSSAK_INSTANCES(prefix, T)                                                          \
+  prefix T turn_of<T>(const History<T>&, int, T);                                                  \
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix T share_turning_faster<T>(const Tree<T>&, const History<T>&, T);                          \
   prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \

@@ -200,7 +200,7 @@ T InnerProblem<T>::exact_line_search(T quadratic, T linear) const {
     t = std::clamp(t, low + T(0.05) * (high - low), high - T(0.05) * (high - low));
     if (iteration % 3 == 2) t = (low + high) / 2;
     const T d = derivative(t);
-    if (std::abs(d) <= T(0.02) * -d0 || high - low < T(1e-4)) return t;
+    if (std::abs(d) <= T(0.02) * -d0 || high - low < T(1e-4) * high) return t;
     if (d < T(0)) {
       low = t;
       d_low = d;

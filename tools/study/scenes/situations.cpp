@@ -356,8 +356,6 @@ const char* known_to_fail(const std::string& situation) {
       {"crowd_pushed",
        "three of twenty are caught in each other when they stand up, and a loose forearm whirls at 22 m/s"},
       {"back_from_ragdoll", "6 mm off a second after its muscles came back, exact after 1.1 s"},
-      {"hit_on_the_hand",
-       "9 % at 60 Hz where the shoulder's muscles are overcome; a sixth of the hit is exact at all rates"},
       {"thrown_at_each_other", "14 mm in each other for a step at 30 Hz"},
       {"bouncing_ball", "the ball is 7 mm deep in the step in which it strikes"},
   };

@@ -250,7 +250,7 @@ class PackInner {
       t = select(t < least, least, select(most < t, most, t));
       if (iteration % 3 == 2) t = (low + high) / P(2);
       const P d = derivative(t);
-      const Live done = both(open, either(abs(d) <= P(0.02f) * -d0, high - low < P(1e-4f)));
+      const Live done = both(open, either(abs(d) <= P(0.02f) * -d0, high - low < P(1e-4f) * high));
       found = select(done, t, found);
       open = both(open, !done);
       const Live lower = both(open, d < zero), upper = both(open, !(d < zero));
