@@ -14,7 +14,6 @@ namespace {
 /// m beyond what the present speed covers, from what stands still, and between two trees: a solve may move a
 /// light limb far.
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
-constexpr int kByOneFace = 0x8000;                   ///< of contact identities: see way_out()
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
 constexpr int kFirstHost = 0x4000;                   ///< of contact identities
@@ -24,7 +23,7 @@ constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside so
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
 constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
-constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
+constexpr double kImpactDepth = 0.006;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -253,28 +252,26 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
-/// The face by which all points of a collider leave a box (see Contact::face), where the nearest ones are
-/// opposite for two of them: each by its own, what has been pressed through would hang in it for good. The
-/// one that the collider as a whole is nearer to; −1: each by its own. `pose` is about the common origin.
+/// The face by which the points of a collider that are inside a box leave it (see Contact::face): the one that
+/// parts the two best, as solids. Each by the nearest of its own, what has been pressed through a box would
+/// hang in it for good, and a corner beside an edge leave by the face that the boxes do not touch with.
+/// `pose` is about the common origin.
 template <class T>
 int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const {
-  const CharacterState<T>& s = *states_[n];
-  const Kinematics<T>& k = s.problem.kinematics;
-  const Transform<T> into_box = pose.inverse();
-  unsigned faces = 0;
-  Vec3<T> least = Vec3<T>::Constant(std::numeric_limits<T>::infinity()), most = -least;
-  for (int p = s.first_point[collider]; p < s.first_point[collider + 1]; ++p) {
-    const ContactPoint<T>& point = s.points[p];
-    if (!point.meets(Shape::kBox)) continue;
-    const Vec3<T> at = into_box * Vec3<T>(k.origin[point.body] + k.rotation[point.body] * point.local);
-    least = least.cwiseMin(at);
-    most = most.cwiseMax(at);
-    Eigen::Index axis = 0;
-    if ((at.cwiseAbs() - size).maxCoeff(&axis) < T(0)) faces |= 1u << (2 * axis + (at[axis] < T(0)));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if ((faces >> (2 * axis) & 3) == 3) return 2 * axis + (least[axis] + most[axis] < T(0));
-  return -1;
+  const Collider& own = states_[n]->colliders[collider];
+  const Kinematics<T>& k = states_[n]->problem.kinematics;
+  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+  const Transform<T> in_box = pose.inverse() * (body * own.local.template cast<T>());
+  const Mat3<T> turned = in_box.rotation.toRotationMatrix();
+  const Vec3<T> own_size = own.size.template cast<T>();
+  Vec3<T> reach = Vec3<T>::Zero();
+  if (own.shape == Shape::kBox)
+    reach = turned.cwiseAbs() * own_size;
+  else if (own.shape == Shape::kCapsule)
+    reach = turned.col(2).cwiseAbs() * own_size.z();
+  Eigen::Index axis = 0;
+  (in_box.translation.cwiseAbs() - size - reach).maxCoeff(&axis);
+  return static_cast<int>(2 * axis) + (in_box.translation[axis] < T(0) ? 1 : 0);
 }
 
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
@@ -355,7 +352,7 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
     c.size = met.size;
     c.shape_pose = met.local;
     c.face = face;
-    c.id = id_of(n, k, met) ^ std::uint64_t(face < 0 ? 0 : kByOneFace);
+    c.id = id_of(n, k, met);
     add(c, reach);
   }
 }
