@@ -31,6 +31,7 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
+constexpr int kMostOnTheWay = 8;     ///< poses in which edges are looked for
 constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
@@ -252,9 +253,9 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
-/// The face by which the points of a collider that are inside a box leave it (see Contact::face): the one that
-/// parts the two best, as solids. Each by the nearest of its own, what has been pressed through a box would
-/// hang in it for good, and a corner beside an edge leave by the face that the boxes do not touch with.
+/// The face by which the points of a collider that are inside a box leave it (see Contact::face): the one
+/// that parts the two best, as solids. Each by the nearest of its own, what has been pressed through a box
+/// would hang in it for good, and a corner beside an edge leave by the face that the boxes do not touch with.
 /// `pose` is about the common origin.
 template <class T>
 int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const {
@@ -357,7 +358,22 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
   }
 }
 
-/// The edges of a box, or the axis of a capsule, across the edges of a box.
+/// Where a body's shape will be after a share of the step, at the velocity that it has.
+template <class T>
+PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape, T share) const {
+  if (n < 0) return shape;
+  const CharacterState<T>& s = *states_[n];
+  const Mat3<T> rate = s.history.rotation_rate[body] * s.problem.kinematics.rotation[body].transpose();
+  const Vec3<T> spin = Vec3<T>(rate(2, 1) - rate(1, 2), rate(0, 2) - rate(2, 0), rate(1, 0) - rate(0, 1)) / 2;
+  const Vec3<T> arm = shape.center - s.problem.kinematics.center[body];
+  const Mat3<T> turn = rotation_exp<T>(share * h_ * spin).toRotationMatrix();
+  shape.center += share * h_ * s.history.velocity[body] + turn * arm - arm;
+  shape.rotation = turn * shape.rotation;
+  return shape;
+}
+
+/// The edges of a box, or the axis of a capsule, across the edges of a box: those that cross now, and those
+/// that will on the way to where the two first overlap if nothing stops them.
 template <class T>
 void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
@@ -368,20 +384,15 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   const T unit = s.tree.scale.length;
   const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), unit),
       b(Shape::kBox, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length);
-  Vec3<T> motion = s.point_velocity(own.joint, a.center);
   const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
-  if (other) motion -= states_[met.tree]->point_velocity(met.body, a.center);
-  std::array<EdgePair<T>, kMostEdgePairs> pairs;
-  const int count = crossing_edges<T>(a, b, h_ * motion, pairs);
   const Contact<T> made = contact_with(met, contact_of(n, own), T(own.friction));
-  for (int p = 0; p < count; ++p) {
-    const EdgePair<T>& pair = pairs[p];
+  const auto contact = [&](const Edge<T>& of_a, const Edge<T>& of_b, const EdgePair<T>& pair) {
     Contact<T> c = made;
     c.meeting = Meeting::kEdges;
-    c.local_a = k.rotation[own.joint].transpose() * (pair.a.center - k.origin[own.joint]);
-    c.half_axis_a = k.rotation[own.joint].transpose() * pair.a.half_axis;
-    c.local_b = pair.b.center;
-    c.half_axis_b = pair.b.half_axis;
+    c.local_a = k.rotation[own.joint].transpose() * (of_a.center - k.origin[own.joint]);
+    c.half_axis_a = k.rotation[own.joint].transpose() * of_a.half_axis;
+    c.local_b = of_b.center;
+    c.half_axis_b = of_b.half_axis;
     if (other) {
       c.local_b = other->rotation[met.body].transpose() * (c.local_b - other->origin[met.body]);
       c.half_axis_b = other->rotation[met.body].transpose() * c.half_axis_b;
@@ -389,8 +400,38 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     c.side = pair.side;
     c.radius = pair.radius;
     c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
-    c.id = id_of(n, feature(pair.a.number, pair.b.number, collider), met);
+    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met);
+    return c;
+  };
+  CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
+  now.find(a, b);
+  for (int p = 0; p < now.count; ++p) {
+    Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
     add(c, reach);
+  }
+  const PlacedShape<T> a_then = moved_on(n, own.joint, a, T(1)),
+                       b_then = moved_on(met.tree, met.body, b, T(1));
+  const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
+          thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
+  const int stations = 1 + static_cast<int>(motion / thin);
+  for (int m = 1; m <= stations; ++m) {
+    const T share = T(m) / T(stations);
+    soon.find(m == stations ? a_then : moved_on(n, own.joint, a, share),
+              m == stations ? b_then : moved_on(met.tree, met.body, b, share));
+    for (int p = 0; p < soon.count; ++p) {
+      const EdgePair<T>& pair = soon.pairs[p];
+      const auto same = [&](const EdgePair<T>& q) {
+        return q.a.number == pair.a.number && q.b.number == pair.b.number;
+      };
+      const auto end = now.pairs.begin() + now.count;
+      const Edge<T> of_a = edge_of(a, pair.a.number), of_b = edge_of(b, pair.b.number);
+      if (std::any_of(now.pairs.begin(), end, same) || are_parallel(of_a.half_axis, of_b.half_axis)) continue;
+      Contact<T> c = contact(of_a, of_b, pair);
+      measure<T>(k, other, c);
+      if (c.gap < T(-kLeftInside) * unit) continue;  // they pass each other beyond their ends
+      if (now.count < kMostEdgePairs) now.pairs[now.count++] = pair;
+      add(c, reach);
+    }
   }
 }
 

@@ -145,6 +145,7 @@ class ContactFinder final : public ContactSearch<T> {
   Transform<T> pose_of(const Met& met) const;
   void meet(int n, int collider, Met met, T reach);
   void meet_points(int n, int collider, const Met& met, int face, T reach);
+  PlacedShape<T> moved_on(int n, int body, PlacedShape<T> shape, T share) const;
   void meet_edges(int n, int collider, const Met& met, T reach);
   void meet_corners(int n, int collider, const Met& met, T reach);
   void add(Contact<T>& contact, T reach);
@@ -174,6 +175,7 @@ class ContactFinder final : public ContactSearch<T> {
   std::vector<T> gaps_;              ///< m, for make_room()
   T most_gap_[2] = {T(0), T(0)};  ///< m, of static contacts and of those between trees that there is room for
   int left_out_ = 0;
+  CrossingEdges<T> edges_[2];       ///< of a pair of colliders, now and soon
   std::vector<Bound> bounds_;       ///< all colliders of all states
   std::vector<int> first_bound_;    ///< [state]
   std::vector<int> near_;           ///< obstacles that the present state may touch, ascending
