@@ -23,7 +23,7 @@ constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside so
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
 constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
-constexpr double kImpactDepth = 0.006;  ///< m, or half the thickness of what is met
+constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -418,7 +418,7 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     const T share = T(m) / T(stations);
     soon.find(m == stations ? a_then : moved_on(n, own.joint, a, share),
               m == stations ? b_then : moved_on(met.tree, met.body, b, share));
-    for (int p = 0; p < soon.count; ++p) {
+    for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
       const EdgePair<T>& pair = soon.pairs[p];
       const auto same = [&](const EdgePair<T>& q) {
         return q.a.number == pair.a.number && q.b.number == pair.b.number;
