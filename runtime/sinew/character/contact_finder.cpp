@@ -31,8 +31,9 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-constexpr int kMostOnTheWay = 8;     ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges identities have room for
+constexpr double kOverlooked = 5e-3;  ///< m, that boxes came into each other: their edges were not seen
+constexpr int kMostOnTheWay = 8;      ///< poses in which edges are looked for
+constexpr int kMostWithEdges = 127;   ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
@@ -81,6 +82,7 @@ void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
   gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
+  boxes_.reserve(room.colliders * kMostNeighbours);
   first_bound_.reserve(room.trees);
   depenetrating_.reserve(room.trees);
 }
@@ -358,6 +360,31 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
   }
 }
 
+/// Where a collider is.
+template <class T>
+PlacedShape<T> ContactFinder<T>::placed(int n, int collider) const {
+  const CharacterState<T>& s = *states_[n];
+  const Collider& own = s.colliders[collider];
+  const Kinematics<T>& k = s.problem.kinematics;
+  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+  return {own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), s.tree.scale.length};
+}
+
+/// And what it meets; `unit`: of what it meets.
+template <class T>
+PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
+  return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
+}
+
+template <class T>
+bool ContactFinder<T>::overlooked() {
+  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
+    const T unit = states_[pair.tree]->tree.scale.length;
+    edges_[0].find(placed(pair.tree, pair.collider), placed(pair.met, unit));
+    return edges_[0].apart < std::min(pair.apart, T(0)) - T(kOverlooked) * unit;
+  });
+}
+
 /// Where a body's shape will be after a share of the step, at the velocity that it has.
 template <class T>
 PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape, T share) const {
@@ -380,10 +407,8 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   const Collider& own = s.colliders[collider];
   if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
   const Kinematics<T>& k = s.problem.kinematics;
-  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
   const T unit = s.tree.scale.length;
-  const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), unit),
-      b(Shape::kBox, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length);
+  const PlacedShape<T> a = placed(n, collider), b = placed(met, unit);
   const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
   const Contact<T> made = contact_with(met, contact_of(n, own), T(own.friction));
   const auto contact = [&](const Edge<T>& of_a, const Edge<T>& of_b, const EdgePair<T>& pair) {
@@ -405,6 +430,8 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   };
   CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
   now.find(a, b);
+  if (own.shape == Shape::kBox && boxes_.size() < boxes_.capacity())
+    boxes_.push_back({n, collider, met, now.apart});
   for (int p = 0; p < now.count; ++p) {
     Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
     add(c, reach);
@@ -617,6 +644,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
   left_out_ = 0;
   bounds_.clear();
+  boxes_.clear();
   first_bound_.clear();
   const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
   if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;
