@@ -12,14 +12,15 @@ Solid box(const Vec3<double>& half, const Vec3<double>& at,
           const Quat<double>& turned = Quat<double>::Identity()) {
   return {Shape::kBox, half, {turned, at}, 1};
 }
-int pairs(const Solid& a, const Solid& b, const Vec3<double>& motion = Vec3<double>::Zero()) {
-  std::array<EdgePair<double>, kMostEdgePairs> out;
-  const int count = crossing_edges<double>(a, b, motion, out);
-  for (int n = 0; n < count; ++n) {
-    const Vec3<double> normal = out[n].side * out[n].a.half_axis.cross(out[n].b.half_axis);
+int pairs(const Solid& a, const Solid& b) {
+  CrossingEdges<double> found;
+  found.find(a, b);
+  for (int n = 0; n < found.count; ++n) {
+    const EdgePair<double>& pair = found.pairs[n];
+    const Vec3<double> normal = pair.side * pair.a.half_axis.cross(pair.b.half_axis);
     EXPECT_GT(normal.dot(a.center - b.center), 0) << "from b to a";
   }
-  return count;
+  return found.count;
 }
 
 const Solid kTable = box({1, 0.5, 0.1}, {0, 0, 0});
@@ -42,10 +43,15 @@ TEST(CrossingEdges, AreTwoWhereOneStandsOverTheRim) {
   EXPECT_EQ(pairs(box({0.1, 0.1, 0.1}, {1, 0, 0.1999}), kTable), 2);
 }
 
-TEST(CrossingEdges, AreFoundWhereAMotionBringsThem) {
-  const Solid beside = box({0.1, 0.1, 0.1}, {1.2, 0, 0.21});
-  EXPECT_EQ(pairs(beside, kTable), 0);
-  EXPECT_EQ(pairs(beside, kTable, {-0.2, 0, 0}), 2);
+TEST(CrossingEdges, HaveTheirNumbersToBeFoundAgain) {
+  const Solid above = box({0.1, 2, 0.02}, {0, 0, 0.1199});
+  CrossingEdges<double> found;
+  found.find(above, kTable);
+  for (int n = 0; n < found.count; ++n) {
+    EXPECT_EQ(edge_of(above, found.pairs[n].a.number).center, found.pairs[n].a.center);
+    EXPECT_EQ(edge_of(kTable, found.pairs[n].b.number).half_axis, found.pairs[n].b.half_axis);
+  }
+  EXPECT_NEAR(found.apart, -1e-4, 1e-12);
 }
 
 TEST(CrossingEdges, OfACubeOnItsEdgeMeetTheRim) {

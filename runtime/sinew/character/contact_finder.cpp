@@ -14,7 +14,6 @@ namespace {
 /// m beyond what the present speed covers, from what stands still, and between two trees: a solve may move a
 /// light limb far.
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
-constexpr int kByOneFace = 0x8000;                   ///< of contact identities: see way_out()
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
 constexpr int kFirstHost = 0x4000;                   ///< of contact identities
@@ -25,7 +24,7 @@ constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside so
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
 constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
-constexpr double kImpactDepth = 0.025;  ///< m, or half the thickness of what is met
+constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -33,7 +32,9 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges identities have room for
+constexpr double kOverlooked = 5e-3;  ///< m, that boxes came into each other: their edges were not seen
+constexpr int kMostOnTheWay = 8;      ///< poses in which edges are looked for
+constexpr int kMostWithEdges = 127;   ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
@@ -82,6 +83,7 @@ void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
   gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
+  boxes_.reserve(room.colliders * kMostNeighbours);
   first_bound_.reserve(room.trees);
   depenetrating_.reserve(room.trees);
 }
@@ -254,28 +256,26 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
-/// The face by which all points of a collider leave a box (see Contact::face), where the nearest ones are
-/// opposite for two of them: each by its own, what has been pressed through would hang in it for good. The
-/// one that the collider as a whole is nearer to; −1: each by its own. `pose` is about the common origin.
+/// The face by which the points of a collider that are inside a box leave it (see Contact::face): the one
+/// that parts the two best, as solids. Each by the nearest of its own, what has been pressed through a box
+/// would hang in it for good, and a corner beside an edge leave by the face that the boxes do not touch with.
+/// `pose` is about the common origin.
 template <class T>
 int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const {
-  const CharacterState<T>& s = *states_[n];
-  const Kinematics<T>& k = s.problem.kinematics;
-  const Transform<T> into_box = pose.inverse();
-  unsigned faces = 0;
-  Vec3<T> least = Vec3<T>::Constant(std::numeric_limits<T>::infinity()), most = -least;
-  for (int p = s.first_point[collider]; p < s.first_point[collider + 1]; ++p) {
-    const ContactPoint<T>& point = s.points[p];
-    if (!point.meets(Shape::kBox)) continue;
-    const Vec3<T> at = into_box * Vec3<T>(k.origin[point.body] + k.rotation[point.body] * point.local);
-    least = least.cwiseMin(at);
-    most = most.cwiseMax(at);
-    Eigen::Index axis = 0;
-    if ((at.cwiseAbs() - size).maxCoeff(&axis) < T(0)) faces |= 1u << (2 * axis + (at[axis] < T(0)));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if ((faces >> (2 * axis) & 3) == 3) return 2 * axis + (least[axis] + most[axis] < T(0));
-  return -1;
+  const Collider& own = states_[n]->colliders[collider];
+  const Kinematics<T>& k = states_[n]->problem.kinematics;
+  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+  const Transform<T> in_box = pose.inverse() * (body * own.local.template cast<T>());
+  const Mat3<T> turned = in_box.rotation.toRotationMatrix();
+  const Vec3<T> own_size = own.size.template cast<T>();
+  Vec3<T> reach = Vec3<T>::Zero();
+  if (own.shape == Shape::kBox)
+    reach = turned.cwiseAbs() * own_size;
+  else if (own.shape == Shape::kCapsule)
+    reach = turned.col(2).cwiseAbs() * own_size.z();
+  Eigen::Index axis = 0;
+  (in_box.translation.cwiseAbs() - size - reach).maxCoeff(&axis);
+  return static_cast<int>(2 * axis) + (in_box.translation[axis] < T(0) ? 1 : 0);
 }
 
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
@@ -356,36 +356,69 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
     c.size = met.size;
     c.shape_pose = met.local;
     c.face = face;
-    c.id = id_of(n, k, met) ^ std::uint64_t(face < 0 ? 0 : kByOneFace);
+    c.id = id_of(n, k, met);
     add(c, reach);
   }
 }
 
-/// The edges of a box, or the axis of a capsule, across the edges of a box.
+/// Where a collider is.
+template <class T>
+PlacedShape<T> ContactFinder<T>::placed(int n, int collider) const {
+  const CharacterState<T>& s = *states_[n];
+  const Collider& own = s.colliders[collider];
+  const Kinematics<T>& k = s.problem.kinematics;
+  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+  return {own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), s.tree.scale.length};
+}
+
+/// And what it meets; `unit`: of what it meets.
+template <class T>
+PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
+  return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
+}
+
+template <class T>
+bool ContactFinder<T>::overlooked() {
+  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
+    const T unit = states_[pair.tree]->tree.scale.length;
+    edges_[0].find(placed(pair.tree, pair.collider), placed(pair.met, unit));
+    return edges_[0].apart < std::min(pair.apart, T(0)) - T(kOverlooked) * unit;
+  });
+}
+
+/// Where a body's shape will be after a share of the step, at the velocity that it has.
+template <class T>
+PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape, T share) const {
+  if (n < 0) return shape;
+  const CharacterState<T>& s = *states_[n];
+  const Mat3<T> rate = s.history.rotation_rate[body] * s.problem.kinematics.rotation[body].transpose();
+  const Vec3<T> spin = Vec3<T>(rate(2, 1) - rate(1, 2), rate(0, 2) - rate(2, 0), rate(1, 0) - rate(0, 1)) / 2;
+  const Vec3<T> arm = shape.center - s.problem.kinematics.center[body];
+  const Mat3<T> turn = rotation_exp<T>(share * h_ * spin).toRotationMatrix();
+  shape.center += share * h_ * s.history.velocity[body] + turn * arm - arm;
+  shape.rotation = turn * shape.rotation;
+  return shape;
+}
+
+/// The edges of a box, or the axis of a capsule, across the edges of a box: those that cross now, and those
+/// that will on the way to where the two first overlap if nothing stops them.
 template <class T>
 void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
   const Collider& own = s.colliders[collider];
   if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
   const Kinematics<T>& k = s.problem.kinematics;
-  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
   const T unit = s.tree.scale.length;
-  const PlacedShape<T> a(own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), unit),
-      b(Shape::kBox, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length);
-  Vec3<T> motion = s.point_velocity(own.joint, a.center);
+  const PlacedShape<T> a = placed(n, collider), b = placed(met, unit);
   const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
-  if (other) motion -= states_[met.tree]->point_velocity(met.body, a.center);
-  std::array<EdgePair<T>, kMostEdgePairs> pairs;
-  const int count = crossing_edges<T>(a, b, h_ * motion, pairs);
   const Contact<T> made = contact_with(met, contact_of(n, own), T(own.friction));
-  for (int p = 0; p < count; ++p) {
-    const EdgePair<T>& pair = pairs[p];
+  const auto contact = [&](const Edge<T>& of_a, const Edge<T>& of_b, const EdgePair<T>& pair) {
     Contact<T> c = made;
     c.meeting = Meeting::kEdges;
-    c.local_a = k.rotation[own.joint].transpose() * (pair.a.center - k.origin[own.joint]);
-    c.half_axis_a = k.rotation[own.joint].transpose() * pair.a.half_axis;
-    c.local_b = pair.b.center;
-    c.half_axis_b = pair.b.half_axis;
+    c.local_a = k.rotation[own.joint].transpose() * (of_a.center - k.origin[own.joint]);
+    c.half_axis_a = k.rotation[own.joint].transpose() * of_a.half_axis;
+    c.local_b = of_b.center;
+    c.half_axis_b = of_b.half_axis;
     if (other) {
       c.local_b = other->rotation[met.body].transpose() * (c.local_b - other->origin[met.body]);
       c.half_axis_b = other->rotation[met.body].transpose() * c.half_axis_b;
@@ -393,8 +426,40 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     c.side = pair.side;
     c.radius = pair.radius;
     c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
-    c.id = id_of(n, feature(pair.a.number, pair.b.number, collider), met);
+    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met);
+    return c;
+  };
+  CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
+  now.find(a, b);
+  if (own.shape == Shape::kBox && boxes_.size() < boxes_.capacity())
+    boxes_.push_back({n, collider, met, now.apart});
+  for (int p = 0; p < now.count; ++p) {
+    Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
     add(c, reach);
+  }
+  const PlacedShape<T> a_then = moved_on(n, own.joint, a, T(1)),
+                       b_then = moved_on(met.tree, met.body, b, T(1));
+  const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
+          thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
+  const int stations = 1 + static_cast<int>(motion / thin);
+  for (int m = 1; m <= stations; ++m) {
+    const T share = T(m) / T(stations);
+    soon.find(m == stations ? a_then : moved_on(n, own.joint, a, share),
+              m == stations ? b_then : moved_on(met.tree, met.body, b, share));
+    for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
+      const EdgePair<T>& pair = soon.pairs[p];
+      const auto same = [&](const EdgePair<T>& q) {
+        return q.a.number == pair.a.number && q.b.number == pair.b.number;
+      };
+      const auto end = now.pairs.begin() + now.count;
+      const Edge<T> of_a = edge_of(a, pair.a.number), of_b = edge_of(b, pair.b.number);
+      if (std::any_of(now.pairs.begin(), end, same) || are_parallel(of_a.half_axis, of_b.half_axis)) continue;
+      Contact<T> c = contact(of_a, of_b, pair);
+      measure<T>(k, other, c);
+      if (c.gap < T(-kLeftInside) * unit) continue;  // they pass each other beyond their ends
+      if (now.count < kMostEdgePairs) now.pairs[now.count++] = pair;
+      add(c, reach);
+    }
   }
 }
 
@@ -579,6 +644,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
   left_out_ = 0;
   bounds_.clear();
+  boxes_.clear();
   first_bound_.clear();
   const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
   if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;

@@ -77,7 +77,7 @@ void share_stiffness(std::vector<ContactPoint<T>>& points);
 /// m, of the corners of a box with such half extents, on a rig of so many times a human's size: one that
 /// stands exactly above another box's edge stays on its face.
 inline double box_rounding(const Vec3<double>& size, double unit) {
-  return std::min(0.05 * size.minCoeff(), 0.01 * unit);
+  return std::min(0.05 * size.minCoeff(), 0.003 * unit);
 }
 
 /// How far along two axes a and b, in parts of them, lie the nearest points of the lines p + s·a and q + t·b;

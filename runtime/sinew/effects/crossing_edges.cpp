@@ -7,9 +7,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kParallel = 0.05;  ///< sine: edges nearer to it touch by their ends
-constexpr double kFlat = 0.1;       ///< sine: how far from a face's normal both edges of the face support
-constexpr double kAsGood = 0.1;     ///< of the thinnest half extent: a direction parts no worse than the best
+constexpr double kFlat = 0.1;    ///< sine: how far from a face's normal both edges of the face support
+constexpr double kAsGood = 0.1;  ///< of the thinnest half extent: a direction parts no worse than the best
 
 template <class T>
 T thinnest(const PlacedShape<T>& s) {
@@ -28,7 +27,7 @@ T extent(const PlacedShape<T>& s, const Vec3<T>& direction) {
 template <class T>
 int supporting(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards, std::array<Edge<T>, 4>& out) {
   if (s.shape != Shape::kBox) {
-    out[0] = {s.center, s.rotation.col(2) * s.size.z(), kAxisNumber};
+    out[0] = edge_of(s, kAxisNumber);
     return 1;
   }
   const int one = (direction + 1) % 3, two = (direction + 2) % 3;
@@ -37,8 +36,7 @@ int supporting(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards, 
   for (int corner = 0; corner < 4; ++corner) {
     const T x = corner & 1 ? T(1) : T(-1), y = corner & 2 ? T(1) : T(-1);
     if (x * along_one < T(-kFlat) || y * along_two < T(-kFlat)) continue;
-    out[count++] = {s.center + x * s.size[one] * s.rotation.col(one) + y * s.size[two] * s.rotation.col(two),
-                    s.rotation.col(direction) * s.size[direction], 4 * direction + corner};
+    out[count++] = edge_of(s, 4 * direction + corner);
   }
   return count;
 }
@@ -53,8 +51,8 @@ T inner_part(const PlacedShape<T>& s, const Edge<T>& e) {
 }  // namespace
 
 template <class T>
-int crossing_edges(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& motion,
-                   std::array<EdgePair<T>, kMostEdgePairs>& out) {
+void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
+  count = 0;
   const Vec3<T> between = a.center - b.center;
   const auto parted = [&](const Vec3<T>& direction) {
     return std::abs(between.dot(direction)) - extent(a, direction) - extent(b, direction);
@@ -71,15 +69,14 @@ int crossing_edges(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<
     for (int j = 0; j < 3; ++j) {
       Vec3<T>& normal = normals[3 * i + j];
       normal = a.rotation.col(i).cross(b.rotation.col(j));
-      const T sine = normal.norm();
       by[3 * i + j] = -std::numeric_limits<T>::infinity();
-      if (sine < T(kParallel)) continue;
-      normal /= sine;
+      if (are_parallel<T>(a.rotation.col(i), b.rotation.col(j))) continue;
+      normal.normalize();
       by[3 * i + j] = parted(normal);
       best = std::max(best, by[3 * i + j]);
     }
   const T least = std::min(best, T(0)) - T(kAsGood) * std::min(thinnest(a), thinnest(b));
-  int count = 0;
+  apart = best;
   for (int i = first_a; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       if (by[3 * i + j] < least) continue;
@@ -91,22 +88,15 @@ int crossing_edges(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<
         for (int n = 0; n < edges_b; ++n) {
           const Edge<T>&p = of_a[m], &q = of_b[n];
           const T inner_p = inner_part(a, p), inner_q = inner_part(b, q);
-          const auto cross_within = [&](const Vec3<T>& r) {
-            const std::array<T, 2> at = nearest_along(p.half_axis, q.half_axis, r);
-            return std::abs(at[0]) <= inner_p && std::abs(at[1]) <= inner_q;
-          };
-          const Vec3<T> apart = q.center - p.center;
-          if (!cross_within(apart) && !cross_within(apart - motion)) continue;
-          if (count == kMostEdgePairs) return count;
-          out[count++] = {p, q, side, a.shape == Shape::kBox ? T(0) : a.size.x()};
+          const std::array<T, 2> at = nearest_along<T>(p.half_axis, q.half_axis, q.center - p.center);
+          if (!(std::abs(at[0]) <= inner_p && std::abs(at[1]) <= inner_q)) continue;
+          if (count == kMostEdgePairs) return;
+          pairs[count++] = {p, q, side, a.shape == Shape::kBox ? T(0) : a.size.x()};
         }
     }
-  return count;
 }
 
-template int crossing_edges<float>(const PlacedShape<float>&, const PlacedShape<float>&, const Vec3<float>&,
-                                   std::array<EdgePair<float>, kMostEdgePairs>&);
-template int crossing_edges<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                    const Vec3<double>&, std::array<EdgePair<double>, kMostEdgePairs>&);
+template struct CrossingEdges<float>;
+template struct CrossingEdges<double>;
 
 }  // namespace sinew

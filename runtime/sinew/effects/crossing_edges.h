@@ -41,21 +41,40 @@ struct EdgePair {
   T radius = T(0);  ///< m, of a capsule
 };
 
+/// The edge with such a number of a solid.
+template <class T>
+Edge<T> edge_of(const PlacedShape<T>& s, int number) {
+  if (s.shape != Shape::kBox) return {s.center, s.rotation.col(2) * s.size.z(), kAxisNumber};
+  const int along = number / 4, one = (along + 1) % 3, two = (along + 2) % 3;
+  const T x = number & 1 ? T(1) : T(-1), y = number & 2 ? T(1) : T(-1);
+  return {s.center + x * s.size[one] * s.rotation.col(one) + y * s.size[two] * s.rotation.col(two),
+          s.rotation.col(along) * s.size[along], number};
+}
+
+/// Sine of the angle between two edges below which they touch by their ends.
+constexpr double kParallelEdges = 0.05;
+template <class T>
+bool are_parallel(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.cross(b).squaredNorm() <= T(kParallelEdges * kParallelEdges) * a.squaredNorm() * b.squaredNorm();
+}
+
 /// As many as one direction of each solid has: where a face lies on another two edges of either cross.
 constexpr int kMostEdgePairs = 36;
 
-/// The pairs of supporting edges of two solids, `b` a box, that cross within both, now or after a motion of a
-/// against b (m), and part the solids no worse than what parts them best: along other directions edges may
-/// cross that never touch (Gottschalk, Lin and Manocha, "OBBTree", 1996: the axes that separate boxes).
-/// Returns how many were written. About 300 flops where the solids are near each other, one capsule 100.
+/// The pairs of supporting edges of two solids, `b` a box, that cross within both and part the solids no
+/// worse than what parts them best: along other directions edges may cross that never touch (Gottschalk, Lin
+/// and Manocha, "OBBTree", 1996: the axes that separate boxes). About 300 flops where the solids are near
+/// each other, one capsule 100.
 template <class T>
-int crossing_edges(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& motion,
-                   std::array<EdgePair<T>, kMostEdgePairs>& out);
+struct CrossingEdges {
+  std::array<EdgePair<T>, kMostEdgePairs> pairs;
+  int count = 0;
+  T apart = T(0);  ///< m, at least; negative: by how much the solids overlap
 
-extern template int crossing_edges<float>(const PlacedShape<float>&, const PlacedShape<float>&,
-                                          const Vec3<float>&, std::array<EdgePair<float>, kMostEdgePairs>&);
-extern template int crossing_edges<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                           const Vec3<double>&,
-                                           std::array<EdgePair<double>, kMostEdgePairs>&);
+  void find(const PlacedShape<T>& a, const PlacedShape<T>& b);
+};
+
+extern template struct CrossingEdges<float>;
+extern template struct CrossingEdges<double>;
 
 }  // namespace sinew
