@@ -96,9 +96,10 @@ class ContactSearch {
 
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
-  /// sorted by id. Features that no unknown moves meet only what unknowns move: a driven root bears what its
-  /// feet would. Allocates nothing; where the trees' room does not do, those between trees that are furthest
-  /// apart are left out, and only if that does not do, such of static obstacles: see left_out().
+  /// sorted by id. Features that no unknown moves do not meet the floor: a driven root bears what its feet
+  /// would. Nor do they meet each other, where they are of one tree, or no muscles of either may be overcome.
+  /// Allocates nothing; where the trees' room does not do, those between trees that are furthest apart are
+  /// left out, and only if that does not do, such of static obstacles: see left_out().
   virtual std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                                      std::span<CharacterState<T>* const> states, std::span<const int> indices,
                                      std::span<const LaggedForce<T>> lagged,
@@ -131,6 +132,7 @@ class ContactFinder final : public ContactSearch<T> {
     Vec3<T> center;
     T radius = T(0), reach = T(0);
     bool moved = false;  ///< by some unknown
+    bool gives = false;  ///< some joint above it has muscles that may be overcome
   };
 
   void bound(const CharacterState<T>& state, T h);
