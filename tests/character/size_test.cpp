@@ -208,7 +208,7 @@ TEST(Size, KeepsLimitsAtTheUsualStep) {
       }
     }
   SINEW_FAILS_TODAY(furthest < 5,
-                    "7.7 where a figure a fifth as large is hit, 6.1 of a human's: hits act at once");
+                    "7.4 where a figure a fifth as large is hit: hits act at once");
 }
 
 // What needs no unit of its own has the humanoid's, and one in between where its size is absurd.
