@@ -207,8 +207,7 @@ TEST(Size, KeepsLimitsAtTheUsualStep) {
         EXPECT_LE(course.passes * 90, 2 * human.passes * steps + 90) << kNames[n] << ", x " << s;
       }
     }
-  SINEW_FAILS_TODAY(furthest < 5,
-                    "7.4 where a figure a fifth as large is hit: hits act at once");
+  SINEW_FAILS_TODAY(furthest < 5, "7.4 where a figure a fifth as large is hit: hits act at once");
 }
 
 // What needs no unit of its own has the humanoid's, and one in between where its size is absurd.
