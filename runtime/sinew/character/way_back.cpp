@@ -147,14 +147,14 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
       const T now = d.offset[k];
       offset[k] = (now + (d.rate[k] + now / return_time) * h) * decay;
       const T limit = now > T(0) ? p.law.torque_plus[dof] : p.law.torque_minus[dof];
-      // What is thrown through its target was thrown off it: how it came near is no way back to be braked.
-      const bool passes = now * d.rate[k] <= T(0) && h * std::abs(d.rate[k]) >= std::abs(now);
-      if (passes || !(limit > T(0)) || std::isinf(limit)) continue;
+      if (now == T(0) || !(limit > T(0)) || std::isinf(limit)) continue;
       if (!summed) sum_subtrees(s);
       summed = true;
       const T inertia = inertia_of(p, i, dof);
       if (!(inertia > T(0))) continue;
-      const T most = h * stoppable<T>(now, T(kBraking) * limit / inertia, h);
+      // What carries it beyond its target is no way back that could be braked: it was thrown.
+      const T beyond = now * d.rate[k] < T(0) ? h * std::abs(d.rate[k]) - std::abs(now) : T(0);
+      const T most = std::max(h * stoppable<T>(now, T(kBraking) * limit / inertia, h), beyond);
       offset[k] = now > T(0) ? std::max(offset[k], now - most) : std::min(offset[k], now + most);
     }
     p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], within_limits(s, i, offset));
