@@ -437,8 +437,6 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     for (int p = 0; p < out.count; ++p) std::swap(out.pairs[p].a, out.pairs[p].b);
   };
   find(a, b, now);
-  if (own.shape == Shape::kBox && b.shape == Shape::kBox && boxes_.size() < boxes_.capacity())
-    boxes_.push_back({n, collider, met, now.apart});
   for (int p = 0; p < now.count; ++p) {
     Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
     add(c, reach);
@@ -448,10 +446,12 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
           thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
   const int stations = 1 + static_cast<int>(motion / thin);
+  T nearest = now.apart;
   for (int m = 1; m <= stations; ++m) {
     const T share = T(m) / T(stations);
     find(m == stations ? a_then : moved_on(n, own.joint, a, share),
          m == stations ? b_then : moved_on(met.tree, met.body, b, share), soon);
+    nearest = std::min(nearest, soon.apart);
     for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
       const EdgePair<T>& pair = soon.pairs[p];
       const auto same = [&](const EdgePair<T>& q) {
@@ -467,6 +467,9 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
       add(c, reach);
     }
   }
+  if (own.shape == Shape::kBox && b.shape == Shape::kBox && nearest < thin &&
+      boxes_.size() < boxes_.capacity())
+    boxes_.push_back({n, collider, met, now.apart});
 }
 
 /// The corners of an obstacle, or the points of its axis, against a collider: those of what moves are points
