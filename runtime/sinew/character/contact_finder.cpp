@@ -31,9 +31,10 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-constexpr double kOverlooked = 5e-3;  ///< m, that boxes came into each other: their edges were not seen
-constexpr int kMostOnTheWay = 8;      ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;   ///< colliders of a skeleton whose edges identities have room for
+constexpr double kOverlooked = 5e-3;   ///< m, that boxes came into each other: their edges were not seen
+constexpr double kHardlyMoves = 1e-4;  ///< m, of solids in a step: then the same edges cross at its end
+constexpr int kMostOnTheWay = 8;       ///< poses in which edges are looked for
+constexpr int kMostWithEdges = 127;    ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
@@ -445,7 +446,9 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
                        b_then = moved_on(met.tree, met.body, b, T(1));
   const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
           thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
-  const int stations = 1 + static_cast<int>(motion / thin);
+  const T turn = std::max((a_then.rotation - a.rotation).norm() * own.size.template cast<T>().norm(),
+                          (b_then.rotation - b.rotation).norm() * met.size.norm());
+  const int stations = motion + turn < T(kHardlyMoves) * unit ? 0 : 1 + static_cast<int>(motion / thin);
   T nearest = now.apart;
   for (int m = 1; m <= stations; ++m) {
     const T share = T(m) / T(stations);
