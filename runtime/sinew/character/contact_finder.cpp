@@ -32,9 +32,10 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-constexpr double kOverlooked = 5e-3;  ///< m, that boxes came into each other: their edges were not seen
-constexpr int kMostOnTheWay = 8;      ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;   ///< colliders of a skeleton whose edges identities have room for
+constexpr double kOverlooked = 5e-3;   ///< m, that boxes came into each other: their edges were not seen
+constexpr double kHardlyMoves = 1e-4;  ///< m, of solids in a step: then the same edges cross at its end
+constexpr int kMostOnTheWay = 8;       ///< poses in which edges are looked for
+constexpr int kMostWithEdges = 127;    ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
@@ -340,9 +341,11 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
     }
   }
   meet_points(n, collider, met, face, reach);
-  if (met.shape != Shape::kBox || states_[n]->colliders[collider].shape == Shape::kSphere) return;
-  meet_edges(n, collider, met, reach);
-  if (met.tree < 0) meet_corners(n, collider, met, reach);
+  const Shape own = states_[n]->colliders[collider].shape;
+  const bool box = met.shape == Shape::kBox, of_box = own == Shape::kBox && met.tree < 0;
+  if (box ? own != Shape::kSphere : of_box && met.shape == Shape::kCapsule)
+    meet_edges(n, collider, met, reach);
+  if (met.tree < 0 && (box ? own != Shape::kSphere : of_box)) meet_corners(n, collider, met, reach);
 }
 
 /// The points of a collider against a shape.
@@ -402,7 +405,7 @@ PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape,
   return shape;
 }
 
-/// The edges of a box, or the axis of a capsule, across the edges of a box: those that cross now, and those
+/// The edges of a box across those of another or the axis of a capsule: those that cross now, and those
 /// that will on the way to where the two first overlap if nothing stops them.
 template <class T>
 void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
@@ -432,9 +435,12 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     return c;
   };
   CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
-  now.find(a, b);
-  if (own.shape == Shape::kBox && boxes_.size() < boxes_.capacity())
-    boxes_.push_back({n, collider, met, now.apart});
+  const auto find = [&](const PlacedShape<T>& of_a, const PlacedShape<T>& of_b, CrossingEdges<T>& out) {
+    if (b.shape == Shape::kBox) return out.find(of_a, of_b);
+    out.find(of_b, of_a);  // the normal turns round with the product of the axes
+    for (int p = 0; p < out.count; ++p) std::swap(out.pairs[p].a, out.pairs[p].b);
+  };
+  find(a, b, now);
   for (int p = 0; p < now.count; ++p) {
     Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
     add(c, reach);
@@ -443,11 +449,15 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
                        b_then = moved_on(met.tree, met.body, b, T(1));
   const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
           thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
-  const int stations = 1 + static_cast<int>(motion / thin);
+  const T turn = std::max((a_then.rotation - a.rotation).norm() * own.size.template cast<T>().norm(),
+                          (b_then.rotation - b.rotation).norm() * met.size.norm());
+  const int stations = motion + turn < T(kHardlyMoves) * unit ? 0 : 1 + static_cast<int>(motion / thin);
+  T nearest = now.apart;
   for (int m = 1; m <= stations; ++m) {
     const T share = T(m) / T(stations);
-    soon.find(m == stations ? a_then : moved_on(n, own.joint, a, share),
-              m == stations ? b_then : moved_on(met.tree, met.body, b, share));
+    find(m == stations ? a_then : moved_on(n, own.joint, a, share),
+         m == stations ? b_then : moved_on(met.tree, met.body, b, share), soon);
+    nearest = std::min(nearest, soon.apart);
     for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
       const EdgePair<T>& pair = soon.pairs[p];
       const auto same = [&](const EdgePair<T>& q) {
@@ -463,9 +473,13 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
       add(c, reach);
     }
   }
+  if (own.shape == Shape::kBox && b.shape == Shape::kBox && nearest < thin &&
+      boxes_.size() < boxes_.capacity())
+    boxes_.push_back({n, collider, met, now.apart});
 }
 
-/// The corners of an obstacle against a collider: those of a box that moves are points of its own.
+/// The corners of an obstacle, or the points of its axis, against a collider: those of what moves are points
+/// of its own.
 template <class T>
 void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach) {
   const Bound& bound = bounds_[first_bound_[n] + collider];
@@ -476,19 +490,31 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   c.shape = own.shape;
   c.shape_pose = own.local.template cast<T>();
   c.size = own.size.template cast<T>();
+  const auto meet_point = [&](int number, const Vec3<T>& in_shape) {
+    Contact<T> at_point = c;
+    at_point.local_b = met.local * in_shape;
+    if ((at_point.local_b - bound.center).norm() > bound.radius + c.radius + reach) return;
+    at_point.id = id_of(n, feature(kCornerNumber, number, collider), met);
+    add(at_point, reach);
+  };
+  if (met.shape != Shape::kBox) {
+    c.radius = met.size.x();
+    const T half = met.shape == Shape::kCapsule ? met.size.z() : T(0);
+    // The nearest of the axis, and its ends: where they lie on a face, two bear.
+    const Vec3<T> at = met.local.inverse() * bound.center;
+    meet_point(0, {0, 0, half});
+    if (!(half > T(0))) return;
+    meet_point(1, {0, 0, -half});
+    meet_point(2, {0, 0, std::clamp(at.z(), -half, half)});
+    return;
+  }
   if (own.shape == Shape::kBox) {  // as rounded as its own corners
     c.radius = T(box_rounding(own.size, double(states_[n]->tree.scale.length)));
     c.size.array() -= c.radius;
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3<T> in_box = met.size.cwiseProduct(
-        Vec3<T>(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1), corner & 4 ? T(1) : T(-1)));
-    Contact<T> at_corner = c;
-    at_corner.local_b = met.local * in_box;
-    if ((at_corner.local_b - bound.center).norm() > bound.radius + reach) continue;
-    at_corner.id = id_of(n, feature(kCornerNumber, corner, collider), met);
-    add(at_corner, reach);
-  }
+  for (int corner = 0; corner < 8; ++corner)
+    meet_point(corner, met.size.cwiseProduct(Vec3<T>(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1),
+                                                     corner & 4 ? T(1) : T(-1))));
 }
 
 template <class T>
