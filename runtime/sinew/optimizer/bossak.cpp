@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sinew/skeleton/upper_half.h"
 namespace sinew {
 namespace {
 
@@ -118,8 +119,9 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
       const Vec3<T> a0 = history.acceleration[i];
       const Vec3<T> a1 = (force - w.alpha_m * a0) / (1 - w.alpha_m);
       history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1);
-      history.acceleration[i] = a1;
-      history.torque[i] = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
+      const Vec3<T> t1 = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
+      history.acceleration[i] = a1.unaryExpr(&upper_half<T>);
+      history.torque[i] = t1.unaryExpr(&upper_half<T>);
     } else {
       history.velocity[i] = (c1 - c0) / h;
       history.acceleration[i] = force;
