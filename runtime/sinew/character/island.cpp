@@ -60,7 +60,6 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   room_ = room.contacts;
   solver_.reserve(room);
   set_.reserve(room.trees);
-  radius_.reserve(room.trees);
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
   jumps_.reserve(room.bodies);
