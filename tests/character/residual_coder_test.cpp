@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "sinew/skeleton/upper_half.h"
+
 namespace sinew {
 namespace {
 
@@ -77,6 +79,78 @@ TEST(Coder, ExactPredictionsTakeABitEachAndRandomNumbersLittleMoreThanTheirOwn) 
   EXPECT_LE(there_and_back(values, values, true), 800u / 8);
   EXPECT_LE(there_and_back(values, zeros, false), 800u * 34 / 8);
   EXPECT_LE(there_and_back(values, near, false), 800u);  // 3 to 7 units in the last place: below 8 bits
+}
+
+template <class V>
+std::size_t unpredicted_there_and_back(std::vector<V> values) {
+  const auto visit_all = [](std::vector<V>& all, ByteStream& stream) {
+    ResidualCoder<V>("values", stream).unpredicted([&](const auto& visit) {
+      for (V& v : all) visit(v);
+    });
+    return stream.position();
+  };
+  std::vector<std::byte> room(16 * values.size() + 16);
+  std::vector<V> read(values.size());
+  ByteStream out = ByteStream::writer(room), bound = ByteStream::bound();
+  const std::size_t written = visit_all(values, out);
+  EXPECT_TRUE(out.ok());
+  EXPECT_LE(written, visit_all(values, bound));
+  ByteStream in = ByteStream::reader(std::span(room).first(written));
+  EXPECT_EQ(visit_all(read, in), written);
+  EXPECT_TRUE(in.ok());
+  for (std::size_t n = 0; n < values.size(); ++n)
+    EXPECT_EQ(std::bit_cast<BitsOf<V>>(read[n]), std::bit_cast<BitsOf<V>>(values[n])) << n;
+  return written;
+}
+
+template <class V>
+class FloatingCoder : public testing::Test {};
+using FloatingNumbers = testing::Types<float, double>;
+TYPED_TEST_SUITE(FloatingCoder, FloatingNumbers);
+
+TYPED_TEST(FloatingCoder, GivesBackAnyBitsThatNothingPredicts) {
+  std::mt19937_64 random(9);
+  std::vector<TypeParam> values{0, -TypeParam(0), std::numeric_limits<TypeParam>::denorm_min(),
+                                std::numeric_limits<TypeParam>::infinity(),
+                                std::numeric_limits<TypeParam>::lowest()};
+  for (int n = 0; n < 2000; ++n)
+    values.push_back(std::bit_cast<TypeParam>(static_cast<BitsOf<TypeParam>>(random())));
+  unpredicted_there_and_back(values);
+  unpredicted_there_and_back(std::vector<TypeParam>(10, TypeParam(0)));
+  unpredicted_there_and_back(std::vector<TypeParam>{});
+}
+
+TYPED_TEST(FloatingCoder, WhatIsRoundedToHalfItsDigitsTakesHalfTheRoom) {
+  std::mt19937 random(10);
+  std::normal_distribution<double> normal(0, 20);
+  std::vector<TypeParam> whole(400), rounded, zeros(400, TypeParam(0));
+  for (TypeParam& v : whole) v = TypeParam(normal(random));
+  for (const TypeParam v : whole) rounded.push_back(upper_half(v));
+  for (std::size_t n = 0; n < whole.size(); ++n)
+    EXPECT_NEAR(double(rounded[n] / whole[n]), 1, sizeof(TypeParam) == 4 ? 2.5e-4 : 1.5e-8);
+  const std::size_t saved = 400 * kLowerDigits<TypeParam> / 8;
+  EXPECT_LE(unpredicted_there_and_back(rounded) + saved, unpredicted_there_and_back(whole) + 2);
+  EXPECT_LE(unpredicted_there_and_back(whole), 400 * sizeof(TypeParam));
+}
+
+TYPED_TEST(FloatingCoder, RoundedNumbersComeBackWhateverTheirPrediction) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0, 20);
+  std::vector<std::byte> room(1 << 14);
+  std::vector<TypeParam> values, predicted;
+  for (int n = 0; n < 400; ++n) {
+    values.push_back(upper_half(TypeParam(normal(random))));
+    predicted.push_back(n % 3 ? values.back() * TypeParam(1.001) : TypeParam(normal(random)));
+  }
+  ByteStream out = ByteStream::writer(room), in = ByteStream::reader(room);
+  for (ByteStream* stream : {&out, &in}) {
+    ResidualCoder<TypeParam> coder("values", *stream, true, kLowerDigits<TypeParam>);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      TypeParam v = stream->reading() ? TypeParam(0) : values[n];
+      coder.value(v, predicted[n]);
+      EXPECT_EQ(v, values[n]) << n;
+    }
+  }
 }
 
 }  // namespace

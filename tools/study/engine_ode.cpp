@@ -3,6 +3,7 @@
 // own default of 1e-10 where contacts make constraints redundant. Muscles are its hinge and angular motors,
 // which its manual recommends over torques; a driven root is a kinematic body.
 #include <ode/ode.h>
+#include <ode/threading_impl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,9 @@ class OdeEngine : public Engine {
   OdeEngine(const EngineScene& scene, double h, bool quick) : scene_(scene), h_(h), quick_(quick) {
     static const int initialised = dInitODE2(0);
     (void)initialised;
+    dAllocateODEDataForThread(dAllocateMaskAll);
     world_ = dWorldCreate();
+    dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(jobs_), jobs_);
     dWorldSetGravity(world_, dReal(scene.gravity.x()), dReal(scene.gravity.y()), dReal(scene.gravity.z()));
     dWorldSetCFM(world_, scene.ground ? dReal(1e-10) : 0);
     dWorldSetQuickStepNumIterations(world_, 50);
@@ -36,10 +39,12 @@ class OdeEngine : public Engine {
     dJointGroupDestroy(touching_);
     dSpaceDestroy(space_);
     dWorldDestroy(world_);
+    dThreadingFreeImplementation(jobs_);
   }
 
   const std::string& refusal() const override { return refusal_; }
   bool step() override {
+    dAllocateODEDataForThread(dAllocateMaskAll);  // of whoever steps
     for (std::size_t f = 0; f < servos_.size(); ++f)
       if (scene_.figures[f].driven) drive(static_cast<int>(f));
     dSpaceCollide(space_, this,
@@ -247,6 +252,8 @@ class OdeEngine : public Engine {
   double h_;
   bool quick_;
   std::string refusal_;
+  /// Worlds share one list of jobs unless they have their own, and it must not be used by two threads.
+  dThreadingImplementationID jobs_ = dThreadingAllocateSelfThreadedImplementation();
   dWorldID world_;
   dSpaceID space_;
   dJointGroupID touching_;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "sinew/optimizer/bossak.h"
+
 namespace sinew {
 namespace {
 
@@ -143,21 +145,37 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
   return above;
 }
 
-/// Nothing rubs, no limit bears or bore, and the scheme is one that nearly conserves.
+/// What rubs or damps within a joint: a force that is constant over the step.
 template <class T>
-bool lossless(const CharacterState<T>& s) {
+bool rubs(const JointRow<T>& row) {
+  return row.scalar == RowScalar::kFromStart && !row.muscle;
+}
+
+/// Nothing takes energy but what rubs within joints, no limit bears or bore, and the scheme is one that
+/// nearly conserves.
+template <class T>
+bool accounts_for_all(const CharacterState<T>& s) {
   const std::vector<JointRow<T>>& rows = s.problem.rows;
   return s.history.accelerates && s.steps_unchanged > 0 && s.report.elastic_energy == 0 &&
          s.problem.effects.empty() && std::all_of(rows.begin(), rows.end(), [](const JointRow<T>& row) {
-           return row.kind == RowKind::kOneSided;
+           return row.kind == RowKind::kOneSided || rubs(row);
          });
+}
+
+/// J, that what rubs within joints has taken in the step.
+template <class T>
+double rubbed(const CharacterState<T>& s) {
+  double sum = 0;
+  for (const JointRow<T>& row : s.problem.rows)
+    if (rubs(row)) sum += double(row.slope(row.value) * row.value);
+  return sum / double(constant_emphasis(s.problem.prediction.weight, s.rate_step));
 }
 
 }  // namespace
 
 /// Gives a tree that nothing but gravity acts on the angular momentum that it had; one that is lossless too
-/// the energy that it had, and takes from any other what it gained, as far as the motion of its limbs against
-/// each other can bear the change.
+/// the energy that it had but for what rubbed, and takes from any other what it gained, as far as the motion
+/// of its limbs against each other can bear the change.
 template <class T>
 void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity,
                                      const Before& before) {
@@ -172,12 +190,12 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
   if (s.left_to_gravity) turn = rigid.spin_of(before.angular_momentum - r.angular_momentum);
   const double turned = turn.dot(r.angular_momentum + 0.5 * rigid.inertia * turn);  // J, that it gives
   const double now = owned(s) + turned, rounded = rounding(s, gravity);
-  const bool keeps = lossless(s);
+  const bool keeps = accounts_for_all(s);
   // Kept at a mark of its own, which sinks by more than roundings may lift what is measured against it: these
   // add up neither to a gain nor to a loss.
   if (keeps) {
     if (!(std::abs(s.energy_ceiling - before.energy) < rounded / 2)) s.energy_ceiling = before.energy;
-    s.energy_ceiling -= rounded / 8;
+    s.energy_ceiling -= rounded / 8 + rubbed(s);
   }
   const double missing = (keeps ? s.energy_ceiling : before.energy - rounded) - now;
   const double about_center = r.kinetic_energy + turned - 0.5 * r.momentum.squaredNorm() / s.total_mass;

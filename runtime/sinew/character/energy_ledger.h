@@ -4,8 +4,8 @@
 // is stepped by, of the order of h²g/length and h²|ω|², so an inverted pendulum or a light link that whirls
 // about a heavy one can gain. Where nothing does work, each island has a ceiling that never rises: what a
 // step leaves above it is taken out of the motion, first of that relative to each tree's centre of mass.
-// A tree in flight keeps its angular momentum, and one whose joints neither rub nor reach their limits loses
-// nothing either: what the step took or gave goes into the motion of its limbs against each other.
+// A tree in flight keeps its angular momentum, and one whose joints reach no limit loses nothing but what rubs
+// within them: what the step took or gave beyond goes into the motion of its limbs against each other.
 // Source of the idea: Dinev, Liu & Kavan, "Stabilizing integrators for real-time physics", 2018.
 #pragma once
 

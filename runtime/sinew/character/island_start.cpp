@@ -7,6 +7,7 @@
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/residual/residual_pass.h"
+#include "sinew/skeleton/upper_half.h"
 
 namespace sinew {
 namespace {
@@ -139,7 +140,8 @@ void IslandStepper<T>::begin_loaded(T h) {
     const T force = normal_force(c);
     if (!(force > T(0))) continue;
     if (std::abs(c.approach) < kResting * c.speed_scale) {
-      lagged_.push_back({c.id, force, c.stiffness, c.offset, force, force, force});
+      const T lasts = upper_half(force);
+      lagged_.push_back({c.id, force, c.stiffness, c.offset, force, lasts, lasts});
       continue;
     }
     loaded[c.tree_a] = 0;

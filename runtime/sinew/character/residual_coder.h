@@ -4,14 +4,17 @@
 // too: how many bits the distance has, by an exponential Golomb code (Teuhola, "A compression method for
 // clustered bit-vectors", 1978) of how far that is from the mean of those before, then those bits. Distances
 // of one field differ by powers of two rather than around a mean: a Golomb-Rice code of the distances
-// themselves took 9 % more. A prediction that is right to the bit costs one bit, one that is good for nothing
-// about two bits more than the number.
+// themselves took 9 % more. A prediction that is right to the bit costs one bit.
+//
+// Where nothing predicts a number, its exponent is written so, and the rest as it is: some four bits less
+// than the number. Digits that a whole field has rounded off are left out.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "sinew/character/snapshot.h"
@@ -22,9 +25,10 @@ namespace sinew {
 template <class V>
 class ResidualCoder {
  public:
-  /// `marks`: numbers may be random or exactly as predicted, so that each has a bit that says so.
-  ResidualCoder(const char* name, ByteStream& stream, bool marks = false)
-      : name_(name), stream_(stream), marks_(marks) {}
+  /// `marks`: numbers may be random or exactly as predicted, so that each has a bit that says so. `rounded`:
+  /// the last so many digits are all 0.
+  ResidualCoder(const char* name, ByteStream& stream, bool marks = false, int rounded = 0)
+      : name_(name), stream_(stream), marks_(marks), rounded_(rounded) {}
   ResidualCoder(const ResidualCoder&) = delete;
   ResidualCoder& operator=(const ResidualCoder&) = delete;
   ~ResidualCoder() {
@@ -32,12 +36,12 @@ class ResidualCoder {
   }
 
   void value(V& v, V predicted) {
-    const Bits from = ordered(predicted);
+    const Bits from = ordered(predicted) >> rounded_;
     if (stream_.reading()) {
       const Bits z = get();
       v = number(from + ((z >> 1) ^ (Bits(0) - (z & 1))));
     } else {
-      const Bits d = ordered(v) - from;
+      const Bits d = (ordered(v) >> rounded_) - from;
       put((d << 1) ^ (Bits(0) - (d >> (kWidth - 1))));
     }
   }
@@ -46,10 +50,47 @@ class ResidualCoder {
     for (Eigen::Index n = 0; n < v.size(); ++n) value(v.data()[n], predicted.data()[n]);
   }
 
+  /// A field whose numbers nothing predicts: visit(f) calls f(v) for each, whenever it is called.
+  template <class Visit>
+  void unpredicted(const Visit& visit) {
+    Bits all = 0;
+    visit([&](V& v) { all |= std::bit_cast<Bits>(v); });
+    auto rounded = static_cast<std::uint8_t>(std::min(std::countr_zero(all), kDigits));
+    stream_.value(name_, rounded);
+    rounded_ = stream_.bounding() ? 0 : std::min<int>(rounded, kDigits);
+    mean_ = 16 << (kWidth - kDigits - 3);  // of exponents
+    visit([&](V& v) { write_or_read(v); });
+  }
+
  private:
   using Bits = std::conditional_t<sizeof(V) == 4, std::uint32_t, std::uint64_t>;
   static constexpr int kWidth = 8 * sizeof(V);
-  static constexpr int kMostPrefix = 9;  ///< bits of a length's distance from the likely one, and more
+  static constexpr int kDigits = std::numeric_limits<V>::digits - 1;  ///< of a floating-point number, written
+  static constexpr int kMostPrefix = 12;  ///< bits of a length's distance from the likely one, and more
+
+  /// One more than the exponent, 0 for the number 0; sign; digits but those rounded off.
+  void write_or_read(V& v) {
+    constexpr Bits sign = Bits(1) << (kWidth - 1), digits = (Bits(1) << kDigits) - 1;
+    const int kept = kDigits - rounded_;
+    if (stream_.reading()) {
+      const int size = get_length(1 << (kWidth - 1 - kDigits));
+      Bits bits = size == 0 ? 0 : Bits(size - 1) << kDigits;
+      if (size > 0 && get_bits(1) != 0) bits |= sign;
+      if (size > 0) bits |= get_bits(kept) << rounded_;
+      v = std::bit_cast<V>(bits);
+      return;
+    }
+    const auto bits = std::bit_cast<Bits>(v);
+    const int size = bits == 0 ? 0 : 1 + static_cast<int>((bits & ~sign) >> kDigits);
+    if (stream_.bounding()) {
+      put_bits(0, 2 * (kWidth - kDigits) + 1 + kWidth);
+      return;
+    }
+    put_length(size);
+    if (size == 0) return;
+    put_bits(bits & sign ? 1 : 0, 1);
+    put_bits((bits & digits) >> rounded_, kept);
+  }
 
   /// In the order of the numbers.
   static Bits ordered(V v) {
@@ -58,10 +99,11 @@ class ResidualCoder {
     constexpr Bits sign = Bits(1) << (kWidth - 1);
     return bits & sign ? ~bits : bits | sign;
   }
-  static V number(Bits in_order) {
-    if constexpr (std::is_integral_v<V>) return V(in_order);
+  V number(Bits in_order) const {
+    const Bits all = in_order << rounded_, lost = (Bits(1) << rounded_) - 1;
+    if constexpr (std::is_integral_v<V>) return V(all);
     constexpr Bits sign = Bits(1) << (kWidth - 1);
-    return std::bit_cast<V>(in_order & sign ? in_order ^ sign : ~in_order);
+    return std::bit_cast<V>(all & sign ? all ^ sign : ~(all | lost));
   }
 
   /// Bits that a distance is likely to need: the mean of what came so far.
@@ -72,23 +114,29 @@ class ResidualCoder {
     if (marks_) put_bits(z == 0 ? 1 : 0, 1);
     if (marks_ && z == 0 && !stream_.bounding()) return;
     const int length = stream_.bounding() ? kWidth : static_cast<int>(std::bit_width(z));
+    put_length(length);
+    put_bits(z, length - 1);  // the highest is one
+  }
+  Bits get() {
+    if (marks_ && get_bits(1) != 0) return 0;
+    const int length = get_length(kWidth);
+    return length == 0 ? 0 : Bits(1) << (length - 1) | get_bits(length - 1);
+  }
+  void put_length(int length) {
     const int off = stream_.bounding() ? kWidth : length - likely();
     const unsigned q = 1 + (off < 0 ? -2 * off - 1 : 2 * off);
     const int rest = std::bit_width(q) - 1;
     put_bits((Bits(2) << rest) - 2, rest + 1);
     put_bits(q, rest);
-    put_bits(z, length - 1);  // the highest is one
     learn(length);
   }
-  Bits get() {
-    if (marks_ && get_bits(1) != 0) return 0;
+  int get_length(int most) {
     int rest = 0;
     while (rest < kMostPrefix && get_bits(1) != 0) ++rest;
     const int q = (1 << rest | static_cast<int>(get_bits(rest))) - 1;
-    const int length = std::clamp(likely() + (q % 2 != 0 ? -(q + 1) / 2 : q / 2), 0, kWidth);
-    const Bits z = length == 0 ? 0 : Bits(1) << (length - 1) | get_bits(length - 1);
+    const int length = std::clamp(likely() + (q % 2 != 0 ? -(q + 1) / 2 : q / 2), 0, most);
     learn(length);
-    return z;
+    return length;
   }
   /// The lowest so many, the highest of them first.
   void put_bits(Bits bits, int count) {
@@ -126,6 +174,7 @@ class ResidualCoder {
   const char* name_;
   ByteStream& stream_;
   bool marks_;
+  int rounded_;
   int mean_ = -1;   ///< sixteenths of a bit; below 0: of none yet
   int filled_ = 0;  ///< bits of `byte_` that are written, or still to be read
   std::uint8_t byte_ = 0;

@@ -4,6 +4,8 @@
 
 #include "sinew/character/residual_coder.h"
 #include "sinew/character/snapshot_history.h"
+#include "sinew/character/unknowns.h"
+#include "sinew/skeleton/upper_half.h"
 
 namespace sinew {
 namespace {
@@ -143,11 +145,15 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
     coder.values(s.own_last_target()[i].translation, s.local[i].translation);
   });
   stream.value("span of the joint speeds", s.rate_step);
-  visit("joint speed", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate[i], {}); });
+  ResidualCoder<T>("joint speed", stream).unpredicted([&](const auto& visit_number) {
+    for (int i = 0; i < s.tree.bodies; ++i)
+      for (int k = 0; k < s.tree.dof_count(i); ++k) visit_number(s.rate[i][k]);
+  });
   // The next step's guess looks further back only while nothing changes.
-  if (stream.part("joint speeds change steadily", s.rate_step > T(0) && s.steps_unchanged > 0)) {
-    stream.value("span of the joint speeds before", s.rate_step_before);
-    visit("joint speed before", 0, [&](auto& coder, int i) { dofs(coder, i, s.rate_before[i], s.rate[i]); });
+  if (stream.part("joint speeds change steadily",
+                  s.rate_step > T(0) && s.steps_unchanged >= kUnchangedSteps)) {
+    ResidualCoder<T> coder("joint speed before", stream, false, kLowerDigits<T>);
+    for (int i = 0; i < s.tree.bodies; ++i) dofs(coder, i, s.rate_before[i], s.rate[i]);
   }
   visit("deviation", kDeviates, [&](auto& coder, int i) {
     const JointJet<T>& last = s.own_last_target()[i];
@@ -324,8 +330,8 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
       low = lower;
     }
   }
-  const auto visit = [&](const char* name, auto visit_contact) {
-    ResidualCoder<T> coder(name, stream, true);
+  const auto visit = [&](const char* name, auto visit_contact, int rounded = 0) {
+    ResidualCoder<T> coder(name, stream, true, rounded);
     T before = T(0);
     for (LaggedForce<T>& contact : lagged) {
       [[maybe_unused]] auto& [id, force, stiffness, offset, smooth, lasting, earlier] =
@@ -339,8 +345,12 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
     before = c.stiffness;
   });
   visit("contact offset", [](auto& coder, auto& c, T&) { coder.value(c.offset, T(0)); });
-  visit("contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.force); });
-  visit("lasting contact force", [](auto& coder, auto& c, T&) { coder.value(c.lasting, c.force); });
+  visit(
+      "contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.force); },
+      kLowerDigits<T>);
+  visit(
+      "lasting contact force", [](auto& coder, auto& c, T&) { coder.value(c.lasting, c.force); },
+      kLowerDigits<T>);
   visit("smooth contact force", [](auto& coder, auto& c, T&) { coder.value(c.smooth, c.force); });
 }
 

@@ -72,10 +72,14 @@ void visit_motion(CharacterState<T>& s, ByteStream& stream) {
   visit("rotation rate", true, [&](auto& coder, int i) {
     coder.values(h.rotation_rate[i], rotation_rate_of<T>(s.tree, i, h.rotation[i], h.momentum[i]));
   });
-  visit("acceleration", false, [&](auto& coder, int i) {
-    coder.values(h.acceleration[i], i > 0 ? h.acceleration[i - 1] : Vec3<T>(Vec3<T>::Zero()));
-    coder.values(h.torque[i], Vec3<T>(Vec3<T>::Zero()));
-  });
+  const auto visit_whole = [&](const char* name, std::vector<Vec3<T>>& all) {
+    ResidualCoder<T>(name, stream).unpredicted([&](const auto& visit_number) {
+      for (int i = 0; i < s.tree.bodies; ++i)
+        for (T& x : all[i]) visit_number(x);
+    });
+  };
+  visit_whole("acceleration", h.acceleration);
+  visit_whole("torque", h.torque);
   ResidualCoder<T> coder("what of a joint's rows lasts", stream);
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     coder.value(s.smooth[dof], T(0));
