@@ -32,10 +32,14 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
 constexpr double kSamePlane = 0.99;  ///< cosine of normals that count as one
 constexpr int kMostNeighbours = 6;   ///< boxes near a collider, as a mean over all, that are looked at again
+/// Of a contact's identity: the face by which a point leaves a box, and that there is an edge instead of a
+/// point.
+constexpr int kFaceBits = 12 + 32;
+constexpr std::uint64_t kFaces = 0x7000ull << 32, kNoPoint = 0x8000ull << 32;
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
-  return c.id >> 32;
+  return (c.id & kNoPoint ? c.id : c.id & ~kFaces) >> 32;
 }
 /// Whether a contact is with a static edge that lies in the plane of what the same point rests on by another
 /// that `bears`, as where tiles meet, or is higher by less than `tolerance` (m): whoever slides over it does
@@ -176,6 +180,7 @@ class ContactFinder final : public ContactSearch<T> {
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), bears_ = T(0);  ///< s; kg
   T damping_time_ = T(0);      ///< of a human's contacts, s
+  T impact_depth_ = T(0);      ///< m, in which what strikes is stopped, of a human
   T most_sunk_ =
       T(0);  ///< m of a human: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
