@@ -362,8 +362,7 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
     c.size = met.size;
     c.shape_pose = met.local;
     c.face = face;
-    // What leaves by another face than before is somewhere else: it is led out as what begins there.
-    c.id = id_of(n, k, met) ^ std::uint64_t(face + 1) << kFaceBits;
+    c.id = id_of(n, k, met);
     add(c, reach);
   }
 }

@@ -32,14 +32,10 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
 constexpr double kSamePlane = 0.99;  ///< cosine of normals that count as one
 constexpr int kMostNeighbours = 6;   ///< boxes near a collider, as a mean over all, that are looked at again
-/// Of a contact's identity: the face by which a point leaves a box, and that there is an edge instead of a
-/// point.
-constexpr int kFaceBits = 12 + 32;
-constexpr std::uint64_t kFaces = 0x7000ull << 32, kNoPoint = 0x8000ull << 32;
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
-  return (c.id & kNoPoint ? c.id : c.id & ~kFaces) >> 32;
+  return c.id >> 32;
 }
 /// Whether a contact is with a static edge that lies in the plane of what the same point rests on by another
 /// that `bears`, as where tiles meet, or is higher by less than `tolerance` (m): whoever slides over it does
