@@ -16,7 +16,8 @@ namespace {
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
-constexpr int kFirstHost = 0x4000;                   ///< of contact identities
+constexpr int kOtherSide = 0x8000;  ///< of contact identities: edges that are on the other side of each other
+constexpr int kFirstHost = 0x4000;  ///< of contact identities
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
@@ -25,6 +26,8 @@ constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
 constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
+/// m, where something is led as a whole: it presses on whatever has stopped what strikes, and loads it.
+constexpr double kImpactDepthLed = 0.025;
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -32,10 +35,11 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-constexpr double kOverlooked = 5e-3;   ///< m, that boxes came into each other: their edges were not seen
-constexpr double kHardlyMoves = 1e-4;  ///< m, of solids in a step: then the same edges cross at its end
-constexpr int kMostOnTheWay = 8;       ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;    ///< colliders of a skeleton whose edges identities have room for
+constexpr double kOverlooked = 5e-3;     ///< m, that boxes came into each other: their edges were not seen
+constexpr double kOverlookedPart = 0.2;  ///< or of the thinnest half extent
+constexpr double kHardlyMoves = 1e-4;    ///< m, of solids in a step: then the same edges cross at its end
+constexpr int kMostOnTheWay = 8;         ///< poses in which edges are looked for
+constexpr int kMostWithEdges = 127;      ///< colliders of a skeleton whose edges identities have room for
 constexpr int kCornerNumber = kAxisNumber + 1;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
@@ -242,7 +246,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   Vec3<T> closing = states_[c.tree_a]->point_velocity(c.body_a, c.point);
-  T mass = T(states_[c.tree_a]->total_mass), thickness = T(2 * kImpactDepth) * c.length_scale;
+  T mass = T(states_[c.tree_a]->total_mass), thickness = 2 * impact_depth_ * c.length_scale;
   if (c.tree_b >= 0) {
     closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
@@ -386,8 +390,11 @@ template <class T>
 bool ContactFinder<T>::overlooked() {
   return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
     const T unit = states_[pair.tree]->tree.scale.length;
-    edges_[0].find(placed(pair.tree, pair.collider), placed(pair.met, unit));
-    return edges_[0].apart < std::min(pair.apart, T(0)) - T(kOverlooked) * unit;
+    const PlacedShape<T> a = placed(pair.tree, pair.collider), b = placed(pair.met, unit);
+    edges_[0].find(a, b);
+    const T much =
+        std::min(T(kOverlooked) * unit, T(kOverlookedPart) * std::min(a.size.minCoeff(), b.size.minCoeff()));
+    return edges_[0].apart < std::min(pair.apart, T(0)) - much;
   });
 }
 
@@ -431,7 +438,8 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     c.side = pair.side;
     c.radius = pair.radius;
     c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
-    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met);
+    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met) ^
+           std::uint64_t(pair.side < T(0) ? kOtherSide : 0);
     return c;
   };
   CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
@@ -656,12 +664,14 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   T heaviest = T(0);
   most_ = 0;
   most_sunk_ = std::numeric_limits<T>::infinity();
+  impact_depth_ = T(kImpactDepth);
   for (const CharacterState<T>* s : states) {
     most_ += static_cast<std::size_t>(s->problem.room.contacts);
     if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) {  // led as a whole
       // It presses with whatever force it takes. With friction to match, what stands aslant between it and a
       // wall is jammed for good, and driven in until it comes out at the back.
       most_sunk_ = T(kMostGripped * world.accuracy.sink_depth);
+      impact_depth_ = T(kImpactDepthLed);
       continue;
     }
     heaviest = std::max(heaviest, T(s->total_mass));

@@ -183,6 +183,7 @@ class ContactFinder final : public ContactSearch<T> {
   Vec3<double> common_origin_ = Vec3<double>::Zero();
   T h_ = T(0), bears_ = T(0);  ///< s; kg
   T damping_time_ = T(0);      ///< of a human's contacts, s
+  T impact_depth_ = T(0);      ///< m, in which what strikes is stopped, of a human
   T most_sunk_ =
       T(0);  ///< m of a human: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
