@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "sinew/skeleton/upper_half.h"
+#include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
 namespace {
@@ -125,10 +125,10 @@ TYPED_TEST(FloatingCoder, WhatIsRoundedToHalfItsDigitsTakesHalfTheRoom) {
   std::normal_distribution<double> normal(0, 20);
   std::vector<TypeParam> whole(400), rounded, zeros(400, TypeParam(0));
   for (TypeParam& v : whole) v = TypeParam(normal(random));
-  for (const TypeParam v : whole) rounded.push_back(upper_half(v));
+  for (const TypeParam v : whole) rounded.push_back(rounded_off<kHalfOfDigits<TypeParam>>(v));
   for (std::size_t n = 0; n < whole.size(); ++n)
     EXPECT_NEAR(double(rounded[n] / whole[n]), 1, sizeof(TypeParam) == 4 ? 2.5e-4 : 1.5e-8);
-  const std::size_t saved = 400 * kLowerDigits<TypeParam> / 8;
+  const std::size_t saved = 400 * kHalfOfDigits<TypeParam> / 8;
   EXPECT_LE(unpredicted_there_and_back(rounded) + saved, unpredicted_there_and_back(whole) + 2);
   EXPECT_LE(unpredicted_there_and_back(whole), 400 * sizeof(TypeParam));
 }
@@ -139,12 +139,12 @@ TYPED_TEST(FloatingCoder, RoundedNumbersComeBackWhateverTheirPrediction) {
   std::vector<std::byte> room(1 << 14);
   std::vector<TypeParam> values, predicted;
   for (int n = 0; n < 400; ++n) {
-    values.push_back(upper_half(TypeParam(normal(random))));
+    values.push_back(rounded_off<kHalfOfDigits<TypeParam>>(TypeParam(normal(random))));
     predicted.push_back(n % 3 ? values.back() * TypeParam(1.001) : TypeParam(normal(random)));
   }
   ByteStream out = ByteStream::writer(room), in = ByteStream::reader(room);
   for (ByteStream* stream : {&out, &in}) {
-    ResidualCoder<TypeParam> coder("values", *stream, true, kLowerDigits<TypeParam>);
+    ResidualCoder<TypeParam> coder("values", *stream, true, kHalfOfDigits<TypeParam>);
     for (std::size_t n = 0; n < values.size(); ++n) {
       TypeParam v = stream->reading() ? TypeParam(0) : values[n];
       coder.value(v, predicted[n]);

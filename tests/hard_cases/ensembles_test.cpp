@@ -56,6 +56,17 @@ TEST(Ensembles, FallingFiguresGainWhatGravityGives) {
   EXPECT_NEAR(at(0.2) - at(0.05), fallen * (0.04 - 0.0025) / 0.0225, 0.06 * at(0.2));
 }
 
+TEST(Ensembles, MeansAreAsCertainAsTheirSpreadSays) {
+  Ensemble e;
+  e.hz = 60;
+  e.seeds = 100;
+  e.t = {1 / 60.0};
+  e.energy = {{8}, {3}};
+  e.truth = {{10}, {5}};
+  EXPECT_DOUBLE_EQ(e.share(0), 0.8);
+  EXPECT_NEAR(e.uncertainty(0), 0.8 * std::hypot(3 / 8.0, 5 / 10.0) / 10, 1e-12);
+}
+
 TEST(Ensembles, JsonHasACurveForEveryRun) {
   const Ensemble e = run(0, 30, 60, 2, 0.3);
   const nlohmann::json json = ensembles_json({e});

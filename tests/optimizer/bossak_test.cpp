@@ -56,6 +56,13 @@ TEST(Bossak, KeepsTheMomentumAndTurnOfABodyThatTumbles) {
   EXPECT_LT(Quat<double>(exact).angularDistance(Quat<double>(body.history.rotation[0])), 1e-4);
 }
 
+TEST(Bossak, SpectralRadiusFallsWithTheTurn) {
+  EXPECT_DOUBLE_EQ(spectral_radius(0.0), spectral_radius(0.2));
+  EXPECT_LT(spectral_radius(0.5), spectral_radius(0.3));
+  EXPECT_DOUBLE_EQ(spectral_radius(5.0), spectral_radius(50.0));
+  EXPECT_GT(spectral_radius(50.0), 0.0);
+}
+
 TEST(Bossak, ALimiterTakesAwayWhatHasJustComeOrTurned) {
   EXPECT_EQ(limited(5.0, 0.0, 0.0), 0);
   EXPECT_EQ(limited(5.0, 5.0, 0.0), 0);

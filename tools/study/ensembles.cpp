@@ -109,11 +109,22 @@ const std::vector<EnsembleScene>& ensemble_scenes() {
   return scenes;
 }
 
+std::size_t Ensemble::sample(double time) const {
+  const auto next = std::lower_bound(t.begin(), t.end(), time - 0.5 / hz);
+  return static_cast<std::size_t>(std::min(next, t.end() - 1) - t.begin());
+}
+
 double Ensemble::share(double time) const {
   if (t.empty()) return 0;
-  const auto next = std::lower_bound(t.begin(), t.end(), time - 0.5 / hz);
-  const auto n = static_cast<std::size_t>(std::min(next, t.end() - 1) - t.begin());
+  const std::size_t n = sample(time);
   return energy.mean[n] / truth.mean[n];
+}
+
+double Ensemble::uncertainty(double time) const {
+  if (t.empty()) return 0;
+  const std::size_t n = sample(time);
+  const auto squared = [&](const EnergyCurve& c) { return std::pow(c.deviation[n] / c.mean[n], 2); };
+  return share(time) * std::sqrt((squared(energy) + squared(truth)) / seeds);
 }
 
 double kinetic_energy(const Skeleton& skeleton, const Pose& before, const Pose& after, double span) {
@@ -228,7 +239,8 @@ std::string ensembles_table(const std::vector<Ensemble>& all) {
   text += '\n';
   for (const Ensemble& e : all) {
     text += fmt::format("{:<16}{:<24}{:>4.0f} {:>6}", e.scene, e.engine + " " + e.option, e.hz, e.seeds);
-    for (const double at : kInstants) text += fmt::format("{:>9.0f} %", 100 * e.share(at));
+    for (const double at : kInstants)
+      text += fmt::format("{:>5.0f} ±{:>2.0f} %", 100 * e.share(at), 100 * e.uncertainty(at));
     text += '\n';
   }
   return text;

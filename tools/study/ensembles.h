@@ -38,6 +38,11 @@ struct Ensemble {
 
   /// Mean over true mean, at the sample next to a time.
   double share(double time) const;
+  /// Standard error of that, were the starts of both drawn apart.
+  double uncertainty(double time) const;
+
+ private:
+  std::size_t sample(double time) const;
 };
 
 /// Kinetic energy (J) halfway between two poses (joint frames in the world) that are `span` seconds apart,
@@ -69,7 +74,7 @@ std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, in
 /// {"ensembles": [{"engine", "scene", "hz", "scheme", "scalar", "seeds", "lost", "t", "energy",
 /// "energy_deviation", "truth", "truth_deviation"}]}, energies in J.
 nlohmann::json ensembles_json(const std::vector<Ensemble>& all);
-/// Share of the true mean at 0.5, 0.75, 1 and 1.5 s.
+/// Share of the true mean at 0.5, 0.75, 1 and 1.5 s, and its standard error.
 std::string ensembles_table(const std::vector<Ensemble>& all);
 /// Curves of one scene and step, .png or .svg.
 convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz,

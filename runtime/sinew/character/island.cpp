@@ -14,7 +14,7 @@
 #include "sinew/optimizer/error_estimate.h"
 #include "sinew/optimizer/time_scheme.h"
 #include "sinew/residual/tree_pass.h"
-#include "sinew/skeleton/upper_half.h"
+#include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
 namespace {
@@ -60,6 +60,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   room_ = room.contacts;
   solver_.reserve(room);
   set_.reserve(room.trees);
+  radius_.reserve(room.trees);
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
   jumps_.reserve(room.bodies);
@@ -111,7 +112,8 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
   read_torques(s, h);
   const bool falls = s.only_falls();
   for (int i = 0; i < s.tree.bodies; ++i) {
-    std::transform(s.rate[i].begin(), s.rate[i].end(), s.rate_before[i].begin(), upper_half<T>);
+    std::transform(s.rate[i].begin(), s.rate[i].end(), s.rate_before[i].begin(),
+                   rounded_off<kHalfOfDigits<T>, T>);
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
     s.local[i] = p.local[i];
@@ -423,8 +425,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     const T force = normal_force(c);
     const bool led = c.offset > T(0) && c.gap < c.offset;  // still inside
     if (force > T(0) || led)
-      lagged_.push_back(
-          {c.id, force, c.stiffness, c.offset, c.smooth_force, upper_half(c.lasting_force), c.lasting_last});
+      lagged_.push_back({c.id, force, c.stiffness, c.offset, c.smooth_force,
+                         rounded_off<kHalfOfDigits<T>>(c.lasting_force), c.lasting_last});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });

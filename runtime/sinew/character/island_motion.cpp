@@ -129,14 +129,28 @@ void IslandStepper<T>::find_sets() {
   for (int n = 0; n < count; ++n) set_[n] = first_of(n);
 }
 
-/// Targets of Bossak's scheme.
+/// Targets of Bossak's scheme, with one spectral radius for all that may touch: contact forces are equal and
+/// opposite in the momentum that they give only then. Where nothing does work the energy ledger bounds what
+/// wild turns gain; elsewhere they are damped.
 template <class T>
 void IslandStepper<T>::predict_all(T h) {
+  find_sets();
+  std::vector<std::uint8_t>& driven = struck_;
+  driven.assign(states_.size(), 0);
+  radius_.assign(states_.size(), spectral_radius<T>(T(0)));
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (!states_[n]->limp()) driven[set_[n]] = 1;
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    T& radius = radius_[set_[n]];
+    if (driven[set_[n]])
+      radius =
+          std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
+  }
   number_bodies();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     TreeProblem<T>& p = s.problem;
-    predict_bossak<T>(s.tree, s.history, strike_of(n), T(kSpectralRadius), h, settings_.common_origin,
+    predict_bossak<T>(s.tree, s.history, strike_of(n), radius_[set_[n]], h, settings_.common_origin,
                       p.prediction);
     if (s.pushed()) write_pushes(s, constant_emphasis(p.prediction.weight, h));
   }

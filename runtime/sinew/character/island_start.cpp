@@ -7,7 +7,7 @@
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/residual/residual_pass.h"
-#include "sinew/skeleton/upper_half.h"
+#include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
 namespace {
@@ -140,7 +140,7 @@ void IslandStepper<T>::begin_loaded(T h) {
     const T force = normal_force(c);
     if (!(force > T(0))) continue;
     if (std::abs(c.approach) < kResting * c.speed_scale) {
-      const T lasts = upper_half(force);
+      const T lasts = rounded_off<kHalfOfDigits<T>>(force);
       lagged_.push_back({c.id, force, c.stiffness, c.offset, force, lasts, lasts});
       continue;
     }

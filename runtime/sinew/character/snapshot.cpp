@@ -5,7 +5,7 @@
 #include "sinew/character/residual_coder.h"
 #include "sinew/character/snapshot_history.h"
 #include "sinew/character/unknowns.h"
-#include "sinew/skeleton/upper_half.h"
+#include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
 namespace {
@@ -100,6 +100,9 @@ constexpr std::uint8_t kOnAnimation = 1, kReleased = 2, kElsewhere = 4, kDeviate
 template <class T>
 void visit_flags(CharacterState<T>& s, ByteStream& stream) {
   constexpr std::array<T, 6> none{};
+  ResidualCoder<std::uint32_t> coder("joint on the animation, released, off its last target, deviating",
+                                     stream, true);
+  std::uint32_t flags = 0;  // mostly those of the joint before
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& last = s.own_last_target()[i];
     Deviation<T>& d = s.deviation[i];
@@ -111,8 +114,11 @@ void visit_flags(CharacterState<T>& s, ByteStream& stream) {
     s.baked[i] =
         static_cast<std::uint8_t>((d.on_animation ? kOnAnimation : 0) + (d.released ? kReleased : 0) +
                                   (elsewhere ? kElsewhere : 0) + (deviates ? kDeviates : 0));
-    stream.value("joint on the animation, released, off its last target, deviating", s.baked[i]);
+    const std::uint32_t before = flags;
+    flags = s.baked[i];
+    coder.value(flags, before);
     if (!stream.reading()) continue;
+    s.baked[i] = static_cast<std::uint8_t>(flags);
     d = {};
     d.on_animation = (s.baked[i] & kOnAnimation) != 0;
     d.released = (s.baked[i] & kReleased) != 0;
@@ -152,7 +158,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   // The next step's guess looks further back only while nothing changes.
   if (stream.part("joint speeds change steadily",
                   s.rate_step > T(0) && s.steps_unchanged >= kUnchangedSteps)) {
-    ResidualCoder<T> coder("joint speed before", stream, false, kLowerDigits<T>);
+    ResidualCoder<T> coder("joint speed before", stream, false, kHalfOfDigits<T>);
     for (int i = 0; i < s.tree.bodies; ++i) dofs(coder, i, s.rate_before[i], s.rate[i]);
   }
   visit("deviation", kDeviates, [&](auto& coder, int i) {
@@ -347,10 +353,10 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   visit("contact offset", [](auto& coder, auto& c, T&) { coder.value(c.offset, T(0)); });
   visit(
       "contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.force); },
-      kLowerDigits<T>);
+      kHalfOfDigits<T>);
   visit(
       "lasting contact force", [](auto& coder, auto& c, T&) { coder.value(c.lasting, c.force); },
-      kLowerDigits<T>);
+      kHalfOfDigits<T>);
   visit("smooth contact force", [](auto& coder, auto& c, T&) { coder.value(c.smooth, c.force); });
 }
 

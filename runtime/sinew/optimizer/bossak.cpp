@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "sinew/skeleton/upper_half.h"
+#include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
 namespace {
 
-constexpr double kMostFreeTurn = 2;  ///< rad; beyond, the target is affine
+constexpr double kLooseRadius = 0.8, kTightRadius = 0.5;  ///< ρ of small turns and of large ones
+constexpr double kSmallTurn = 0.3, kLargeTurn = 0.8;      ///< rad: up to and from where
+constexpr double kMostFreeTurn = 2;                       ///< rad; beyond, the target is affine
 
 template <class T>
 Vec3<T> spin_of(const Tree<T>& tree, int i, const Mat3<T>& rotation, const Vec3<T>& momentum) {
@@ -53,6 +55,12 @@ Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation,
   Mat3<T> rate;
   for (int a = 0; a < 3; ++a) rate.col(a) = spin.cross(rotation.col(a));
   return rate;
+}
+
+template <class T>
+T spectral_radius(T turn) {
+  const T share = std::clamp((turn - T(kSmallTurn)) / T(kLargeTurn - kSmallTurn), T(0), T(1));
+  return T(kLooseRadius) + share * T(kTightRadius - kLooseRadius);
 }
 
 template <class T>
@@ -118,8 +126,8 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
       const Vec3<T> a1 = (force - w.alpha_m * a0) / (1 - w.alpha_m);
       history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1);
       const Vec3<T> t1 = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
-      history.acceleration[i] = a1.unaryExpr(&upper_half<T>);
-      history.torque[i] = t1.unaryExpr(&upper_half<T>);
+      history.acceleration[i] = a1.unaryExpr(&rounded_off<kThirdOfDigits<T>, T>);
+      history.torque[i] = t1.unaryExpr(&rounded_off<kThirdOfDigits<T>, T>);
     } else {
       history.velocity[i] = (c1 - c0) / h;
       history.acceleration[i] = force;

@@ -73,9 +73,10 @@ T share_turning_faster(const Tree<T>& tree, const History<T>& history, T speed);
 template <class T>
 Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum);
 
-/// ρ. In the first second of a limp fall steps of 1/60 s lose 24 J more than fine ones, with 0.9 19 J; but
-/// then limbs that a piston jams are flung.
-constexpr double kSpectralRadius = 0.8;
+/// ρ where muscles or drives do work on bodies that turn so far in a step: 0.8 for small turns; far ones need
+/// damping, for the axes that forces act along turn with them, and what that gains nothing bounds.
+template <class T>
+T spectral_radius(T largest_turn);
 
 /// What bodies move less in a step than at the velocities that impulses have left in a tree's history just
 /// before it, for these act within it.
@@ -118,6 +119,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix T share_turning_faster<T>(const Tree<T>&, const History<T>&, T);                          \
   prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \
+  prefix T spectral_radius<T>(T);                                                                  \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
                                 const Vec3<double>&, Prediction<T>&);                              \
   prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
