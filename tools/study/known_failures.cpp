@@ -23,6 +23,9 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"baked_limbs",
      "hits act at once on what muscles hold: hands are thrown further, and baked ones are 5.4 degrees off, 3 "
      "wanted"},
+    {"piston",
+     "one of four starts, in double: a joint at 49 m/s, 19 wanted; with other roundings of "
+     "accelerations it does not: nothing bounds what a drive makes of a jammed limb"},
     {"ellipsoidal_limit", "one step in 400 in which a joint that creeps off has reached its way back"},
 };
 
