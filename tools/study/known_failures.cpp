@@ -21,13 +21,15 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "one step needs more passes than its budget: the hand leaves at 170 m/s and turns 20 rad in it"},
     {"baked_limbs",
      "limp hands whirl after blows that act at once, and no two runs stay together: with a blow that differs "
-     "by "
-     "1e-4 unbaked ones are 36 degrees apart after two seconds, and baked ones 45 to 50 from unbaked ones; "
-     "weak "
+     "by 1e-4 unbaked ones are 36 degrees apart after two seconds, and baked ones 45 to 50 from unbaked "
+     "ones; weak "
      "hands are within 0.1, but solved for in 0.92 of the steps"},
     {"ellipsoidal_limit",
      "in float: where a joint creeps off by 1e-4 rad a step, what a solve leaves turns the torque by a "
      "seventh"},
+    {"piston",
+     "one of four starts, in double: a joint at 49 m/s, 19 wanted; with other roundings of "
+     "accelerations it does not: nothing bounds what a drive makes of a jammed limb"},
 };
 
 }  // namespace

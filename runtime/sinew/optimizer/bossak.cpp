@@ -126,8 +126,8 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
       const Vec3<T> a1 = (force - w.alpha_m * a0) / (1 - w.alpha_m);
       history.velocity[i] += h * ((1 - w.gamma) * a0 + w.gamma * a1);
       const Vec3<T> t1 = (couple - w.alpha_m * history.torque[i]) / (1 - w.alpha_m);
-      history.acceleration[i] = a1.unaryExpr(&rounded_off<kThirdOfDigits<T>, T>);
-      history.torque[i] = t1.unaryExpr(&rounded_off<kThirdOfDigits<T>, T>);
+      history.acceleration[i] = a1.unaryExpr(&rounded_off<kSixthOfDigits<T>, T>);
+      history.torque[i] = t1.unaryExpr(&rounded_off<kSixthOfDigits<T>, T>);
     } else {
       history.velocity[i] = (c1 - c0) / h;
       history.acceleration[i] = force;

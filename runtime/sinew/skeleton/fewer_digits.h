@@ -6,9 +6,9 @@
 
 namespace sinew {
 
-/// Of a number's binary digits: a third and a half.
+/// Of a number's binary digits: a sixth and a half.
 template <class T>
-constexpr int kThirdOfDigits = std::numeric_limits<T>::digits / 3;
+constexpr int kSixthOfDigits = std::numeric_limits<T>::digits / 6;
 template <class T>
 constexpr int kHalfOfDigits = (std::numeric_limits<T>::digits + 1) / 2;
 
