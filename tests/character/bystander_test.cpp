@@ -123,7 +123,7 @@ TEST(Bystander, DetailOfTheOtherChangesNothing) {
   Scene full, capped;
   std::vector<Poses> poses;
   for (Scene* scene : {&full, &capped}) {
-    const int n = scene->fall(kHere, 5), other = scene->fall(kBeside, 6);
+    const int n = scene->fall(kHere, 5), other = scene->fall({0, 3, kAbove}, 6);
     CharacterDetail detail;
     if (scene == &capped) detail.most = Level::kPartial;
     EXPECT_TRUE(scene->world.character(other).set_detail(detail).ok());

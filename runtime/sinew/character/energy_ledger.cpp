@@ -225,10 +225,11 @@ double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const V
 
 template <class T>
 bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-                             const Vec3<double>& gravity, bool strict, bool tied) const {
+                             const Vec3<double>& gravity, bool strict, bool tied, bool struck) const {
   for (const Contact<T>& c : contacts)
     if (before_[c.tree_a].borrows) states[c.tree_a]->lent += double(c.depenetration_work);
-  const bool touching = std::any_of(states.begin(), states.end(),
+  const bool touching = (struck && states.size() > 1) ||
+                        std::any_of(states.begin(), states.end(),
                                     [](const CharacterState<T>* s) { return s->report.contacts > 0; });
   if (touching || tied || strict) {
     const double before = std::accumulate(before_.begin(), before_.end(), 0.0,

@@ -4,8 +4,8 @@
 // is stepped by, of the order of h²g/length and h²|ω|², so an inverted pendulum or a light link that whirls
 // about a heavy one can gain. Where nothing does work, each island has a ceiling that never rises: what a
 // step leaves above it is taken out of the motion, first of that relative to each tree's centre of mass.
-// A tree in flight keeps its angular momentum, and one whose joints reach no limit loses nothing but what rubs
-// within them: what the step took or gave beyond goes into the motion of its limbs against each other.
+// A tree in flight keeps its angular momentum, and one whose joints reach no limit loses nothing but what
+// rubs within them: what the step took or gave beyond goes into the motion of its limbs against each other.
 // Source of the idea: Dinev, Liu & Kavan, "Stabilizing integrators for real-time physics", 2018.
 #pragma once
 
@@ -22,11 +22,12 @@ class EnergyLedger {
   /// Notes the energy of the trees before a step, J. Returns their sum.
   double open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
   /// Holds the trees of a passive island, stepped together since open(), under their ceiling. `strict` takes
-  /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together. What
-  /// obstacles lent through `contacts` to a tree that began inside them is paid by its motion alone. True if
-  /// motion was taken out.
+  /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together;
+  /// `struck`: they have struck something, perhaps each other, and may be apart again. What obstacles lent
+  /// through `contacts` to a tree that began inside them is paid by its motion alone. True if motion was
+  /// taken out.
   bool settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-              const Vec3<double>& gravity, bool strict, bool tied) const;
+              const Vec3<double>& gravity, bool strict, bool tied, bool struck) const;
 
  private:
   struct Before {

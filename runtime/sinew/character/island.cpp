@@ -416,7 +416,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   const bool tied = !couplings_.empty();
   if (!solved.converged || closed) {
-    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied)) ++damped_;
+    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied, landed_)) ++damped_;
   } else {
     for (CharacterState<T>* s : states_) s->forget_energy();
   }
