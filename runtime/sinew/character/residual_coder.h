@@ -83,7 +83,8 @@ class ResidualCoder {
     const auto bits = std::bit_cast<Bits>(v);
     const int size = bits == 0 ? 0 : 1 + static_cast<int>((bits & ~sign) >> kDigits);
     if (stream_.bounding()) {
-      put_bits(0, 2 * (kWidth - kDigits) + 1 + kWidth);
+      put_bits(0, 2 * (kWidth - kDigits) + 1);  // exponent and sign
+      put_bits(0, kWidth);
       return;
     }
     put_length(size);
