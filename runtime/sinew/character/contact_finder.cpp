@@ -103,10 +103,8 @@ void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
     const T arm = (b.center - s.problem.kinematics.center[body]).norm() + b.radius;
     b.reach = T(kMargin) * s.tree.scale.length +
               h * (s.history.velocity[body].norm() + s.history.rotation_rate[body].norm() * arm + T(5) * h);
-    for (int i = body; i >= 0; i = s.tree.parent[i]) {
-      b.moved = b.moved || (s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]]);
-      b.gives = b.gives || s.joint_is_limited(i);
-    }
+    for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
+      b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
     bounds_.push_back(b);
   }
 }
@@ -619,7 +617,7 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   const Bound &a = bounds_[first_bound_[n] + collider], &b = bounds_[first_bound_[m] + other];
   const T units = states_[n]->tree.scale.length + states_[m]->tree.scale.length;
   const T reach = a.reach + b.reach - T(kMargin - kMarginBetween / 2) * units;
-  const bool presses = a.moved || b.moved || (n != m && (a.gives || b.gives));
+  const bool presses = a.moved || b.moved || (n != m && (states_[n]->limited || states_[m]->limited));
   if (!presses || (a.center - b.center).norm() - a.radius - b.radius > reach) return;
   const Collider& shape = states_[m]->colliders[other];
   if (kept_apart(n, states_[n]->colliders[collider].joint, m, shape.joint)) return;

@@ -132,7 +132,6 @@ class ContactFinder final : public ContactSearch<T> {
     Vec3<T> center;
     T radius = T(0), reach = T(0);
     bool moved = false;  ///< by some unknown
-    bool gives = false;  ///< some joint above it has muscles that may be overcome
   };
 
   void bound(const CharacterState<T>& state, T h);

@@ -225,12 +225,12 @@ double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const V
 
 template <class T>
 bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-                             const Vec3<double>& gravity, bool strict, bool tied, bool struck) const {
+                             const Vec3<double>& gravity, bool strict, bool tied, bool exchanged) const {
   for (const Contact<T>& c : contacts)
     if (before_[c.tree_a].borrows) states[c.tree_a]->lent += double(c.depenetration_work);
-  const bool touching = (struck && states.size() > 1) ||
-                        std::any_of(states.begin(), states.end(),
-                                    [](const CharacterState<T>* s) { return s->report.contacts > 0; });
+  const bool touching =
+      exchanged || std::any_of(states.begin(), states.end(),
+                               [](const CharacterState<T>* s) { return s->report.contacts > 0; });
   if (touching || tied || strict) {
     const double before = std::accumulate(before_.begin(), before_.end(), 0.0,
                                           [](double sum, const Before& b) { return sum + b.energy; });

@@ -23,11 +23,11 @@ class EnergyLedger {
   double open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
   /// Holds the trees of a passive island, stepped together since open(), under their ceiling. `strict` takes
   /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together;
-  /// `struck`: they have struck something, perhaps each other, and may be apart again. What obstacles lent
+  /// `exchanged`: they may have struck each other, even where they are apart again. What obstacles lent
   /// through `contacts` to a tree that began inside them is paid by its motion alone. True if motion was
   /// taken out.
   bool settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-              const Vec3<double>& gravity, bool strict, bool tied, bool struck) const;
+              const Vec3<double>& gravity, bool strict, bool tied, bool exchanged) const;
 
  private:
   struct Before {

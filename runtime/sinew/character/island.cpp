@@ -61,6 +61,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   solver_.reserve(room);
   set_.reserve(room.trees);
   radius_.reserve(room.trees);
+  driven_.reserve(room.trees);
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
   jumps_.reserve(room.bodies);
@@ -416,7 +417,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   }
   const bool tied = !couplings_.empty();
   if (!solved.converged || closed) {
-    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied, landed_)) ++damped_;
+    const bool exchanged = landed_ && states_.size() > 1;
+    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied, exchanged)) ++damped_;
   } else {
     for (CharacterState<T>* s : states_) s->forget_energy();
   }

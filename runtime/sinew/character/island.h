@@ -171,6 +171,7 @@ class IslandStepper {
   // Of the scheme
   std::vector<int> set_;              ///< [tree] see find_sets
   std::vector<T> radius_;             ///< [set] ρ
+  std::vector<std::uint8_t> driven_;  ///< [set] some member has muscles, or its root is driven
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
   std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last
   std::vector<std::uint8_t> lasts_;   ///< [tree] contacts and limits are those of the steps before

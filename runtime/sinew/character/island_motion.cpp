@@ -135,16 +135,14 @@ void IslandStepper<T>::find_sets() {
 template <class T>
 void IslandStepper<T>::predict_all(T h) {
   find_sets();
-  std::vector<std::uint8_t>& driven = struck_;
-  driven.assign(states_.size(), 0);
+  driven_.assign(states_.size(), 0);
   radius_.assign(states_.size(), spectral_radius<T>(T(0)));
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (!states_[n]->limp()) driven[set_[n]] = 1;
+    if (!states_[n]->limp()) driven_[set_[n]] = 1;
   for (std::size_t n = 0; n < states_.size(); ++n) {
+    if (!driven_[set_[n]]) continue;
     T& radius = radius_[set_[n]];
-    if (driven[set_[n]])
-      radius =
-          std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
+    radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
   }
   number_bodies();
   for (std::size_t n = 0; n < states_.size(); ++n) {

@@ -89,6 +89,10 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : indices) worker.members.push_back(states[n].get());
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   lagged_count[island] = 0;
+  // Their ways are predicted by their histories, which must not depend on whether somebody has asked for
+  // them.
+  for (CharacterState<T>* s : worker.members)
+    if (worker.members.size() > 1 && !s->undisturbed()) catch_up(*s, worker.jets);
   if (worker.members.size() == 1) {
     if (!play_set(worker.members, worker)) {
       catch_up(*worker.members[0], worker.jets);
