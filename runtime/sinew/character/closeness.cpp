@@ -5,15 +5,16 @@
 #include <limits>
 #include <numbers>
 
+#include "sinew/effects/crossing_edges.h"
+
 namespace sinew {
 namespace {
 
 /// m/s²: what two bodies approach faster by after a step than before, over the step. Falling takes a third of
 /// it; who is struck may do more and is met a step later, inside.
 constexpr double kSurprise = 30;
-constexpr int kSections = 16;       ///< of an axis: to a thousandth of its length
-constexpr double kGolden = 0.618;   ///< of what is left
-constexpr double kParallel = 1e-3;  ///< sine, of two boxes' edges
+constexpr int kSections = 16;      ///< of an axis: to a thousandth of its length
+constexpr double kGolden = 0.618;  ///< of what is left
 
 template <class T>
 MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T h) {
@@ -78,33 +79,6 @@ SignedDistance<T> distance_to(const PlacedCollider<T>& a, const PlacedCollider<T
   return d;
 }
 
-/// Two boxes by the axis along which they are furthest apart (Gottschalk, Lin and Manocha, "OBBTree", 1996).
-template <class T>
-SignedDistance<T> boxes_apart(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
-  const Mat3<T> axes_a = a.pose.rotation.toRotationMatrix(), axes_b = b.pose.rotation.toRotationMatrix();
-  const Vec3<T> size_a = a.collider->size.template cast<T>(), size_b = b.collider->size.template cast<T>(),
-                between = a.pose.translation - b.pose.translation;
-  SignedDistance<T> best;
-  best.distance = -std::numeric_limits<T>::infinity();
-  const auto look_along = [&](const Vec3<T>& axis) {
-    const T sine = axis.norm();
-    if (sine < T(kParallel)) return;  // as far apart along a face's normal
-    const T side = axis.dot(between) < T(0) ? -1 / sine : 1 / sine;
-    const T apart =
-        side * axis.dot(between) - std::abs(side) * ((axes_a.transpose() * axis).cwiseAbs().dot(size_a) +
-                                                     (axes_b.transpose() * axis).cwiseAbs().dot(size_b));
-    if (apart <= best.distance) return;
-    best.distance = apart;
-    best.normal = side * axis;
-  };
-  for (int i = 0; i < 3; ++i) {
-    look_along(axes_a.col(i));
-    look_along(axes_b.col(i));
-    for (int j = 0; j < 3; ++j) look_along(axes_a.col(i).cross(axes_b.col(j)));
-  }
-  return best;
-}
-
 template <class T>
 bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T margin) {
   const Vec3<T> velocity = a.velocity - b.velocity;
@@ -120,7 +94,12 @@ bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T 
 template <class T>
 SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
   if (a.collider->shape != Shape::kBox) return distance_to(a, b);
-  if (b.collider->shape == Shape::kBox) return boxes_apart(a, b);
+  if (b.collider->shape == Shape::kBox) {
+    const auto placed = [](const PlacedCollider<T>& box) {
+      return PlacedShape<T>(Shape::kBox, box.collider->size.template cast<T>(), box.pose, T(1));
+    };
+    return separation(placed(a), placed(b));
+  }
   SignedDistance<T> d = distance_to(b, a);
   d.normal = -d.normal;
   return d;

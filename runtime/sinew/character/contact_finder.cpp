@@ -389,10 +389,9 @@ bool ContactFinder<T>::overlooked() {
   return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
     const T unit = states_[pair.tree]->tree.scale.length;
     const PlacedShape<T> a = placed(pair.tree, pair.collider), b = placed(pair.met, unit);
-    edges_[0].find(a, b);
     const T much =
         std::min(T(kOverlooked) * unit, T(kOverlookedPart) * std::min(a.size.minCoeff(), b.size.minCoeff()));
-    return edges_[0].apart < std::min(pair.apart, T(0)) - much;
+    return separation(a, b).distance < std::min(pair.apart, T(0)) - much;
   });
 }
 

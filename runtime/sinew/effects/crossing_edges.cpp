@@ -48,40 +48,59 @@ T inner_part(const PlacedShape<T>& s, const Edge<T>& e) {
   return T(1) - T(box_rounding(s.size.template cast<double>(), double(s.unit))) / e.half_axis.norm();
 }
 
+/// What parts two solids, along each product of an edge of a and one of b, and along the best axis of all.
+template <class T>
+struct SeparatingAxes {
+  std::array<Vec3<T>, 9> normals;  ///< [3 · edge of a + edge of b]
+  std::array<T, 9> by{};           ///< m; −∞ where the two are parallel
+  SignedDistance<T> best;
+  int first_a = 0;  ///< edges of a: its first
+
+  SeparatingAxes(const PlacedShape<T>& a, const PlacedShape<T>& b) : first_a(a.shape == Shape::kBox ? 0 : 2) {
+    const Vec3<T> between = a.center - b.center;
+    best.distance = -std::numeric_limits<T>::infinity();
+    const auto look_along = [&](const Vec3<T>& axis) {
+      const T along = axis.dot(between), apart = std::abs(along) - extent(a, axis) - extent(b, axis);
+      if (apart > best.distance) {
+        best.distance = apart;
+        best.normal = along < T(0) ? Vec3<T>(-axis) : axis;
+      }
+      return apart;
+    };
+    for (int i = 0; i < 3; ++i) {
+      if (b.shape == Shape::kBox) look_along(b.rotation.col(i));
+      if (a.shape == Shape::kBox) look_along(a.rotation.col(i));
+    }
+    by.fill(-std::numeric_limits<T>::infinity());
+    for (int i = first_a; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        if (are_parallel<T>(a.rotation.col(i), b.rotation.col(j))) continue;
+        Vec3<T>& normal = normals[3 * i + j];
+        normal = a.rotation.col(i).cross(b.rotation.col(j)).normalized();
+        by[3 * i + j] = look_along(normal);
+      }
+  }
+};
+
 }  // namespace
+
+template <class T>
+SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b) {
+  return SeparatingAxes<T>(a, b).best;
+}
 
 template <class T>
 void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
   count = 0;
+  const SeparatingAxes<T> axes(a, b);
   const Vec3<T> between = a.center - b.center;
-  const auto parted = [&](const Vec3<T>& direction) {
-    return std::abs(between.dot(direction)) - extent(a, direction) - extent(b, direction);
-  };
-  const int first_a = a.shape == Shape::kBox ? 0 : 2;
-  T best = -std::numeric_limits<T>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    best = std::max(best, parted(b.rotation.col(i)));
-    if (a.shape == Shape::kBox) best = std::max(best, parted(a.rotation.col(i)));
-  }
-  std::array<T, 9> by{};
-  std::array<Vec3<T>, 9> normals;
-  for (int i = first_a; i < 3; ++i)
+  apart = axes.best.distance;
+  const T least = std::min(apart, T(0)) - T(kAsGood) * std::min(thinnest(a), thinnest(b));
+  for (int i = axes.first_a; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      Vec3<T>& normal = normals[3 * i + j];
-      normal = a.rotation.col(i).cross(b.rotation.col(j));
-      by[3 * i + j] = -std::numeric_limits<T>::infinity();
-      if (are_parallel<T>(a.rotation.col(i), b.rotation.col(j))) continue;
-      normal.normalize();
-      by[3 * i + j] = parted(normal);
-      best = std::max(best, by[3 * i + j]);
-    }
-  const T least = std::min(best, T(0)) - T(kAsGood) * std::min(thinnest(a), thinnest(b));
-  apart = best;
-  for (int i = first_a; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      if (by[3 * i + j] < least) continue;
-      const T side = between.dot(normals[3 * i + j]) < T(0) ? T(-1) : T(1);
-      const Vec3<T> normal = side * normals[3 * i + j];  // from b to a
+      if (axes.by[3 * i + j] < least) continue;
+      const T side = between.dot(axes.normals[3 * i + j]) < T(0) ? T(-1) : T(1);
+      const Vec3<T> normal = side * axes.normals[3 * i + j];  // from b to a
       std::array<Edge<T>, 4> of_a, of_b;
       const int edges_a = supporting<T>(a, i, -normal, of_a), edges_b = supporting<T>(b, j, normal, of_b);
       for (int m = 0; m < edges_a; ++m)
@@ -96,6 +115,8 @@ void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
     }
 }
 
+template SignedDistance<float> separation<float>(const PlacedShape<float>&, const PlacedShape<float>&);
+template SignedDistance<double> separation<double>(const PlacedShape<double>&, const PlacedShape<double>&);
 template struct CrossingEdges<float>;
 template struct CrossingEdges<double>;
 

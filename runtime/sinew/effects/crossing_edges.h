@@ -25,6 +25,12 @@ struct PlacedShape {
         unit(length_unit) {}
 };
 
+/// How far a solid is from another (m, negative: by how much they overlap), and the direction in which a
+/// leaves b, by the best of the axes that separate boxes (Gottschalk, Lin and Manocha, "OBBTree", 1996):
+/// where corners or a capsule's ends are nearest, they are further apart than that. About 200 flops.
+template <class T>
+SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b);
+
 /// An edge of a box, or the axis of a capsule.
 template <class T>
 struct Edge {
@@ -62,18 +68,20 @@ bool are_parallel(const Vec3<T>& a, const Vec3<T>& b) {
 constexpr int kMostEdgePairs = 36;
 
 /// The pairs of supporting edges of two solids, `b` a box, that cross within both and part the solids no
-/// worse than what parts them best: along other directions edges may cross that never touch (Gottschalk, Lin
-/// and Manocha, "OBBTree", 1996: the axes that separate boxes). About 300 flops where the solids are near
-/// each other, one capsule 100.
+/// worse than what parts them best, see separation(): along other directions edges may cross that never
+/// touch. About 300 flops where the solids are near each other, one capsule 100.
 template <class T>
 struct CrossingEdges {
   std::array<EdgePair<T>, kMostEdgePairs> pairs;
   int count = 0;
-  T apart = T(0);  ///< m, at least; negative: by how much the solids overlap
+  T apart = T(0);  ///< m, see separation()
 
   void find(const PlacedShape<T>& a, const PlacedShape<T>& b);
 };
 
+extern template SignedDistance<float> separation<float>(const PlacedShape<float>&, const PlacedShape<float>&);
+extern template SignedDistance<double> separation<double>(const PlacedShape<double>&,
+                                                          const PlacedShape<double>&);
 extern template struct CrossingEdges<float>;
 extern template struct CrossingEdges<double>;
 
