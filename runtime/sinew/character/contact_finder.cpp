@@ -16,15 +16,13 @@ namespace {
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
-constexpr int kOtherSide = 0x8000;  ///< of contact identities: edges that are on the other side of each other
-constexpr int kFirstHost = 0x4000;  ///< of contact identities
+constexpr int kFirstHost = 0x4000;                   ///< of contact identities
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
-constexpr double kLeftInside = 1e-3;    ///< m, that depenetration leaves
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 /// m, where something is led as a whole: it presses on whatever has stopped what strikes, and loads it.
 constexpr double kImpactDepthLed = 0.025;
@@ -33,17 +31,6 @@ constexpr double kImpactDepthLed = 0.025;
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
   return first_contact_id(tree_a) ^ (std::uint64_t(point + 1) << 32) ^ (std::uint64_t(tree_b + 1) << 16) ^
          std::uint64_t(shape + 1);
-}
-
-constexpr double kOverlooked = 5e-3;     ///< m, that boxes came into each other: their edges were not seen
-constexpr double kOverlookedPart = 0.2;  ///< or of the thinnest half extent
-constexpr double kHardlyMoves = 1e-4;    ///< m, of solids in a step: then the same edges cross at its end
-constexpr int kMostOnTheWay = 8;         ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;      ///< colliders of a skeleton whose edges identities have room for
-constexpr int kCornerNumber = kAxisNumber + 1;
-/// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
-int feature(int own, int others, int collider) {
-  return 0x8000 | own << 11 | others << 7 | collider;
 }
 
 bool is_of_tree(std::uint64_t id, int tree) {
@@ -366,160 +353,6 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
     c.id = id_of(n, k, met);
     add(c, reach);
   }
-}
-
-/// Where a collider is.
-template <class T>
-PlacedShape<T> ContactFinder<T>::placed(int n, int collider) const {
-  const CharacterState<T>& s = *states_[n];
-  const Collider& own = s.colliders[collider];
-  const Kinematics<T>& k = s.problem.kinematics;
-  const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
-  return {own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), s.tree.scale.length};
-}
-
-/// And what it meets; `unit`: of what it meets.
-template <class T>
-PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
-  return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
-}
-
-template <class T>
-bool ContactFinder<T>::overlooked() {
-  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
-    const T unit = states_[pair.tree]->tree.scale.length;
-    const PlacedShape<T> a = placed(pair.tree, pair.collider), b = placed(pair.met, unit);
-    const T much =
-        std::min(T(kOverlooked) * unit, T(kOverlookedPart) * std::min(a.size.minCoeff(), b.size.minCoeff()));
-    return separation(a, b).distance < std::min(pair.apart, T(0)) - much;
-  });
-}
-
-/// Where a body's shape will be after a share of the step, at the velocity that it has.
-template <class T>
-PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape, T share) const {
-  if (n < 0) return shape;
-  const CharacterState<T>& s = *states_[n];
-  const Mat3<T> rate = s.history.rotation_rate[body] * s.problem.kinematics.rotation[body].transpose();
-  const Vec3<T> spin = Vec3<T>(rate(2, 1) - rate(1, 2), rate(0, 2) - rate(2, 0), rate(1, 0) - rate(0, 1)) / 2;
-  const Vec3<T> arm = shape.center - s.problem.kinematics.center[body];
-  const Mat3<T> turn = rotation_exp<T>(share * h_ * spin).toRotationMatrix();
-  shape.center += share * h_ * s.history.velocity[body] + turn * arm - arm;
-  shape.rotation = turn * shape.rotation;
-  return shape;
-}
-
-/// The edges of a box across those of another or the axis of a capsule: those that cross now, and those
-/// that will on the way to where the two first overlap if nothing stops them.
-template <class T>
-void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
-  const CharacterState<T>& s = *states_[n];
-  const Collider& own = s.colliders[collider];
-  if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
-  const Kinematics<T>& k = s.problem.kinematics;
-  const T unit = s.tree.scale.length;
-  const PlacedShape<T> a = placed(n, collider), b = placed(met, unit);
-  const Kinematics<T>* other = met.tree < 0 ? nullptr : &states_[met.tree]->problem.kinematics;
-  const Contact<T> made = contact_with(met, contact_of(n, own), T(own.friction));
-  const auto contact = [&](const Edge<T>& of_a, const Edge<T>& of_b, const EdgePair<T>& pair) {
-    Contact<T> c = made;
-    c.meeting = Meeting::kEdges;
-    c.local_a = k.rotation[own.joint].transpose() * (of_a.center - k.origin[own.joint]);
-    c.half_axis_a = k.rotation[own.joint].transpose() * of_a.half_axis;
-    c.local_b = of_b.center;
-    c.half_axis_b = of_b.half_axis;
-    if (other) {
-      c.local_b = other->rotation[met.body].transpose() * (c.local_b - other->origin[met.body]);
-      c.half_axis_b = other->rotation[met.body].transpose() * c.half_axis_b;
-    }
-    c.side = pair.side;
-    c.radius = pair.radius;
-    c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
-    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met) ^
-           std::uint64_t(pair.side < T(0) ? kOtherSide : 0);
-    return c;
-  };
-  CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
-  const auto find = [&](const PlacedShape<T>& of_a, const PlacedShape<T>& of_b, CrossingEdges<T>& out) {
-    if (b.shape == Shape::kBox) return out.find(of_a, of_b);
-    out.find(of_b, of_a);  // the normal turns round with the product of the axes
-    for (int p = 0; p < out.count; ++p) std::swap(out.pairs[p].a, out.pairs[p].b);
-  };
-  find(a, b, now);
-  for (int p = 0; p < now.count; ++p) {
-    Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
-    add(c, reach);
-  }
-  const PlacedShape<T> a_then = moved_on(n, own.joint, a, T(1)),
-                       b_then = moved_on(met.tree, met.body, b, T(1));
-  const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
-          thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
-  const T turn = std::max((a_then.rotation - a.rotation).norm() * own.size.template cast<T>().norm(),
-                          (b_then.rotation - b.rotation).norm() * met.size.norm());
-  const int stations = motion + turn < T(kHardlyMoves) * unit ? 0 : 1 + static_cast<int>(motion / thin);
-  T nearest = now.apart;
-  for (int m = 1; m <= stations; ++m) {
-    const T share = T(m) / T(stations);
-    find(m == stations ? a_then : moved_on(n, own.joint, a, share),
-         m == stations ? b_then : moved_on(met.tree, met.body, b, share), soon);
-    nearest = std::min(nearest, soon.apart);
-    for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
-      const EdgePair<T>& pair = soon.pairs[p];
-      const auto same = [&](const EdgePair<T>& q) {
-        return q.a.number == pair.a.number && q.b.number == pair.b.number;
-      };
-      const auto end = now.pairs.begin() + now.count;
-      const Edge<T> of_a = edge_of(a, pair.a.number), of_b = edge_of(b, pair.b.number);
-      if (std::any_of(now.pairs.begin(), end, same) || are_parallel(of_a.half_axis, of_b.half_axis)) continue;
-      Contact<T> c = contact(of_a, of_b, pair);
-      measure<T>(k, other, c);
-      if (c.gap < T(-kLeftInside) * unit) continue;  // they pass each other beyond their ends
-      if (now.count < kMostEdgePairs) now.pairs[now.count++] = pair;
-      add(c, reach);
-    }
-  }
-  if (own.shape == Shape::kBox && b.shape == Shape::kBox && nearest < thin &&
-      boxes_.size() < boxes_.capacity())
-    boxes_.push_back({n, collider, met, now.apart});
-}
-
-/// The corners of an obstacle, or the points of its axis, against a collider: those of what moves are points
-/// of its own.
-template <class T>
-void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach) {
-  const Bound& bound = bounds_[first_bound_[n] + collider];
-  const Collider& own = states_[n]->colliders[collider];
-  if (collider > kMostWithEdges) return;
-  Contact<T> c = contact_with(met, contact_of(n, own), T(own.friction));
-  c.meeting = Meeting::kCorner;
-  c.shape = own.shape;
-  c.shape_pose = own.local.template cast<T>();
-  c.size = own.size.template cast<T>();
-  const auto meet_point = [&](int number, const Vec3<T>& in_shape) {
-    Contact<T> at_point = c;
-    at_point.local_b = met.local * in_shape;
-    if ((at_point.local_b - bound.center).norm() > bound.radius + c.radius + reach) return;
-    at_point.id = id_of(n, feature(kCornerNumber, number, collider), met);
-    add(at_point, reach);
-  };
-  if (met.shape != Shape::kBox) {
-    c.radius = met.size.x();
-    const T half = met.shape == Shape::kCapsule ? met.size.z() : T(0);
-    // The nearest of the axis, and its ends: where they lie on a face, two bear.
-    const Vec3<T> at = met.local.inverse() * bound.center;
-    meet_point(0, {0, 0, half});
-    if (!(half > T(0))) return;
-    meet_point(1, {0, 0, -half});
-    meet_point(2, {0, 0, std::clamp(at.z(), -half, half)});
-    return;
-  }
-  if (own.shape == Shape::kBox) {  // as rounded as its own corners
-    c.radius = T(box_rounding(own.size, double(states_[n]->tree.scale.length)));
-    c.size.array() -= c.radius;
-  }
-  for (int corner = 0; corner < 8; ++corner)
-    meet_point(corner, met.size.cwiseProduct(Vec3<T>(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1),
-                                                     corner & 4 ? T(1) : T(-1))));
 }
 
 template <class T>

@@ -35,8 +35,9 @@ constexpr int other_tree(std::uint64_t id) {
 }
 constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
-constexpr double kSamePlane = 0.99;  ///< cosine of normals that count as one
-constexpr int kMostNeighbours = 6;   ///< boxes near a collider, as a mean over all, that are looked at again
+constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
+constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
+constexpr int kMostNeighbours = 6;    ///< boxes near a collider, as a mean over all, that are looked at again
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {

@@ -86,8 +86,7 @@ void predict_colliders(CharacterState<T>& s, std::span<const PlacedCollider<T>> 
   }
   for (const PlacedCollider<T>& at : from) {
     const int body = at.collider->joint;
-    const Mat3<T> spin = s.history.rotation_rate[body] * s.history.rotation[body].transpose();
-    const Vec3<T> omega(spin(2, 1), spin(0, 2), spin(1, 0));
+    const Vec3<T> omega = angular_velocity(s.history, body);
     PlacedCollider<T>& placed = out.emplace_back(at);
     const Vec3<T> velocity =
         s.history.velocity[body] + omega.cross(at.pose.translation - s.guessed.center[body]);

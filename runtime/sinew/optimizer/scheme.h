@@ -36,6 +36,13 @@ struct History {
   void stop();
 };
 
+/// rad/s, world axes.
+template <class T>
+Vec3<T> angular_velocity(const History<T>& history, int body) {
+  const Mat3<T> w = history.rotation_rate[body] * history.rotation[body].transpose();
+  return Vec3<T>(w(2, 1) - w(1, 2), w(0, 2) - w(2, 0), w(1, 0) - w(0, 1)) / 2;
+}
+
 /// Sums over a tree, of the momenta that the schemes carry.
 struct Totals {
   double kinetic_energy = 0, potential_energy = 0;       ///< J; gravity, from the world's origin
