@@ -34,17 +34,32 @@ TEST(Push, GivesALimpFigureInFlightItsWholeMomentum) {
   EXPECT_LT((pushed_in_flight<float>(impulse) - impulse).norm(), 1e-3 * impulse.norm());
 }
 
+/// A figure that its muscles hold, its root driven, where nothing else acts.
+template <class T>
+struct Floating {
+  Skeleton body = fixtures::humanoid();
+  World<T> world{weightless()};
+  Character<T> figure = added();
+  int hand = body.find("hand_l");
+
+ private:
+  static WorldSettings weightless() {
+    WorldSettings settings;
+    settings.gravity.setZero();
+    settings.ground = false;
+    return settings;
+  }
+  Character<T> added() {
+    Status status;
+    EXPECT_EQ(world.add_character(body, {}, status), 0) << status.reason;
+    return world.character(0);
+  }
+};
+
 /// How far a hand has moved (m) a tenth of a second after a hit or, for a tenth of a second, under a load.
 double moved(int hz, const Vec3<float>& hit, const Vec3<float>& load) {
-  WorldSettings settings;
-  settings.gravity.setZero();
-  settings.ground = false;
-  World<float> world(settings);
-  const Skeleton body = fixtures::humanoid();
-  Status status;
-  EXPECT_EQ(world.add_character(body, {}, status), 0) << status.reason;
-  Character<float> figure = world.character(0);
-  const int hand = body.find("hand_l");
+  Floating<float> scene;
+  auto& [body, world, figure, hand] = scene;
   const Vec3<float> before = figure.model()[hand].translation;
   for (int n = 0; n < hz / 10; ++n) {
     const Vec3<float> now = figure.model()[hand].translation;
@@ -67,15 +82,8 @@ TEST(Push, OfMusclesHasTheSameEffectAtAnyRate) {
 /// How far a hand has moved (m) within 0.1 s of a hit, on its way back from a nudge of 1/40 of that to a
 /// side.
 double moved_after_nudge(float side) {
-  WorldSettings settings;
-  settings.gravity.setZero();
-  settings.ground = false;
-  World<float> world(settings);
-  const Skeleton body = fixtures::humanoid();
-  Status status;
-  EXPECT_EQ(world.add_character(body, {}, status), 0) << status.reason;
-  Character<float> figure = world.character(0);
-  const int hand = body.find("hand_l");
+  Floating<float> scene;
+  auto& [body, world, figure, hand] = scene;
   const auto at = [&] { return Vec3<float>(figure.model()[hand].translation); };
   Vec3<float> before = at();
   for (int n = 0; n < 36; ++n) {
@@ -100,15 +108,8 @@ TEST(Push, HasTheSameEffectOnEitherSideOfTheAnimation) {
 
 TEST(Push, LeavesSpeedsThatAreThoseOfThePosesAllTheWayBack) {
   // Far off its animation, the rate of a joint's rotation vector is not its angular velocity.
-  WorldSettings settings;
-  settings.gravity.setZero();
-  settings.ground = false;
-  World<double> world(settings);
-  const Skeleton body = fixtures::humanoid();
-  Status status;
-  ASSERT_EQ(world.add_character(body, {}, status), 0) << status.reason;
-  Character<double> figure = world.character(0);
-  const int hand = body.find("hand_l");
+  Floating<double> scene;
+  auto& [body, world, figure, hand] = scene;
   const double h = 1 / 240.0;
   std::vector<std::vector<Transform<double>>> poses;
   std::vector<double> energies;

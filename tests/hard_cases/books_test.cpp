@@ -79,13 +79,17 @@ TEST(Books, WorkOfAStrikeOnAHingedRodIsTheTextbooks) {
   EXPECT_NEAR(work_of_impulses(tree, local, true, two), 7 * torque + torque * torque / (2 * about), 1e-12);
 }
 
-TEST(Books, AStrikeIsBookedWithTheEnergyThatItLeaves) {
-  // On the end of a chain that swings; steps so short that they lose nothing of it.
-  Stage<double> stage(weightless());
-  const Skeleton body = chain({4, JointType::kBall, JointType::kFree, 0.5});
+void add_swinging_chain(Stage<double>& stage, int links) {
+  const Skeleton body = chain({links, JointType::kBall, JointType::kFree, 0.5});
   std::vector<JointJet<double>> jets = rest_jets<double>(body);
   randomise_speeds(body, jets, 2, 1);
   stage.add(body, limp(), jets);
+}
+
+TEST(Books, AStrikeIsBookedWithTheEnergyThatItLeaves) {
+  // On the end of a chain that swings; steps so short that they lose nothing of it.
+  Stage<double> stage(weightless());
+  add_swinging_chain(stage, 4);
   for (int n = 0; n < 10; ++n) stage.step(1e-4);
   const double before = stage.kinetic();
   stage.push(0, 3, stage.character(0).model()[3].translation, Vec3<double>(5, -2, 3));
@@ -97,10 +101,7 @@ TEST(Books, AStrikeIsBookedWithTheEnergyThatItLeaves) {
 TEST(Books, JointGapSeesAnOpenJoint) {
   // A welded child whose rest place the world keeps: closed to rounding; the meter reads metres.
   Stage<double> stage(weightless());
-  const Skeleton body = chain({3, JointType::kBall, JointType::kFree, 0.5});
-  std::vector<JointJet<double>> jets = rest_jets<double>(body);
-  randomise_speeds(body, jets, 2, 1);
-  stage.add(body, limp(), jets);
+  add_swinging_chain(stage, 3);
   stage.run(1, 0.01);
   EXPECT_LE(stage.measured().joint_gap, 1e-12);
   const auto model = stage.character(0).model();
