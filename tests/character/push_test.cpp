@@ -84,7 +84,7 @@ TEST(Push, OfMusclesHasTheSameEffectAtAnyRate) {
 double moved_after_nudge(float side) {
   Floating<float> scene;
   auto& [body, world, figure, hand] = scene;
-  const auto at = [&] { return Vec3<float>(figure.model()[hand].translation); };
+  const auto at = [&scene] { return Vec3<float>(scene.figure.model()[scene.hand].translation); };
   Vec3<float> before = at();
   for (int n = 0; n < 36; ++n) {
     if (n == 0) {
