@@ -114,11 +114,11 @@ void crowd_kernel(benchmark::State& state, bool sampling) {
   const auto instant = std::make_unique<crowd_kernels::Instant>();
   std::vector<Line> rows(crowd_kernels::row_bytes(joints) / sizeof(Line));
   std::vector<Line> scratch(
-      (crowd_kernels::sample_scratch_bytes(joints) + crowd_kernels::check_scratch_bytes(joints, joints, 0)) /
+      (crowd_kernels::sample_scratch_bytes(joints) + check_kernels::check_scratch_bytes(joints, joints, 0)) /
       sizeof(Line));
   std::vector<Line> torque(crowd_rig.tree.dofs), limits(crowd_rig.tree.dofs), peak(1), velocity(3);
   const crowd_kernels::JetRows out{rows[0].numbers, joints, joints, joints, scratch.data()};
-  crowd_kernels::Batch batch;
+  check_kernels::Batch batch;
   batch.rows = rows[0].numbers;
   batch.inverse_plus = batch.inverse_minus = limits[0].numbers;
   batch.torque = torque[0].numbers;
@@ -134,7 +134,7 @@ void crowd_kernel(benchmark::State& state, bool sampling) {
     if (sampling)
       sample();
     else
-      crowd_kernels::avx512::check16(crowd_rig.view, batch);
+      check_kernels::avx512::check16(crowd_rig.view, batch);
     benchmark::ClobberMemory();
   }
   per_character(state, 16);
@@ -221,6 +221,41 @@ void limp_arm(benchmark::State& state, bool batches, bool twice) {
     for (int n = 0; n < characters; ++n) unknowns += world.character(n).report().unknown_dofs;
   }
   state.counters["unknowns"] = double(unknowns) / double(characters) / double(state.iterations());
+  per_character(state, characters);
+}
+
+/// Undisturbed characters of a world, 2.5 m apart: its step alone, poses and motion given.
+void world_frame(benchmark::State& state, bool batches) {
+  const int characters = int(state.range(0));
+  const Skeleton rig = fixtures::humanoid();
+  const Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
+  WorldSettings settings;
+  settings.batches = batches;
+  World<float> world(settings);
+  Status status;
+  const int columns = std::max(1, int(std::sqrt(double(characters))));
+  std::vector<JointJet<float>> jets(rig.joints.size());
+  const auto aim = [&](double time) {
+    for (int n = 0; n < characters; ++n) {
+      (void)SamplingJob<float>{&clip, time + 0.013 * n, 1, jets}.Run();
+      jets[0].translation += Vec3<float>(2.5f * float(n / columns), 2.5f * float(n % columns), 0);
+      (void)world.character(n).set_target(jets);
+    }
+  };
+  for (int n = 0; n < characters; ++n)
+    if (world.add_character(rig, {}, status) < 0) return state.SkipWithError(status.reason);
+  aim(0);
+  for (int n = 0; n < characters; ++n) world.character(n).reset();
+  double time = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    aim(time += kStep);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(world.step(float(kStep)));
+  }
+  int solved = 0;
+  for (int n = 0; n < characters; ++n) solved += world.character(n).report().substeps > 0;
+  state.counters["solved"] = solved;
   per_character(state, characters);
 }
 
@@ -324,6 +359,9 @@ BENCHMARK_CAPTURE(limp_arm, alone, false, false)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, batches, true, false)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, two_sets_alone, false, true)->Arg(64);
 BENCHMARK_CAPTURE(limp_arm, two_sets_batches, true, true)->Arg(64);
+
+BENCHMARK_CAPTURE(world_frame, alone, false)->Arg(1000);
+BENCHMARK_CAPTURE(world_frame, batches, true)->Arg(16)->Arg(1000);
 
 BENCHMARK(pile)->Arg(3)->Arg(10)->Arg(30)->Iterations(120)->Unit(benchmark::kMicrosecond);
 

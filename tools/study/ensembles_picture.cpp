@@ -1,6 +1,7 @@
 // Mean energies of many falls as curves, by cairo.
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "study/canvas.h"
 #include "study/ensembles.h"
@@ -25,7 +26,7 @@ struct Axes {
 
 void draw_grid(const Canvas& canvas, const Axes& axes) {
   char text[32];
-  const double step = axes.joules > 1000 ? 500 : 100;
+  const double step = axes.joules > 1000 ? 500 : axes.joules / 5;
   for (double e = 0; e <= axes.joules; e += step) {
     canvas.fill(kGrid, kLeft, axes.y(e), kWide, 1);
     std::snprintf(text, sizeof text, "%.0f J", e);
@@ -54,11 +55,12 @@ void draw_curve(const Canvas& canvas, const Axes& axes, const std::vector<double
 
 convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz,
                               const std::string& file) {
-  Axes axes{0, 100};
+  Axes axes{0, std::numeric_limits<double>::infinity()};
   for (const Ensemble& e : all)
     if (e.scene == scene.name && e.hz == hz && !e.t.empty()) {
       axes.seconds = std::max(axes.seconds, e.t.back());
-      axes.joules = std::max(axes.joules, 1.05 * *std::max_element(e.truth.mean.begin(), e.truth.mean.end()));
+      // The least of all engines' largest: one whose finest steps explode does not set the scale.
+      axes.joules = std::min(axes.joules, 1.05 * *std::max_element(e.truth.mean.begin(), e.truth.mean.end()));
     }
   if (axes.seconds == 0) return {file + ": nobody has run '" + scene.name + "'"};
   Canvas canvas(file, kLeft + kWide + kLegend, kTop + kHigh + kFoot);

@@ -16,6 +16,20 @@ constexpr double kSurprise = 30;
 constexpr int kSections = 16;      ///< of an axis: to a thousandth of its length
 constexpr double kGolden = 0.618;  ///< of what is left
 
+/// Most that the animation moves a collider of a body by against its root's centre of mass (m/s): its turns,
+/// each at its distance.
+template <class T>
+T animated_speed(const CharacterState<T>& s, std::size_t collider) {
+  const std::vector<JointJet<T>>& jets = s.last_target();
+  const int body = s.colliders[collider].joint;
+  T arm = s.bound_center[collider].norm() + s.bound_radius[collider], speed = T(0);
+  for (int i = body; i > 0; i = s.tree.parent[i]) {
+    speed += jets[i].omega.norm() * arm + jets[i].velocity.norm();
+    arm += jets[i].translation.norm();
+  }
+  return speed + jets[0].omega.norm() * (arm + s.tree.center_of_mass[0].norm());
+}
+
 template <class T>
 MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T h) {
   MovingCollider<T> m;
@@ -24,14 +38,14 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
   const Transform<T>& joint = s.model()[body];
   m.pose = joint * m.collider->local.template cast<T>();
   m.radius = s.bound_radius[collider];
-  if (s.owed.motion) {
+  const bool played = s.driven && s.undisturbed();
+  if (played || s.owed.motion) {
     m.velocity = s.history.velocity[0];
-    m.any = h * T(kLimbSpeed) * s.tree.scale.time;
+    m.any = h * (played ? animated_speed(s, collider) : T(kLimbSpeed) * s.tree.scale.time);
   } else {
     const T arm = (s.bound_center[collider] - s.tree.center_of_mass[body]).norm() + m.radius;
-    const T spin = s.owed.history ? s.motion.omega[body].norm()
-                                  : s.history.rotation_rate[body].norm() / T(std::numbers::sqrt2);
-    m.velocity = s.owed.history ? s.motion.velocity[body] : s.history.velocity[body];
+    const T spin = s.history.rotation_rate[body].norm() / T(std::numbers::sqrt2);
+    m.velocity = s.history.velocity[body];
     m.any = std::min(h * spin, T(2)) * arm;  // a chord
   }
   for (const ExternalForce<T>& force : s.forces)
@@ -89,6 +103,12 @@ bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T 
   return d.distance < any + h * std::max(-velocity.dot(d.normal), T(0));
 }
 
+/// m, about the shape's centre: all that it may reach in h seconds.
+template <class T>
+T swept_radius(const MovingCollider<T>& c, T h) {
+  return c.radius + c.any + h * c.velocity.norm();
+}
+
 }  // namespace
 
 template <class T>
@@ -113,7 +133,14 @@ void append_moving(CharacterState<T>& s, T h, std::vector<MovingCollider<T>>& ou
 template <class T>
 bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin) {
   margin += T(kSurprise) * h * h;
+  Eigen::AlignedBox<T, 3> around;  // all of b, so that most of a need not look at each
+  for (const MovingCollider<T>& other : b) {
+    const Vec3<T> reach = Vec3<T>::Constant(swept_radius(other, h));
+    around.extend(other.pose.translation - reach).extend(other.pose.translation + reach);
+  }
   return std::any_of(a.begin(), a.end(), [&](const MovingCollider<T>& one) {
+    const T reach = swept_radius(one, h) + margin;
+    if (around.squaredExteriorDistance(one.pose.translation) > reach * reach) return false;
     return std::any_of(b.begin(), b.end(),
                        [&](const MovingCollider<T>& other) { return comes_close<T>(one, other, h, margin); });
   });

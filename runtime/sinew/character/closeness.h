@@ -39,8 +39,8 @@ constexpr double kCloseMargin =
 
 /// Whether some of two states' colliders come within `margin` (m) of each other in h seconds, as their bodies
 /// move now, or faster by what accelerates them (kSurprise). By their distances, in the direction in which
-/// they approach: what passes by, or falls beside, is not close. O(colliders²), and some hundred nanoseconds
-/// for each pair whose bounding spheres come close.
+/// they approach: what passes by, or falls beside, is not close. O(colliders) where they are apart, else
+/// O(colliders²), and some hundred nanoseconds for each pair whose bounding spheres come close.
 template <class T>
 bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin);
 

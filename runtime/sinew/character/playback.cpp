@@ -27,26 +27,73 @@ void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const
   measure_effect_rows(step, p);
 }
 
+/// What bears on the ground in a check of a character.
+template <class T>
+Standing<T> standing_of(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan) {
+  return {stands(s, world, plan) ? plan.support : nullptr, s.rig->support, T(world.ground_height)};
+}
+
+/// What the muscles would have to give, with nothing that acts from outside left out.
+template <class T>
+void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
+                       const CheckRoom<T>& room) {
+  TreeProblem<T>& p = s.problem;
+  const Vec3<T> origin = s.target[0].translation, gravity = world.gravity.template cast<T>();
+  inertial_wrenches<T>(s.tree, s.target, gravity, origin, p.kinematics, s.motion, p.force, p.moment);
+  const auto without = [&](auto add) {
+    for (std::vector<Vec3<T>>* wrench : {&p.force, &p.moment})
+      std::fill(wrench->begin(), wrench->end(), Vec3<T>::Zero());
+    add();
+    add_wrenches<T>(p.kinematics, p.force, p.moment, room.body);
+  };
+  const Standing<T> standing = standing_of(s, world, plan);
+  move_bodies<T>(s.tree, s.target, gravity, standing, room);
+  without([&] {
+    for (const ExternalForce<T>& j : s.impulses)
+      plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
+    for (const ExternalForce<T>& f : s.forces)
+      plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
+  });
+  if (standing.support) standing.support->stand(standing.points, standing.ground - origin.z(), room);
+  without([&] { add_effect_wrenches(s, world, origin, h); });
+  project_bodies<T>(s.tree, room.body, [&](int dof, const T& t) { p.gradient[dof] = t; });
+  for (const JointRow<T>& row : p.effect_rows)
+    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
+}
+
+/// Velocity of the root's centre of mass, m/s.
+template <class T>
+Vec3<T> root_velocity(const Tree<T>& tree, const JointJet<T>& jet) {
+  return jet.velocity + jet.rotation * Vec3<T>(jet.omega.cross(tree.center_of_mass[0]));
+}
+
 }  // namespace
 
 template <class T>
-bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h) {
+bool has_plain_check(const CharacterState<T>& s) {
+  return s.impulses.empty() && s.forces.empty() && s.problem.effects.empty();
+}
+
+template <class T>
+bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan) {
+  return plan.support && world.ground && world.ground_support && s.settings.ground_contact;
+}
+
+template <class T>
+bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
+          const CheckRoom<T>& room) {
   if (s.is_struck(T(world.accuracy.return_time))) return false;
-  TreeProblem<T>& p = s.problem;
-  const Vec3<T> origin = s.target[0].translation;
-  inertial_wrenches<T>(s.tree, s.target, world.gravity.template cast<T>(), origin, p.kinematics, s.motion,
-                       p.force, p.moment);
-  for (const ExternalForce<T>& j : s.impulses)
-    plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
-  for (const ExternalForce<T>& f : s.forces)
-    plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
-  if (plan.support && world.ground && world.ground_support && s.settings.ground_contact)
-    plan.support->share(s.rig->support, p.kinematics, T(world.ground_height) - origin.z(), s.standing,
-                        p.force, p.moment);
-  if (!p.effects.empty()) add_effect_wrenches(s, world, origin, h);
-  project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, p.gradient);
-  for (const JointRow<T>& row : p.effect_rows)
-    for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
+  if (has_plain_check(s))
+    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+                    s.problem.gradient);
+  else
+    check_under_loads(s, world, plan, h, room);
+  return play_checked(s, world.gravity, h);
+}
+
+template <class T>
+bool play_checked(CharacterState<T>& s, const Vec3<double>& gravity, T h) {
+  const TreeProblem<T>& p = s.problem;
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   const int begin = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0, end = s.limited ? s.tree.bodies : begin;
   for (int i = begin; i < end; ++i)
@@ -59,9 +106,9 @@ bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& p
     return Transform<T>{jet.rotation, jet.translation};
   });
   s.pose_changed();
-  s.history.place = origin.template cast<double>();  // neighbours go by these two
-  s.history.velocity[0] = s.motion.velocity[0];
-  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
+  s.history.place = s.target[0].translation.template cast<double>();  // neighbours go by these two
+  s.history.velocity[0] = root_velocity(s.tree, s.target[0]);
+  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = gravity};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;

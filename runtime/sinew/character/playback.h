@@ -2,13 +2,29 @@
 #pragma once
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/effects/check_pass.h"
 
 namespace sinew {
 
-/// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
-/// they can't. Leaves the history behind, and the report's totals to whoever asks for them.
+/// Whether a check of the animation asks for nothing but the residual pass and the floor's support: no force
+/// from outside, no effect.
 template <class T>
-bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h);
+bool has_plain_check(const CharacterState<T>& state);
+
+/// Whether the floor bears what a driven root would.
+template <class T>
+bool stands(const CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan);
+
+/// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
+/// they can't. Leaves the history behind, and the totals to whoever asks for them. `room` must be one of the
+/// rig's size.
+template <class T>
+bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
+          const CheckRoom<T>& room);
+
+/// The same where `state.problem.gradient` holds what the muscles would have to give.
+template <class T>
+bool play_checked(CharacterState<T>& state, const Vec3<double>& gravity, T h);
 
 /// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
 template <class T>
@@ -19,9 +35,12 @@ void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 template <class T>
 void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 
-#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                             \
-  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T); \
-  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                   \
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                                  \
+  prefix bool has_plain_check<T>(const CharacterState<T>&);                                                  \
+  prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&);                 \
+  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, const CheckRoom<T>&); \
+  prefix bool play_checked<T>(CharacterState<T>&, const Vec3<double>&, T);                                   \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                                        \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)

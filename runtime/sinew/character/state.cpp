@@ -108,7 +108,6 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
       guessed(tree),
       history(tree.bodies),
       motion(tree),
-      standing(rig->support.points.size()),
       baked(tree.bodies, 0),
       wanted(tree.bodies) {
   floats = tree.type[0] == JointType::kFree && std::count(tree.parent.begin(), tree.parent.end(), -1) == 1;
@@ -255,8 +254,7 @@ void CharacterState<T>::keep_record() {
 template <class T>
 void CharacterState<T>::settle_totals() {
   if (!owed.totals) return;
-  keep_record();
-  report_totals(owed.gravity);
+  report_totals(totals<T>(tree, last_target(), owed.gravity, problem.kinematics, motion));
 }
 
 template <class T>
@@ -273,8 +271,12 @@ void CharacterState<T>::read_root_rate() {
 
 template <class T>
 void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
+  report_totals(totals<T>(tree, history, gravity));
+}
+
+template <class T>
+void CharacterState<T>::report_totals(const Totals& sum) {
   owed.totals = false;
-  const Totals sum = totals<T>(tree, history, gravity);
   report.kinetic_energy = sum.kinetic_energy;
   report.potential_energy = sum.potential_energy;
   report.momentum = sum.momentum;
@@ -316,6 +318,7 @@ T CharacterState<T>::pace() const {
 
 template <class T>
 void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
+  keep_record();
   settle_totals();
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = {target[i].rotation, target[i].translation};
   target_stands = true;
@@ -502,10 +505,8 @@ bool CharacterState<T>::joint_is_driven(int body) const {
 
 template <class T>
 T CharacterState<T>::fastest() const {
-  if (owed.motion) return history.velocity[0].norm() + T(kLimbSpeed) * tree.scale.time;
   T square = T(0);
-  for (const Vec3<T>& v : owed.history ? motion.velocity : history.velocity)
-    square = std::max(square, v.squaredNorm());
+  for (const Vec3<T>& v : history.velocity) square = std::max(square, v.squaredNorm());
   return std::sqrt(square);
 }
 

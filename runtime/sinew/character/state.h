@@ -147,12 +147,11 @@ struct CharacterState {
   Kinematics<T> guessed;                            ///< room, see IslandTree; and for snapshots
   History<T> history;
   Motion<T> motion;
-  std::vector<StandingPoint<T>> standing;  ///< room for share_support
-  std::vector<std::uint8_t> baked;         ///< [body] goes on by itself in this step
-  int unbaked = 0;                         ///< of these, in this step: had to be solved for after all
-  std::vector<Transform<T>> wanted;        ///< [body] what the animation wants at the end of the present part
-  std::uint64_t contact_signature = 0;     ///< of the contacts that touched after the last step
-  std::uint64_t limit_signature = 0;       ///< of the joint limits that bore
+  std::vector<std::uint8_t> baked;      ///< [body] goes on by itself in this step
+  int unbaked = 0;                      ///< of these, in this step: had to be solved for after all
+  std::vector<Transform<T>> wanted;     ///< [body] what the animation wants at the end of the present part
+  std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
+  std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
   std::uint8_t passing = 0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::hold
   double energy_ceiling =
@@ -182,7 +181,8 @@ struct CharacterState {
   void read_root_rate();
   /// Energies and momenta of the history into the report.
   void report_totals(const Vec3<double>& gravity);
-  /// The same where the last step owes them.
+  void report_totals(const Totals& sum);
+  /// Those of the animation where the last step owes them.
   void settle_totals();
   /// What is owed of the muscles; before their strength changes.
   void keep_loads();

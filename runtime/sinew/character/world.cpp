@@ -55,6 +55,9 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   s.problem.room = room_of_rig(*s.rig);
   for (const auto& effect : s.effects) s.problem.room.effect_rows += effect->most_rows();
   rooms.add(s.problem.room);
+  if (!s.is_prop && !s.is_particles)
+    check_room = {std::max(check_room.bodies, s.tree.bodies), std::max(check_room.dofs, s.tree.dofs),
+                  std::max(check_room.points, static_cast<int>(s.rig->support.points.size()))};
   // The world has its rig, too: three of them are two characters.
   const bool shared = s.rig.use_count() > 2 && s.tree.dofs <= kMostBatchDofs;
   if (settings.batches && plan.make_batches && shared && !s.is_prop && !s.is_particles)
@@ -65,6 +68,7 @@ template <class T>
 void World<T>::Impl::count_all() {
   rooms = {};
   batch_room = {};
+  check_room = {};
   for (const auto& s : states) count_in(*s);
   couplings.count_in(states, rooms);
 }
@@ -90,6 +94,10 @@ WorldMemory World<T>::Impl::memory() const {
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving +=
         workers[n]->stepper.bytes(n == 0 ? most : small) + workers[n]->sets.bytes(n == 0 ? most : small);
+  for (const auto& worker : workers) {
+    bytes.solving += worker->check_room.capacity();
+    if (worker->checks) bytes.solving += worker->checks->bytes();
+  }
   if (plan.make_batches) bytes.solving += workers.size() * workers[0]->batch->bytes(batch_room);
   return bytes;
 }
@@ -109,6 +117,10 @@ void World<T>::Impl::reserve() {
     workers[n]->jets.reserve(rooms.largest.bodies);
     if (plan.make_batches) workers[n]->batch->reserve(batch_room);
     workers[n]->waiting.reserve(Impl::kMostWaiting);
+    const auto& [bodies, dofs, points] = check_room;
+    workers[n]->check_room.resize(CheckRoom<T>::bytes(bodies, bodies, points));
+    if (workers[n]->checks) workers[n]->checks->reserve(bodies, dofs, points);
+    workers[n]->unchecked.reserve(Impl::kMostWaiting);
   }
   for (auto* v : {&lagged, &lagged_new}) grow(*v, rooms.all.loaded);
   const auto count = states.capacity();

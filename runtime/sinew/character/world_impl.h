@@ -10,6 +10,7 @@
 #include "sinew/character/levels.h"
 #include "sinew/character/snapshot.h"
 #include "sinew/character/touching_sets.h"
+#include "sinew/effects/check_batch.h"
 #include "sinew/effects/particles.h"
 #include "sinew/optimizer/batch_newton.h"
 
@@ -38,11 +39,25 @@ struct World<T>::Impl {
     }
   };
   static constexpr std::size_t kMostWaiting = 4 * BatchSolver::kMostLanes;  ///< per worker
+  /// An island of one whose animation is to be checked with others'.
+  struct Unchecked {
+    int island = 0;
+    CharacterState<T>* state = nullptr;
+    bool stands = false;  ///< see stands()
+    double spent = 0;     ///< as of Waiting
+
+    bool alike(const Unchecked& other) const {
+      return state->rig == other.state->rig && stands == other.stands;
+    }
+  };
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
     std::unique_ptr<BatchSolver> batch;  ///< null: not declared
     std::vector<Waiting> waiting;
+    std::unique_ptr<BatchCheck> checks;  ///< the same
+    std::vector<Unchecked> unchecked;
+    std::vector<std::byte> check_room;  ///< of a check alone, of the largest rig
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
@@ -68,6 +83,10 @@ struct World<T>::Impl {
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
   SolveRoom batch_room;  ///< of the largest rig that batches solve
+  /// What the largest rig that may be played has: points that may stand on the ground.
+  struct {
+    int bodies = 0, dofs = 0, points = 0;
+  } check_room;
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step
@@ -95,6 +114,15 @@ struct World<T>::Impl {
   Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
   void park(CharacterState<T>& state);
   bool play_set(std::span<CharacterState<T>* const> members, Worker& worker);
+  bool follow_set(std::span<CharacterState<T>* const> members, Worker& worker);
+  bool play_alone(CharacterState<T>& state, Worker& worker);
+  bool may_play(CharacterState<T>& state, Worker& worker) const;
+  bool checks(const CharacterState<T>& state) const;
+  CheckRoom<T> room_of_check(const CharacterState<T>& state, Worker& worker) const;
+  bool checks_in_batches(const CharacterState<T>& state, const Worker& worker) const;
+  void check_later(int island, Worker& worker, double spent);
+  void check_alike(Worker& worker, const Unchecked& one);
+  void solve_alone(int island, Worker& worker, double spent);
   int step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
                std::span<Coupling<T>* const> ties, int spent, Worker& worker,
                std::span<LaggedForce<T>> lagged_out);

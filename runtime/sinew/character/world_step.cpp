@@ -29,32 +29,148 @@ std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
   return hash;
 }
 
+/// Moves who is like `first` from a worker's list to `batch`; returns how many.
+template <class Entry, std::size_t kMost>
+std::size_t take_alike(std::vector<Entry>& from, const Entry first, std::array<Entry, kMost>& batch) {
+  std::size_t count = 0;
+  const auto taken = [&](const Entry& other) {
+    if (!other.alike(first)) return false;
+    batch[count++] = other;
+    return true;
+  };
+  from.erase(std::remove_if(from.begin(), from.end(), taken), from.end());
+  return count;
+}
+
 }  // namespace
+
+/// The clip and nothing else for members whose detail allows no more. False, with nothing moved, where
+/// somebody may be solved.
+template <class T>
+bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Worker& worker) {
+  const auto may_be_solved = [](const CharacterState<T>* s) { return s->levels.allowed >= Level::kPartial; };
+  if (std::any_of(members.begin(), members.end(), may_be_solved)) return false;
+  for (CharacterState<T>* s : members) {
+    const bool checked = s->levels.allowed == Level::kChecked && s->undisturbed() &&
+                         play(*s, settings, plan, h, room_of_check(*s, worker));
+    if (!checked) follow(*s, settings, h);
+    s->levels.did = checked ? Level::kChecked : Level::kPlayback;
+  }
+  return true;
+}
+
+/// Whether it is on its animation, and nothing is in the way of that.
+template <class T>
+bool World<T>::Impl::may_play(CharacterState<T>& s, Worker& worker) const {
+  return !s.tied && s.driven && s.undisturbed() &&
+         !(plan.contacts && plan.contacts->meets_obstacle(s, surroundings(), h, worker.obstacle_room));
+}
+
+/// Whether its muscles are asked in this step.
+template <class T>
+bool World<T>::Impl::checks(const CharacterState<T>& s) const {
+  const auto every = static_cast<std::uint32_t>(s.detail.check_every);
+  return s.levels.steps % every == 0 || s.pushed() || s.levels.level > Level::kChecked;
+}
+
+template <class T>
+CheckRoom<T> World<T>::Impl::room_of_check(const CharacterState<T>& s, Worker& worker) const {
+  return {worker.check_room.data(), s.tree.bodies, s.tree.bodies,
+          static_cast<int>(s.rig->support.points.size())};
+}
+
+/// Plays who may play. False, with nothing moved, where its muscles can't.
+template <class T>
+bool World<T>::Impl::play_alone(CharacterState<T>& s, Worker& worker) {
+  const bool checked = checks(s);
+  if (checked && !play(s, settings, plan, h, room_of_check(s, worker))) return false;
+  if (!checked) follow(s, settings, h);
+  s.levels.did = checked ? Level::kChecked : Level::kPlayback;
+  return true;
+}
 
 /// Plays who is stepped together where that will do. False, with nothing moved, where they have to be solved.
 template <class T>
 bool World<T>::Impl::play_set(std::span<CharacterState<T>* const> members, Worker& worker) {
-  bool follows = true;
-  for (const CharacterState<T>* s : members) follows = follows && s->levels.allowed < Level::kPartial;
-  if (follows) {
-    for (CharacterState<T>* s : members) {
-      const bool checks = s->levels.allowed == Level::kChecked && s->undisturbed();
-      s->levels.did = checks && play(*s, settings, plan, h) ? Level::kChecked : Level::kPlayback;
-      if (s->levels.did == Level::kPlayback) follow(*s, settings, h);
+  if (follow_set(members, worker)) return true;
+  return members.size() == 1 && may_play(*members[0], worker) && play_alone(*members[0], worker);
+}
+
+/// Whether the check of who may play can be made in a batch.
+template <class T>
+bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, const Worker& worker) const {
+  if constexpr (std::is_same_v<T, float>)
+    return settings.batches && worker.checks && has_plain_check(s) && checks(s);
+  return false;
+}
+
+/// Puts an island of one aside, until there are others of its rig to fill a batch of checks with.
+template <class T>
+void World<T>::Impl::check_later(int island, Worker& worker, double spent) {
+  CharacterState<T>* state = worker.members[0];
+  const Unchecked last{island, state, stands(*state, settings, plan), spent};
+  worker.unchecked.push_back(last);
+  const auto alike = std::count_if(worker.unchecked.begin(), worker.unchecked.end(),
+                                   [&](const Unchecked& other) { return other.alike(last); });
+  if (alike == worker.checks->lanes())
+    check_alike(worker, last);
+  else if (worker.unchecked.size() == kMostWaiting)
+    check_alike(worker, worker.unchecked[0]);
+}
+
+/// Checks who is like `one` in a batch, plays who can be, and goes on with the others.
+template <class T>
+void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
+  std::array<Unchecked, BatchCheck::kMostLanes> batch;
+  const std::size_t count = take_alike(worker.unchecked, one, batch);
+  const double begin = now(settings.detail.budget);
+  bool checked = false;
+  if constexpr (std::is_same_v<T, float>)
+    if (count >= kFewestLanes) {
+      std::array<const JointJet<float>*, BatchCheck::kMostLanes> jets;
+      std::array<float*, BatchCheck::kMostLanes> torque;
+      for (std::size_t n = 0; n < count; ++n) {
+        jets[n] = batch[n].state->target.data();
+        torque[n] = batch[n].state->problem.gradient.data();
+      }
+      const Rig<float>& rig = *batch[0].state->rig;
+      worker.checks->check({rig.tree, batch[0].stands ? &rig.support : nullptr,
+                            settings.gravity.cast<float>(), float(settings.ground_height)},
+                           std::span(jets.data(), count), std::span(torque.data(), count));
+      checked = true;
     }
-    return true;
+  const double share = (now(settings.detail.budget) - begin) / double(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double again = now(settings.detail.budget);
+    const Unchecked& u = batch[n];
+    CharacterState<T>* state = u.state;
+    const bool played = checked ? play_checked(*state, settings.gravity, h)
+                                : play(*state, settings, plan, h, room_of_check(*state, worker));
+    const double spent = u.spent + share + now(settings.detail.budget) - again;
+    worker.members.assign(1, state);
+    worker.ties.clear();
+    if (!played) {
+      solve_alone(u.island, worker, spent);
+      continue;
+    }
+    state->levels.did = Level::kChecked;
+    close_island(u.island, worker.members, worker.ties, spent);
   }
-  CharacterState<T>& s = *members[0];
-  const auto in_the_way = [&](CharacterState<T>& of) {
-    return plan.contacts && plan.contacts->meets_obstacle(of, surroundings(), h, worker.obstacle_room);
-  };
-  if (members.size() > 1 || s.tied || !s.driven || !s.undisturbed() || in_the_way(s)) return false;
-  const auto every = static_cast<std::uint32_t>(s.detail.check_every);
-  const bool checks = s.levels.steps % every == 0 || s.pushed() || s.levels.level > Level::kChecked;
-  if (checks && !play(s, settings, plan, h)) return false;
-  if (!checks) follow(s, settings, h);
-  s.levels.did = checks ? Level::kChecked : Level::kPlayback;
-  return true;
+}
+
+/// Solves the island of worker.members[0], or puts it aside for a batch of solves.
+template <class T>
+void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
+  const double begin = now(settings.detail.budget);
+  CharacterState<T>& s = *worker.members[0];
+  catch_up(s, worker.jets);
+  if (worker.stepper.begin(settings, surroundings(), h, worker.members, islands.members(island), worker.ties,
+                           lagged) &&
+      batches(s, worker))
+    return wait(island, worker, spent + now(settings.detail.budget) - begin);
+  lagged_count[island] = worker.stepper.end(lagged_of(island));
+  s.levels.did = level_of(s);
+  close_island(island, worker.members, worker.ties, spent + now(settings.detail.budget) - begin);
 }
 
 /// Whether the first solve of a character that begin() found alone can be made in a batch.
@@ -94,13 +210,12 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (CharacterState<T>* s : worker.members)
     if (worker.members.size() > 1 && !s->undisturbed()) catch_up(*s, worker.jets);
   if (worker.members.size() == 1) {
-    if (!play_set(worker.members, worker)) {
-      catch_up(*worker.members[0], worker.jets);
-      if (worker.stepper.begin(settings, surroundings(), h, worker.members, indices, worker.ties, lagged) &&
-          batches(*worker.members[0], worker))
-        return wait(island, worker, now(settings.detail.budget) - begin);
-      lagged_count[island] = worker.stepper.end(lagged_of(island));
-      worker.members[0]->levels.did = level_of(*worker.members[0]);
+    const auto spent = [&] { return now(settings.detail.budget) - begin; };
+    CharacterState<T>& s = *worker.members[0];
+    if (!follow_set(worker.members, worker)) {
+      if (!may_play(s, worker)) return solve_alone(island, worker, spent());
+      if (checks_in_batches(s, worker)) return check_later(island, worker, spent());
+      if (!play_alone(s, worker)) return solve_alone(island, worker, spent());
     }
   } else if (worker.sets.begin(plan.contacts, worker.members, indices, worker.ties, lagged,
                                settings.gravity.template cast<T>(), h)) {
@@ -158,14 +273,7 @@ void World<T>::Impl::wait(int island, Worker& worker, double spent) {
 template <class T>
 void World<T>::Impl::solve_alike(Worker& worker, const Waiting& one) {
   std::array<Waiting, BatchSolver::kMostLanes> batch;
-  std::size_t count = 0;
-  const auto taken = [&, first = one](const Waiting& other) {
-    if (!other.alike(first)) return false;
-    batch[count++] = other;
-    return true;
-  };
-  worker.waiting.erase(std::remove_if(worker.waiting.begin(), worker.waiting.end(), taken),
-                       worker.waiting.end());
+  const std::size_t count = take_alike(worker.waiting, one, batch);
   double begin = now(settings.detail.budget);
   std::array<SolveReport, BatchSolver::kMostLanes> reports;
   if constexpr (std::is_same_v<T, float>)
@@ -201,6 +309,7 @@ void World<T>::Impl::work(void* context, int index) {
   constexpr int batch = 8;  // that are taken at once: playing takes about a microsecond
   for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
     for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
+  while (!worker.unchecked.empty()) world.check_alike(worker, worker.unchecked[0]);
   while (!worker.waiting.empty()) world.solve_alike(worker, worker.waiting[0]);
 }
 

@@ -21,21 +21,24 @@ struct alignas(64) Line {
 
 struct Kernels {
   void (*sample)(const crowd_kernels::Instant&, const crowd_kernels::JetRows&);
-  void (*check)(const crowd_kernels::Rig&, const crowd_kernels::Batch&);
+  void (*check)(const check_kernels::Rig&, const check_kernels::Batch&);
 };
 
 Kernels kernels_of(InstructionSet set, int lanes) {
-  using namespace crowd_kernels;
+  namespace of_clip = crowd_kernels;
+  namespace of_motion = check_kernels;
   const bool eight = lanes == 8;
 #ifdef __x86_64__
   if (set == InstructionSet::kAvx512)
-    return eight ? Kernels{avx512::sample8, avx512::check8} : Kernels{avx512::sample16, avx512::check16};
+    return eight ? Kernels{of_clip::avx512::sample8, of_motion::avx512::check8}
+                 : Kernels{of_clip::avx512::sample16, of_motion::avx512::check16};
   if (set == InstructionSet::kAvx2)
-    return eight ? Kernels{avx2::sample8, avx2::check8} : Kernels{avx2::sample16, avx2::check16};
+    return eight ? Kernels{of_clip::avx2::sample8, of_motion::avx2::check8}
+                 : Kernels{of_clip::avx2::sample16, of_motion::avx2::check16};
 #endif
   (void)set;
-  return eight ? Kernels{baseline::sample8, baseline::check8}
-               : Kernels{baseline::sample16, baseline::check16};
+  return eight ? Kernels{of_clip::baseline::sample8, of_motion::baseline::check8}
+               : Kernels{of_clip::baseline::sample16, of_motion::baseline::check16};
 }
 
 /// 1 / limit; a muscle that has nothing is overloaded by anything.
@@ -102,7 +105,7 @@ struct Crowd::Impl {
   std::size_t scratch_lines() const {
     const std::size_t bytes =
         std::max(crowd_kernels::sample_scratch_bytes(joints),
-                 crowd_kernels::check_scratch_bytes(rig.tree.bodies, joints, int(rig.support.points.size())));
+                 check_kernels::check_scratch_bytes(rig.tree.bodies, joints, int(rig.support.points.size())));
     return (bytes + sizeof(Line) - 1) / sizeof(Line);
   }
   std::size_t row_lines() const { return crowd_kernels::row_bytes(joints) / sizeof(Line); }
@@ -143,7 +146,7 @@ struct Crowd::Impl {
     stale[character] = 0;
   }
   /// Moves the tracks of a batch on and finds where its jets are.
-  void sample_batch(int first, const Chunk& chunk, crowd_kernels::Batch& batch) {
+  void sample_batch(int first, const Chunk& chunk, check_kernels::Batch& batch) {
     bool together = true;
     for (int i = first; i < first + lanes; ++i) {
       if (!active[i]) continue;
@@ -165,7 +168,7 @@ struct Crowd::Impl {
     } else {
       for (int i = first; i < first + lanes; ++i)
         if (active[i] && stale[i]) sample(i);
-      batch.jets = kernels::layout(jets_of(first));
+      for (int lane = 0; lane < lanes; ++lane) batch.jets[lane] = kernels::layout(jets_of(first + lane));
     }
   }
   void run_batch(int b, const Chunk& chunk) {
@@ -173,7 +176,7 @@ struct Crowd::Impl {
     if (std::find(active.begin() + first, active.begin() + first + lanes, 1) ==
         active.begin() + first + lanes)
       return;
-    crowd_kernels::Batch batch;
+    check_kernels::Batch batch;
     sample_batch(first, chunk, batch);
     for (int lane = 0; lane < lanes && settings.model_poses; ++lane)
       batch.model[lane] = kernels::layout(active[first + lane] ? model_of(first + lane) : chunk.unwanted);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sinew/crowd/crowd.h"
-#include "sinew/crowd/kernels/batch.h"
+#include "sinew/effects/kernels/check.h"
 
 namespace sinew {
 
@@ -13,7 +13,7 @@ struct CrowdRig {
   SupportPoints<float> support;
   std::vector<float> torque_plus, torque_minus;  ///< [dof] muscle limits at strength 1, N·m
   std::vector<int> parent;                       ///< [joint]
-  crowd_kernels::Rig view;                       ///< of the above
+  check_kernels::Rig view;                       ///< of the above
 
   CrowdRig(const Skeleton& skeleton, const CrowdSettings& settings);
   CrowdRig(const CrowdRig&) = delete;

@@ -11,6 +11,7 @@
 
 namespace sinew {
 
+class BatchCheck;
 class BatchSolver;
 template <class T>
 class ContactModel;
@@ -38,6 +39,7 @@ struct StepPlan {
   const CouplingTerm<T>* couplings = nullptr;                ///< of loops and particles
   const TimeScheme<T>* scheme = nullptr;                     ///< in place of Bossak's, for comparisons
   std::unique_ptr<BatchSolver> (*make_batches)() = nullptr;  ///< in float alone
+  std::unique_ptr<BatchCheck> (*make_checks)() = nullptr;    ///< the same
 
   /// Nothing declared.
   static const StepPlan& none() {

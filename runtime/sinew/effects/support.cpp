@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sinew/effects/check_pass.h"
+
 namespace sinew {
 
 template <class T>
@@ -36,13 +38,7 @@ SupportPoints<T> points_of(const Tree<T>& tree, std::span<const ContactPoint<T>>
 }
 
 template <class T>
-void share(const SupportPoints<T>& points, const Kinematics<T>& kinematics, const T& ground,
-           std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
-  share_support<T>(points, kinematics.rotation, kinematics.origin, ground, {}, room, force, moment);
-}
-
-template <class T>
-constexpr SupportTerm<T> kSupport{points_of<T>, share<T>};
+constexpr SupportTerm<T> kSupport{points_of<T>, stand<T>};
 
 }  // namespace
 

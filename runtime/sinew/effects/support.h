@@ -158,12 +158,14 @@ void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<
 extern template struct SupportPoints<float>;
 extern template struct SupportPoints<double>;
 
-/// The same as a character's step calls it.
+template <class T>
+struct CheckRoom;
+
+/// The same as a character's step calls it, see check_pass.h.
 template <class T>
 struct SupportTerm {
   SupportPoints<T> (*points)(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
-  void (*share)(const SupportPoints<T>& points, const Kinematics<T>& kinematics, const T& ground,
-                std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment);
+  void (*stand)(const SupportPoints<T>& points, const T& ground, const CheckRoom<T>& room);
 };
 
 /// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.

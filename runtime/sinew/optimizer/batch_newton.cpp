@@ -4,6 +4,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "sinew/effects/check_batch.h"
 #include "sinew/optimizer/kernels/newton.h"
 
 namespace sinew {
@@ -88,8 +89,10 @@ void BatchNewton::solve(const StepSettings<float>& settings, const Accuracy& acc
 
 template <class T>
 void Batches<T>::declare(StepPlan<T>& plan) {
-  if constexpr (std::is_same_v<T, float>)
+  if constexpr (std::is_same_v<T, float>) {
     plan.make_batches = []() -> std::unique_ptr<BatchSolver> { return std::make_unique<BatchNewton>(); };
+    plan.make_checks = []() -> std::unique_ptr<BatchCheck> { return std::make_unique<MotionChecker>(); };
+  }
 }
 
 template struct Batches<float>;

@@ -55,8 +55,8 @@ class BatchNewton final : public BatchSolver {
   std::vector<std::byte> memory_;
 };
 
-/// What World::declare takes. Without, characters are solved one by one, with the same bits. Its kernels hold
-/// the rows of muscles, joint limits and damping, declared or not, and act by what is declared.
+/// What World::declare takes. Without, characters are checked and solved one by one, with the same bits. Its
+/// kernels hold the rows of muscles, joint limits and damping, declared or not, and act by what is declared.
 template <class T>
 struct Batches {
   static void declare(StepPlan<T>& plan);

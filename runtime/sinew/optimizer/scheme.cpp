@@ -168,28 +168,78 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
   history.turns_as_differenced = false;
 }
 
+namespace {
+
+/// Totals, body by body. `place` (m, world) is where centres are given from.
+class TotalsSum {
+ public:
+  TotalsSum(const Vec3<double>& place, const Vec3<double>& gravity) : place_(place), gravity_(gravity) {}
+
+  /// `turning`: twice the energy of its turning, J; `momentum`: angular, about its centre.
+  template <class T>
+  void add(T mass, const Vec3<T>& center, const Vec3<T>& velocity, T turning, const Vec3<T>& momentum) {
+    const double m = double(mass);
+    const Vec3<double> c = center.template cast<double>(), v = velocity.template cast<double>();
+    sum_.kinetic_energy += 0.5 * (m * v.squaredNorm() + double(turning));
+    sum_.potential_energy += gravity_energy<double>(m, gravity_, place_ + c);
+    sum_.momentum += m * v;
+    about_place_ += m * c.cross(v) + momentum.template cast<double>();
+    mass_ += m;
+    first_ += m * c;
+  }
+  Totals get() {
+    if (mass_ > 0) sum_.angular_momentum = about_place_ - first_.cross(sum_.momentum) / mass_;
+    return sum_;
+  }
+
+ private:
+  Totals sum_;
+  Vec3<double> place_, gravity_, first_ = Vec3<double>::Zero(), about_place_ = Vec3<double>::Zero();
+  double mass_ = 0;
+};
+
+}  // namespace
+
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity) {
-  Totals sum;
-  double mass = 0;
-  Vec3<double> first = Vec3<double>::Zero(), about_place = Vec3<double>::Zero();
+  TotalsSum sum(history.place, gravity);
   for (int i = 0; i < tree.bodies; ++i) {
-    const double m = double(tree.mass[i]);
-    const Vec3<double> center = history.center[i].template cast<double>();
-    const Vec3<double> velocity = history.velocity[i].template cast<double>();
     const Vec3<T> spin = history.rotation[i].transpose() * history.momentum[i];
     const Mat3<T>& rate = history.rotation_rate[i];
     const T turning = history.turns_as_differenced ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
                                                    : spin.dot(tree.inverse_inertia[i] * spin);
-    sum.kinetic_energy += 0.5 * (m * velocity.squaredNorm() + double(turning));
-    sum.potential_energy += gravity_energy<double>(m, gravity, history.place + center);
-    sum.momentum += m * velocity;
-    about_place += m * center.cross(velocity) + history.momentum[i].template cast<double>();
-    mass += m;
-    first += m * center;
+    sum.add<T>(tree.mass[i], history.center[i], history.velocity[i], turning, history.momentum[i]);
   }
-  if (mass > 0) sum.angular_momentum = about_place - first.cross(sum.momentum) / mass;
-  return sum;
+  return sum.get();
+}
+
+template <class T>
+Totals totals(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<double>& gravity,
+              Kinematics<T>& k, Motion<T>& m) {
+  TotalsSum sum(jets[0].translation.template cast<double>(), gravity);
+  for (int i = 0; i < tree.bodies; ++i) {
+    const JointJet<T>& jet = jets[i];
+    const Mat3<T> turn = jet.rotation.toRotationMatrix();
+    Vec3<T>& omega = m.body[i].omega;
+    if (const int p = tree.parent[i]; p < 0) {
+      k.rotation[i] = turn;
+      k.origin[i].setZero();
+      m.origin_velocity[i] = jet.velocity;
+      omega = jet.omega;
+    } else {
+      const Vec3<T>&arm = jet.translation, &around = m.body[p].omega;
+      k.rotation[i].noalias() = k.rotation[p].lazyProduct(turn);
+      k.origin[i] = k.origin[p] + k.rotation[p] * arm;
+      m.origin_velocity[i] = m.origin_velocity[p] + k.rotation[p] * Vec3<T>(around.cross(arm) + jet.velocity);
+      omega = turn.transpose() * around + jet.omega;
+    }
+    const Vec3<T>& center = tree.center_of_mass[i];
+    const Vec3<T> spun = tree.inertia[i] * omega;
+    sum.add<T>(tree.mass[i], k.origin[i] + k.rotation[i] * center,
+               m.origin_velocity[i] + k.rotation[i] * Vec3<T>(omega.cross(center)), omega.dot(spun),
+               k.rotation[i] * spun);
+  }
+  return sum.get();
 }
 
 template <class T>

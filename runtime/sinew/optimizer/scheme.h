@@ -120,6 +120,12 @@ void advance_exactly(const Tree<T>& tree, const Kinematics<T>& kinematics, const
 template <class T>
 Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>& gravity);
 
+/// Of the motion `jets` [body], the root's in the world. Of `kinematics` and `motion`, which are room, it
+/// leaves rotations, origins from the root's, their velocities, and angular velocities. O(bodies).
+template <class T>
+Totals totals(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<double>& gravity,
+              Kinematics<T>& kinematics, Motion<T>& motion);
+
 /// Where a free body that is at `start` (body → world) with the angular momentum L (world) is after h
 /// seconds, which may be negative: Ṙ = R ω^, ω = I⁻¹ Rᵀ L, by Magnus's series of fourth order in parts of
 /// 0.15 rad (Hairer, Lubich and Wanner, "Geometric Numerical Integration", 2006, section IV.7).
@@ -134,19 +140,21 @@ extern template Mat3<double> free_rotation<double>(const Mat3<double>&, const Ma
 template <class T>
 Vec3<T> follow_root(const Kinematics<T>& kinematics, const Vec3<double>& common_origin, History<T>& history);
 
-#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                   \
-  prefix struct History<T>;                                                                                 \
-  prefix struct Prediction<T>;                                                                              \
-  prefix void predict_euler<T>(const Tree<T>&, const History<T>&, T, const Vec3<double>&, Prediction<T>&);  \
-  prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,               \
-                                 std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);         \
-  prefix Vec3<double> linear_momentum<T>(const Tree<T>&, const History<T>&);                                \
-  prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                            \
-  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                          \
-  prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                     \
-  prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);    \
-  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&, \
-                                 const Vec3<double>&, History<T>&);                                         \
+#define SINEW_SCHEME_INSTANCES(prefix, T)                                                                    \
+  prefix struct History<T>;                                                                                  \
+  prefix struct Prediction<T>;                                                                               \
+  prefix void predict_euler<T>(const Tree<T>&, const History<T>&, T, const Vec3<double>&, Prediction<T>&);   \
+  prefix void predict_at_rest<T>(const Tree<T>&, const History<T>&, std::span<const Vec3<T>>,                \
+                                 std::span<const Vec3<T>>, T, const Vec3<double>&, Prediction<T>&);          \
+  prefix Vec3<double> linear_momentum<T>(const Tree<T>&, const History<T>&);                                 \
+  prefix void set_momentum<T>(const Tree<T>&, const Vec3<double>&, History<T>&);                             \
+  prefix Totals totals<T>(const Tree<T>&, const History<T>&, const Vec3<double>&);                           \
+  prefix Totals totals<T>(const Tree<T>&, std::span<const JointJet<T>>, const Vec3<double>&, Kinematics<T>&, \
+                          Motion<T>&);                                                                       \
+  prefix RigidMotion rigid_motion<T>(const Tree<T>&, const History<T>&, const Totals&);                      \
+  prefix void change_motion<T>(const Tree<T>&, const RigidMotion&, T, const Vec3<double>&, History<T>&);     \
+  prefix void advance_exactly<T>(const Tree<T>&, const Kinematics<T>&, const Motion<T>&, T, const Vec3<T>&,  \
+                                 const Vec3<double>&, History<T>&);                                          \
   prefix Vec3<T> follow_root<T>(const Kinematics<T>&, const Vec3<double>&, History<T>&);
 SINEW_SCHEME_INSTANCES(extern template, float)
 SINEW_SCHEME_INSTANCES(extern template, double)

@@ -1,18 +1,17 @@
 // The clips of one batch of characters at their instants: one lane per character, one source, compiled for
-// every instruction set, under the terms of batch.h. Lanes may play different clips, with other joints moving
-// on other knots.
+// every instruction set, under the terms of effects/kernels/check.h. Lanes may play different clips, with
+// other joints moving on other knots.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "sinew/animation/kernels/kernels.h"
+#include "sinew/effects/kernels/check.h"
 
 namespace sinew::crowd_kernels {
 
-constexpr int kMaxLanes = 16;
-constexpr int kMaxGroups = 8;    ///< of one clip; a batch that plays one with more is sampled lane by lane
-constexpr int kJetNumbers = 20;  ///< of a jet, in the order of JetLayout, padding included
+using check_kernels::kJetNumbers, check_kernels::kMaxLanes;
+constexpr int kMaxGroups = 8;  ///< of one clip; a batch that plays one with more is sampled lane by lane
 
 /// One group of tracks of one lane's clip at its instant.
 struct TrackGroup {
@@ -63,6 +62,19 @@ struct TrackSum {
 constexpr std::size_t sample_scratch_bytes(int joints) {
   return 3 * 6 * Instant::kGroups * sizeof(float) +
          std::size_t(joints) * (2 * sizeof(std::uint32_t) + 2 * kMaxLanes * sizeof(TrackSum));
+}
+
+#define SINEW_SAMPLE_KERNELS                                \
+  void sample8(const Instant& instant, const JetRows& out); \
+  void sample16(const Instant& instant, const JetRows& out);
+namespace baseline {
+SINEW_SAMPLE_KERNELS
+}
+namespace avx2 {
+SINEW_SAMPLE_KERNELS
+}
+namespace avx512 {
+SINEW_SAMPLE_KERNELS
 }
 
 }  // namespace sinew::crowd_kernels

@@ -1,11 +1,12 @@
 // Sampling with lanes of characters. Every clip is summed up by itself, four components at a time in the
 // order in which it lies in memory; then joint by joint the lanes' sums are transposed and projected
 // together. Nothing is asked of the clips: not the same tracks, knots or degree. Every number has the bits
-// that SamplingJob and place_root give. Included once per instruction set, as batch.inl.
+// that SamplingJob and place_root give. Included once per instruction set, as
+// effects/kernels/check.inl.
 #include "sinew/animation/bspline.h"
 #include "sinew/animation/kernels/jet_algebra.h"
 #include "sinew/animation/kernels/pack_eigen.h"
-#include "sinew/crowd/kernels/batch.h"
+#include "sinew/crowd/kernels/sample.h"
 #include "sinew/skeleton/transform.h"
 
 namespace sinew::crowd_kernels {

@@ -1,46 +1,15 @@
 // The check of a pack of characters: the residual pass, the ground's support and the muscles' limits that a
-// single character goes through (residual/residual_pass.h, effects/support.h, muscle/muscle_side.h), with
-// packs as their scalar. Included once per instruction set with SINEW_KERNELS naming it and SINEW_FLOAT_LANES
-// its registers.
+// single character goes through (check_pass.h, muscle/muscle_side.h), with packs as their scalar. Included
+// once per instruction set with SINEW_KERNELS naming it and SINEW_FLOAT_LANES its registers.
 #include "sinew/animation/kernels/pack_eigen.h"
-#include "sinew/crowd/kernels/batch.h"
+#include "sinew/effects/kernels/check.h"
 #include "sinew/muscle/muscle_side.h"
-#include "sinew/residual/residual_pass.h"
-#include "sinew/skeleton/transform.h"
 
-namespace sinew::crowd_kernels {
+namespace sinew::check_kernels {
 namespace {
 
 static_assert(sizeof(Transform<float>) == sizeof(kernels::PoseLayout<float>),
               "structs of floats lie in memory as in files for other instruction sets");
-
-/// What a check works in, for every body of every lane.
-template <class P>
-struct Scratch {
-  std::span<BodyMotion<P>> body;
-  std::span<Mat3<P>> rotation;           ///< body → world
-  std::span<Vec3<P>> force, moment;      ///< about the root's origin, world axes
-  std::span<Quat<P>> orientation;        ///< [joint] → world
-  std::span<Vec3<P>> origin;             ///< [joint] from the root's, world axes
-  std::span<StandingPoint<P>> standing;  ///< [point]
-
-  Scratch(void* memory, int bodies, int joints, int points) {
-    const auto take = [&]<class U>(std::span<U>& out, int count) {
-      out = {static_cast<U*>(memory), std::size_t(count)};
-      memory = out.data() + count;
-    };
-    take(body, bodies);
-    take(rotation, bodies);
-    take(force, bodies);
-    take(moment, bodies);
-    take(orientation, joints);
-    take(origin, joints);
-    take(standing, points);
-  }
-  static_assert(sizeof(BodyMotion<P>) + sizeof(Mat3<P>) + 2 * sizeof(Vec3<P>) == kBodyPacks * sizeof(P) &&
-                sizeof(Quat<P>) + sizeof(Vec3<P>) == kJointPacks * sizeof(P) &&
-                sizeof(StandingPoint<P>) == kPointPacks * sizeof(P));
-};
 
 /// The lanes of a batch that one pass takes: as many as a register of the instruction set holds.
 struct Lanes {
@@ -53,23 +22,22 @@ struct Lanes {
 template <class P>
 class Jets {
  public:
-  Jets(const Rig& rig, const Batch& batch, const Lanes& lanes, int joint)
-      : stride_(std::ptrdiff_t(rig.joints) * kJetNumbers),
-        from_(batch.jets->rotation + lanes.first * stride_ + joint * kJetNumbers) {}
+  Jets(const Batch& batch, const Lanes& lanes, int joint) : jets_(batch.jets + lanes.first), joint_(joint) {}
   /// Four numbers from number `first` on.
   void load(int first, P (&out)[4]) const {
-    for (int r = 0; r < 4; ++r)
-      out[r] = load_fours<P>([&](int four) { return from_ + (4 * four + r) * stride_ + first; });
+    for (int r = 0; r < 4; ++r) out[r] = load_fours<P>([&](int four) { return of(4 * four + r) + first; });
     transpose(out);
   }
   /// Eight.
   void load(int first, P (&low)[4], P (&high)[4]) const {
-    load_eights([&](int lane) { return from_ + lane * stride_ + first; }, low, high);
+    load_eights([&](int lane) { return of(lane) + first; }, low, high);
   }
 
  private:
-  std::ptrdiff_t stride_;
-  const float* from_;
+  const float* of(int lane) const { return jets_[lane][joint_].rotation; }
+
+  const kernels::JetLayout<float>* const* jets_;
+  int joint_;
 };
 static_assert(sizeof(kernels::JetLayout<float>) == kJetNumbers * sizeof(float));
 
@@ -77,7 +45,7 @@ static_assert(sizeof(kernels::JetLayout<float>) == kJetNumbers * sizeof(float));
 template <class P>
 class Rows {
  public:
-  Rows(const Rig&, const Batch& batch, const Lanes& lanes, int joint)
+  Rows(const Batch& batch, const Lanes& lanes, int joint)
       : stride_(lanes.stride), from_(batch.rows + joint * kJetNumbers * stride_ + lanes.first) {}
   void load(int first, P (&out)[4]) const {
     for (int c = 0; c < 4; ++c) out[c] = P::load(from_ + (first + c) * stride_);
@@ -114,41 +82,6 @@ template <class P, class Source>
   load_body<P>(*rig.tree, i, body);
 }
 
-/// Orientation, still from the parent, and origin become those in the world.
-template <class P>
-void place(const Tree<float>& tree, int i, const Scratch<P>& s) {
-  const int p = tree.parent[i];
-  if (p < 0) {
-    s.rotation[i] = s.body[i].turn;
-    s.origin[i] = Vec3<P>::Zero();
-  } else {
-    s.orientation[i] = s.orientation[p] * s.orientation[i];
-    s.rotation[i] = s.orientation[i].toRotationMatrix();
-    s.origin[i] = s.origin[p] + s.rotation[p] * s.body[i].arm;
-  }
-}
-
-/// The ground's share goes from the wrenches of the bodies that may stand on it.
-template <class P>
-void stand(const Rig& rig, const P& ground, const Scratch<P>& s) {
-  const SupportSettings settings;
-  for (std::size_t i = 0; i < s.body.size(); ++i) {
-    s.force[i] = s.rotation[i] * s.body[i].force;
-    s.moment[i] = s.rotation[i] * s.body[i].moment + s.origin[i].cross(s.force[i]);
-  }
-  share_support<P>(*rig.support, s.rotation, s.origin, ground, settings, s.standing, s.force, s.moment);
-  for (std::size_t i = 0; i < s.body.size(); ++i) {
-    const float reach = float(settings.reach);
-    if (!may_stand<P>(*rig.support, int(i), s.origin[i], ground, reach)) continue;
-    // To the world and back rounds: who has no point within reach keeps what it had.
-    const auto near = s.origin[i].z() - ground < P(rig.support->bound[i] + reach);
-    const Vec3<P> force = s.rotation[i].transpose() * s.force[i],
-                  moment = s.rotation[i].transpose() * (s.moment[i] - s.origin[i].cross(s.force[i]));
-    s.body[i].force = select(near, force, s.body[i].force);
-    s.body[i].moment = select(near, moment, s.body[i].moment);
-  }
-}
-
 /// Largest load of every lane. A NaN anywhere stays.
 template <class P>
 void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
@@ -167,9 +100,9 @@ void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
 
 /// Joints that ride along take their place in the world from their parents'.
 template <class P, class Source>
-void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, const Scratch<P>& s) {
+void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, const CheckRoom<P>& s) {
   for (int i = int(s.body.size()); i < rig.joints; ++i) {
-    const Source jets(rig, batch, lanes, i);
+    const Source jets(batch, lanes, i);
     P q[4], unused[4], x[4], y[4];
     jets.load(0, q, unused);
     jets.load(8, x, y);
@@ -182,7 +115,7 @@ void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, const Sc
 }
 
 template <class P>
-void write_model(const Rig& rig, const Batch& batch, int first_lane, const Scratch<P>& s) {
+void write_model(const Rig& rig, const Batch& batch, int first_lane, const CheckRoom<P>& s) {
   for (int i = 0; i < rig.joints; ++i) {
     const Vec3<P>& at = s.origin[i];
     const auto& turn = s.orientation[i];
@@ -202,30 +135,28 @@ void write_model(const Rig& rig, const Batch& batch, int first_lane, const Scrat
 template <class P, class Source>
 void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Tree<float>& tree = *rig.tree;
-  const Scratch<P> scratch(batch.scratch, tree.bodies, rig.joints,
-                           rig.support ? int(rig.support->points.size()) : 0);
+  const CheckRoom<P> scratch(batch.scratch, tree.bodies, rig.joints,
+                             rig.support ? int(rig.support->points.size()) : 0);
   const bool placed = rig.support || batch.model[0];
   const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));
   for (const int i : tree.by_depth) {
     const int p = tree.parent[i];
-    move<P>(rig, Source(rig, batch, lanes, i), i, gravity, p < 0 ? nullptr : &scratch.body[p],
-            scratch.body[i], placed ? &scratch.orientation[i] : nullptr);
-    if (placed) place(tree, i, scratch);
+    move<P>(rig, Source(batch, lanes, i), i, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i],
+            placed ? &scratch.orientation[i] : nullptr);
+    if (placed) place_body<P>(tree, i, scratch);
   }
   const Vec3<P> root = scratch.body[0].arm;
-  if (rig.support) stand<P>(rig, P(rig.ground_height) - root.z(), scratch);
-  for (int n = tree.bodies - 1; n >= 0; --n) {
-    const int i = tree.by_depth[n];
-    float* rows = batch.torque + tree.first_dof[i] * lanes.stride + lanes.first;
-    project_wrench<P>(tree, i, scratch.body[i],
-                      [&](int k, const P& torque) { store<0, P::kLanes>(torque, rows + k * lanes.stride); });
-    if (const int p = tree.parent[i]; p >= 0) pass_wrench(scratch.body[i], scratch.body[p]);
+  if (rig.support) stand<P>(*rig.support, P(rig.ground_height) - root.z(), scratch);
+  project_bodies<P>(tree, scratch.body, [&](int dof, const P& torque) {
+    store<0, P::kLanes>(torque, batch.torque + dof * lanes.stride + lanes.first);
+  });
+  if (batch.peak) compare<P>(rig, batch, lanes);
+  if (batch.velocity) {
+    P velocity[4];
+    Source(batch, lanes, 0).load(12, velocity);
+    for (int a = 0; a < 3; ++a)
+      store<0, P::kLanes>(velocity[1 + a], batch.velocity + a * lanes.stride + lanes.first);
   }
-  compare<P>(rig, batch, lanes);
-  P velocity[4];
-  Source(rig, batch, lanes, 0).load(12, velocity);
-  for (int a = 0; a < 3; ++a)
-    store<0, P::kLanes>(velocity[1 + a], batch.velocity + a * lanes.stride + lanes.first);
   if (!batch.model[0]) return;
   for (int i = 0; i < tree.bodies; ++i) scratch.origin[i] = root + scratch.origin[i];
   ride_along<P, Source>(rig, batch, lanes, scratch);
@@ -254,4 +185,4 @@ void check16(const Rig& rig, const Batch& batch) {
   check_batch<SINEW_FLOAT_LANES, 16>(rig, batch);
 }
 }  // namespace SINEW_KERNELS
-}  // namespace sinew::crowd_kernels
+}  // namespace sinew::check_kernels

@@ -1,0 +1,133 @@
+// What a motion asks of the muscles, the ground's share taken off: the residual pass (residual_pass.h) with
+// share_support (support.h) between its two sweeps. The check of a character on its animation, alone and in
+// batches: T is float, double or a pack of characters (kernels/check.inl), with the same bits.
+#pragma once
+
+#include "sinew/effects/support.h"
+#include "sinew/residual/residual_pass.h"
+#include "sinew/skeleton/transform.h"
+
+namespace sinew {
+
+/// What a check works in.
+template <class T>
+struct CheckRoom {
+  std::span<BodyMotion<T>> body;
+  std::span<Mat3<T>> rotation;           ///< body → world
+  std::span<Vec3<T>> force, moment;      ///< about the root's origin, world axes
+  std::span<Quat<T>> orientation;        ///< [joint] → world
+  std::span<Vec3<T>> origin;             ///< [joint] from the root's, world axes
+  std::span<StandingPoint<T>> standing;  ///< [point]
+
+  static constexpr std::size_t bytes(int bodies, int joints, int points) {
+    return std::size_t(bodies) * (sizeof(BodyMotion<T>) + sizeof(Mat3<T>) + 2 * sizeof(Vec3<T>)) +
+           std::size_t(joints) * (sizeof(Quat<T>) + sizeof(Vec3<T>)) +
+           std::size_t(points) * sizeof(StandingPoint<T>);
+  }
+  /// In `memory` of that many bytes, aligned to 16, packs to their size.
+  CheckRoom(void* memory, int bodies, int joints, int points) {
+    const auto take = [&]<class U>(std::span<U>& out, int count) {
+      out = {static_cast<U*>(memory), std::size_t(count)};
+      memory = out.data() + count;
+    };
+    take(orientation, joints);
+    take(body, bodies);
+    take(rotation, bodies);
+    take(force, bodies);
+    take(moment, bodies);
+    take(origin, joints);
+    take(standing, points);
+  }
+};
+
+/// Orientation, still from the parent, and origin become those in the world.
+template <class T>
+[[gnu::always_inline]] inline void place_body(const Tree<Number<T>>& tree, int i, const CheckRoom<T>& r) {
+  const int p = tree.parent[i];
+  if (p < 0) {
+    r.rotation[i] = r.body[i].turn;
+    r.origin[i] = Vec3<T>::Zero();
+  } else {
+    r.orientation[i] = r.orientation[p] * r.orientation[i];
+    r.rotation[i] = r.orientation[i].toRotationMatrix();
+    r.origin[i] = r.origin[p] + r.rotation[p] * r.body[i].arm;
+  }
+}
+
+/// The ground's share goes from the wrenches of the bodies that may stand on it. `ground`: its height from
+/// the root's origin, m.
+template <class T>
+void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckRoom<T>& r) {
+  const SupportSettings settings;
+  for (std::size_t i = 0; i < r.body.size(); ++i) {
+    r.force[i] = r.rotation[i] * r.body[i].force;
+    r.moment[i] = r.rotation[i] * r.body[i].moment + r.origin[i].cross(r.force[i]);
+  }
+  share_support<T>(points, r.rotation, r.origin.first(r.body.size()), ground, settings, r.standing, r.force,
+                   r.moment);
+  for (std::size_t i = 0; i < r.body.size(); ++i) {
+    const Number<T> reach = Number<T>(settings.reach);
+    if (!may_stand<T>(points, int(i), r.origin[i], ground, reach)) continue;
+    // To the world and back rounds: who has no point within reach keeps what it had.
+    const auto near = r.origin[i].z() - ground < T(points.bound[i] + reach);
+    const Vec3<T> force = r.rotation[i].transpose() * r.force[i],
+                  moment = r.rotation[i].transpose() * (r.moment[i] - r.origin[i].cross(r.force[i]));
+    r.body[i].force = select(near, force, r.body[i].force);
+    r.body[i].moment = select(near, moment, r.body[i].moment);
+  }
+}
+
+/// The second sweep: put(dof, torque) for every degree of freedom.
+template <class T, class Put>
+[[gnu::always_inline]] inline void project_bodies(const Tree<Number<T>>& tree, std::span<BodyMotion<T>> body,
+                                                  Put put) {
+  for (int n = tree.bodies - 1; n >= 0; --n) {
+    const int i = tree.by_depth[n];
+    project_wrench<T>(tree, i, body[i], [&](int k, const T& torque) { put(tree.first_dof[i] + k, torque); });
+    if (const int p = tree.parent[i]; p >= 0) pass_wrench(body[i], body[p]);
+  }
+}
+
+/// What bears on the ground in a check, if anything does.
+template <class T>
+struct Standing {
+  const SupportTerm<T>* support = nullptr;  ///< null: in flight
+  const SupportPoints<T>& points;
+  T ground = T(0);  ///< m, its height
+};
+
+/// The first sweep: the wrench [body] that the motion `jets` [body] asks for. `room` must have this tree's
+/// size.
+template <class T>
+void move_bodies(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
+                 const Standing<T>& standing, const CheckRoom<T>& room) {
+  for (const int i : tree.by_depth) {
+    const int p = tree.parent[i];
+    move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &room.body[p], room.body[i]);
+    if (!standing.support) continue;
+    room.orientation[i] = jets[i].rotation;
+    place_body<T>(tree, i, room);
+  }
+}
+
+/// Wrenches [body] in world axes about the root's origin, to those in the bodies' axes.
+template <class T>
+void add_wrenches(const Kinematics<T>& kinematics, std::span<const Vec3<T>> force,
+                  std::span<const Vec3<T>> moment, std::span<BodyMotion<T>> body) {
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    body[i].force += kinematics.rotation[i].transpose() * force[i];
+    body[i].moment += kinematics.rotation[i].transpose() * (moment[i] - kinematics.origin[i].cross(force[i]));
+  }
+}
+
+/// Torques [dof] (N·m; N for translations) that the motion `jets` [body] asks for. O(bodies).
+template <class T>
+void check_motion(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
+                  const Standing<T>& standing, const CheckRoom<T>& room, std::span<T> torque) {
+  move_bodies<T>(tree, jets, gravity, standing, room);
+  if (standing.support)
+    standing.support->stand(standing.points, standing.ground - jets[0].translation.z(), room);
+  project_bodies<T>(tree, room.body, [&](int dof, const T& t) { torque[dof] = t; });
+}
+
+}  // namespace sinew
