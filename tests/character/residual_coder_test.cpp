@@ -16,11 +16,11 @@ using BitsOf = std::conditional_t<sizeof(V) == 4, std::uint32_t, std::uint64_t>;
 
 /// Bytes written, after checking that reading them gives the same bits.
 template <class V>
-std::size_t there_and_back(const std::vector<V>& values, const std::vector<V>& predicted, bool marks) {
+std::size_t there_and_back(const std::vector<V>& values, const std::vector<V>& predicted, bool runs) {
   std::vector<std::byte> room(16 * values.size() + 16);
   ByteStream out = ByteStream::writer(room), bound = ByteStream::bound();
   for (ByteStream* stream : {&out, &bound}) {
-    ResidualCoder<V> coder("values", *stream, marks);
+    ResidualCoder<V> coder("values", *stream, runs);
     for (std::size_t n = 0; n < values.size(); ++n) {
       V v = values[n];
       coder.value(v, predicted[n]);
@@ -30,7 +30,7 @@ std::size_t there_and_back(const std::vector<V>& values, const std::vector<V>& p
   EXPECT_LE(out.position(), bound.position());
   ByteStream in = ByteStream::reader(std::span(room).first(out.position()));
   {
-    ResidualCoder<V> coder("values", in, marks);
+    ResidualCoder<V> coder("values", in, runs);
     for (std::size_t n = 0; n < values.size(); ++n) {
       V v{};
       coder.value(v, predicted[n]);
@@ -69,23 +69,24 @@ TYPED_TEST(Coder, GivesBackAnyBitsWhateverThePrediction) {
   there_and_back(values, predicted, true);
 }
 
-TEST(Coder, ExactPredictionsTakeABitEachAndRandomNumbersLittleMoreThanTheirOwn) {
+TEST(Coder, ExactPredictionsTakeABitEachOrAsARunNextToNothingAndRandomNumbersLittleMoreThanTheirOwn) {
   std::mt19937 random(8);
   std::uniform_real_distribution<float> uniform(-1, 1);
   std::vector<float> values(800), zeros(800, 0.f), near;
   for (float& v : values) v = uniform(random);
   for (const float v : values) near.push_back(v * (1 + 4e-7f));
   EXPECT_LE(there_and_back(values, values, false), 800u / 8 + 8);  // 8: until it has learnt
-  EXPECT_LE(there_and_back(values, values, true), 800u / 8);
+  EXPECT_LE(there_and_back(values, values, true), 4u);
   EXPECT_LE(there_and_back(values, zeros, false), 800u * 34 / 8);
   EXPECT_LE(there_and_back(values, near, false), 800u);  // 3 to 7 units in the last place: below 8 bits
 }
 
 template <class V>
-std::size_t unpredicted_there_and_back(std::vector<V> values) {
-  const auto visit_all = [](std::vector<V>& all, ByteStream& stream) {
-    ResidualCoder<V>("values", stream).unpredicted([&](const auto& visit) {
-      for (V& v : all) visit(v);
+std::size_t unpredicted_there_and_back(std::vector<V> values, bool runs = false,
+                                       const std::vector<V>& predicted = {}) {
+  const auto visit_all = [&](std::vector<V>& all, ByteStream& stream) {
+    ResidualCoder<V>("values", stream, runs).unpredicted([&](const auto& visit) {
+      for (std::size_t n = 0; n < all.size(); ++n) visit(all[n], predicted.empty() ? V(0) : predicted[n]);
     });
     return stream.position();
   };
@@ -115,9 +116,40 @@ TYPED_TEST(FloatingCoder, GivesBackAnyBitsThatNothingPredicts) {
                                 std::numeric_limits<TypeParam>::lowest()};
   for (int n = 0; n < 2000; ++n)
     values.push_back(std::bit_cast<TypeParam>(static_cast<BitsOf<TypeParam>>(random())));
-  unpredicted_there_and_back(values);
-  unpredicted_there_and_back(std::vector<TypeParam>(10, TypeParam(0)));
-  unpredicted_there_and_back(std::vector<TypeParam>{});
+  std::vector<TypeParam> predicted(values);  // some to the bit, in runs
+  for (std::size_t n = 0; n < predicted.size(); ++n)
+    if (random() % 4 == 0) predicted[n] = TypeParam(1);
+  for (const bool runs : {false, true}) {
+    unpredicted_there_and_back(values, runs);
+    unpredicted_there_and_back(std::vector<TypeParam>(10, TypeParam(0)), runs);
+    unpredicted_there_and_back(std::vector<TypeParam>{}, runs);
+  }
+  unpredicted_there_and_back(values, true, predicted);
+}
+
+TYPED_TEST(FloatingCoder, GivesBackAnyBitsOfWhatIsKnownButForItsSign) {
+  std::mt19937_64 random(12);
+  std::vector<TypeParam> values, predicted;
+  std::normal_distribution<double> normal(0, 20);
+  for (int n = 0; n < 400; ++n) {
+    values.push_back(n % 7 == 0 ? std::bit_cast<TypeParam>(static_cast<BitsOf<TypeParam>>(random()))
+                                : TypeParam(normal(random)));
+    predicted.push_back(n % 3 == 0 ? values.back() : n % 3 == 1 ? -values.back() : TypeParam(normal(random)));
+  }
+  for (const bool runs : {false, true}) {
+    std::vector<std::byte> room(1 << 14);
+    ByteStream out = ByteStream::writer(room), in = ByteStream::reader(room), bound = ByteStream::bound();
+    for (ByteStream* stream : {&out, &in, &bound}) {
+      ResidualCoder<TypeParam> coder("values", *stream, runs);
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        TypeParam v = stream->reading() ? TypeParam(0) : values[n];
+        coder.value_but_sign(v, predicted[n]);
+        EXPECT_EQ(std::bit_cast<BitsOf<TypeParam>>(v), std::bit_cast<BitsOf<TypeParam>>(values[n])) << n;
+      }
+    }
+    EXPECT_LE(out.position(), bound.position());
+    EXPECT_EQ(in.position(), out.position());
+  }
 }
 
 TYPED_TEST(FloatingCoder, WhatIsRoundedToHalfItsDigitsTakesHalfTheRoom) {
@@ -131,6 +163,7 @@ TYPED_TEST(FloatingCoder, WhatIsRoundedToHalfItsDigitsTakesHalfTheRoom) {
   const std::size_t saved = 400 * kHalfOfDigits<TypeParam> / 8;
   EXPECT_LE(unpredicted_there_and_back(rounded) + saved, unpredicted_there_and_back(whole) + 2);
   EXPECT_LE(unpredicted_there_and_back(whole), 400 * sizeof(TypeParam));
+  EXPECT_LE(unpredicted_there_and_back(zeros, true), 4u);
 }
 
 TYPED_TEST(FloatingCoder, RoundedNumbersComeBackWhateverTheirPrediction) {

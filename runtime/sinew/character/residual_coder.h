@@ -4,7 +4,8 @@
 // too: how many bits the distance has, by an exponential Golomb code (Teuhola, "A compression method for
 // clustered bit-vectors", 1978) of how far that is from the mean of those before, then those bits. Distances
 // of one field differ by powers of two rather than around a mean: a Golomb-Rice code of the distances
-// themselves took 9 % more. A prediction that is right to the bit costs one bit.
+// themselves took 9 % more. Where many predictions are right to the bit, runs of those are counted (Elias,
+// "Universal codeword sets", 1975): a field that is all as predicted takes a byte or two.
 //
 // Where nothing predicts a number, its exponent is written so, and the rest as it is: some four bits less
 // than the number. Digits that a whole field has rounded off are left out.
@@ -25,17 +26,65 @@ namespace sinew {
 template <class V>
 class ResidualCoder {
  public:
-  /// `marks`: numbers may be random or exactly as predicted, so that each has a bit that says so. `rounded`:
-  /// the last so many digits are all 0.
-  ResidualCoder(const char* name, ByteStream& stream, bool marks = false, int rounded = 0)
-      : name_(name), stream_(stream), marks_(marks), rounded_(rounded) {}
+  /// `runs`: many numbers are exactly as predicted, so that before each other number stands how many are.
+  /// `rounded`: the last so many digits are all 0.
+  ResidualCoder(const char* name, ByteStream& stream, bool runs = false, int rounded = 0)
+      : name_(name), stream_(stream), runs_(runs), rounded_(rounded), exact_(stream.reading() ? -1 : 0) {}
   ResidualCoder(const ResidualCoder&) = delete;
   ResidualCoder& operator=(const ResidualCoder&) = delete;
   ~ResidualCoder() {
-    if (!stream_.reading() && filled_ > 0) emit();
+    if (stream_.reading()) return;
+    if (exact_ > 0) end_run();
+    if (filled_ > 0) emit();
   }
 
   void value(V& v, V predicted) {
+    if (!is_as_predicted(v, predicted)) write_or_read_distance(v, predicted);
+  }
+  /// A number that is near its prediction or near the opposite.
+  void value_but_sign(V& v, V predicted) {
+    if (is_as_predicted(v, predicted)) return;
+    bool opposite = std::signbit(v) != std::signbit(predicted);
+    if (stream_.reading())
+      opposite = get_bits(1) != 0;
+    else
+      put_bits(opposite ? 1 : 0, 1);
+    write_or_read_distance(v, opposite ? -predicted : predicted);
+  }
+  template <class Vector>
+  void values(Vector& v, const Vector& predicted) {
+    for (Eigen::Index n = 0; n < v.size(); ++n) value(v.data()[n], predicted.data()[n]);
+  }
+
+  /// A field whose numbers nothing predicts, but for those that are as predicted exactly: visit(f) calls
+  /// f(v, predicted) for each, whenever it is called.
+  template <class Visit>
+  void unpredicted(const Visit& visit) {
+    Bits all = 0;
+    visit([&](V& v, V) { all |= std::bit_cast<Bits>(v); });
+    auto rounded = static_cast<std::uint8_t>(std::min(std::countr_zero(all), kDigits));
+    stream_.value(name_, rounded);
+    rounded_ = stream_.bounding() ? 0 : std::min<int>(rounded, kDigits);
+    mean_ = 16 << (kWidth - kDigits - 2);  // the exponent of numbers near 1
+    visit([&](V& v, V predicted) { write_or_read(v, predicted); });
+  }
+
+ private:
+  using Bits = std::conditional_t<sizeof(V) == 4, std::uint32_t, std::uint64_t>;
+  static constexpr int kWidth = 8 * sizeof(V);
+  static constexpr int kDigits = std::numeric_limits<V>::digits - 1;  ///< of a floating-point number, written
+  static constexpr int kMostPrefix = 12;  ///< bits of a length's distance from the likely one, and more
+  static constexpr int kMostRun = 24;     ///< bits of a run's length
+  static constexpr int kBitsOfRun = 3;    ///< that a number as predicted adds to a run at most
+
+  /// Where runs are counted.
+  bool is_as_predicted(V& v, V predicted) {
+    if (!runs_ || !is_exact(std::bit_cast<Bits>(v) == std::bit_cast<Bits>(predicted))) return false;
+    if (stream_.reading()) v = predicted;
+    return true;
+  }
+
+  void write_or_read_distance(V& v, V predicted) {
     const Bits from = ordered(predicted) >> rounded_;
     if (stream_.reading()) {
       const Bits z = get();
@@ -45,31 +94,10 @@ class ResidualCoder {
       put((d << 1) ^ (Bits(0) - (d >> (kWidth - 1))));
     }
   }
-  template <class Vector>
-  void values(Vector& v, const Vector& predicted) {
-    for (Eigen::Index n = 0; n < v.size(); ++n) value(v.data()[n], predicted.data()[n]);
-  }
-
-  /// A field whose numbers nothing predicts: visit(f) calls f(v) for each, whenever it is called.
-  template <class Visit>
-  void unpredicted(const Visit& visit) {
-    Bits all = 0;
-    visit([&](V& v) { all |= std::bit_cast<Bits>(v); });
-    auto rounded = static_cast<std::uint8_t>(std::min(std::countr_zero(all), kDigits));
-    stream_.value(name_, rounded);
-    rounded_ = stream_.bounding() ? 0 : std::min<int>(rounded, kDigits);
-    mean_ = 16 << (kWidth - kDigits - 3);  // of exponents
-    visit([&](V& v) { write_or_read(v); });
-  }
-
- private:
-  using Bits = std::conditional_t<sizeof(V) == 4, std::uint32_t, std::uint64_t>;
-  static constexpr int kWidth = 8 * sizeof(V);
-  static constexpr int kDigits = std::numeric_limits<V>::digits - 1;  ///< of a floating-point number, written
-  static constexpr int kMostPrefix = 12;  ///< bits of a length's distance from the likely one, and more
 
   /// One more than the exponent, 0 for the number 0; sign; digits but those rounded off.
-  void write_or_read(V& v) {
+  void write_or_read(V& v, V predicted) {
+    if (is_as_predicted(v, predicted)) return;
     constexpr Bits sign = Bits(1) << (kWidth - 1), digits = (Bits(1) << kDigits) - 1;
     const int kept = kDigits - rounded_;
     if (stream_.reading()) {
@@ -111,15 +139,42 @@ class ResidualCoder {
   int likely() const { return mean_ < 0 ? kWidth / 2 : (mean_ + 8) / 16; }
   void learn(int length) { mean_ = mean_ < 0 ? 16 * length : mean_ + (16 * length - mean_) / 4; }
 
+  /// Counts a number that is as predicted; false: another one follows.
+  bool is_exact(bool exact) {
+    if (stream_.reading()) {
+      if (exact_ < 0) exact_ = get_run();
+      return exact_-- > 0;
+    }
+    if (stream_.bounding()) {
+      put_bits(0, kBitsOfRun);
+      return false;
+    }
+    if (exact)
+      ++exact_;
+    else
+      end_run();
+    return exact;
+  }
+  /// The length of a run and one more, by Elias' code.
+  void end_run() {
+    const auto length = static_cast<unsigned>(exact_) + 1;
+    const int rest = std::bit_width(length) - 1;
+    put_bits((Bits(2) << rest) - 2, rest + 1);
+    put_bits(length, rest);
+    exact_ = 0;
+  }
+  int get_run() {
+    int rest = 0;
+    while (rest < kMostRun && get_bits(1) != 0) ++rest;
+    return (1 << rest | static_cast<int>(get_bits(rest))) - 1;
+  }
+
   void put(Bits z) {
-    if (marks_) put_bits(z == 0 ? 1 : 0, 1);
-    if (marks_ && z == 0 && !stream_.bounding()) return;
     const int length = stream_.bounding() ? kWidth : static_cast<int>(std::bit_width(z));
     put_length(length);
     put_bits(z, length - 1);  // the highest is one
   }
   Bits get() {
-    if (marks_ && get_bits(1) != 0) return 0;
     const int length = get_length(kWidth);
     return length == 0 ? 0 : Bits(1) << (length - 1) | get_bits(length - 1);
   }
@@ -174,8 +229,9 @@ class ResidualCoder {
 
   const char* name_;
   ByteStream& stream_;
-  bool marks_;
+  bool runs_;
   int rounded_;
+  int exact_;  ///< numbers as predicted since the last other one; reading: up to the next, below 0: unread
   int mean_ = -1;   ///< sixteenths of a bit; below 0: of none yet
   int filled_ = 0;  ///< bits of `byte_` that are written, or still to be read
   std::uint8_t byte_ = 0;

@@ -83,11 +83,12 @@ void visit_pose(CharacterState<T>& s, ByteStream& stream) {
     ResidualCoder<T> coder(name, stream, true);
     for (std::size_t i = 0; i < s.local.size(); ++i) visit_joint(coder, i, s.local[i]);
   };
-  visit("pose rotation", [&](auto& coder, std::size_t i, Transform<T>& x) {
-    for (int n = 0; n < 3; ++n) coder.value(x.rotation.coeffs()[n], rest(i).rotation.coeffs()[n]);
+  ResidualCoder<T>("pose rotation", stream, true).unpredicted([&](const auto& visit_number) {
+    for (std::size_t i = 0; i < s.local.size(); ++i)
+      for (int n = 0; n < 3; ++n) visit_number(s.local[i].rotation.coeffs()[n], rest(i).rotation.coeffs()[n]);
   });
   visit("pose rotation's last member", [&](auto& coder, std::size_t i, Transform<T>& x) {
-    coder.value(x.rotation.w(), last_of(x.rotation, rest(i).rotation));
+    coder.value_but_sign(x.rotation.w(), last_of(x.rotation, rest(i).rotation));
   });
   visit("pose translation", [&](auto& coder, std::size_t i, Transform<T>& x) {
     coder.values(x.translation, rest(i).translation);
@@ -153,7 +154,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
   stream.value("span of the joint speeds", s.rate_step);
   ResidualCoder<T>("joint speed", stream).unpredicted([&](const auto& visit_number) {
     for (int i = 0; i < s.tree.bodies; ++i)
-      for (int k = 0; k < s.tree.dof_count(i); ++k) visit_number(s.rate[i][k]);
+      for (int k = 0; k < s.tree.dof_count(i); ++k) visit_number(s.rate[i][k], T(0));
   });
   // The next step's guess looks further back only while nothing changes.
   if (stream.part("joint speeds change steadily",
@@ -321,19 +322,18 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
-  // Two halves of 44 bits, six numbers and at most two bytes more each.
-  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (11 + 6 * (sizeof(T) + 2)));
+  // An identity in three parts of 45 bits, six numbers and at most three bytes more each.
+  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (17 + 6 * (sizeof(T) + 3)));
   {
     ResidualCoder<std::uint32_t> coder("contact", stream, true);
-    std::uint32_t high = 0, low = 0;
+    std::array<std::uint32_t, 3> before{};
     for (LaggedForce<T>& contact : lagged) {
-      auto upper = static_cast<std::uint32_t>(contact.id >> 32),
-           lower = static_cast<std::uint32_t>(contact.id);
-      coder.value(upper, high);
-      coder.value(lower, low);
-      if (stream.reading()) contact.id = std::uint64_t(upper) << 32 | lower;
-      high = upper;
-      low = lower;
+      std::array<std::uint32_t, 3> parts = {static_cast<std::uint32_t>(contact.id >> 32),
+                                            static_cast<std::uint32_t>(contact.id >> 16) & 0xffffu,
+                                            static_cast<std::uint32_t>(contact.id) & 0xffffu};
+      for (int n = 0; n < 3; ++n) coder.value(parts[n], before[n]);
+      if (stream.reading()) contact.id = std::uint64_t(parts[0]) << 32 | parts[1] << 16 | parts[2];
+      before = parts;
     }
   }
   const auto visit = [&](const char* name, auto visit_contact, int rounded = 0) {
@@ -345,19 +345,23 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
       visit_contact(coder, contact, before);
     }
   };
-  visit("contact force", [](auto& coder, auto& c, T&) { coder.value(c.force, T(0)); });
+  ResidualCoder<T>("contact force", stream, true).unpredicted([&](const auto& visit_number) {
+    for (LaggedForce<T>& contact : lagged) visit_number(contact.force, T(0));
+  });
   visit("contact stiffness", [](auto& coder, auto& c, T& before) {
     coder.value(c.stiffness, before);
     before = c.stiffness;
   });
   visit("contact offset", [](auto& coder, auto& c, T&) { coder.value(c.offset, T(0)); });
   visit(
-      "contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.force); },
-      kHalfOfDigits<T>);
-  visit(
       "lasting contact force", [](auto& coder, auto& c, T&) { coder.value(c.lasting, c.force); },
       kHalfOfDigits<T>);
-  visit("smooth contact force", [](auto& coder, auto& c, T&) { coder.value(c.smooth, c.force); });
+  visit(
+      "contact force before", [](auto& coder, auto& c, T&) { coder.value(c.before, c.lasting); },
+      kHalfOfDigits<T>);
+  // All of it, or what has lasted.
+  visit("smooth contact force",
+        [](auto& coder, auto& c, T&) { coder.value(c.smooth, std::min(c.force, c.lasting)); });
 }
 
 void visit_budget(BudgetState& budget, ByteStream& stream) {

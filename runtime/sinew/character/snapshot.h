@@ -117,7 +117,7 @@ struct MovingParts {
   std::span<const std::unique_ptr<Coupling<T>>> couplings;
 };
 
-enum class Content : std::uint32_t { kState = 0x314e5753, kInputs = 0x31495753 };  ///< SWN1, SWI1
+enum class Content : std::uint32_t { kState = 0x324e5753, kInputs = 0x31495753 };  ///< SWN2, SWI1
 
 constexpr std::size_t kHeaderBytes = 24;  ///< content, size, make-up of the world, digest of what follows
 

@@ -24,7 +24,7 @@ template <class T>
 void visit_places(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
   {
-    ResidualCoder<T> coder("rotation", stream);
+    ResidualCoder<T> coder("rotation", stream, true);
     for (int i = 0; i < s.tree.bodies; ++i)
       coder.values(h.rotation[i], rotation_of(s.local, s.tree, i, h.rotation));
   }
@@ -75,12 +75,12 @@ void visit_motion(CharacterState<T>& s, ByteStream& stream) {
   const auto visit_whole = [&](const char* name, std::vector<Vec3<T>>& all) {
     ResidualCoder<T>(name, stream).unpredicted([&](const auto& visit_number) {
       for (int i = 0; i < s.tree.bodies; ++i)
-        for (T& x : all[i]) visit_number(x);
+        for (T& x : all[i]) visit_number(x, T(0));
     });
   };
   visit_whole("acceleration", h.acceleration);
   visit_whole("torque", h.torque);
-  ResidualCoder<T> coder("what of a joint's rows lasts", stream);
+  ResidualCoder<T> coder("what of a joint's rows lasts", stream, true);
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
     coder.value(s.smooth[dof], T(0));
     coder.value(s.lasting[dof], s.smooth[dof]);

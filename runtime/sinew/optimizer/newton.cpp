@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "sinew/optimizer/newton_constants.h"
@@ -78,8 +79,13 @@ bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy, b
   };
   if (lacks_energy(*trees_[0])) return calmer();
   T unit = T(0);
-  for (const TreeProblem<T>* p : trees_) unit = std::max(unit, p->tree->scale.energy);
-  const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (double(unit) + std::abs(energy));
+  double against = 0;
+  for (const TreeProblem<T>* p : trees_) {
+    unit = std::max(unit, p->tree->scale.energy);
+    against += p->against;
+  }
+  const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (double(unit) + std::abs(energy)) +
+                       kRoundings * double(std::numeric_limits<T>::epsilon()) * against;
   return new_energy <= energy + 1e-4 * double(t * slope) ||
          (new_energy <= energy + noise && (slight || calmer()));
 }

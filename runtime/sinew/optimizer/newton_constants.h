@@ -22,7 +22,10 @@ constexpr double kMisleading = 1.5;
 /// 1/m: what a whole Newton step through nothing but smooth terms leaves, by the square of its length. In
 /// limp flights at 1 to 10 rad/s rms half leave less than 6, 99 in 100 less than 30 to 130 (1/240 to 1/30 s).
 constexpr double kLeft = 30;
-constexpr double kExactWithin = 10;   ///< tolerances: rounding too leaves a share of a step
+constexpr double kExactWithin = 10;  ///< tolerances: rounding too leaves a share of a step
+/// Of the energies of pushes, by which the places where they act are rounded: two that make a couple cancel,
+/// their roundings do not (a light link turned by 26 N m at an arm of 5 cm had good steps refused in float).
+constexpr double kRoundings = 4;
 constexpr double kNegligible = 1e-3;  ///< of the tolerance: not worth an evaluation
 
 // Of its convex model (inner_problem.h)

@@ -56,12 +56,17 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
   forward_kinematics<T>(tree, p.local, p.common_origin, p.kinematics);
   double energy = inertial_energy<T>(settings, p);
+  p.against = 0;
+  const auto add = [&](double of_outside) {
+    energy += of_outside;
+    p.against += std::abs(of_outside);
+  };
   for (const ExternalForce<T>& push : p.pushes)
-    energy += settings.plan->impulses->add_gradient(push, p.kinematics, {p.force, p.moment});
+    add(settings.plan->impulses->add_gradient(push, p.kinematics, {p.force, p.moment}));
   measure_joint_rows(settings, p);
   if (!p.effects.empty()) {
     for (const Effect<T>* effect : p.effects)
-      energy += effect->add_gradient(effect_pose(settings, p), {p.force, p.moment});
+      add(effect->add_gradient(effect_pose(settings, p), {p.force, p.moment}));
     measure_effect_rows(settings, p);
     for (const JointRow<T>& row : p.effect_rows)
       if (p.free[row.dof]) p.rows.push_back(row);
