@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 
@@ -80,8 +81,52 @@ void one_place(benchmark::State& state) {
   state.counters["max_passes"] = most_passes;
 }
 
+/// Twenty figures that idle so many decimetres apart, assisted roots, all hit at the chest at once: 2 s, then
+/// anew. Counters are of single steps of all of them, processor time.
+void hit_at_once(benchmark::State& state) {
+  constexpr int kFigures = 20, kRow = 5, kRun = 120;        // steps
+  constexpr double kWeak = 80, kStrong = 160, kTurn = 2.4;  // N·s; rad from one to the next: every way
+  const double apart = double(state.range(0)) / 10;
+  World<float> world{WorldSettings()};
+  const Skeleton body = fixtures::humanoid();
+  CharacterSettings assisted;
+  assisted.root = RootDrive::kAssisted;
+  Status status;
+  for (int n = 0; n < kFigures; ++n)
+    if (world.add_character(body, assisted, status) < 0) return state.SkipWithError(status.reason);
+  const int chest = body.find("chest");
+  int frame = 0;
+  std::vector<double> microseconds;
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (int n = 0; n < kFigures; ++n) {
+      std::vector<JointJet<float>> jets =
+          fixtures::idle<float>(body, double(frame) * double(kStep) + 0.01 * n);
+      jets[0].translation += in_rows(n, kRow, apart).cast<float>();
+      Character<float> c = world.character(n);
+      (void)c.set_target(jets);
+      if (frame != 0) continue;
+      c.reset();
+      const double hit = kWeak + (kStrong - kWeak) * n / kFigures;
+      (void)c.apply_impulse(
+          chest, c.model()[chest].translation,
+          Vec3<double>(hit * std::cos(kTurn * n), hit * std::sin(kTurn * n), 0).cast<float>());
+    }
+    frame = (frame + 1) % kRun;
+    state.ResumeTiming();
+    const std::clock_t begin = std::clock();
+    benchmark::DoNotOptimize(world.step(kStep));
+    microseconds.push_back(1e6 * double(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  std::sort(microseconds.begin(), microseconds.end());
+  state.counters["p50_us"] = microseconds[microseconds.size() / 2];
+  state.counters["p99_us"] = microseconds[microseconds.size() * 99 / 100];
+  state.counters["max_us"] = microseconds.back();
+}
+
 BENCHMARK(beside)->Args({0, 0})->Args({5000, 0})->Args({0, 1})->Iterations(120)->Unit(
     benchmark::kMicrosecond);
+BENCHMARK(hit_at_once)->Arg(8)->Arg(200)->Iterations(240)->Unit(benchmark::kMicrosecond);
 BENCHMARK(one_place)->Arg(100)->Arg(100000)->Iterations(20)->Unit(benchmark::kMillisecond);
 
 }  // namespace
