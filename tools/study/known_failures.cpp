@@ -24,9 +24,6 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "by 1e-4 unbaked ones are 36 degrees apart after two seconds, and baked ones 45 to 50 from unbaked "
      "ones; weak "
      "hands are within 0.1, but solved for in 0.92 of the steps"},
-    {"ellipsoidal_limit",
-     "in float: where a joint creeps off by 1e-4 rad a step, what a solve leaves turns the torque by a "
-     "seventh"},
     {"target_through_wall",
      "in double: an arm that is pressed against the wall still swings by 2 mJ in the end, 1 wanted; with a "
      "spectral radius of 0.8 for all it does not, but then a limb that the piston jams is flung at 49 m/s"},
