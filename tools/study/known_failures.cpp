@@ -27,6 +27,10 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"ellipsoidal_limit",
      "in float: where a joint creeps off by 1e-4 rad a step, what a solve leaves turns the torque by a "
      "seventh"},
+    {"piston",
+     "in double: one solve of a limb that is jammed takes 59 passes without an end, and flings it at 28.8 "
+     "m/s; "
+     "24.8 in steps an eighth as long"},
     {"target_through_wall",
      "in double: an arm that is pressed against the wall still swings by 2 mJ in the end, 1 wanted; with a "
      "spectral radius of 0.8 for all it does not, but then a limb that the piston jams is flung at 49 m/s"},
