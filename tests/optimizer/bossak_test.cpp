@@ -57,10 +57,13 @@ TEST(Bossak, KeepsTheMomentumAndTurnOfABodyThatTumbles) {
 }
 
 TEST(Bossak, SpectralRadiusFallsWithTheTurn) {
-  EXPECT_DOUBLE_EQ(spectral_radius(0.0), spectral_radius(0.2));
-  EXPECT_LT(spectral_radius(0.5), spectral_radius(0.3));
-  EXPECT_DOUBLE_EQ(spectral_radius(5.0), spectral_radius(50.0));
-  EXPECT_GT(spectral_radius(50.0), 0.0);
+  for (const bool driven : {false, true}) {
+    EXPECT_DOUBLE_EQ(spectral_radius(0.0, driven), spectral_radius(0.1, driven));
+    EXPECT_LT(spectral_radius(0.5, driven), spectral_radius(0.2, driven));
+    EXPECT_DOUBLE_EQ(spectral_radius(5.0, driven), spectral_radius(50.0, driven));
+    EXPECT_GT(spectral_radius(50.0, driven), 0.0);
+  }
+  EXPECT_LT(spectral_radius(0.5, true), spectral_radius(0.5, false));
 }
 
 TEST(Bossak, ALimiterTakesAwayWhatHasJustComeOrTurned) {

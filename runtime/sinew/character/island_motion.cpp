@@ -130,19 +130,18 @@ void IslandStepper<T>::find_sets() {
 }
 
 /// Targets of Bossak's scheme, with one spectral radius for all that may touch: contact forces are equal and
-/// opposite in the momentum that they give only then. Where nothing does work the energy ledger bounds what
-/// wild turns gain; elsewhere they are damped.
+/// opposite in the momentum that they give only then.
 template <class T>
 void IslandStepper<T>::predict_all(T h) {
   find_sets();
   driven_.assign(states_.size(), 0);
-  radius_.assign(states_.size(), spectral_radius<T>(T(0)));
+  radius_.assign(states_.size(), T(1));
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (!states_[n]->limp()) driven_[set_[n]] = 1;
+    if (!states_[n]->limp() || !couplings_.empty()) driven_[set_[n]] = 1;
   for (std::size_t n = 0; n < states_.size(); ++n) {
-    if (!driven_[set_[n]]) continue;
     T& radius = radius_[set_[n]];
-    radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h)));
+    radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h),
+                                                 driven_[set_[n]] != 0));
   }
   number_bodies();
   for (std::size_t n = 0; n < states_.size(); ++n) {

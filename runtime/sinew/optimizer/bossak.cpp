@@ -8,9 +8,12 @@
 namespace sinew {
 namespace {
 
-constexpr double kLooseRadius = 0.8, kTightRadius = 0.5;  ///< ρ of small turns and of large ones
-constexpr double kSmallTurn = 0.3, kLargeTurn = 0.8;      ///< rad: up to and from where
-constexpr double kMostFreeTurn = 2;                       ///< rad; beyond, the target is affine
+/// ρ of small turns and of large ones, and up to and from how many rad these are.
+struct Radii {
+  double small, large, small_turn, large_turn;
+};
+constexpr Radii kPassive = {0.92, 0.8, 0.1, 0.3}, kDriven = {0.8, 0.5, 0.3, 0.8};
+constexpr double kMostFreeTurn = 2;  ///< rad; beyond, the target is affine
 
 template <class T>
 Vec3<T> spin_of(const Tree<T>& tree, int i, const Mat3<T>& rotation, const Vec3<T>& momentum) {
@@ -58,9 +61,11 @@ Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation,
 }
 
 template <class T>
-T spectral_radius(T turn) {
-  const T share = std::clamp((turn - T(kSmallTurn)) / T(kLargeTurn - kSmallTurn), T(0), T(1));
-  return T(kLooseRadius) + share * T(kTightRadius - kLooseRadius);
+T spectral_radius(T turn, bool driven) {
+  const Radii radii = driven ? kDriven : kPassive;
+  const T share =
+      std::clamp((turn - T(radii.small_turn)) / T(radii.large_turn - radii.small_turn), T(0), T(1));
+  return T(radii.small) + share * T(radii.large - radii.small);
 }
 
 template <class T>

@@ -73,10 +73,12 @@ T share_turning_faster(const Tree<T>& tree, const History<T>& history, T speed);
 template <class T>
 Mat3<T> rotation_rate_of(const Tree<T>& tree, int body, const Mat3<T>& rotation, const Vec3<T>& momentum);
 
-/// ρ where muscles or drives do work on bodies that turn so far in a step: 0.8 for small turns; far ones need
-/// damping, for the axes that forces act along turn with them, and what that gains nothing bounds.
+/// ρ where bodies turn by at most so far in a step. Small turns need next to none of its damping, and the
+/// error of slow motions grows with 1 − ρ; far ones need more, for the axes that forces act along turn with
+/// them. Less where something is driven: nothing bounds what that gains. Loops count as such: they are held
+/// at the end of a step only, and what their forces alternate by dies away as ρⁿ.
 template <class T>
-T spectral_radius(T largest_turn);
+T spectral_radius(T largest_turn, bool driven);
 
 /// What bodies move less in a step than at the velocities that impulses have left in a tree's history just
 /// before it, for these act within it.
@@ -119,7 +121,7 @@ void advance_bossak(const Tree<T>& tree, const Kinematics<T>& kinematics, const 
   prefix T largest_turn<T>(const Tree<T>&, const History<T>&, T);                                  \
   prefix T share_turning_faster<T>(const Tree<T>&, const History<T>&, T);                          \
   prefix Mat3<T> rotation_rate_of<T>(const Tree<T>&, int, const Mat3<T>&, const Vec3<T>&);         \
-  prefix T spectral_radius<T>(T);                                                                  \
+  prefix T spectral_radius<T>(T, bool);                                                            \
   prefix void predict_bossak<T>(const Tree<T>&, const History<T>&, const Strike<T>&, T, T,         \
                                 const Vec3<double>&, Prediction<T>&);                              \
   prefix void accelerate<T>(const Tree<T>&, const Kinematics<T>&, const Prediction<T>&,            \
