@@ -24,6 +24,12 @@ bool answers(const JointRow<T>& row) {
   return row.kind == RowKind::kKink || (row.kind == RowKind::kSpring && row.scalar == RowScalar::kFromStart);
 }
 
+template <class T>
+void clear_wrenches(TreeProblem<T>& p) {
+  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
+  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+}
+
 /// Generalised forces [dof] of a tree's rows: of those that answer, and of the one-sided ones. Springs are
 /// smooth.
 template <class T>
@@ -175,8 +181,7 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
   const Vec3<T> origin = s.floats ? s.local[0].translation : Vec3<T>(Vec3<T>::Zero());
   forward_kinematics<T>(s.tree, std::span<const Transform<T>>(s.local).first(s.tree.bodies), origin,
                         p.kinematics);
-  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
-  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
+  clear_wrenches(p);
   for (const ExternalForce<T>& impulse : s.impulses) {
     const Vec3<T> at =
         p.kinematics.origin[impulse.body] + p.kinematics.rotation[impulse.body] * impulse.local;
@@ -395,9 +400,8 @@ template <class T>
 void IslandStepper<T>::measure_constant(const CharacterState<T>& s, TreeProblem<T>& p, int tree,
                                         const Kinematics<T>& k) {
   bool any = false;
-  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
-  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
   const auto act = [&](int body, const Vec3<T>& local, const Vec3<T>& force) {
+    if (!any) clear_wrenches(p);
     any = true;
     p.force[body] += force;
     p.moment[body] += Vec3<T>(k.origin[body] + k.rotation[body] * local).cross(force);
@@ -447,9 +451,8 @@ template <class T>
 Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   TreeProblem<T>& p = s.problem;
   bool any = false;
-  std::fill(p.force.begin(), p.force.end(), Vec3<T>(Vec3<T>::Zero()));
-  std::fill(p.moment.begin(), p.moment.end(), Vec3<T>(Vec3<T>::Zero()));
   const auto act = [&](int body, const Vec3<T>& at, const Vec3<T>& force) {
+    if (!any) clear_wrenches(p);
     any = true;
     p.force[body] += force;
     p.moment[body] += at.cross(force);

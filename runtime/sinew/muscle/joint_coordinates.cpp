@@ -37,7 +37,7 @@ Transform<T> rebased(const Tree<T>& tree, int i, const Transform<T>& reference, 
     case JointType::kBall:
       return {local.rotation, reference.translation};
     default:
-      return at_offset<T>(tree, i, reference, joint_offset<T>(tree, i, reference, local).value);
+      return at_offset<T>(tree, i, reference, joint_offset_value<T>(tree, i, reference, local));
   }
 }
 

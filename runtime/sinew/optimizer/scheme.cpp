@@ -269,19 +269,17 @@ void change_motion(const Tree<T>& tree, const RigidMotion& rigid, T factor, cons
                    History<T>& history) {
   const Vec3<T> center = rigid.center.template cast<T>(), spin = rigid.spin.template cast<T>(),
                 velocity = rigid.velocity.template cast<T>();
-  const Vec3<T>& faster = turn.template cast<T>();
+  // What is rigid in the motion, and keeps its speed, is added to the scaled whole.
+  const Vec3<T> added = turn.template cast<T>() - (factor - 1) * spin;
   for (int i = 0; i < tree.bodies; ++i) {
     const Mat3<T>& r = history.rotation[i];
-    const auto momentum_of = [&](const Vec3<T>& w) {
-      return Vec3<T>(r * (tree.inertia[i] * (r.transpose() * w)));
-    };
     const Vec3<T> arm = history.center[i] - center;
-    history.velocity[i] +=
-        (factor - 1) * (history.velocity[i] - (velocity + spin.cross(arm))) + faster.cross(arm);
-    history.momentum[i] += (factor - 1) * (history.momentum[i] - momentum_of(spin)) + momentum_of(faster);
+    history.velocity[i] += (factor - 1) * (history.velocity[i] - velocity) + added.cross(arm);
+    history.momentum[i] +=
+        (factor - 1) * history.momentum[i] + Vec3<T>(r * (tree.inertia[i] * (r.transpose() * added)));
     Mat3<T>& rate = history.rotation_rate[i];
     if (history.turns_as_differenced)
-      rate += (factor - 1) * (rate - skew<T>(spin) * r) + skew<T>(faster) * r;
+      rate += (factor - 1) * rate + skew<T>(added) * r;
     else
       rate = rotation_rate_of<T>(tree, i, r, history.momentum[i]);
   }
