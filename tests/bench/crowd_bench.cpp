@@ -238,7 +238,8 @@ void world_frame(benchmark::State& state, bool batches) {
   const auto aim = [&](double time) {
     for (int n = 0; n < characters; ++n) {
       (void)SamplingJob<float>{&clip, time + 0.013 * n, 1, jets}.Run();
-      jets[0].translation += Vec3<float>(2.5f * float(n / columns), 2.5f * float(n % columns), 0);
+      const int row = n / columns, column = n % columns;
+      jets[0].translation += Vec3<float>(2.5f * float(row), 2.5f * float(column), 0);
       (void)world.character(n).set_target(jets);
     }
   };

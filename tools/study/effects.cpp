@@ -27,6 +27,9 @@ struct Kind {
 constexpr const char* kProducts =
     "the number of products of conjugate gradients depends on what hangs together";
 
+constexpr const char* kBrought =
+    "a ball that does not bounce is brought to rest on the floor instead, which costs as much";
+
 constexpr Kind kKinds[] = {
     {"wind", "checked", "collider"},
     {"wind", "pass", "collider"},
@@ -49,7 +52,7 @@ constexpr Kind kKinds[] = {
     {"self_collision", "solve", "point, with friction", kProducts},
     {"character_contact", "solve", "point, with friction"},
     {"loops", "step", "point of a limp wheel"},
-    {"restitution", "step", "ball that bounces"},
+    {"restitution", "step", "ball that bounces", kBrought},
     {"continuous_detection", "step", "ball that may pass a plate"},
     {"prop", "step", "box in flight"},
     {"resting_prop", "step", "box on the floor: 4 points"},

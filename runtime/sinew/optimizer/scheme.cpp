@@ -176,16 +176,14 @@ class TotalsSum {
   TotalsSum(const Vec3<double>& place, const Vec3<double>& gravity) : place_(place), gravity_(gravity) {}
 
   /// `turning`: twice the energy of its turning, J; `momentum`: angular, about its centre.
-  template <class T>
-  void add(T mass, const Vec3<T>& center, const Vec3<T>& velocity, T turning, const Vec3<T>& momentum) {
-    const double m = double(mass);
-    const Vec3<double> c = center.template cast<double>(), v = velocity.template cast<double>();
-    sum_.kinetic_energy += 0.5 * (m * v.squaredNorm() + double(turning));
-    sum_.potential_energy += gravity_energy<double>(m, gravity_, place_ + c);
-    sum_.momentum += m * v;
-    about_place_ += m * c.cross(v) + momentum.template cast<double>();
-    mass_ += m;
-    first_ += m * c;
+  void add(double mass, const Vec3<double>& center, const Vec3<double>& velocity, double turning,
+           const Vec3<double>& momentum) {
+    sum_.kinetic_energy += 0.5 * (mass * velocity.squaredNorm() + turning);
+    sum_.potential_energy += gravity_energy<double>(mass, gravity_, place_ + center);
+    sum_.momentum += mass * velocity;
+    about_place_ += mass * center.cross(velocity) + momentum;
+    mass_ += mass;
+    first_ += mass * center;
   }
   Totals get() {
     if (mass_ > 0) sum_.angular_momentum = about_place_ - first_.cross(sum_.momentum) / mass_;
@@ -208,7 +206,9 @@ Totals totals(const Tree<T>& tree, const History<T>& history, const Vec3<double>
     const Mat3<T>& rate = history.rotation_rate[i];
     const T turning = history.turns_as_differenced ? (rate * tree.second_moment[i]).cwiseProduct(rate).sum()
                                                    : spin.dot(tree.inverse_inertia[i] * spin);
-    sum.add<T>(tree.mass[i], history.center[i], history.velocity[i], turning, history.momentum[i]);
+    sum.add(double(tree.mass[i]), history.center[i].template cast<double>(),
+            history.velocity[i].template cast<double>(), double(turning),
+            history.momentum[i].template cast<double>());
   }
   return sum.get();
 }
@@ -235,9 +235,11 @@ Totals totals(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3
     }
     const Vec3<T>& center = tree.center_of_mass[i];
     const Vec3<T> spun = tree.inertia[i] * omega;
-    sum.add<T>(tree.mass[i], k.origin[i] + k.rotation[i] * center,
-               m.origin_velocity[i] + k.rotation[i] * Vec3<T>(omega.cross(center)), omega.dot(spun),
-               k.rotation[i] * spun);
+    const Vec3<T> at = k.origin[i] + k.rotation[i] * center;
+    const Vec3<T> velocity = m.origin_velocity[i] + k.rotation[i] * Vec3<T>(omega.cross(center));
+    const Vec3<T> momentum = k.rotation[i] * spun;
+    sum.add(double(tree.mass[i]), at.template cast<double>(), velocity.template cast<double>(),
+            double(omega.dot(spun)), momentum.template cast<double>());
   }
   return sum.get();
 }
