@@ -36,26 +36,32 @@ Standing<T> standing_of(const CharacterState<T>& s, const WorldSettings& world, 
 /// What the muscles would have to give, with nothing that acts from outside left out.
 template <class T>
 void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                       const CheckRoom<T>& room) {
+                       CheckRoom<T> room) {
   TreeProblem<T>& p = s.problem;
   const Vec3<T> origin = s.target[0].translation, gravity = world.gravity.template cast<T>();
   inertial_wrenches<T>(s.tree, s.target, gravity, origin, p.kinematics, s.motion, p.force, p.moment);
-  const auto without = [&](auto add) {
+  const auto take_off = [&](bool any, auto add) {
+    if (!any) return;
     for (std::vector<Vec3<T>>* wrench : {&p.force, &p.moment})
       std::fill(wrench->begin(), wrench->end(), Vec3<T>::Zero());
     add();
     add_wrenches<T>(p.kinematics, p.force, p.moment, room.body);
   };
   const Standing<T> standing = standing_of(s, world, plan);
-  move_bodies<T>(s.tree, s.target, gravity, standing, room);
-  without([&] {
+  room.body = s.motion.body;  // to the bit what move_bodies makes
+  for (int n = 0; standing.support && n < s.tree.bodies; ++n) {
+    const int i = s.tree.by_depth[n];
+    room.orientation[i] = s.target[i].rotation;
+    place_body<T>(s.tree, i, room);
+  }
+  take_off(!s.impulses.empty() || !s.forces.empty(), [&] {
     for (const ExternalForce<T>& j : s.impulses)
       plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
     for (const ExternalForce<T>& f : s.forces)
       plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
   });
   if (standing.support) standing.support->stand(standing.points, standing.ground - origin.z(), room);
-  without([&] { add_effect_wrenches(s, world, origin, h); });
+  take_off(!p.effects.empty(), [&] { add_effect_wrenches(s, world, origin, h); });
   project_bodies<T>(s.tree, room.body, [&](int dof, const T& t) { p.gradient[dof] = t; });
   for (const JointRow<T>& row : p.effect_rows)
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
