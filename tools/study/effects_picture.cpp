@@ -18,8 +18,10 @@ constexpr Colour kColours[] = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {0.00, 0.
 struct Plot {
   double left, low, high;  ///< place; exponents of ten
   double x(int instances) const { return left + kPlotWide * std::log2(double(instances)) / 6; }
+  /// What costs nothing, or saves, lies at the bottom.
   double y(double value) const {
-    return kTop + kPlotHigh * (1 - (std::log10(std::max(value, 1e-9)) - low) / (high - low));
+    const double share = (std::log10(std::max(value, 1e-9)) - low) / (high - low);
+    return kTop + kPlotHigh * (1 - std::max(share, 0.0));
   }
 };
 
