@@ -48,12 +48,9 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     add_wrenches<T>(p.kinematics, p.force, p.moment, room.body);
   };
   const Standing<T> standing = standing_of(s, world, plan);
-  room.body = s.motion.body;  // to the bit what move_bodies makes
-  for (int n = 0; standing.support && n < s.tree.bodies; ++n) {
-    const int i = s.tree.by_depth[n];
-    room.orientation[i] = s.target[i].rotation;
-    place_body<T>(s.tree, i, room);
-  }
+  room.body = s.motion.body;  // to the bit what check_motion makes
+  room.rotation = p.kinematics.rotation;
+  room.origin = p.kinematics.origin;
   take_off(!s.impulses.empty() || !s.forces.empty(), [&] {
     for (const ExternalForce<T>& j : s.impulses)
       plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});

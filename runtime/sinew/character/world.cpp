@@ -56,8 +56,8 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   for (const auto& effect : s.effects) s.problem.room.effect_rows += effect->most_rows();
   rooms.add(s.problem.room);
   if (!s.is_prop && !s.is_particles)
-    check_room = {std::max(check_room.bodies, s.tree.bodies), std::max(check_room.dofs, s.tree.dofs),
-                  std::max(check_room.points, static_cast<int>(s.rig->support.points.size()))};
+    checked_rig = {std::max(checked_rig.bodies, s.tree.bodies), std::max(checked_rig.dofs, s.tree.dofs),
+                   std::max(checked_rig.points, static_cast<int>(s.rig->support.points.size()))};
   // The world has its rig, too: three of them are two characters.
   const bool shared = s.rig.use_count() > 2 && s.tree.dofs <= kMostBatchDofs;
   if (settings.batches && plan.make_batches && shared && !s.is_prop && !s.is_particles)
@@ -68,7 +68,7 @@ template <class T>
 void World<T>::Impl::count_all() {
   rooms = {};
   batch_room = {};
-  check_room = {};
+  checked_rig = {};
   for (const auto& s : states) count_in(*s);
   couplings.count_in(states, rooms);
 }
@@ -117,7 +117,7 @@ void World<T>::Impl::reserve() {
     workers[n]->jets.reserve(rooms.largest.bodies);
     if (plan.make_batches) workers[n]->batch->reserve(batch_room);
     workers[n]->waiting.reserve(Impl::kMostWaiting);
-    const auto& [bodies, dofs, points] = check_room;
+    const auto& [bodies, dofs, points] = checked_rig;
     workers[n]->check_room.resize(CheckRoom<T>::bytes(bodies, bodies, points));
     if (workers[n]->checks) workers[n]->checks->reserve(bodies, dofs, points);
     workers[n]->unchecked.reserve(Impl::kMostWaiting);

@@ -86,7 +86,7 @@ struct World<T>::Impl {
   /// What the largest rig that may be played has: points that may stand on the ground.
   struct {
     int bodies = 0, dofs = 0, points = 0;
-  } check_room;
+  } checked_rig;
   SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step

@@ -29,6 +29,16 @@ std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
   return hash;
 }
 
+/// Adds to those who wait for a batch. Returns one of those who fill a batch now, or the first where the list
+/// is full; null where all have to wait.
+template <class Entry>
+const Entry* add_waiting(std::vector<Entry>& list, const Entry& entry, int lanes, std::size_t most) {
+  list.push_back(entry);
+  const auto alike = [&](const Entry& other) { return other.alike(entry); };
+  if (std::count_if(list.begin(), list.end(), alike) == lanes) return &list.back();
+  return list.size() == most ? &list.front() : nullptr;
+}
+
 /// Moves who is like `first` from a worker's list to `batch`; returns how many.
 template <class Entry, std::size_t kMost>
 std::size_t take_alike(std::vector<Entry>& from, const Entry first, std::array<Entry, kMost>& batch) {
@@ -109,13 +119,8 @@ template <class T>
 void World<T>::Impl::check_later(int island, Worker& worker, double spent) {
   CharacterState<T>* state = worker.members[0];
   const Unchecked last{island, state, stands(*state, settings, plan), spent};
-  worker.unchecked.push_back(last);
-  const auto alike = std::count_if(worker.unchecked.begin(), worker.unchecked.end(),
-                                   [&](const Unchecked& other) { return other.alike(last); });
-  if (alike == worker.checks->lanes())
-    check_alike(worker, last);
-  else if (worker.unchecked.size() == kMostWaiting)
-    check_alike(worker, worker.unchecked[0]);
+  if (const Unchecked* full = add_waiting(worker.unchecked, last, worker.checks->lanes(), kMostWaiting))
+    check_alike(worker, *full);
 }
 
 /// Checks who is like `one` in a batch, plays who can be, and goes on with the others.
@@ -259,14 +264,9 @@ template <class T>
 void World<T>::Impl::wait(int island, Worker& worker, double spent) {
   const typename IslandStepper<T>::Begun begun = worker.stepper.put_aside();
   CharacterState<T>* state = worker.members[0];
-  Waiting& last =
-      worker.waiting.emplace_back(Waiting{island, state, begun, spent, set_of_unknowns(state->problem.free)});
-  const auto alike = std::count_if(worker.waiting.begin(), worker.waiting.end(),
-                                   [&](const Waiting& other) { return other.alike(last); });
-  if (alike == worker.batch->lanes())
-    solve_alike(worker, last);
-  else if (worker.waiting.size() == kMostWaiting)
-    solve_alike(worker, worker.waiting[0]);
+  const Waiting last{island, state, begun, spent, set_of_unknowns(state->problem.free)};
+  if (const Waiting* full = add_waiting(worker.waiting, last, worker.batch->lanes(), kMostWaiting))
+    solve_alike(worker, *full);
 }
 
 /// Solves what waits and is like `one` in a batch, and goes on with every island from there.

@@ -15,22 +15,19 @@ struct CheckRoom {
   std::span<BodyMotion<T>> body;
   std::span<Mat3<T>> rotation;           ///< body → world
   std::span<Vec3<T>> force, moment;      ///< about the root's origin, world axes
-  std::span<Quat<T>> orientation;        ///< [joint] → world
   std::span<Vec3<T>> origin;             ///< [joint] from the root's, world axes
   std::span<StandingPoint<T>> standing;  ///< [point]
 
   static constexpr std::size_t bytes(int bodies, int joints, int points) {
     return std::size_t(bodies) * (sizeof(BodyMotion<T>) + sizeof(Mat3<T>) + 2 * sizeof(Vec3<T>)) +
-           std::size_t(joints) * (sizeof(Quat<T>) + sizeof(Vec3<T>)) +
-           std::size_t(points) * sizeof(StandingPoint<T>);
+           std::size_t(joints) * sizeof(Vec3<T>) + std::size_t(points) * sizeof(StandingPoint<T>);
   }
-  /// In `memory` of that many bytes, aligned to 16, packs to their size.
+  /// In `memory` of that many bytes, aligned as T is.
   CheckRoom(void* memory, int bodies, int joints, int points) {
     const auto take = [&]<class U>(std::span<U>& out, int count) {
       out = {static_cast<U*>(memory), std::size_t(count)};
       memory = out.data() + count;
     };
-    take(orientation, joints);
     take(body, bodies);
     take(rotation, bodies);
     take(force, bodies);
@@ -40,7 +37,7 @@ struct CheckRoom {
   }
 };
 
-/// Orientation, still from the parent, and origin become those in the world.
+/// Where a body is, from its parent.
 template <class T>
 [[gnu::always_inline]] inline void place_body(const Tree<Number<T>>& tree, int i, const CheckRoom<T>& r) {
   const int p = tree.parent[i];
@@ -48,8 +45,7 @@ template <class T>
     r.rotation[i] = r.body[i].turn;
     r.origin[i] = Vec3<T>::Zero();
   } else {
-    r.orientation[i] = r.orientation[p] * r.orientation[i];
-    r.rotation[i] = r.orientation[i].toRotationMatrix();
+    r.rotation[i].noalias() = r.rotation[p].lazyProduct(r.body[i].turn);
     r.origin[i] = r.origin[p] + r.rotation[p] * r.body[i].arm;
   }
 }
@@ -96,20 +92,6 @@ struct Standing {
   T ground = T(0);  ///< m, its height
 };
 
-/// The first sweep: the wrench [body] that the motion `jets` [body] asks for. `room` must have this tree's
-/// size.
-template <class T>
-void move_bodies(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
-                 const Standing<T>& standing, const CheckRoom<T>& room) {
-  for (const int i : tree.by_depth) {
-    const int p = tree.parent[i];
-    move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &room.body[p], room.body[i]);
-    if (!standing.support) continue;
-    room.orientation[i] = jets[i].rotation;
-    place_body<T>(tree, i, room);
-  }
-}
-
 /// Wrenches [body] in world axes about the root's origin, to those in the bodies' axes.
 template <class T>
 void add_wrenches(const Kinematics<T>& kinematics, std::span<const Vec3<T>> force,
@@ -120,11 +102,16 @@ void add_wrenches(const Kinematics<T>& kinematics, std::span<const Vec3<T>> forc
   }
 }
 
-/// Torques [dof] (N·m; N for translations) that the motion `jets` [body] asks for. O(bodies).
+/// Torques [dof] (N·m; N for translations) that the motion `jets` [body] asks for. `room` must have this
+/// tree's size. O(bodies).
 template <class T>
 void check_motion(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
                   const Standing<T>& standing, const CheckRoom<T>& room, std::span<T> torque) {
-  move_bodies<T>(tree, jets, gravity, standing, room);
+  for (const int i : tree.by_depth) {
+    const int p = tree.parent[i];
+    move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &room.body[p], room.body[i]);
+    if (standing.support) place_body<T>(tree, i, room);
+  }
   if (standing.support)
     standing.support->stand(standing.points, standing.ground - jets[0].translation.z(), room);
   project_bodies<T>(tree, room.body, [&](int dof, const T& t) { torque[dof] = t; });

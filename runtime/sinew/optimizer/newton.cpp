@@ -79,13 +79,13 @@ bool NewtonSolver<T>::accepted(T t, T slope, double energy, double new_energy, b
   };
   if (lacks_energy(*trees_[0])) return calmer();
   T unit = T(0);
-  double against = 0;
+  double outside = 0;
   for (const TreeProblem<T>* p : trees_) {
     unit = std::max(unit, p->tree->scale.energy);
-    against += p->against;
+    outside += p->outside_energy;
   }
   const double noise = (sizeof(T) == 4 ? 2e-5 : 1e-11) * (double(unit) + std::abs(energy)) +
-                       kRoundings * double(std::numeric_limits<T>::epsilon()) * against;
+                       kRoundings * double(std::numeric_limits<T>::epsilon()) * outside;
   return new_energy <= energy + 1e-4 * double(t * slope) ||
          (new_energy <= energy + noise && (slight || calmer()));
 }

@@ -56,10 +56,10 @@ double begin_evaluation(const StepSettings<T>& settings, TreeProblem<T>& p) {
   const Tree<T>& tree = *p.tree;
   forward_kinematics<T>(tree, p.local, p.common_origin, p.kinematics);
   double energy = inertial_energy<T>(settings, p);
-  p.against = 0;
+  p.outside_energy = 0;
   const auto add = [&](double of_outside) {
     energy += of_outside;
-    p.against += std::abs(of_outside);
+    p.outside_energy += std::abs(of_outside);
   };
   for (const ExternalForce<T>& push : p.pushes)
     add(settings.plan->impulses->add_gradient(push, p.kinematics, {p.force, p.moment}));

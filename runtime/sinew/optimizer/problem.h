@@ -41,7 +41,7 @@ struct TreeProblem : JointRowList<T> {
   std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
   bool stiff = false;                          ///< some of them is not zero
   SolveRoom room;                              ///< what this tree brings to a solve
-  double against = 0;           ///< J: energies of pushes and effects, which may cancel, without their signs
+  double outside_energy = 0;    ///< J: energies of pushes and effects, which may cancel, without their signs
   T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
   int first_unknown_map = 0;    ///< where this tree's part of Unknowns::of_dof begins
 

@@ -100,25 +100,27 @@ void compare(const Rig& rig, const Batch& batch, const Lanes& lanes) {
 
 /// Joints that ride along take their place in the world from their parents'.
 template <class P, class Source>
-void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, const CheckRoom<P>& s) {
-  for (int i = int(s.body.size()); i < rig.joints; ++i) {
+void ride_along(const Rig& rig, const Batch& batch, const Lanes& lanes, std::span<Quat<P>> orientation,
+                std::span<Vec3<P>> origin) {
+  for (int i = rig.tree->bodies; i < rig.joints; ++i) {
     const Source jets(batch, lanes, i);
     P q[4], unused[4], x[4], y[4];
     jets.load(0, q, unused);
     jets.load(8, x, y);
     const int p = rig.parent[i];
-    const Transform<P> world = Transform<P>{s.orientation[p], s.origin[p]} *
+    const Transform<P> world = Transform<P>{orientation[p], origin[p]} *
                                Transform<P>{Quat<P>(q[3], q[0], q[1], q[2]), {x[2], x[3], y[0]}};
-    s.orientation[i] = world.rotation;
-    s.origin[i] = world.translation;
+    orientation[i] = world.rotation;
+    origin[i] = world.translation;
   }
 }
 
 template <class P>
-void write_model(const Rig& rig, const Batch& batch, int first_lane, const CheckRoom<P>& s) {
+void write_model(const Rig& rig, const Batch& batch, int first_lane, std::span<const Quat<P>> orientation,
+                 std::span<const Vec3<P>> origin) {
   for (int i = 0; i < rig.joints; ++i) {
-    const Vec3<P>& at = s.origin[i];
-    const auto& turn = s.orientation[i];
+    const Vec3<P>& at = origin[i];
+    const auto& turn = orientation[i];
     P q[4] = {turn.x(), turn.y(), turn.z(), turn.w()};
     P x[4] = {at.x(), at.y(), at.z(), P(0)};
     transpose(q);
@@ -135,15 +137,17 @@ void write_model(const Rig& rig, const Batch& batch, int first_lane, const Check
 template <class P, class Source>
 void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Tree<float>& tree = *rig.tree;
-  const CheckRoom<P> scratch(batch.scratch, tree.bodies, rig.joints,
+  const std::span orientation(static_cast<Quat<P>*>(batch.scratch), std::size_t(rig.joints));
+  const CheckRoom<P> scratch(orientation.data() + rig.joints, tree.bodies, rig.joints,
                              rig.support ? int(rig.support->points.size()) : 0);
-  const bool placed = rig.support || batch.model[0];
+  const bool posed = batch.model[0], placed = rig.support || posed;
   const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));
   for (const int i : tree.by_depth) {
     const int p = tree.parent[i];
     move<P>(rig, Source(batch, lanes, i), i, gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i],
-            placed ? &scratch.orientation[i] : nullptr);
+            posed ? &orientation[i] : nullptr);
     if (placed) place_body<P>(tree, i, scratch);
+    if (posed && p >= 0) orientation[i] = orientation[p] * orientation[i];
   }
   const Vec3<P> root = scratch.body[0].arm;
   if (rig.support) stand<P>(*rig.support, P(rig.ground_height) - root.z(), scratch);
@@ -157,10 +161,10 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
     for (int a = 0; a < 3; ++a)
       store<0, P::kLanes>(velocity[1 + a], batch.velocity + a * lanes.stride + lanes.first);
   }
-  if (!batch.model[0]) return;
+  if (!posed) return;
   for (int i = 0; i < tree.bodies; ++i) scratch.origin[i] = root + scratch.origin[i];
-  ride_along<P, Source>(rig, batch, lanes, scratch);
-  write_model(rig, batch, lanes.first, scratch);
+  ride_along<P, Source>(rig, batch, lanes, orientation, scratch.origin);
+  write_model<P>(rig, batch, lanes.first, orientation, scratch.origin);
 }
 
 /// A batch in as many passes as registers of `kRegister` lanes need.
