@@ -88,6 +88,9 @@ TEST(Command, ScenesAreCheckedByNameBeforeAnythingRuns) {
     expect_refused("simulate " + path + " -o " + out, names);
     EXPECT_FALSE(fs::exists(out)) << names;
   }
+  const std::string video = own_directory() + "scene.mp4";
+  expect_refused("simulate " + written("scene.json", scene("", "")) + " -o " + video, "sinew render");
+  EXPECT_FALSE(fs::exists(video));
 }
 
 TEST(Command, SimulateWritesTelemetryOfAScene) {

@@ -49,6 +49,15 @@ convert::Error write_atomically(const std::string& path, const std::string& text
   return write_atomically(path, text.data(), text.size());
 }
 
+convert::Error telemetry_format(const std::string& path, bool& as_json) {
+  const std::string ending = std::filesystem::path(path).extension();
+  for (const char* picture : {".mp4", ".webm", ".gif", ".png"})
+    if (ending == picture)
+      return {path + ": telemetry is .csv, or .json for the summary; 'sinew render' makes " + ending};
+  as_json = ending == ".json";
+  return {};
+}
+
 convert::Error read_json(const std::string& path, nlohmann::json& out) {
   std::ifstream file(path);
   if (!file) return {path + ": file cannot be opened"};

@@ -16,6 +16,10 @@ convert::Error check_writable(const std::string& path);
 convert::Error write_atomically(const std::string& path, const void* data, std::size_t size);
 convert::Error write_atomically(const std::string& path, const std::string& text);
 
+/// What a run's telemetry is written as: a summary in .json, else a table. Files that hold pictures are
+/// refused.
+convert::Error telemetry_format(const std::string& path, bool& as_json);
+
 convert::Error read_json(const std::string& path, nlohmann::json& out);
 
 /// "WHAT 210 of 900, 34 s left" on standard error: on a terminal one line that changes, from the

@@ -138,6 +138,8 @@ struct SimulateCommand {
   bool json_output = false, plot = false;
 
   Error run() const {
+    bool as_json = false;
+    if (Error error = cli::telemetry_format(output, as_json)) return error;
     sinew::scene::Scene scene;
     if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
     if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
@@ -147,7 +149,6 @@ struct SimulateCommand {
             sinew::scene::run_scene(scene, recording, telemetry, cli::progress_line("simulate: frame")))
       return {scene_file + ": " + error.message};
     const json summary = sinew::scene::telemetry_summary(scene, telemetry);
-    const bool as_json = std::filesystem::path(output).extension() == ".json";
     if (Error error = cli::write_atomically(
             output, as_json ? summary.dump(2) + "\n" : sinew::scene::telemetry_csv(scene, telemetry)))
       return error;

@@ -1,7 +1,6 @@
 #include "cli/mechanism.h"
 
 #include <cstdio>
-#include <filesystem>
 
 #include "cli/files.h"
 
@@ -37,6 +36,8 @@ void add_mechanism_options(CLI::App& app, mechanism::SimulateOptions& o) {
 
 Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& options,
                     const std::string& output, bool json_output) {
+  bool as_json = false;
+  if (Error error = telemetry_format(output, as_json)) return error;
   multibody::Mechanism description;
   if (const std::string fault = mechanism::load_mechanism(path, description); !fault.empty()) return {fault};
   const multibody::Model model(description);
@@ -49,7 +50,6 @@ Error run_mechanism(const std::string& path, const mechanism::SimulateOptions& o
   const std::string why = mechanism::simulate_mechanism(model, options, progress, result);
   if (!why.empty() && result.samples.empty()) return {path + ": " + why};
   const nlohmann::json summary = mechanism::telemetry(model, options, result);
-  const bool as_json = std::filesystem::path(output).extension() == ".json";
   if (Error error =
           write_atomically(output, as_json ? summary.dump(2) + "\n" : mechanism::samples_csv(model, result)))
     return error;
