@@ -42,8 +42,7 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
   inertial_wrenches<T>(s.tree, s.target, gravity, origin, p.kinematics, s.motion, p.force, p.moment);
   const auto take_off = [&](bool any, auto add) {
     if (!any) return;
-    for (std::vector<Vec3<T>>* wrench : {&p.force, &p.moment})
-      std::fill(wrench->begin(), wrench->end(), Vec3<T>::Zero());
+    p.clear_wrenches();
     add();
     add_wrenches<T>(p.kinematics, p.force, p.moment, room.body);
   };

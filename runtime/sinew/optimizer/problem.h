@@ -1,6 +1,7 @@
 // The energy of one tree over one step: inertia, gravity, pushes and the scalar energies of its joints.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -46,6 +47,10 @@ struct TreeProblem : JointRowList<T> {
   int first_unknown_map = 0;    ///< where this tree's part of Unknowns::of_dof begins
 
   TreeProblem(const Tree<T>& tree, const Skeleton& skeleton);
+  void clear_wrenches() {
+    for (std::vector<Vec3<T>>* wrench : {&force, &moment})
+      std::fill(wrench->begin(), wrench->end(), Vec3<T>(Vec3<T>::Zero()));
+  }
   /// Set-up: puts an effect, attached to this tree, into the plan if it has instances.
   void plan(Effect<T>& effect);
 };
