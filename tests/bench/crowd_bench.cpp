@@ -184,80 +184,76 @@ void flight(benchmark::State& state, bool batches, bool limits) {
   per_character(state, characters);
 }
 
-/// Characters on their clips whose right arm hangs limp, one world: all have the same few unknowns. `twice`:
-/// every second one's left arm instead.
-void limp_arm(benchmark::State& state, bool batches, bool twice) {
-  const int characters = int(state.range(0));
-  const Skeleton rig = fixtures::humanoid();
-  const Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
-  WorldSettings settings;
-  settings.batches = batches;
-  World<float> world(settings);
+/// Characters of a world on one clip, each at a moment of its own, in so many columns.
+struct OnClip {
+  Skeleton rig = fixtures::humanoid();
+  Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
+  World<float> world;
+  std::vector<JointJet<float>> jets;
+  int characters, columns;
+  float apart;  ///< m
   Status status;
-  std::vector<JointJet<float>> jets(rig.joints.size());
-  const auto aim = [&](double time) {
+
+  OnClip(int count, int of_row, float spacing, bool batches)
+      : world(settings(batches)),
+        jets(rig.joints.size()),
+        characters(count),
+        columns(of_row),
+        apart(spacing) {
+    for (int n = 0; n < characters; ++n)
+      if (world.add_character(rig, {}, status) < 0) return;
+    aim(0);
+    for (int n = 0; n < characters; ++n) world.character(n).reset();
+  }
+  static WorldSettings settings(bool batches) {
+    WorldSettings chosen;
+    chosen.batches = batches;
+    return chosen;
+  }
+  void aim(double time) {
     for (int n = 0; n < characters; ++n) {
       (void)SamplingJob<float>{&clip, time + 0.1 * n, 1, jets}.Run();
-      jets[0].translation.x() += 5 * float(n);
+      const int row = n / columns, column = n % columns;
+      jets[0].translation += Vec3<float>(apart * float(row), apart * float(column), 0);
       (void)world.character(n).set_target(jets);
     }
-  };
-  for (int n = 0; n < characters; ++n) {
-    if (world.add_character(rig, {}, status) < 0) return state.SkipWithError(status.reason);
-    const std::string side = twice && n % 2 == 1 ? "_l" : "_r";
-    for (const std::string part : {"upperarm", "forearm", "hand"})
-      if (!world.character(n).set_strength(rig.find((part + side).c_str()), 0.0f))
-        return state.SkipWithError("no such joint");
   }
-  aim(0);
-  for (int n = 0; n < characters; ++n) world.character(n).reset();
-  double time = 0;
-  long unknowns = 0;
+};
+
+/// Steps of those: what after(n) adds up over them, a step and character.
+template <class After>
+void step_on_clip(benchmark::State& state, OnClip& scene, const char* counter, const After& after) {
+  if (!scene.status) return state.SkipWithError(scene.status.reason);
+  double time = 0, sum = 0;
   for (auto _ : state) {
     state.PauseTiming();
-    aim(time += kStep);
+    for (int n = 0; n < scene.characters && time > 0; ++n) sum += after(scene.world.character(n));
+    scene.aim(time += kStep);
     state.ResumeTiming();
-    benchmark::DoNotOptimize(world.step(float(kStep)));
-    for (int n = 0; n < characters; ++n) unknowns += world.character(n).report().unknown_dofs;
+    benchmark::DoNotOptimize(scene.world.step(float(kStep)));
   }
-  state.counters["unknowns"] = double(unknowns) / double(characters) / double(state.iterations());
-  per_character(state, characters);
+  state.counters[counter] = sum / double(scene.characters) / double(state.iterations());
+  per_character(state, scene.characters);
 }
 
-/// Undisturbed characters of a world, 2.5 m apart: its step alone, poses and motion given.
+/// Their right arms hang limp: all have the same few unknowns. `twice`: every second one's left arm instead.
+void limp_arm(benchmark::State& state, bool batches, bool twice) {
+  OnClip scene(int(state.range(0)), 1, 5, batches);
+  for (int n = 0; n < scene.characters && scene.status; ++n) {
+    const std::string side = twice && n % 2 == 1 ? "_l" : "_r";
+    for (const std::string part : {"upperarm", "forearm", "hand"})
+      if (!scene.world.character(n).set_strength(scene.rig.find((part + side).c_str()), 0.0f))
+        return state.SkipWithError("no such joint");
+  }
+  step_on_clip(state, scene, "unknowns",
+               [](const Character<float>& c) { return double(c.report().unknown_dofs); });
+}
+
+/// Undisturbed, 2.5 m apart: a world's step alone, poses and motion given.
 void world_frame(benchmark::State& state, bool batches) {
   const int characters = int(state.range(0));
-  const Skeleton rig = fixtures::humanoid();
-  const Clip clip = fixtures::swaying_clip(rig, 1, 0.05);
-  WorldSettings settings;
-  settings.batches = batches;
-  World<float> world(settings);
-  Status status;
-  const int columns = std::max(1, int(std::sqrt(double(characters))));
-  std::vector<JointJet<float>> jets(rig.joints.size());
-  const auto aim = [&](double time) {
-    for (int n = 0; n < characters; ++n) {
-      (void)SamplingJob<float>{&clip, time + 0.013 * n, 1, jets}.Run();
-      const int row = n / columns, column = n % columns;
-      jets[0].translation += Vec3<float>(2.5f * float(row), 2.5f * float(column), 0);
-      (void)world.character(n).set_target(jets);
-    }
-  };
-  for (int n = 0; n < characters; ++n)
-    if (world.add_character(rig, {}, status) < 0) return state.SkipWithError(status.reason);
-  aim(0);
-  for (int n = 0; n < characters; ++n) world.character(n).reset();
-  double time = 0;
-  for (auto _ : state) {
-    state.PauseTiming();
-    aim(time += kStep);
-    state.ResumeTiming();
-    benchmark::DoNotOptimize(world.step(float(kStep)));
-  }
-  int solved = 0;
-  for (int n = 0; n < characters; ++n) solved += world.character(n).report().substeps > 0;
-  state.counters["solved"] = solved;
-  per_character(state, characters);
+  OnClip scene(characters, std::max(1, int(std::sqrt(double(characters)))), 2.5f, batches);
+  step_on_clip(state, scene, "solved", [](const Character<float>& c) { return double(!c.on_animation()); });
 }
 
 /// A population on a grid, of which 5 % are hit at the chest every second. The whole frame on so many
