@@ -25,8 +25,8 @@ struct AccuracyScene {
   std::function<void(Engine&, double t, double h)> drive;
 };
 
-/// Tumbling body, pendulum, limp figure's collapse and drop, 50 : 1 stack, walk and run with pushes, levels
-/// of detail.
+/// Tumbling body, pendulum, limp figure's flights, collapse and drop, 50 : 1 stack, walk and run with pushes,
+/// levels of detail.
 std::vector<AccuracyScene> accuracy_scenes();
 /// The stiff driver of the reference family: in joint coordinates, without figures of its own.
 AccuracyScene stiff_driver();

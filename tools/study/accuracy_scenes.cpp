@@ -30,6 +30,24 @@ AccuracyScene tumbling_body() {
   return s;
 }
 
+/// Joints at so many rad/s (rms).
+AccuracyScene flight(const char* name, double speed) {
+  AccuracyScene s;
+  s.name = name;
+  s.title = "A limp figure flies, joints at " + std::to_string(std::lround(speed)) + " rad/s";
+  s.reading =
+      "37 degrees of freedom and nothing that bears on them: joints that turn fast are all that is "
+      "integrated.";
+  s.to_catch_up = "a method of higher order, whose stages a step with contacts would have no use for.";
+  s.seconds = 0.5;
+  s.scene.ground = false;
+  Figure figure = resting(humanoid());
+  make_frictionless(figure.skeleton);
+  randomise_speeds(figure.skeleton, figure.jets, speed, 4);
+  s.scene.figures.push_back(figure);
+  return s;
+}
+
 AccuracyScene ragdoll_drop() {
   AccuracyScene s;
   s.name = "drop";
@@ -179,6 +197,8 @@ AccuracyScene fainting() {
 std::vector<AccuracyScene> accuracy_scenes() {
   return {tumbling_body(),
           pendulum("pendulum", 5, JointType::kRevolute, {0, kQuarter, 0}),
+          flight("flight", 3),
+          flight("wild_flight", 10),
           collapse(),
           ragdoll_drop(),
           stack(),
