@@ -140,8 +140,8 @@ void crowd_kernel(benchmark::State& state, bool sampling) {
   per_character(state, 16);
 }
 
-/// Limp humanoids in flight, one world: every one is solved in every step, in batches or one by one.
-void flight(benchmark::State& state, bool batches, bool limits) {
+/// Limp humanoids in flight, one world: every one is solved in every step.
+void flight(benchmark::State& state, bool limits) {
   const int characters = int(state.range(0));
   Skeleton rig = fixtures::humanoid();
   for (Joint& joint : rig.joints) {
@@ -153,7 +153,6 @@ void flight(benchmark::State& state, bool batches, bool limits) {
   }
   WorldSettings settings;
   settings.ground = false;
-  settings.batches = batches;
   World<float> world(settings);
   Status status;
   std::mt19937 random(1);
@@ -237,8 +236,8 @@ void step_on_clip(benchmark::State& state, OnClip& scene, const char* counter, c
 }
 
 /// Their right arms hang limp: all have the same few unknowns. `twice`: every second one's left arm instead.
-void limp_arm(benchmark::State& state, bool batches, bool twice) {
-  OnClip scene(int(state.range(0)), 1, 5, batches);
+void limp_arm(benchmark::State& state, bool twice) {
+  OnClip scene(int(state.range(0)), 1, 5, true);
   for (int n = 0; n < scene.characters && scene.status; ++n) {
     const std::string side = twice && n % 2 == 1 ? "_l" : "_r";
     for (const std::string part : {"upperarm", "forearm", "hand"})
@@ -347,15 +346,11 @@ BENCHMARK_CAPTURE(crowd_frame, baseline_8, kBaseline, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx2_8, kAvx2, 8)->Arg(1000);
 BENCHMARK_CAPTURE(crowd_frame, avx512_16, kAvx512, 16)->Arg(16)->Arg(1000)->Arg(10000)->Arg(100000);
 
-BENCHMARK_CAPTURE(flight, alone, false, false)->Arg(64);
-BENCHMARK_CAPTURE(flight, batches, true, false)->Arg(8)->Arg(16)->Arg(64);
-BENCHMARK_CAPTURE(flight, limits_alone, false, true)->Arg(64);
-BENCHMARK_CAPTURE(flight, limits_batches, true, true)->Arg(64);
+BENCHMARK_CAPTURE(flight, no_limits, false)->Arg(64);
+BENCHMARK_CAPTURE(flight, limits, true)->Arg(64);
 
-BENCHMARK_CAPTURE(limp_arm, alone, false, false)->Arg(64);
-BENCHMARK_CAPTURE(limp_arm, batches, true, false)->Arg(64);
-BENCHMARK_CAPTURE(limp_arm, two_sets_alone, false, true)->Arg(64);
-BENCHMARK_CAPTURE(limp_arm, two_sets_batches, true, true)->Arg(64);
+BENCHMARK_CAPTURE(limp_arm, one_set, false)->Arg(64);
+BENCHMARK_CAPTURE(limp_arm, two_sets, true)->Arg(64);
 
 BENCHMARK_CAPTURE(world_frame, alone, false)->Arg(1000);
 BENCHMARK_CAPTURE(world_frame, batches, true)->Arg(16)->Arg(1000);

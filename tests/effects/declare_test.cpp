@@ -9,7 +9,6 @@
 #include "sinew/effects/joint_limit.h"
 #include "sinew/effects/muscle.h"
 #include "sinew/effects/support.h"
-#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew {
 namespace {
@@ -76,26 +75,12 @@ TEST(Declare, AllOfThemAreTheStandardWorldToTheBit) {
     EXPECT_TRUE(chosen.declare<Contacts>().ok());
     EXPECT_TRUE(chosen.declare<Support>().ok());
     for (World<float>* world : {&standard, &chosen}) {
-      add(*world, hindered(), strength, 8);  // the standard one solves them in batches
+      add(*world, hindered(), strength, 8);
       Character<float> hit = world->character(3);
       EXPECT_TRUE(hit.apply_impulse(5, hit.model()[5].translation, {20, 5, 0}).ok());
       run(*world, 30);
     }
     EXPECT_EQ(saved(standard), saved(chosen)) << strength;
-  }
-}
-
-TEST(Declare, BatchesObeyWhatIsDeclared) {
-  for (const bool limits : {false, true}) {
-    World<float> alone(airborne(), DeclareNothing{}), batched(airborne(), DeclareNothing{});
-    EXPECT_TRUE(batched.declare<Batches>().ok());
-    for (World<float>* world : {&alone, &batched}) {
-      const Status declared = limits ? world->declare<JointLimits>() : world->declare<JointDamping>();
-      EXPECT_TRUE(declared.ok());
-      add(*world, hindered(), 0, 16);
-      run(*world, 30);
-    }
-    EXPECT_EQ(saved(alone), saved(batched)) << limits;
   }
 }
 

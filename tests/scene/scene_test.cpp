@@ -259,11 +259,10 @@ TEST(Scene, SameSceneGivesTheSameBits) {
 TEST(Scene, SubstepsAreSolvedAndReported) {
   const std::string limp = R"(, "clips": [{"clip": "stand"}], "strength": [[0, 0]], "root": [[0, "free"]])";
   for (const int parts : {1, 3}) {
-    const Result r =
-        run(limp,
-            R"(, "accuracy": {"max_splits": 0, "max_rotation": 0, "impact_step": 0, "substeps": )" +
-                std::to_string(parts) + "}",
-            0.5);
+    const Result r = run(
+        limp,
+        R"(, "accuracy": {"max_splits": 0, "max_rotation": 0, "substeps": )" + std::to_string(parts) + "}",
+        0.5);
     EXPECT_EQ(r.telemetry.rows.back().report.substeps, parts);
     EXPECT_NE(telemetry_csv(r.scene, r.telemetry).find(",elastic_J,substeps,"), std::string::npos);
   }

@@ -227,8 +227,8 @@ void read_accuracy(const json& value, Scene& s) {
   MeasuredAccuracy preset;
   const json named = value.is_string() ? json{{"preset", value}} : value;
   const Reader a(named, "accuracy",
-                 {"preset", "tolerance", "max_iterations", "substeps", "max_rotation", "impact_step",
-                  "max_parts", "max_splits", "max_passes", "sink_depth", "contact_damping", "stick_speed",
+                 {"preset", "tolerance", "max_iterations", "substeps", "max_rotation", "shortest_part",
+                  "max_splits", "max_passes", "sink_depth", "contact_damping", "stick_speed",
                   "limit_stiffness", "limit_damping", "return_time", "precision", "estimate_error"});
   if (a.has("preset")) {
     if (convert::Error error = find_preset(a.text("preset", ""), preset)) fail("accuracy", error.message);
@@ -236,8 +236,7 @@ void read_accuracy(const json& value, Scene& s) {
   }
   s.world.accuracy.substeps = a.count("substeps", s.world.accuracy.substeps, 1, 1000);
   s.world.accuracy.max_rotation = a.time("max_rotation", s.world.accuracy.max_rotation);
-  s.world.accuracy.impact_step = a.time("impact_step", s.world.accuracy.impact_step);
-  s.world.accuracy.max_parts = a.count("max_parts", s.world.accuracy.max_parts, 1, 1000);
+  s.world.accuracy.shortest_part = a.positive("shortest_part", s.world.accuracy.shortest_part);
   s.world.accuracy.max_splits = a.count("max_splits", s.world.accuracy.max_splits, 0, 10);
   s.world.accuracy.max_passes = a.count("max_passes", s.world.accuracy.max_passes, 1, 1000000);
   s.world.accuracy.limit_stiffness = a.positive("limit_stiffness", s.world.accuracy.limit_stiffness);

@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, Accuracy>> settings() {
     Accuracy& a = out.emplace_back("iteration cap", Accuracy{}).second;
     a.max_iterations = cap;
     a.max_splits = 0;  // parts of a step would have the cap anew
-    a.max_parts = 1;
+    a.max_rotation = 0;
   }
   return out;
 }

@@ -321,16 +321,6 @@ void IslandStepper<T>::begin_solve() {
   if (strikes_deep(h)) choose_guess(h);
 }
 
-/// Of a part, unless it has been made for us.
-template <class T>
-SolveReport IslandStepper<T>::first_solve() {
-  if (!solve_begun_) begin_solve();
-  solve_begun_ = false;
-  if (!first_) return solve();
-  passes_left_ -= first_->outer_passes;
-  return *std::exchange(first_, nullptr);
-}
-
 /// In as many passes as the step has left.
 template <class T>
 SolveReport IslandStepper<T>::solve() {
@@ -345,7 +335,8 @@ SolveReport IslandStepper<T>::solve() {
 template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
   const T h = settings_.h;
-  SolveReport total = first_solve();
+  begin_solve();
+  SolveReport total = solve();
   for (int round = 1;; ++round) {
     if (may_split && !total.converged && passes_left_ > 0) return total;
     bool released = false;
@@ -373,13 +364,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     advance_part(begin, middle, splits);
     advance_part(middle, end, splits);
   };
-  if (!part_begun_) {
-    if (turns_far(h)) return halve(splits_left);
-    begin_part(h, end);
-    if (begin == T(0) && may_divide() && starts()) find_accelerations();
-  }
-  part_begun_ = false;
-  if (strikes_in_long(h)) return halve(splits_left);
+  if (turns_far(h)) return halve(splits_left);
+  begin_part(h, end);
+  if (begin == T(0) && may_divide() && starts()) find_accelerations();
   closed_ = passive();
   budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
   land(h);
@@ -446,9 +433,13 @@ bool IslandStepper<T>::may_divide() const {
 }
 
 template <class T>
-void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
+void IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& surroundings, T h,
+                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
                              std::span<Coupling<T>* const> couplings,
                              std::span<const LaggedForce<T>> lagged) {
+  world_ = &world;
+  surroundings_ = surroundings;
+  frame_ = h;
   states_ = states;
   indices_ = indices;
   couplings_ = couplings;
@@ -461,19 +452,6 @@ void IslandStepper<T>::reset(std::span<CharacterState<T>* const> states, std::sp
   all_converged_ = true;
   for (CharacterState<T>* s : states) s->unbaked = 0;
   splits_ = parts_ = damped_ = held_ = restarts_ = left_out_ = 0;
-  part_begun_ = solve_begun_ = false;
-  first_ = nullptr;
-}
-
-template <class T>
-bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& surroundings, T h,
-                             std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                             std::span<Coupling<T>* const> couplings,
-                             std::span<const LaggedForce<T>> lagged) {
-  world_ = &world;
-  surroundings_ = surroundings;
-  frame_ = h;
-  reset(states, indices, couplings, lagged);
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   settings_.limit_damping = T(world.accuracy.limit_damping);
@@ -484,31 +462,14 @@ bool IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   if (!settings_.plan->scheme) strike_all();
   begin_couplings<T>(couplings_, states_, indices_);
   for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
-  // What was struck is not put aside: who is begun next would take its strike for its own.
-  const bool alone = states.size() == 1 && couplings.empty() && struck_velocity_.empty();
-  if (!alone || parts_of() > 1 || (may_divide() && starts()) || turns_far(h)) return false;
-  begin_part(h, T(1));
-  part_begun_ = true;
-  if (!contacts_.empty()) return false;
-  begin_solve();
-  return solve_begun_ = true;
 }
 
 template <class T>
-void IslandStepper<T>::take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged) {
-  reset(begun.states, begun.indices, {}, lagged);
-  settings_ = begun.settings;
-  part_end_ = T(1);
-  lasts_.assign(1, begun.lasts ? 1 : 0);
-  problems_.assign(1, &states_[0]->problem);
-  contacts_ = {};
-  part_begun_ = solve_begun_ = true;
-}
-
-template <class T>
-int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first, int spent) {
-  const WorldSettings& world = *world_;
-  first_ = first;
+int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
+                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
+                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
+                           std::span<LaggedForce<T>> lagged_out, int spent) {
+  begin(world, surroundings, h, states, indices, couplings, lagged);
   const int parts = parts_of();
   const bool fine = may_divide();
   const int splits = fine ? world.accuracy.max_splits : std::min(world.accuracy.max_splits, 1);
@@ -534,15 +495,6 @@ int IslandStepper<T>::end(std::span<LaggedForce<T>> lagged_out, const SolveRepor
   const std::size_t count = std::min(lagged_.size(), lagged_out.size());
   std::copy_n(lagged_.begin(), count, lagged_out.begin());
   return static_cast<int>(count);
-}
-
-template <class T>
-int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surroundings, T h,
-                           std::span<CharacterState<T>* const> states, std::span<const int> indices,
-                           std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
-                           std::span<LaggedForce<T>> lagged_out, int spent) {
-  (void)begin(world, surroundings, h, states, indices, couplings, lagged);
-  return end(lagged_out, nullptr, spent);
 }
 
 template class IslandStepper<float>;

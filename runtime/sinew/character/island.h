@@ -40,27 +40,6 @@ class IslandStepper {
            std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged,
            std::span<LaggedForce<T>> lagged_out, int spent = 0);
 
-  // The same in two halves, so that the first solves of several islands can be made at once.
-
-  /// What begin() leaves for end().
-  struct Begun {
-    std::span<CharacterState<T>* const> states;
-    std::span<const int> indices;
-    StepSettings<T> settings;
-    bool lasts = false;
-  };
-  /// Up to the first solve of a step in one part. True where that solve is of one tree that nothing is near
-  /// and nothing is tied to: put_aside() then, and others may be begun before take_up(). Else end().
-  bool begin(const WorldSettings& world, const Surroundings& surroundings, T h,
-             std::span<CharacterState<T>* const> states, std::span<const int> indices,
-             std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
-  Begun put_aside() const { return {states_, indices_, settings_, !lasts_.empty() && lasts_[0] != 0}; }
-  /// `begun` by the last world and time step that begin() was given.
-  void take_up(const Begun& begun, std::span<const LaggedForce<T>> lagged);
-  /// The rest. `first`: what the first solve reported, whose solution the tree's problem holds; null: there
-  /// was none yet.
-  int end(std::span<LaggedForce<T>> lagged_out, const SolveReport* first = nullptr, int spent = 0);
-
  private:
   /// A body's motion before land().
   struct Landing {
@@ -78,16 +57,14 @@ class IslandStepper {
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);
-  bool may_halve(T h) const;
   bool turns_far(T h) const;
-  bool strikes_in_long(T h) const;
   bool strikes_deep(T h) const;
   void choose_guess(T h);
   void begin_solve();
-  SolveReport first_solve();
   SolveReport solve();
   SolveReport attempt(bool may_split);
-  void reset(std::span<CharacterState<T>* const> states, std::span<const int> indices,
+  void begin(const WorldSettings& world, const Surroundings& surroundings, T h,
+             std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
@@ -154,9 +131,7 @@ class IslandStepper {
   bool closed_ = false;  ///< nothing can do work on the trees in this part
   double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
-  bool part_begun_ = false, solve_begun_ = false;  ///< so far begin() has gone
-  const SolveReport* first_ = nullptr;             ///< see end()
-  int passes_left_ = 0;                            ///< of the step, see Accuracy::max_passes
+  int passes_left_ = 0;  ///< of the step, see Accuracy::max_passes
   int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0, left_out_ = 0;
   StepSettings<T> settings_;
   std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part

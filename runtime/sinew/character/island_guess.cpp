@@ -12,12 +12,6 @@ constexpr double kDeep = 0.03;  ///< m; guesses that go no deeper are left again
 
 constexpr double kSharesTurn = 0.1;  ///< of a figure's kinetic energy; whatever less does is not worth a part
 
-/// A figure that no muscle holds.
-template <class T>
-bool falls(const CharacterState<T>& s) {
-  return s.limp() && !s.is_prop;
-}
-
 }  // namespace
 
 /// Starts the solve nearer to where it was, where an effect says so.
@@ -29,31 +23,17 @@ void IslandStepper<T>::limit_guess(T h) {
     if (free_share_[n] < T(1)) first_guess(*states_[n], h, free_share_[n]);
 }
 
-template <class T>
-bool IslandStepper<T>::may_halve(T h) const {
-  return may_divide() && h * T(world_->accuracy.max_parts) > T(1.5) * frame_;
-}
-
 /// Whether a figure that falls, or is off its animation, has a body that turns too far in h.
 template <class T>
 bool IslandStepper<T>::turns_far(T h) const {
-  const double most = world_->accuracy.max_rotation;
-  if (!(most > 0) || !may_halve(h)) return false;
+  const Accuracy& accuracy = world_->accuracy;
+  const T most = T(accuracy.max_rotation);
+  if (!(most > T(0)) || !may_divide()) return false;
   return std::any_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const bool moves = !s->is_prop && (s->limp() || !s->undisturbed());
-    return moves && largest_turn<T>(s->tree, s->history, h) > T(most) &&
-           share_turning_faster<T>(s->tree, s->history, T(most) / h) > T(kSharesTurn);
-  });
-}
-
-/// Whether one is about to strike something within h, and h is longer than impacts shall be.
-template <class T>
-bool IslandStepper<T>::strikes_in_long(T h) const {
-  const double most = world_->accuracy.impact_step;
-  if (!(most > 0) || !may_halve(h)) return false;
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-    return !(h < T(1.2 * most) * c.speed_scale) && strikes_within(c, h) &&
-           (falls(*states_[c.tree_a]) || (c.tree_b >= 0 && falls(*states_[c.tree_b])));
+    return moves && h > T(1.5 * accuracy.shortest_part) * s->tree.scale.time &&
+           largest_turn<T>(s->tree, s->history, h) > most &&
+           share_turning_faster<T>(s->tree, s->history, most / h) > T(kSharesTurn);
   });
 }
 
@@ -81,12 +61,10 @@ void IslandStepper<T>::choose_guess(T h) {
   guess([&](std::size_t n) { return effects_.empty() ? T(1) : free_share_[n]; });
 }
 
-#define SINEW_GUESS_INSTANCES(T)                            \
-  template void IslandStepper<T>::limit_guess(T);           \
-  template bool IslandStepper<T>::may_halve(T) const;       \
-  template bool IslandStepper<T>::turns_far(T) const;       \
-  template bool IslandStepper<T>::strikes_in_long(T) const; \
-  template bool IslandStepper<T>::strikes_deep(T) const;    \
+#define SINEW_GUESS_INSTANCES(T)                         \
+  template void IslandStepper<T>::limit_guess(T);        \
+  template bool IslandStepper<T>::turns_far(T) const;    \
+  template bool IslandStepper<T>::strikes_deep(T) const; \
   template void IslandStepper<T>::choose_guess(T);
 SINEW_GUESS_INSTANCES(float)
 SINEW_GUESS_INSTANCES(double)

@@ -14,8 +14,7 @@ namespace sinew {
 namespace {
 
 constexpr int kMostWorkers = 256;
-constexpr int kMostObstacles = 6;    ///< that one character touches at a time, for the room of its contacts
-constexpr int kMostBatchDofs = 128;  ///< of a rig whose characters are solved in batches
+constexpr int kMostObstacles = 6;  ///< that one character touches at a time, for the room of its contacts
 constexpr const char* kNoMuscles = "the world declares no Muscles: strength must be 0 or infinite";
 constexpr const char* kNoContacts =
     "the world declares no Contacts: no obstacles, and WorldSettings::ground must be false";
@@ -58,16 +57,11 @@ void World<T>::Impl::count_in(CharacterState<T>& s) {
   if (!s.is_prop && !s.is_particles)
     checked_rig = {std::max(checked_rig.bodies, s.tree.bodies), std::max(checked_rig.dofs, s.tree.dofs),
                    std::max(checked_rig.points, static_cast<int>(s.rig->support.points.size()))};
-  // The world has its rig, too: three of them are two characters.
-  const bool shared = s.rig.use_count() > 2 && s.tree.dofs <= kMostBatchDofs;
-  if (settings.batches && plan.make_batches && shared && !s.is_prop && !s.is_particles)
-    batch_room = larger(batch_room, s.problem.room);
 }
 
 template <class T>
 void World<T>::Impl::count_all() {
   rooms = {};
-  batch_room = {};
   checked_rig = {};
   for (const auto& s : states) count_in(*s);
   couplings.count_in(states, rooms);
@@ -98,7 +92,6 @@ WorldMemory World<T>::Impl::memory() const {
     bytes.solving += worker->check_room.capacity();
     if (worker->checks) bytes.solving += worker->checks->bytes();
   }
-  if (plan.make_batches) bytes.solving += workers.size() * workers[0]->batch->bytes(batch_room);
   return bytes;
 }
 
@@ -115,8 +108,6 @@ void World<T>::Impl::reserve() {
     workers[n]->members.reserve(room.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
-    if (plan.make_batches) workers[n]->batch->reserve(batch_room);
-    workers[n]->waiting.reserve(Impl::kMostWaiting);
     const auto& [bodies, dofs, points] = checked_rig;
     workers[n]->check_room.resize(CheckRoom<T>::bytes(bodies, bodies, points));
     if (workers[n]->checks) workers[n]->checks->reserve(bodies, dofs, points);
@@ -187,11 +178,9 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
   }
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
   const SolveRooms before = rooms;
-  const SolveRoom batch_before = batch_room;
   count_in(added);
   if (over_cap()) {
     rooms = before;
-    batch_room = batch_before;
     drop_last();
     return Status::error(Code::kOutOfRange, "WorldSettings::memory_cap leaves no room for it");
   }

@@ -41,7 +41,6 @@ void World<T>::Impl::declare(DeclareTerm<T> term) {
   term(plan);
   for (const auto& worker : workers) {
     worker->stepper.declare(plan);
-    if (plan.make_batches && !worker->batch) worker->batch = plan.make_batches();
     if (plan.make_checks && !worker->checks) worker->checks = plan.make_checks();
   }
   meet_surroundings();

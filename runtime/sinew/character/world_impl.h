@@ -12,7 +12,6 @@
 #include "sinew/character/touching_sets.h"
 #include "sinew/effects/check_batch.h"
 #include "sinew/effects/particles.h"
-#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew {
 
@@ -26,25 +25,13 @@ struct ParticleSet {
 
 template <class T>
 struct World<T>::Impl {
-  /// An island whose first solve waits for others.
-  struct Waiting {
-    int island = 0;
-    CharacterState<T>* state = nullptr;
-    typename IslandStepper<T>::Begun begun;
-    double spent = 0;            ///< on it so far, by the budget's clock
-    std::uint64_t unknowns = 0;  ///< which they are
-
-    bool alike(const Waiting& other) const {
-      return state->rig == other.state->rig && unknowns == other.unknowns;
-    }
-  };
-  static constexpr std::size_t kMostWaiting = 4 * BatchSolver::kMostLanes;  ///< per worker
+  static constexpr std::size_t kMostWaiting = 4 * BatchCheck::kMostLanes;  ///< per worker
   /// An island of one whose animation is to be checked with others'.
   struct Unchecked {
     int island = 0;
     CharacterState<T>* state = nullptr;
     bool stands = false;  ///< see stands()
-    double spent = 0;     ///< as of Waiting
+    double spent = 0;     ///< on it so far, by the budget's clock
 
     bool alike(const Unchecked& other) const {
       return state->rig == other.state->rig && stands == other.stands;
@@ -53,9 +40,7 @@ struct World<T>::Impl {
   /// What one thread works in.
   struct Worker {
     IslandStepper<T> stepper;
-    std::unique_ptr<BatchSolver> batch;  ///< null: not declared
-    std::vector<Waiting> waiting;
-    std::unique_ptr<BatchCheck> checks;  ///< the same
+    std::unique_ptr<BatchCheck> checks;  ///< null: not declared
     std::vector<Unchecked> unchecked;
     std::vector<std::byte> check_room;  ///< of a check alone, of the largest rig
     std::vector<CharacterState<T>*> members;
@@ -82,7 +67,6 @@ struct World<T>::Impl {
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
-  SolveRoom batch_room;  ///< of the largest rig that batches solve
   /// What the largest rig that may be played has: points that may stand on the ground.
   struct {
     int bodies = 0, dofs = 0, points = 0;
@@ -126,12 +110,9 @@ struct World<T>::Impl {
   int step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
                std::span<Coupling<T>* const> ties, int spent, Worker& worker,
                std::span<LaggedForce<T>> lagged_out);
-  bool batches(const CharacterState<T>& state, const Worker& worker) const;
   void step_island(int island, Worker& worker);
   void close_island(int island, std::span<CharacterState<T>* const> members,
                     std::span<Coupling<T>* const> ties, double spent);
-  void wait(int island, Worker& worker, double spent);
-  void solve_alike(Worker& worker, const Waiting& one);
   std::span<LaggedForce<T>> lagged_of(int island) {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);

@@ -1,12 +1,12 @@
 // A world with the standard effects. Kept apart: only programs that make such a world link them.
 #include "sinew/character/contacts.h"
 #include "sinew/character/world.h"
+#include "sinew/effects/check_batch.h"
 #include "sinew/effects/impulse.h"
 #include "sinew/effects/joint_damping.h"
 #include "sinew/effects/joint_limit.h"
 #include "sinew/effects/muscle.h"
 #include "sinew/effects/support.h"
-#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew {
 

@@ -9,24 +9,10 @@
 namespace sinew {
 namespace {
 
-/// Of the degrees of freedom that are unknowns. From this share on characters of one rig share batches,
-/// though every lane takes part in all unknowns; below, only those with the very same: a hit arm is solved
-/// faster by itself than among others (strength 0.1, root played: 0.96 times as fast in batches).
-constexpr double kWideShare = 0.75;
 constexpr std::size_t kFewestLanes = 4;  ///< of a batch: fewer are solved faster one by one
 
 double now(const Budget& budget) {
   return budget.clock ? budget.clock(budget.clock_context) : 0;
-}
-
-/// The same for the same unknowns of a rig, and for all wide sets.
-std::uint64_t set_of_unknowns(std::span<const std::uint8_t> free) {
-  const auto unknowns = std::count(free.begin(), free.end(), 1);
-  if (double(unknowns) >= kWideShare * double(free.size())) return 0;
-  std::uint64_t hash =
-      14695981039346656037u;  // FNV-1a: sets that it takes for the same are only solved slower
-  for (const std::uint8_t dof : free) hash = (hash ^ dof) * 1099511628211u;
-  return hash;
 }
 
 /// Adds to those who wait for a batch. Returns one of those who fill a batch now, or the first where the list
@@ -163,27 +149,16 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
   }
 }
 
-/// Solves the island of worker.members[0], or puts it aside for a batch of solves.
+/// Solves the island of worker.members[0].
 template <class T>
 void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   catch_up(s, worker.jets);
-  if (worker.stepper.begin(settings, surroundings(), h, worker.members, islands.members(island), worker.ties,
-                           lagged) &&
-      batches(s, worker))
-    return wait(island, worker, spent + now(settings.detail.budget) - begin);
-  lagged_count[island] = worker.stepper.end(lagged_of(island));
+  lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
+                                             islands.members(island), worker.ties, lagged, lagged_of(island));
   s.levels.did = level_of(s);
   close_island(island, worker.members, worker.ties, spent + now(settings.detail.budget) - begin);
-}
-
-/// Whether the first solve of a character that begin() found alone can be made in a batch.
-template <class T>
-bool World<T>::Impl::batches(const CharacterState<T>& s, const Worker& worker) const {
-  if constexpr (std::is_same_v<T, float>)
-    return worker.batch && s.problem.room.fits(batch_room) && worker.batch->takes(s.problem);
-  return false;
 }
 
 /// Steps who touches or is tied, in `spent` passes less than a step may take. Returns how many contact forces
@@ -259,43 +234,6 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
   }
 }
 
-/// Puts an island that has been begun aside, until there are others alike to fill a batch with.
-template <class T>
-void World<T>::Impl::wait(int island, Worker& worker, double spent) {
-  const typename IslandStepper<T>::Begun begun = worker.stepper.put_aside();
-  CharacterState<T>* state = worker.members[0];
-  const Waiting last{island, state, begun, spent, set_of_unknowns(state->problem.free)};
-  if (const Waiting* full = add_waiting(worker.waiting, last, worker.batch->lanes(), kMostWaiting))
-    solve_alike(worker, *full);
-}
-
-/// Solves what waits and is like `one` in a batch, and goes on with every island from there.
-template <class T>
-void World<T>::Impl::solve_alike(Worker& worker, const Waiting& one) {
-  std::array<Waiting, BatchSolver::kMostLanes> batch;
-  const std::size_t count = take_alike(worker.waiting, one, batch);
-  double begin = now(settings.detail.budget);
-  std::array<SolveReport, BatchSolver::kMostLanes> reports;
-  if constexpr (std::is_same_v<T, float>)
-    if (count >= kFewestLanes) {
-      std::array<TreeProblem<float>*, BatchSolver::kMostLanes> problems;
-      for (std::size_t n = 0; n < count; ++n) problems[n] = &batch[n].state->problem;
-      worker.batch->solve(batch[0].begun.settings, settings.accuracy, std::span(problems.data(), count),
-                          reports);
-    }
-  const double share = (now(settings.detail.budget) - begin) / double(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    begin = now(settings.detail.budget);
-    Waiting& w = batch[n];
-    w.begun.states = std::span(&w.state, 1);
-    worker.stepper.take_up(w.begun, lagged);
-    lagged_count[w.island] =
-        worker.stepper.end(lagged_of(w.island), reports[n].converged ? &reports[n] : nullptr);
-    w.state->levels.did = level_of(*w.state);
-    close_island(w.island, w.begun.states, {}, w.spent + share + now(settings.detail.budget) - begin);
-  }
-}
-
 /// What one worker does of a step: islands, as long as there are any left. Which ones is a matter of chance,
 /// and of no consequence: a worker's memory holds nothing from one island to the next.
 template <class T>
@@ -310,7 +248,6 @@ void World<T>::Impl::work(void* context, int index) {
   for (int begin; (begin = world.next_light.fetch_add(batch)) < light;)
     for (int n = begin; n < std::min(begin + batch, light); ++n) world.step_island(world.light[n], worker);
   while (!worker.unchecked.empty()) world.check_alike(worker, worker.unchecked[0]);
-  while (!worker.waiting.empty()) world.solve_alike(worker, worker.waiting[0]);
 }
 
 #define SINEW_STEP_INSTANCES(T)                            \

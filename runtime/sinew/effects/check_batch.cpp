@@ -60,4 +60,13 @@ void MotionChecker::check(const CheckedRig& rig, std::span<const JointJet<float>
     for (int dof = 0; dof < rig.tree.dofs; ++dof) torque[n][dof] = rows[std::size_t(dof * lanes()) + n];
 }
 
+template <class T>
+void Batches<T>::declare(StepPlan<T>& plan) {
+  if constexpr (std::is_same_v<T, float>)
+    plan.make_checks = []() -> std::unique_ptr<BatchCheck> { return std::make_unique<MotionChecker>(); };
+}
+
+template struct Batches<float>;
+template struct Batches<double>;
+
 }  // namespace sinew

@@ -6,6 +6,7 @@
 
 #include "sinew/animation/instruction_set.h"
 #include "sinew/effects/check_pass.h"
+#include "sinew/effects/step_plan.h"
 
 namespace sinew {
 
@@ -49,5 +50,14 @@ class MotionChecker final : public BatchCheck {
   InstructionSet set_;
   std::vector<std::byte> memory_;  ///< torques [dof][lane], then the kernels' scratch
 };
+
+/// What World::declare takes. Without, animations are checked one by one, with the same bits.
+template <class T>
+struct Batches {
+  static void declare(StepPlan<T>& plan);
+};
+
+extern template struct Batches<float>;
+extern template struct Batches<double>;
 
 }  // namespace sinew

@@ -12,7 +12,6 @@
 namespace sinew {
 
 class BatchCheck;
-class BatchSolver;
 template <class T>
 class ContactModel;
 template <class T>
@@ -36,10 +35,9 @@ struct StepPlan {
   const ContactTerm<T>* contacts = nullptr;
   const PushTerm<T>* impulses = nullptr;
   const SupportTerm<T>* support = nullptr;
-  const CouplingTerm<T>* couplings = nullptr;                ///< of loops and particles
-  const TimeScheme<T>* scheme = nullptr;                     ///< in place of Bossak's, for comparisons
-  std::unique_ptr<BatchSolver> (*make_batches)() = nullptr;  ///< in float alone
-  std::unique_ptr<BatchCheck> (*make_checks)() = nullptr;    ///< the same
+  const CouplingTerm<T>* couplings = nullptr;              ///< of loops and particles
+  const TimeScheme<T>* scheme = nullptr;                   ///< in place of Bossak's, for comparisons
+  std::unique_ptr<BatchCheck> (*make_checks)() = nullptr;  ///< in float alone
 
   /// Nothing declared.
   static const StepPlan& none() {

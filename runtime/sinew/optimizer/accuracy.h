@@ -12,10 +12,9 @@ struct Accuracy {
       60;            ///< outer passes of a solve; the mean is 1.7, hard impacts at 1/30 s need the tail
   int substeps = 1;  ///< every step in so many equal parts
   double max_rotation =
-      0.7;  ///< rad; a step in which much of a limp figure turns further is halved. 0: never
-  double impact_step = 1.0 / 240;  ///< s; a longer one in which it strikes something is halved. 0: never
-  int max_parts = 4;               ///< of a step, for both
-  int max_splits = 3;              ///< an unconverged step is halved, and its halves, so often
+      0.5;  ///< rad; a step in which much of a limp figure turns further is halved. 0: never
+  double shortest_part = 1.0 / 240;  ///< s; such halves are not halved below
+  int max_splits = 3;                ///< an unconverged step is halved, and its halves, so often
   /// Outer passes of all solves of a substep together, those repeated with it. Beyond, nothing is halved and
   /// each solve takes a dozen at most, and its lowest pose.
   int max_passes = 100;

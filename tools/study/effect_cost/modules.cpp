@@ -2,6 +2,7 @@
 
 #include "sinew/character/contacts.h"
 #include "sinew/effects/buoyancy.h"
+#include "sinew/effects/check_batch.h"
 #include "sinew/effects/cloth.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/force_field.h"
@@ -15,7 +16,6 @@
 #include "sinew/effects/strand.h"
 #include "sinew/effects/support.h"
 #include "sinew/effects/wind.h"
-#include "sinew/optimizer/batch_newton.h"
 
 namespace sinew::study {
 

@@ -1,4 +1,0 @@
-// Compiled for a wider instruction set: nothing but kernels may be defined here.
-#define SINEW_KERNELS avx2
-#define SINEW_FLOAT_LANES 8
-#include "sinew/optimizer/kernels/newton.inl"
