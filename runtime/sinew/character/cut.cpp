@@ -1,17 +1,29 @@
 #include "sinew/character/cut.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace sinew {
 namespace {
 
-constexpr double kCut = 0.2;  ///< rad and m: an animation that leaps further than this in one step was cut
+/// rad and m of a human: an animation that is so far from where its velocities lead in one step was cut.
+constexpr double kCut = 0.2;
+
+/// How far a motion in one step is from the one that goes on at the velocity before it, at the velocity after
+/// it, or at one in between: an animation that stops at once, or starts, is not cut.
+template <class T>
+T off_its_way(const Vec3<T>& moved, const Vec3<T>& leaving, const Vec3<T>& arriving) {
+  const Vec3<T> change = arriving - leaving, off = moved - leaving;
+  const T size = change.squaredNorm();
+  const T share = size > T(0) ? std::clamp(change.dot(off) / size, T(0), T(1)) : T(0);
+  return (off - share * change).norm();
+}
 
 template <class T>
-bool leaps(const Transform<T>& before, const JointJet<T>& last, T unit) {
-  const T cut_cosine = std::cos(T(kCut / 2));
-  return (before.translation - last.translation).norm() >= T(kCut) * unit ||
-         std::abs(before.rotation.dot(last.rotation)) <= cut_cosine;
+bool leaps(const JointJet<T>& now, const JointJet<T>& last, T h, T unit) {
+  const Vec3<T> turned = rotation_log<T>(last.rotation.conjugate() * now.rotation);
+  return off_its_way<T>(now.translation - last.translation, h * last.velocity, h * now.velocity) >=
+             T(kCut) * unit ||
+         off_its_way<T>(turned, h * last.omega, h * now.omega) >= T(kCut);
 }
 
 template <class T>
@@ -29,8 +41,8 @@ void turn(const Mat3<T>& by, History<T>& history) {
 template <class T>
 bool carry_over(CharacterState<T>& s, T h) {
   if (!s.root_is_kinematic() || !s.floats) return false;
+  if (!leaps(s.target[0], s.last_target()[0], h, s.tree.scale.length)) return false;
   const Transform<T> before = a_step_ago(s.target[0], h);
-  if (!leaps(before, s.last_target()[0], s.tree.scale.length)) return false;
   s.keep_record();
   turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
@@ -46,8 +58,8 @@ void meet_cuts(CharacterState<T>& s, T h) {
   if (s.target_stands) return;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const JointJet<T>& now = s.target[i];
+    if (!leaps(now, s.last_target()[i], h, s.tree.scale.length)) continue;
     const Transform<T> before = a_step_ago(now, h);
-    if (!leaps(before, s.last_target()[i], s.tree.scale.length)) continue;
     restart(before, now, s.own_last_target()[i]);
     Deviation<T>& d = s.deviation[i];
     if (d.on_animation) continue;

@@ -174,6 +174,14 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
     if (c.tree_a == tree) act(c.body_a, c.point, normal);
     if (c.tree_b == tree) act(c.body_b, c.point, Vec3<T>(-normal));
   }
+  for (const Coupling<T>* c : couplings_)
+    for (const Stencil<T>& e : c->stencils) {
+      const Vec3<T> left = c->leads_out ? Vec3<T>(stencil_pull(*c, e) - e.carried.smooth) : Vec3<T>::Zero();
+      if (left.isZero(T(0))) continue;
+      for (int k = 0; k < e.count; ++k)
+        if (const CouplingNode<T>& node = c->nodes[e.node[k]]; node.tree == tree)
+          act(node.body, node.point, Vec3<T>(-e.weight[k] * left));
+    }
   jump_force_.assign(s.tree.dofs, T(0));
   if (any) project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
   measure_constant(s, p, tree, p.kinematics);

@@ -282,6 +282,17 @@ void IslandStepper<T>::split_contacts(T h) {
     const T share = lasting_share(problems_[c.tree_a]->prediction.weight, h);
     split<T>(lasts_[c.tree_a] && (c.tree_b < 0 || lasts_[c.tree_b]), share, c);
   }
+  for (Coupling<T>* c : couplings_) {
+    if (!c->leads_out) continue;  // what gives is smooth
+    bool last = true;
+    T share = T(1);
+    for (const CouplingNode<T>& node : c->nodes) {
+      if (node.tree < 0) continue;
+      last = last && lasts_[node.tree];
+      share = lasting_share(problems_[node.tree]->prediction.weight, h);
+    }
+    for (Stencil<T>& e : c->stencils) e.carried.advance(stencil_pull(*c, e), last && !e.only_pulls, share);
+  }
 }
 
 /// Where each tree's bodies and degrees of freedom begin among those of all.

@@ -155,6 +155,8 @@ void IslandStepper<T>::begin_loaded(T h) {
     states_[n]->limit_signature = bearing(states_[n]->problem);
     states_[n]->steps_unchanged = kUnchangedSteps;
   }
+  for (Coupling<T>* c : couplings_)
+    for (Stencil<T>& e : c->stencils) e.carried.begin(stencil_pull(*c, e));
   find_contacts(h);  // measured anew, at the start
 }
 

@@ -377,7 +377,12 @@ void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
   stream.value("loop is closed", active);
   if (stream.reading()) coupling.active = active != 0;
   if (!coupling.leads_out) return;
-  for (Stencil<T>& e : coupling.stencils) stream.vector("what is left open of a loop", e.offset);
+  for (Stencil<T>& e : coupling.stencils) {
+    stream.vector("what is left open of a loop", e.offset);
+    stream.vector("smooth part of a loop's pull", e.carried.smooth);
+    stream.vector("a loop's pull, if it lasts", e.carried.last);
+    stream.vector("the same a step before", e.carried.before);
+  }
 }
 
 /// What belongs to nobody.

@@ -157,7 +157,10 @@ void TouchingSets<T>::take_back(std::span<KeptStep<T>> kept) {
   }
   for (Coupling<T>* tie : ties_)
     if (!stepped_[set_of(member_of(first_tree(*tie)))])
-      for (Stencil<T>& e : tie->stencils) e.offset = e.offset_before;
+      for (Stencil<T>& e : tie->stencils) {
+        e.offset = e.offset_before;
+        e.carried = e.carried_before;
+      }
 }
 
 template class TouchingSets<float>;

@@ -19,6 +19,7 @@
 #include <limits>
 #include <vector>
 
+#include "sinew/effects/carried_force.h"
 #include "sinew/residual/tree.h"
 
 namespace sinew {
@@ -250,20 +251,6 @@ Vec3<T> friction_gradient(const Contact<T>& c, T stick) {
   return scale * (c.slip[0] * c.frame.col(0) + c.slip[1] * c.frame.col(1));
 }
 
-/// A force that has just come acts on a body by κh² of its acceleration in the step, not by ½h² as one that
-/// was there: it is as much larger. What it would be if it lasted; `share` = 2κ (bossak.h), `carried` what of
-/// it the accelerations held when the step began.
-template <class T>
-T lasting(T force, T carried, T share) {
-  return share * force + (1 - share) * carried;
-}
-/// The lesser of what is and twice what was in each of two steps, where all have its sign: a limiter, as of
-/// slopes in finite volumes. What it takes away has just come, or goes.
-template <class T>
-T limited(T now, T last, T before) {
-  if (now < T(0)) return -limited(-now, -last, -before);
-  return std::clamp(2 * std::min(last, before), T(0), now);
-}
 /// Of the forces at the end of a step, those that may be taken for smooth in time: all, where the same
 /// contacts `last`; else as far as they have lasted.
 template <class T>

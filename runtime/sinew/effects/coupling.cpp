@@ -95,11 +95,9 @@ double measure_elements(Coupling<T>& c) {
   double energy = 0;
   for (CouplingNode<T>& node : c.nodes) node.gradient.setZero();
   for (const Stencil<T>& e : c.stencils) {
-    const Vec3<T> s = reach(c, e) - e.offset;
-    const T size = s.norm(), stretch = size - e.length;
-    if (size <= T(0) || (e.only_pulls && stretch <= T(0))) continue;
-    energy += double(T(0.5) * e.stiffness * stretch * stretch);
-    const Vec3<T> pull = (e.stiffness * stretch / size) * s;
+    const Vec3<T> pull = stencil_pull(c, e);
+    if (pull.isZero(T(0))) continue;
+    energy += double(pull.squaredNorm() / (2 * e.stiffness));
     for (int i = 0; i < e.count; ++i) c.nodes[e.node[i]].gradient += e.weight[i] * pull;
   }
   for (const Tetrahedron<T>& e : c.tetrahedra) {
@@ -176,6 +174,7 @@ void lead_out(T h, Coupling<T>& c) {
   c.led = c.closes();
   for (Stencil<T>& e : c.stencils) {
     e.offset_before = e.offset;
+    e.carried_before = e.carried;
     const Vec3<T> open = reach(c, e);
     if ((open - e.offset).norm() > e.length + T(kTorn) * c.length_scale)
       e.offset = open * (T(1) - e.length / open.norm());

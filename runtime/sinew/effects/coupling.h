@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/effects/carried_force.h"
 #include "sinew/residual/tree.h"
 
 namespace sinew {
@@ -65,6 +66,7 @@ struct Stencil {
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
+  CarriedForce<T> carried, carried_before;  ///< its pull, where a loop is rigid; the same
 };
 
 /// Four nodes; the rest shape enters through the gradients of its linear shape functions.
@@ -111,6 +113,15 @@ Vec3<T> reach(const Coupling<T>& c, const Stencil<T>& e) {
   Vec3<T> sum = Vec3<T>::Zero();
   for (int i = 1; i < e.count; ++i) sum += e.weight[i] * (c.nodes[e.node[i]].point - base);
   return sum;
+}
+
+/// Gradient of a stencil's energy by Σ wᵢ xᵢ, N, at the nodes' present points.
+template <class T>
+Vec3<T> stencil_pull(const Coupling<T>& c, const Stencil<T>& e) {
+  const Vec3<T> s = reach(c, e) - e.offset;
+  const T size = s.norm(), stretch = size - e.length;
+  if (size <= T(0) || (e.only_pulls && stretch <= T(0))) return Vec3<T>::Zero();
+  return (e.stiffness * stretch / size) * s;
 }
 
 /// Energy (J) of all elements at the nodes' present points, kept in `energy` too; every node's gradient is

@@ -376,10 +376,10 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       rows.d_value = T(0);
       for (int a = 0; a < row.count; ++a) rows.d_value += row.gradient[a] * step_[rows.unknown + a];
     }
-    // Where no row bears on the way, the model is quadratic and the step exact.
+    // Where no row has a kink on the way, the model is quadratic there and the step exact.
     const bool straight =
         contact_rows_->empty() && !ellipsoids_ &&
-        std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bears(); });
+        std::none_of(joint_rows_.begin(), joint_rows_.end(), [](const JointRows& r) { return r.bends(); });
     report.straight = straight && iteration == 0;
     if (straight) {
       for (int k = 0; k < n; ++k) correction_[k] += step_[k];

@@ -15,6 +15,7 @@
 #include "sinew/optimizer/contact_rows.h"
 #include "sinew/optimizer/coupling_rows.h"
 #include "sinew/optimizer/ellipsoid_rows.h"
+#include "sinew/optimizer/newton_constants.h"
 #include "sinew/optimizer/problem.h"
 #include "sinew/residual/articulated_matrix.h"
 
@@ -23,7 +24,7 @@ namespace sinew {
 struct InnerReport {
   bool solved = false;      ///< false: H₀ was indefinite where the rows did not help
   double first_length = 0;  ///< m, of the first Newton step
-  bool straight = false;    ///< that was all: no row bore on its way
+  bool straight = false;    ///< that was all: no row had a kink on its way
 };
 
 template <class T>
@@ -92,9 +93,11 @@ class InnerProblem {
     T value = T(0), d_value = T(0);
     T in_factor = T(0);  ///< curvature that the last factor holds
 
-    /// At the inner solution so far, or a whole step on.
-    bool bears() const {
-      return in_factor > T(0) || row.slope(value) != T(0) || row.slope(value + d_value) != T(0);
+    /// Whether a whole step from the inner solution so far changes the slope otherwise than the factor has
+    /// it.
+    bool bends() const {
+      const T from = row.slope(value), to = from + in_factor * d_value;
+      return std::abs(row.slope(value + d_value) - to) > T(kSameSlope) * (std::abs(from) + std::abs(to));
     }
   };
 
