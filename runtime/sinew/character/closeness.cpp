@@ -96,11 +96,14 @@ SignedDistance<T> distance_to(const PlacedCollider<T>& a, const PlacedCollider<T
 template <class T>
 bool comes_close(const MovingCollider<T>& a, const MovingCollider<T>& b, T h, T margin) {
   const Vec3<T> velocity = a.velocity - b.velocity;
-  const T any = margin + a.any + b.any, most = any + h * velocity.norm();
+  const T fastest = std::max({velocity.norm(), a.velocity.norm(), b.velocity.norm()});
+  const T any = margin + a.any + b.any, most = any + h * fastest;
   const T reach = a.radius + b.radius + most;
   if ((a.pose.translation - b.pose.translation).squaredNorm() > reach * reach) return false;
   const SignedDistance<T> d = distance_between<T>(a, b);
-  return d.distance < any + h * std::max(-velocity.dot(d.normal), T(0));
+  // Either may be stopped within the step while the other goes on.
+  const T closing = std::max({-velocity.dot(d.normal), -a.velocity.dot(d.normal), b.velocity.dot(d.normal)});
+  return d.distance < any + h * std::max(closing, T(0));
 }
 
 /// m, about the shape's centre: all that it may reach in h seconds.

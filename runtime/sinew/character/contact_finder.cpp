@@ -334,6 +334,8 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
   const bool box = met.shape == Shape::kBox, of_box = own == Shape::kBox && met.tree < 0;
   if (box ? own != Shape::kSphere : of_box && met.shape == Shape::kCapsule)
     meet_edges(n, collider, met, reach);
+  if (own != Shape::kSphere && met.shape != Shape::kSphere && (box || own == Shape::kBox))
+    meet_solids(n, collider, met, reach);
   if (met.tree < 0 && (box ? own != Shape::kSphere : of_box)) meet_corners(n, collider, met, reach);
 }
 

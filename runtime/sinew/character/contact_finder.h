@@ -162,6 +162,7 @@ class ContactFinder final : public ContactSearch<T> {
   PlacedShape<T> placed(const Met& met, T unit) const;
   PlacedShape<T> moved_on(int n, int body, PlacedShape<T> shape, T share) const;
   void meet_edges(int n, int collider, const Met& met, T reach);
+  void meet_solids(int n, int collider, const Met& met, T reach);
   void meet_corners(int n, int collider, const Met& met, T reach);
   void add(Contact<T>& contact, T reach);
   bool make_room();

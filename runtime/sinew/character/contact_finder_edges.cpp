@@ -7,12 +7,10 @@ namespace sinew {
 namespace {
 
 constexpr int kOtherSide = 0x8000;  ///< of contact identities: edges that are on the other side of each other
-constexpr double kOverlooked = 5e-3;     ///< m, that boxes came into each other: their edges were not seen
-constexpr double kOverlookedPart = 0.2;  ///< or of the thinnest half extent
-constexpr double kHardlyMoves = 1e-4;    ///< m, of solids in a step: then the same edges cross at its end
-constexpr int kMostOnTheWay = 8;         ///< poses in which edges are looked for
-constexpr int kMostWithEdges = 127;      ///< colliders of a skeleton whose edges identities have room for
-constexpr int kCornerNumber = kAxisNumber + 1;
+constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges identities have room for
+constexpr int kCornerNumber = kAxisNumber + 1, kSolidNumber = kAxisNumber + 2;
+/// m, or of the thinnest half extent: what solids may lie in each other before they bear as wholes.
+constexpr double kSlack = 3.5e-3, kSlackPart = 0.2;
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
   return 0x8000 | own << 11 | others << 7 | collider;
@@ -34,30 +32,6 @@ PlacedShape<T> ContactFinder<T>::placed(int n, int collider) const {
 template <class T>
 PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
   return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
-}
-
-template <class T>
-bool ContactFinder<T>::overlooked() {
-  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Boxes& pair) {
-    const T unit = states_[pair.tree]->tree.scale.length;
-    const PlacedShape<T> a = placed(pair.tree, pair.collider), b = placed(pair.met, unit);
-    const T much =
-        std::min(T(kOverlooked) * unit, T(kOverlookedPart) * std::min(a.size.minCoeff(), b.size.minCoeff()));
-    return separation(a, b).distance < std::min(pair.apart, T(0)) - much;
-  });
-}
-
-/// Where a body's shape will be after a share of the step, at the velocity that it has.
-template <class T>
-PlacedShape<T> ContactFinder<T>::moved_on(int n, int body, PlacedShape<T> shape, T share) const {
-  if (n < 0) return shape;
-  const CharacterState<T>& s = *states_[n];
-  const Vec3<T> spin = angular_velocity(s.history, body);
-  const Vec3<T> arm = shape.center - s.problem.kinematics.center[body];
-  const Mat3<T> turn = rotation_exp<T>(share * h_ * spin).toRotationMatrix();
-  shape.center += share * h_ * s.history.velocity[body] + turn * arm - arm;
-  shape.rotation = turn * shape.rotation;
-  return shape;
 }
 
 /// The edges of a box across those of another or the axis of a capsule: those that cross now, and those
@@ -134,6 +108,27 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     boxes_.push_back({n, collider, met, now.apart});
 }
 
+/// Two solids as wholes, for what the step leads to and nobody looked for.
+template <class T>
+void ContactFinder<T>::meet_solids(int n, int collider, const Met& met, T reach) {
+  const CharacterState<T>& s = *states_[n];
+  const Collider& own = s.colliders[collider];
+  if (met.second || collider > kMostWithEdges) return;
+  Contact<T> c = contact_with(met, contact_of(n, own), T(own.friction));
+  c.meeting = Meeting::kSolids;
+  c.solid_a = &own;
+  c.shape = met.shape;
+  c.size = met.size;
+  c.shape_pose = met.local;
+  const auto thinnest = [](Shape shape, const auto& size) {
+    return shape == Shape::kBox ? T(size.minCoeff()) : T(size.x());
+  };
+  c.slack = std::min(T(kSlack) * c.length_scale,
+                     T(kSlackPart) * std::min(thinnest(own.shape, own.size), thinnest(met.shape, met.size)));
+  c.id = id_of(n, feature(kSolidNumber, 0, collider), met);
+  add(c, reach);
+}
+
 /// The corners of an obstacle, or the points of its axis, against a collider: those of what moves are points
 /// of its own.
 template <class T>
@@ -179,6 +174,7 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   template bool ContactFinder<T>::overlooked();                                          \
   template PlacedShape<T> ContactFinder<T>::moved_on(int, int, PlacedShape<T>, T) const; \
   template void ContactFinder<T>::meet_edges(int, int, const Met&, T);                   \
+  template void ContactFinder<T>::meet_solids(int, int, const Met&, T);                  \
   template void ContactFinder<T>::meet_corners(int, int, const Met&, T);
 SINEW_EDGE_INSTANCES(float)
 SINEW_EDGE_INSTANCES(double)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/effects/solid_gap.h"
 #include "sinew/effects/static_shape.h"
 
 namespace sinew {
@@ -223,6 +224,22 @@ void measure_edges(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
   c.bends = false;
 }
 
+/// Two solids, from so deep on that contacts of their points and edges should have borne.
+template <class T>
+void measure_solids(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
+  const Collider& own = *c.solid_a;
+  const Transform<T> body_a{Quat<T>(a.rotation[c.body_a]), a.origin[c.body_a]},
+      body_b = b ? Transform<T>{Quat<T>(b->rotation[c.body_b]), b->origin[c.body_b]} : Transform<T>();
+  const PlacedShape<T> of_a(own.shape, own.size.template cast<T>(), body_a * own.local.template cast<T>(),
+                            T(1)),
+      of_b(c.shape, c.size, body_b * c.shape_pose, T(1));
+  const SolidGap<T> gap = solid_gap<T>(of_a, of_b, c.before);
+  c.normal = gap.normal;
+  c.point = gap.point;
+  c.gap = gap.distance + c.slack + c.offset;
+  c.bends = false;
+}
+
 }  // namespace
 
 template <class T>
@@ -242,8 +259,10 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
     measure_point(a, b, c);
   } else if (c.meeting == Meeting::kCorner) {
     measure_corner(a, b, c);
-  } else {
+  } else if (c.meeting == Meeting::kEdges) {
     measure_edges(a, b, c);
+  } else {
+    measure_solids(a, b, c);
   }
   c.material_point = at(&a, c.body_a, c.material_a);
   c.material_point_b = at(b, c.body_b, c.material_b);
@@ -254,7 +273,9 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
 
 template <class T>
 void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
+  c.before.setZero();
   measure(a, b, c);
+  if (c.meeting == Meeting::kSolids) c.before = c.normal;
   const Vec3<T> touch = c.point - (c.radius + (c.gap - c.offset) / 2) * c.normal;
   c.material_a = a.rotation[c.body_a].transpose() * (touch - a.origin[c.body_a]);
   c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;

@@ -97,6 +97,7 @@ enum class Meeting : std::uint8_t {
   kPoint,   ///< a point of body a, or the nearest of an axis, meets a shape
   kCorner,  ///< a point of b meets a shape of body a, in whose axes shape_pose is then
   kEdges,   ///< a line of each; fixed when the step begins, and as if they had no ends
+  kSolids,  ///< both as wholes: whatever is nearest at each pose (solid_gap.h)
 };
 
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
@@ -110,7 +111,10 @@ struct Contact {
   Vec3<T> half_axis_a =
       Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
   Vec3<T> local_b = Vec3<T>::Zero(), half_axis_b = Vec3<T>::Zero();  ///< kCorner, kEdges: of b
-  T side = T(1);                                                     ///< kEdges: see EdgePair
+  const Collider* solid_a = nullptr;                                 ///< kSolids
+  Vec3<T> before = Vec3<T>::Zero();                                  ///< kSolids: see solid_gap()
+  T slack = T(0);  ///< kSolids: m, of depth that they leave to others
+  T side = T(1);   ///< kEdges: see EdgePair
   T radius = T(0);
   Shape shape = Shape::kSphere;
   const StaticShape* host = nullptr;          ///< instead of a shape; shape_pose.translation then shifts it

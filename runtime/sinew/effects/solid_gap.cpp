@@ -1,0 +1,140 @@
+#include "sinew/effects/solid_gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sinew {
+namespace {
+
+constexpr double kBack = -0.5;   ///< cosine to where they were apart: beyond, a direction leads back through
+constexpr double kLevel = 0.02;  ///< sine: a face or an edge that lies so level is touched in its middle
+
+/// Where a solid reaches furthest in a direction: of a capsule's core.
+template <class T>
+Vec3<T> furthest(const PlacedShape<T>& s, const Vec3<T>& direction) {
+  Vec3<T> at = s.center;
+  for (int i = s.shape == Shape::kBox ? 0 : 2; i < 3; ++i) {
+    const Vec3<T> axis = s.rotation.col(i);
+    at += std::clamp(direction.dot(axis) / T(kLevel), T(-1), T(1)) * s.size[i] * axis;
+  }
+  return at;
+}
+
+/// The edge with a direction that reaches furthest.
+template <class T>
+Edge<T> furthest_edge(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards) {
+  if (s.shape != Shape::kBox) return edge_of(s, kAxisNumber);
+  const int one = (direction + 1) % 3, two = (direction + 2) % 3;
+  return edge_of(s, 4 * direction + (s.rotation.col(one).dot(outwards) > T(0) ? 1 : 0) +
+                        (s.rotation.col(two).dot(outwards) > T(0) ? 2 : 0));
+}
+
+/// The best of the axes that separate convex polytopes, of a capsule its core's.
+template <class T>
+class Axes {
+ public:
+  Axes(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before)
+      : a_(a), b_(b), before_(before), between_(a.center - b.center) {
+    for (int j = 0; j < 3; ++j) {
+      if (b.shape == Shape::kBox) look_along(b.rotation.col(j), -1, j);
+      if (a.shape == Shape::kBox) look_along(a.rotation.col(j), j, -1);
+    }
+    for (int i = a.shape == Shape::kBox ? 0 : 2; i < 3; ++i)
+      for (int j = b.shape == Shape::kBox ? 0 : 2; j < 3; ++j)
+        if (!are_parallel<T>(a.rotation.col(i), b.rotation.col(j)))
+          look_along(a.rotation.col(i).cross(b.rotation.col(j)).normalized(), i, j);
+  }
+  SolidGap<T> best() const {
+    SolidGap<T> gap{distance_, normal_, Vec3<T>::Zero()};
+    if (of_a_ < 0) {
+      gap.point = furthest<T>(a_, -normal_);
+    } else if (of_b_ < 0) {
+      gap.point = furthest<T>(b_, normal_);
+    } else {
+      const Edge<T> p = furthest_edge<T>(a_, of_a_, -normal_), q = furthest_edge<T>(b_, of_b_, normal_);
+      const T along = nearest_along<T>(p.half_axis, q.half_axis, q.center - p.center)[0];
+      gap.point = p.center + std::clamp(along, T(-1), T(1)) * p.half_axis;
+    }
+    return gap;
+  }
+
+ private:
+  T extent(const PlacedShape<T>& s, const Vec3<T>& axis) const {
+    const Vec3<T> in_shape = (s.rotation.transpose() * axis).cwiseAbs();
+    return s.shape == Shape::kBox ? in_shape.dot(s.size) : in_shape.z() * s.size.z() + s.size.x();
+  }
+  void look_along(const Vec3<T>& axis, int of_a, int of_b) {
+    const T along = axis.dot(between_), back = axis.dot(before_), reach = extent(a_, axis) + extent(b_, axis);
+    const bool forth = along >= T(0) ? back > T(kBack) : -back > T(kBack);
+    const T side = (along >= T(0)) == forth ? T(1) : T(-1), apart = side * along - reach;
+    if (!(apart > distance_)) return;
+    distance_ = apart;
+    normal_ = side * axis;
+    of_a_ = of_a;
+    of_b_ = of_b;
+  }
+
+  const PlacedShape<T>&a_, &b_;
+  const Vec3<T> before_, between_;
+  T distance_ = -std::numeric_limits<T>::infinity();
+  Vec3<T> normal_ = Vec3<T>::UnitZ();
+  int of_a_ = -1, of_b_ = -1;
+};
+
+/// How far along a segment c + t·h, t in [−1, 1], it is nearest to a box about the origin: the zero of half
+/// the squared distance's derivative, which is piecewise linear and grows.
+template <class T>
+T nearest_to_box(const Vec3<T>& c, const Vec3<T>& h, const Vec3<T>& size) {
+  const auto slope = [&](T t) {
+    const Vec3<T> at = c + t * h;
+    return h.dot(Vec3<T>(at - at.cwiseMax(-size).cwiseMin(size)));
+  };
+  T low = T(-1), high = T(1), at_low = slope(low), at_high = slope(high);
+  if (!(at_low < T(0))) return at_high > T(0) || at_low > T(0) ? low : T(0);
+  if (!(at_high > T(0))) return at_high < T(0) ? high : T(0);
+  for (int n = 0; n < 12 && high - low > T(1e-4); ++n) {
+    T t = low - at_low * (high - low) / (at_high - at_low);
+    if (n % 3 == 2) t = (low + high) / 2;  // or a flat end would hold the secant up
+    const T here = slope(t);
+    if (here == T(0)) return t;
+    (here < T(0) ? low : high) = t;
+    (here < T(0) ? at_low : at_high) = here;
+  }
+  return (low + high) / 2;
+}
+
+/// A capsule and a box.
+template <class T>
+SolidGap<T> of_capsule(const PlacedShape<T>& capsule, const PlacedShape<T>& box, const Vec3<T>& before) {
+  const Mat3<T> to_box = box.rotation.transpose();
+  const Vec3<T> center = to_box * (capsule.center - box.center),
+                half = capsule.size.z() * (to_box * capsule.rotation.col(2));
+  const Vec3<T> at = center + nearest_to_box<T>(center, half, box.size) * half;
+  const Vec3<T> off = at - at.cwiseMax(-box.size).cwiseMin(box.size);
+  const T distance = off.norm();
+  if (distance > T(1e-3) * capsule.size.x()) {
+    const Vec3<T> normal = box.rotation * (off / distance);
+    if (normal.dot(before) > T(kBack))
+      return {distance - capsule.size.x(), normal, box.center + box.rotation * at};
+  }
+  return Axes<T>(capsule, box, before).best();
+}
+
+}  // namespace
+
+template <class T>
+SolidGap<T> solid_gap(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before) {
+  if (a.shape != Shape::kBox) return of_capsule<T>(a, b, before);
+  if (b.shape == Shape::kBox) return Axes<T>(a, b, before).best();
+  SolidGap<T> gap = of_capsule<T>(b, a, -before);
+  gap.normal = -gap.normal;
+  return gap;
+}
+
+template SolidGap<float> solid_gap<float>(const PlacedShape<float>&, const PlacedShape<float>&,
+                                          const Vec3<float>&);
+template SolidGap<double> solid_gap<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                            const Vec3<double>&);
+
+}  // namespace sinew
