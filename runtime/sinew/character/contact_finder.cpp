@@ -75,7 +75,6 @@ void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
   gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
-  boxes_.reserve(room.colliders * kMostNeighbours);
   first_bound_.reserve(room.trees);
   depenetrating_.reserve(room.trees);
 }
@@ -515,7 +514,6 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
   left_out_ = 0;
   bounds_.clear();
-  boxes_.clear();
   first_bound_.clear();
   const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
   if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;

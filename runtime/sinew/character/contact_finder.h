@@ -37,7 +37,6 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
 constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
 constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
-constexpr int kMostNeighbours = 6;    ///< boxes near a collider, as a mean over all, that are looked at again
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
@@ -107,9 +106,6 @@ class ContactSearch {
                                      const Vec3<double>& common_origin, T h) = 0;
   /// How many candidates the last find() had no room for.
   virtual int left_out() const = 0;
-  /// Whether two boxes that the last find() looked at lie in each other at the kinematics that the states
-  /// hold now, and did not then: who was struck on the way goes another way than where edges were looked for.
-  virtual bool overlooked() = 0;
 };
 
 template <class T>
@@ -117,15 +113,13 @@ class ContactFinder final : public ContactSearch<T> {
  public:
   void reserve(const SolveRoom& room, int obstacles) override;
   std::size_t bytes(const SolveRoom& room) const override {
-    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) +
-           room.colliders * (sizeof(Bound) + kMostNeighbours * sizeof(Boxes));
+    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound);
   }
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
                              std::span<const LaggedForce<T>> lagged, const Vec3<double>& common_origin,
                              T h) override;
   int left_out() const override { return left_out_; }
-  bool overlooked() override;
 
  private:
   /// Bounding sphere of a collider now, and how far its body may come within the step.
@@ -160,7 +154,6 @@ class ContactFinder final : public ContactSearch<T> {
   void meet_points(int n, int collider, const Met& met, int face, T reach);
   PlacedShape<T> placed(int n, int collider) const;
   PlacedShape<T> placed(const Met& met, T unit) const;
-  PlacedShape<T> moved_on(int n, int body, PlacedShape<T> shape, T share) const;
   void meet_edges(int n, int collider, const Met& met, T reach);
   void meet_solids(int n, int collider, const Met& met, T reach);
   void meet_corners(int n, int collider, const Met& met, T reach);
@@ -192,14 +185,7 @@ class ContactFinder final : public ContactSearch<T> {
   std::vector<T> gaps_;              ///< m, for make_room()
   T most_gap_[2] = {T(0), T(0)};  ///< m, of static contacts and of those between trees that there is room for
   int left_out_ = 0;
-  /// Two boxes that are near each other.
-  struct Boxes {
-    int tree = 0, collider = 0;
-    Met met;
-    T apart = T(0);  ///< m, when the step began
-  };
-  std::vector<Boxes> boxes_;
-  CrossingEdges<T> edges_[2];       ///< of a pair of colliders, now and soon
+  CrossingEdges<T> edges_;          ///< of a pair of colliders
   std::vector<Bound> bounds_;       ///< all colliders of all states
   std::vector<int> first_bound_;    ///< [state]
   std::vector<int> near_;           ///< obstacles that the present state may touch, ascending

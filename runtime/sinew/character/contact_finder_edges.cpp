@@ -34,8 +34,8 @@ PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
   return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
 }
 
-/// The edges of a box across those of another or the axis of a capsule: those that cross now, and those
-/// that will on the way to where the two first overlap if nothing stops them.
+/// The edges of a box across those of another or the axis of a capsule that cross now; of others that come to
+/// cross within the step, meet_solids() knows.
 template <class T>
 void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
@@ -64,48 +64,14 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
            std::uint64_t(pair.side < T(0) ? kOtherSide : 0);
     return c;
   };
-  CrossingEdges<T>&now = edges_[0], &soon = edges_[1];
-  const auto find = [&](const PlacedShape<T>& of_a, const PlacedShape<T>& of_b, CrossingEdges<T>& out) {
-    if (b.shape == Shape::kBox) return out.find(of_a, of_b);
-    out.find(of_b, of_a);  // the normal turns round with the product of the axes
-    for (int p = 0; p < out.count; ++p) std::swap(out.pairs[p].a, out.pairs[p].b);
-  };
-  find(a, b, now);
-  for (int p = 0; p < now.count; ++p) {
-    Contact<T> c = contact(now.pairs[p].a, now.pairs[p].b, now.pairs[p]);
+  const bool round_first = b.shape != Shape::kBox;
+  edges_.find(round_first ? b : a, round_first ? a : b);
+  for (int p = 0; p < edges_.count; ++p) {
+    EdgePair<T>& pair = edges_.pairs[p];
+    if (round_first) std::swap(pair.a, pair.b);  // the normal turns round with the product of the axes
+    Contact<T> c = contact(pair.a, pair.b, pair);
     add(c, reach);
   }
-  const PlacedShape<T> a_then = moved_on(n, own.joint, a, T(1)),
-                       b_then = moved_on(met.tree, met.body, b, T(1));
-  const T motion = (a_then.center - a.center - b_then.center + b.center).norm(),
-          thin = std::max(std::min(met.size.minCoeff(), T(own.size.minCoeff())), motion / kMostOnTheWay);
-  const T turn = std::max((a_then.rotation - a.rotation).norm() * own.size.template cast<T>().norm(),
-                          (b_then.rotation - b.rotation).norm() * met.size.norm());
-  const int stations = motion + turn < T(kHardlyMoves) * unit ? 0 : 1 + static_cast<int>(motion / thin);
-  T nearest = now.apart;
-  for (int m = 1; m <= stations; ++m) {
-    const T share = T(m) / T(stations);
-    find(m == stations ? a_then : moved_on(n, own.joint, a, share),
-         m == stations ? b_then : moved_on(met.tree, met.body, b, share), soon);
-    nearest = std::min(nearest, soon.apart);
-    for (int p = 0; p < soon.count && soon.apart < thin; ++p) {
-      const EdgePair<T>& pair = soon.pairs[p];
-      const auto same = [&](const EdgePair<T>& q) {
-        return q.a.number == pair.a.number && q.b.number == pair.b.number;
-      };
-      const auto end = now.pairs.begin() + now.count;
-      const Edge<T> of_a = edge_of(a, pair.a.number), of_b = edge_of(b, pair.b.number);
-      if (std::any_of(now.pairs.begin(), end, same) || are_parallel(of_a.half_axis, of_b.half_axis)) continue;
-      Contact<T> c = contact(of_a, of_b, pair);
-      measure<T>(k, other, c);
-      if (c.gap < T(-kLeftInside) * unit) continue;  // they pass each other beyond their ends
-      if (now.count < kMostEdgePairs) now.pairs[now.count++] = pair;
-      add(c, reach);
-    }
-  }
-  if (own.shape == Shape::kBox && b.shape == Shape::kBox && nearest < thin &&
-      boxes_.size() < boxes_.capacity())
-    boxes_.push_back({n, collider, met, now.apart});
 }
 
 /// Two solids as wholes, for what the step leads to and nobody looked for.
@@ -171,8 +137,6 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
 #define SINEW_EDGE_INSTANCES(T)                                                          \
   template PlacedShape<T> ContactFinder<T>::placed(int, int) const;                      \
   template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const;                 \
-  template bool ContactFinder<T>::overlooked();                                          \
-  template PlacedShape<T> ContactFinder<T>::moved_on(int, int, PlacedShape<T>, T) const; \
   template void ContactFinder<T>::meet_edges(int, int, const Met&, T);                   \
   template void ContactFinder<T>::meet_solids(int, int, const Met&, T);                  \
   template void ContactFinder<T>::meet_corners(int, int, const Met&, T);

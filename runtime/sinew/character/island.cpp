@@ -381,7 +381,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     total_.add(solved);
     ++restarts_;
   }
-  if (splits_left > 0 && (!solved.converged || (finder_ && finder_->overlooked()))) {
+  if (splits_left > 0 && !solved.converged) {
     ++splits_;
     take_back_landing();
     return halve(splits_left - 1);

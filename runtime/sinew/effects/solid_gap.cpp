@@ -8,15 +8,23 @@ namespace sinew {
 namespace {
 
 constexpr double kBack = -0.5;   ///< cosine to where they were apart: beyond, a direction leads back through
-constexpr double kLevel = 0.02;  ///< sine: a face or an edge that lies so level is touched in its middle
+constexpr double kLevel = 0.02;  ///< sine: a face or an edge that lies less level is touched at its end
+constexpr double kFaceFirst = 1e-3;  ///< of both extents: so much better edges must be than faces
 
-/// Where a solid reaches furthest in a direction: of a capsule's core.
+/// What of a solid reaches furthest in a direction, of a capsule's core: a corner, an edge or a face.
 template <class T>
-Vec3<T> furthest(const PlacedShape<T>& s, const Vec3<T>& direction) {
-  Vec3<T> at = s.center;
+struct Furthest {
+  Vec3<T> center;
+  T extent = T(0);  ///< m², half axes of what lies level
+};
+template <class T>
+Furthest<T> furthest(const PlacedShape<T>& s, const Vec3<T>& direction) {
+  Furthest<T> at{s.center};
   for (int i = s.shape == Shape::kBox ? 0 : 2; i < 3; ++i) {
-    const Vec3<T> axis = s.rotation.col(i);
-    at += std::clamp(direction.dot(axis) / T(kLevel), T(-1), T(1)) * s.size[i] * axis;
+    const T side = std::clamp(direction.dot(s.rotation.col(i)) / T(kLevel), T(-1), T(1));
+    at.center += side * s.size[i] * s.rotation.col(i);
+    const T level = (T(1) - std::abs(side)) * s.size[i];
+    at.extent += level * level;
   }
   return at;
 }
@@ -47,10 +55,10 @@ class Axes {
   }
   SolidGap<T> best() const {
     SolidGap<T> gap{distance_, normal_, Vec3<T>::Zero()};
-    if (of_a_ < 0) {
-      gap.point = furthest<T>(a_, -normal_);
-    } else if (of_b_ < 0) {
-      gap.point = furthest<T>(b_, normal_);
+    if (of_a_ < 0 || of_b_ < 0) {  // where faces of both lie level, nearer to the smaller one's middle
+      const Furthest<T> a = furthest<T>(a_, -normal_), b = furthest<T>(b_, normal_);
+      const T both = a.extent + b.extent, share = both > T(0) ? a.extent / both : of_a_ < 0 ? T(0) : T(1);
+      gap.point = a.center + share * (b.center - a.center);
     } else {
       const Edge<T> p = furthest_edge<T>(a_, of_a_, -normal_), q = furthest_edge<T>(b_, of_b_, normal_);
       const T along = nearest_along<T>(p.half_axis, q.half_axis, q.center - p.center)[0];
@@ -68,7 +76,8 @@ class Axes {
     const T along = axis.dot(between_), back = axis.dot(before_), reach = extent(a_, axis) + extent(b_, axis);
     const bool forth = along >= T(0) ? back > T(kBack) : -back > T(kBack);
     const T side = (along >= T(0)) == forth ? T(1) : T(-1), apart = side * along - reach;
-    if (!(apart > distance_)) return;
+    // Two edges that lie in a face part no better than that.
+    if (!(apart > distance_ + (of_a < 0 || of_b < 0 ? T(0) : T(kFaceFirst) * reach))) return;
     distance_ = apart;
     normal_ = side * axis;
     of_a_ = of_a;
@@ -82,26 +91,29 @@ class Axes {
   int of_a_ = -1, of_b_ = -1;
 };
 
-/// How far along a segment c + t·h, t in [−1, 1], it is nearest to a box about the origin: the zero of half
-/// the squared distance's derivative, which is piecewise linear and grows.
+/// How far along a capsule's axis c + t·h, t in [−1, 1], it is nearest to a box about the origin: the zero of
+/// half the squared distance's derivative, which is piecewise linear and grows. Where it lies level with a face
+/// in its middle, and not at the end that rounding chooses.
 template <class T>
-T nearest_to_box(const Vec3<T>& c, const Vec3<T>& h, const Vec3<T>& size) {
+T nearest_to_box(const Vec3<T>& c, const Vec3<T>& h, T radius, const Vec3<T>& size) {
+  const T level = T(kLevel) * radius * h.norm();
   const auto slope = [&](T t) {
     const Vec3<T> at = c + t * h;
-    return h.dot(Vec3<T>(at - at.cwiseMax(-size).cwiseMin(size)));
+    return h.dot(Vec3<T>(at - at.cwiseMax(-size).cwiseMin(size))) + level * t;
   };
   T low = T(-1), high = T(1), at_low = slope(low), at_high = slope(high);
   if (!(at_low < T(0))) return at_high > T(0) || at_low > T(0) ? low : T(0);
   if (!(at_high > T(0))) return at_high < T(0) ? high : T(0);
-  for (int n = 0; n < 12 && high - low > T(1e-4); ++n) {
-    T t = low - at_low * (high - low) / (at_high - at_low);
-    if (n % 3 == 2) t = (low + high) / 2;  // or a flat end would hold the secant up
-    const T here = slope(t);
-    if (here == T(0)) return t;
-    (here < T(0) ? low : high) = t;
-    (here < T(0) ? at_low : at_high) = here;
+  for (int i = 0; i < 3; ++i) {
+    for (const T face : {-size[i], size[i]}) {  // the slope has its kinks where the axis crosses these planes
+      const T t = (face - c[i]) / h[i];
+      if (!(t > low && t < high)) continue;
+      const T here = slope(t);
+      (here < T(0) ? low : high) = t;
+      (here < T(0) ? at_low : at_high) = here;
+    }
   }
-  return (low + high) / 2;
+  return low - at_low * (high - low) / (at_high - at_low);
 }
 
 /// A capsule and a box.
@@ -110,7 +122,7 @@ SolidGap<T> of_capsule(const PlacedShape<T>& capsule, const PlacedShape<T>& box,
   const Mat3<T> to_box = box.rotation.transpose();
   const Vec3<T> center = to_box * (capsule.center - box.center),
                 half = capsule.size.z() * (to_box * capsule.rotation.col(2));
-  const Vec3<T> at = center + nearest_to_box<T>(center, half, box.size) * half;
+  const Vec3<T> at = center + nearest_to_box<T>(center, half, capsule.size.x(), box.size) * half;
   const Vec3<T> off = at - at.cwiseMax(-box.size).cwiseMin(box.size);
   const T distance = off.norm();
   if (distance > T(1e-3) * capsule.size.x()) {
