@@ -164,6 +164,9 @@ bool ContactFinder<T>::make_room() {
 /// What contacts that were not there before begin with, and how all are damped.
 template <class T>
 void ContactFinder<T>::begin_all() {
+  std::erase_if(contacts_, [&](const Contact<T>& c) {
+    return c.fresh && c.meeting == Meeting::kEdges && is_level_with_support(c);
+  });
   for (Contact<T>& c : contacts_) {
     if (c.fresh) {
       begin_inside(c);
@@ -226,6 +229,13 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);
 }
 
+/// See is_level_edge().
+template <class T>
+bool ContactFinder<T>::is_level_with_support(const Contact<T>& c) const {
+  const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
+  return is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore);
+}
+
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
@@ -236,12 +246,9 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
     mass = std::min(mass, T(states_[c.tree_b]->total_mass));
   }
   const T approach = -closing.dot(c.normal);
-  const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
   const bool reached = approach > T(0) && c.gap < h_ * approach;
-  if (reached && c.gap > T(0) &&
-      is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore))
-    return;  // slides on to it
-  c.approach = approach;
+  if (reached && c.gap > T(0) && is_level_with_support(c)) return;  // slides on to it
+  if (c.meeting != Meeting::kSolids) c.approach = approach;  // what strikes is a point or an edge
   thickness = std::min(thickness, half_thickness(c));
   const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));

@@ -42,17 +42,21 @@ template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
   return c.id >> 32;
 }
-/// Whether a contact is with a static edge that lies in the plane of what the same point rests on by another
-/// that `bears`, as where tiles meet, or is higher by less than `tolerance` (m): whoever slides over it does
-/// not run into it.
+/// Whether a contact is with a static edge that lies in the plane of what the same point (an edge: the same
+/// body) rests on by another that `bears`, as where tiles meet, or is higher by less than `tolerance` (m):
+/// whoever slides over it does not run into it.
 template <class T, class Bears>
 bool is_level_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
                    const Bears& bears) {
   const auto nearest = [](const Contact<T>& of) {
     return Vec3<T>(of.point - (of.radius + of.gap - of.offset) * of.normal);
   };
+  const auto same = [&](const Contact<T>& rests) {
+    return edge.meeting == Meeting::kEdges ? rests.tree_a == edge.tree_a && rests.body_a == edge.body_a
+                                           : point_of(rests) == point_of(edge);
+  };
   return edge.tree_b < 0 && std::any_of(contacts.begin(), contacts.end(), [&](const Contact<T>& rests) {
-           return &rests != &edge && point_of(rests) == point_of(edge) && rests.tree_b < 0 && bears(rests) &&
+           return &rests != &edge && rests.tree_b < 0 && same(rests) && bears(rests) &&
                   rests.normal.dot(edge.normal) < T(kSamePlane) &&
                   rests.normal.dot(nearest(edge) - nearest(rests)) < tolerance;
          });
@@ -165,6 +169,7 @@ class ContactFinder final : public ContactSearch<T> {
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
   void count_depenetrating();
+  bool is_level_with_support(const Contact<T>& contact) const;
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
   Contact<T> contact_of(int n, const Collider& collider) const;
