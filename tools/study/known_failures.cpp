@@ -29,9 +29,6 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "spectral radius of 0.92 than with 0.8"},
     {"target_through_wall",
      "in double: an arm that is pressed against the wall still swings by 15 mJ in the end, 1 wanted"},
-    {"piston",
-     "in float a jammed limb is flung at 41 m/s, 16 wanted; which one jams is chaotic, and of 240 starts the "
-     "fastest joint was at the median 6 and at most 36 m/s"},
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   driven_.reserve(room.trees);
   lasts_.reserve(room.trees);
   loose_.reserve(room.dofs);
-  jumps_.reserve(room.bodies);
+  for (auto* v : {&jumps_, &late_jumps_}) v->reserve(room.bodies);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
   for (auto* v : {&moved_, &turned_, &end_sped_, &end_spun_, &start_sped_, &start_spun_})
     v->reserve(room.bodies);
@@ -84,7 +84,8 @@ template <class T>
 std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
       EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
-      room.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + sizeof(std::array<T, 6>)) +
+      room.bodies *
+          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>)) +
       (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
@@ -318,7 +319,7 @@ void IslandStepper<T>::begin_solve() {
   emphasise_friction(h);
   for (std::size_t n = 0; n < states_.size(); ++n)
     move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
-  if (strikes_deep(h)) choose_guess(h);
+  if (!landed_ && strikes_deep(h)) choose_guess(h);
 }
 
 /// In as many passes as the step has left.

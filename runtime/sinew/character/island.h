@@ -46,6 +46,7 @@ class IslandStepper {
     Vec3<T> velocity, momentum, struck_velocity, struck_momentum;
     Mat3<T> rotation_rate;
     std::array<T, 6> rate;
+    Deviation<T> deviation;
   };
 
   int parts_of() const;
@@ -90,8 +91,14 @@ class IslandStepper {
   Strike<T> strike_of(std::size_t tree) const;
   void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
   bool may_land() const;
+  bool strikes(const Contact<T>& contact, T h) const;
+  bool passes_by(const Contact<T>& contact) const;
+  void append_loose(const CharacterState<T>& state);
+  void add_to_rate(CharacterState<T>& state, int joint, const std::array<T, 6>& spin);
+  void measure_led_at_start(const CharacterState<T>& state, int tree);
   void land(T h);
-  void take_landing();
+  void take_landing(T h);
+  void lead_back(CharacterState<T>& state, int tree, T h);
   void take_back_landing();
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
@@ -158,6 +165,7 @@ class IslandStepper {
   std::vector<Vec3<T>> missed_, unturned_;        ///< [body, the same] see begin_error
   std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
   std::vector<std::array<T, 6>> jumps_;           ///< [body] of one tree, of its joint rates
+  std::vector<std::array<T, 6>> late_jumps_;      ///< the same, by the share of the step before they came
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   bool landed_ = false;                                     ///< land() has changed velocities
   std::vector<Landing> kept_;                               ///< [body, the same] before it did

@@ -3,35 +3,54 @@
 
 #include "sinew/character/island.h"
 #include "sinew/character/unknowns.h"
+#include "sinew/character/way_back.h"
 
 namespace sinew {
 
-/// Whether all can be struck as they are: their accelerations are known, and no muscle answers.
+/// Whether all can be struck as they are: their accelerations are known.
 template <class T>
 bool IslandStepper<T>::may_land() const {
   return !settings_.plan->scheme && couplings_.empty() &&
          std::all_of(states_.begin(), states_.end(),
-                     [](const CharacterState<T>* s) { return s->limp() && s->history.accelerates; });
+                     [](const CharacterState<T>* s) { return s->history.accelerates; });
 }
 
-/// Impacts of limp trees change velocities where they happen, as impulses on them do (strike()): at the end
-/// of the step a stretched limb has folded, and what strikes with it weighs a fraction. They are found along
-/// the way to the first guess, one after the other; until then each body goes on as it did. The solve finds
-/// what is left, and what lasts. Contacts that bounce are left to it.
+/// Whether a contact strikes within h, and what it strikes with, or at, no muscles move: where an animation
+/// sets a foot down, the clip knows how.
+template <class T>
+bool IslandStepper<T>::strikes(const Contact<T>& c, T h) const {
+  const bool thrown = states_[c.tree_a]->limp() || (c.tree_b >= 0 && states_[c.tree_b]->limp());
+  return thrown && strikes_within(c, h) && c.restitution == T(0);
+}
+
+/// Whether a contact that is open at the first guess is so all along the way, as far as anybody looks.
+template <class T>
+bool IslandStepper<T>::passes_by(const Contact<T>& c) const {
+  return std::none_of(effects_.begin(), effects_.end(),
+                      [&](const auto& effect) { return effect->meets_on_the_way(trees_, c); });
+}
+
+/// Impacts change velocities where they happen, as impulses do (strike()): at the end of the step a stretched
+/// limb has folded, and what strikes with it weighs a fraction. They are found along the way to the first
+/// guess, one after the other; until then each body goes on as it did. The solve finds what is left, and what
+/// lasts. Contacts that bounce are left to it.
 template <class T>
 void IslandStepper<T>::land(T h) {
   landed_ = false;
   T fastest = T(0);
   for (const Contact<T>& c : contacts_)
-    if (strikes_within(c, h) && c.restitution == T(0)) fastest = std::max(fastest, c.approach);
+    if (strikes(c, h)) fastest = std::max(fastest, c.approach);
   if (!(fastest > T(0)) || !may_land()) return;
-  begin_ends();
+  loose_.clear();
+  for (const CharacterState<T>* s : states_) append_loose(*s);
+  ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     TreeProblem<T>& p = s.problem;
     forward_kinematics<T>(s.tree, p.local, p.common_origin, s.guessed);
     p.local = p.start;
     led_rates_.assign(s.tree.bodies, {});
+    if (!s.limp()) measure_led_at_start(s, static_cast<int>(n));
     ends_.project(static_cast<int>(n), led_rates_, s.rate, {}, s.history);
   }
   for (const Contact<T>& c : contacts_) {
@@ -41,35 +60,58 @@ void IslandStepper<T>::land(T h) {
       ends_.add_bearing(c);
       continue;
     }
+    if (strikes_within(c, h) && !strikes(c, h)) continue;
     Contact<T> guessed = c;
     settings_.plan->contacts->measure(states_[c.tree_a]->guessed,
                                       c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, guessed);
-    if (guessed.gap > T(0) && strikes_within(c, h)) continue;  // passes by
+    if (guessed.gap > T(0) && strikes_within(c, h) && passes_by(c)) continue;
     const bool beyond = guessed.normal.dot(c.normal) < T(kSamePlane) || -guessed.gap > half_thickness(c);
     ends_.add_striking(c, beyond ? T(0) : (guessed.gap - c.start_gap) / h + c.approach);
   }
   landed_ = ends_.strike(h, T(kImpactSpeed));
-  if (landed_) take_landing();
   for (CharacterState<T>* s : states_) first_guess(*s, h);
+  if (landed_) take_landing(h);
+}
+
+/// Velocities of the joints that strikes do not move, where a part begins.
+template <class T>
+void IslandStepper<T>::measure_led_at_start(const CharacterState<T>& s, int tree) {
+  const Kinematics<T>& k = s.problem.kinematics;
+  const auto twist = [&](int i) {
+    const Mat3<T> spin = s.history.rotation_rate[i] * k.rotation[i].transpose();
+    Twist<T> of;
+    of.w = Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2;
+    of.v = s.history.velocity[i] - of.w.cross(k.center[i]);
+    return of;
+  };
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
+    if (count > 0 ? ends_.loose(tree, first) : parent >= 0) continue;
+    led_rates_[i] = twist(i);
+    if (parent < 0) continue;
+    const Twist<T> outer = twist(parent);
+    led_rates_[i].w -= outer.w;
+    led_rates_[i].v -= outer.v;
+  }
 }
 
 /// The velocities that impacts have left into the trees, and what bodies move less for having gone on until
 /// then.
 template <class T>
-void IslandStepper<T>::take_landing() {
+void IslandStepper<T>::take_landing(T h) {
   number_bodies();
   for (auto* v : {&struck_velocity_, &struck_momentum_})
     if (v->empty()) v->assign(start_sped_.size(), Vec3<T>::Zero());
   kept_.clear();
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    History<T>& h = s.history;
+    History<T>& history = s.history;
     const int first = first_body_[n];
     for (int i = 0; i < s.tree.bodies; ++i)
-      kept_.push_back({h.velocity[i], h.momentum[i], struck_velocity_[first + i], struck_momentum_[first + i],
-                       h.rotation_rate[i], s.rate[i]});
+      kept_.push_back({history.velocity[i], history.momentum[i], struck_velocity_[first + i],
+                       struck_momentum_[first + i], history.rotation_rate[i], s.rate[i], s.deviation[i]});
     if (!ends_.struck(static_cast<int>(n))) continue;
-    ends_.write(static_cast<int>(n), h, s.rate);
+    ends_.write(static_cast<int>(n), history, s.rate);
     for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
     ends_.missed(static_cast<int>(n), moved_, turned_);
     for (int i = 0; i < s.tree.bodies; ++i) {
@@ -77,7 +119,32 @@ void IslandStepper<T>::take_landing() {
       struck_velocity_[first + i] += moved_[i];
       struck_momentum_[first + i] += r * (s.tree.inertia[i] * (r.transpose() * turned_[i]));
     }
+    late_jumps_.resize(s.tree.bodies);
+    ends_.answered(static_cast<int>(n), late_jumps_);  // of what missed() has found
+    if (!s.limp()) lead_back(s, static_cast<int>(n), h);
+    first_guess(s, h);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      if (s.tree.dof_count(i) == 0 || !s.problem.free[s.tree.first_dof[i]]) continue;
+      for (T& late : late_jumps_[i]) late *= -h;
+      s.problem.local[i] = at_offset<T>(s.tree, i, s.problem.local[i], late_jumps_[i]);
+    }
   }
+}
+
+/// Muscles lead back what was struck. Its way begins at its new speed, and as far behind as it went on at the
+/// old one.
+template <class T>
+void IslandStepper<T>::lead_back(CharacterState<T>& s, int tree, T h) {
+  jumps_.resize(s.tree.bodies);
+  ends_.strike_changed(tree, jumps_);
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    add_to_rate(s, i, jumps_[i]);
+    Deviation<T>& d = s.deviation[i];
+    const std::array<T, 6> late = rate_of_spin<T>(s.tree.type[i], d.offset, late_jumps_[i]);
+    for (int k = 0; k < s.tree.dof_count(i); ++k) d.offset[k] -= h * late[k];
+  }
+  s.settle_deviations();
+  choose_targets<T>(s, return_time(), height_of_floor<T>(*world_, settings_.common_origin.z()), h);
 }
 
 /// Before the same part is taken in two.
@@ -93,15 +160,21 @@ void IslandStepper<T>::take_back_landing() {
       s->history.momentum[i] = kept->momentum;
       s->history.rotation_rate[i] = kept->rotation_rate;
       s->rate[i] = kept->rate;
+      s->deviation[i] = kept->deviation;
       struck_velocity_[body] = kept->struck_velocity;
       struck_momentum_[body] = kept->struck_momentum;
     }
+  for (CharacterState<T>* s : states_) s->settle_deviations();
 }
 
-#define SINEW_LANDING_INSTANCES(T)                  \
-  template bool IslandStepper<T>::may_land() const; \
-  template void IslandStepper<T>::land(T);          \
-  template void IslandStepper<T>::take_landing();   \
+#define SINEW_LANDING_INSTANCES(T)                                                     \
+  template bool IslandStepper<T>::may_land() const;                                    \
+  template void IslandStepper<T>::land(T);                                             \
+  template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                 \
+  template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                  \
+  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int); \
+  template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);               \
+  template void IslandStepper<T>::take_landing(T);                                     \
   template void IslandStepper<T>::take_back_landing();
 SINEW_LANDING_INSTANCES(float)
 SINEW_LANDING_INSTANCES(double)

@@ -71,6 +71,30 @@ void IslandStepper<T>::predict_euler_all(T h) {
   }
 }
 
+/// Appends to `loose_` which of a tree's degrees of freedom give way to what strikes: those of limp trees,
+/// and of those that muscles move which are not infinitely strong.
+template <class T>
+void IslandStepper<T>::append_loose(const CharacterState<T>& s) {
+  const JointLaw<T>& law = s.problem.law;
+  const bool limp = s.limp(), gives_way = s.levels.allowed >= Level::kPartial;
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    const bool led = s.root_is_kinematic() && s.tree.type[0] == JointType::kFree && dof < s.tree.first_dof[1];
+    const bool weak = std::isfinite(law.torque_minus[dof]) && std::isfinite(law.torque_plus[dof]);
+    loose_.push_back(limp || (gives_way && !led && weak));
+  }
+}
+
+/// A joint moves by so much faster than its animation.
+template <class T>
+void IslandStepper<T>::add_to_rate(CharacterState<T>& s, int i, const std::array<T, 6>& spin) {
+  Deviation<T>& d = s.deviation[i];
+  const std::array<T, 6> jump = rate_of_spin<T>(s.tree.type[i], d.offset, spin);
+  for (int k = 0; k < s.tree.dof_count(i); ++k) {
+    d.rate[k] += jump[k];
+    d.on_animation = d.on_animation && spin[k] == T(0);
+  }
+}
+
 /// Impulses that strike change velocities where the bodies are, before the step: over the step they would act
 /// on what has moved by then, and on which they have more effect, and on muscles that have the whole step to
 /// resist. Muscles lead what was struck back; it begins at its new speed, while what is limp moves as under
@@ -92,12 +116,8 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
   }
   jump_force_.assign(s.tree.dofs, T(0));
   project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, jump_force_);
-  loose_.assign(s.tree.dofs, 1);
-  const bool limp = s.limp();
-  for (int dof = 0; dof < s.tree.dofs && !limp; ++dof) {
-    const bool led = s.root_is_kinematic() && s.tree.type[0] == JointType::kFree && dof < s.tree.first_dof[1];
-    loose_[dof] = !led && std::isfinite(p.law.torque_minus[dof]) && std::isfinite(p.law.torque_plus[dof]);
-  }
+  loose_.clear();
+  append_loose(s);
   TreeProblem<T>* const struck = &p;
   ends_.begin({&struck, 1}, loose_);
   turned_.resize(s.tree.bodies);
@@ -111,17 +131,10 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
     velocity[i] /= 2;  // they act all along the step
     momentum[i] /= 2;
   }
-  if (limp) return;
+  if (s.limp()) return;
   jumps_.resize(s.tree.bodies);
   ends_.answered(0, jumps_);
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    Deviation<T>& d = s.deviation[i];
-    const std::array<T, 6> jump = rate_of_spin<T>(s.tree.type[i], d.offset, jumps_[i]);
-    for (int k = 0; k < s.tree.dof_count(i); ++k) {
-      d.rate[k] += jump[k];
-      d.on_animation = d.on_animation && jumps_[i][k] == T(0);
-    }
-  }
+  for (int i = 0; i < s.tree.bodies; ++i) add_to_rate(s, i, jumps_[i]);
   s.settle_deviations();
   std::fill_n(velocity.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
   std::fill_n(momentum.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
@@ -387,6 +400,8 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::predict_all(T);                                                     \
   template void IslandStepper<T>::predict_euler_all(T);                                               \
   template void IslandStepper<T>::strike(CharacterState<T>&, std::span<Vec3<T>>, std::span<Vec3<T>>); \
+  template void IslandStepper<T>::append_loose(const CharacterState<T>&);                             \
+  template void IslandStepper<T>::add_to_rate(CharacterState<T>&, int, const std::array<T, 6>&);      \
   template void IslandStepper<T>::strike_all();                                                       \
   template Strike<T> IslandStepper<T>::strike_of(std::size_t) const;                                  \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \

@@ -77,6 +77,11 @@ void ContinuousDetection<T>::limit_guess(Trees trees, std::span<const Contact<T>
   }
 }
 
+template <class T>
+bool ContinuousDetection<T>::meets_on_the_way(Trees trees, const Contact<T>& contact) const {
+  return !contact.plane && time_of_impact<T>(trees, contact) < T(1);
+}
+
 template class ContinuousDetection<float>;
 template class ContinuousDetection<double>;
 

@@ -19,6 +19,7 @@ class ContinuousDetection final : public IslandEffect<T> {
   void reserve(const SolveRoom& /*room*/) override {}
   std::size_t bytes(const SolveRoom& /*room*/) const override { return sizeof *this; }
   void limit_guess(Trees trees, std::span<const Contact<T>> contacts, T h, std::span<T> share) override;
+  bool meets_on_the_way(Trees trees, const Contact<T>& contact) const override;
 };
 
 extern template class ContinuousDetection<float>;

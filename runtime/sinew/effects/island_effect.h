@@ -47,6 +47,9 @@ class IslandEffect {
   /// `problem.local` that the solve may start with. Contacts and kinematics stand at the step's beginning.
   virtual void limit_guess(Trees /*trees*/, std::span<const Contact<T>> /*contacts*/, T /*h*/,
                            std::span<T> /*share*/) {}
+  /// Whether a contact that is open at both ends of the guessed motion, from where the contacts were measured
+  /// to the trees' `guessed`, closes on the way.
+  virtual bool meets_on_the_way(Trees /*trees*/, const Contact<T>& /*contact*/) const { return false; }
   /// After a solve: whether change_speeds() has anything to look at.
   virtual bool may_change_speeds(std::span<const Contact<T>> /*contacts*/) const { return false; }
   /// Then: changes the histories' velocities, never to more energy than `budget` (J, before the step). True

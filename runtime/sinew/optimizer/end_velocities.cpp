@@ -549,6 +549,13 @@ bool EndVelocities<T>::strike(T h, T slow) {
 }
 
 template <class T>
+void EndVelocities<T>::strike_changed(int n, std::span<std::array<T, 6>> rate) {
+  const Part& part = parts_[n];
+  std::copy_n(done_.begin() + part.first, part.count, rates(n).begin());
+  answered(n, rate);
+}
+
+template <class T>
 void EndVelocities<T>::missed(int n, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned) {
   const Part& part = parts_[n];
   const int bodies = problems_[n]->tree->bodies;

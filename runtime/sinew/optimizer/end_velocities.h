@@ -46,7 +46,7 @@ class EndVelocities {
   /// matrix. `moved` and `turned` [body] are written. O(bodies).
   void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
 
-  /// Joint rates [body] of the last answer of respond() for this tree, as joint offsets'; 0 where no unknown
+  /// Joint rates [body] of the last answer of respond() or missed() for this tree, as joint offsets'; 0 where no unknown
   /// moves the joint.
   void answered(int tree, std::span<std::array<T, 6>> rate);
 
@@ -83,6 +83,8 @@ class EndVelocities {
   bool strike(T h, T slow);
   /// Whether that has changed a tree's velocities.
   bool struck(int tree) const { return disturbed_[tree] != 0; }
+  /// By how much it has changed the rates of a tree's joints [body].
+  void strike_changed(int tree, std::span<std::array<T, 6>> rate);
   /// By how much the bodies [body] move less in the step than at the velocities that it left, m/s and rad/s,
   /// for those come about within it. After write().
   void missed(int tree, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);

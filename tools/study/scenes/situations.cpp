@@ -503,19 +503,12 @@ const char* known_to_fail(const std::string& situation) {
     const char *name, *why;
   };
   static constexpr Known kKnown[] = {
-      {"stairs",
-       "at 30 Hz a hand that hangs beside the stairs still swings at 0.3 m/s in the end; it takes 15 seconds "
-       "to rest"},
       {"pit", "a hand reaches 15.6 m/s, 15 wanted; in steps of 1/240 s 37, of 1/960 s 55"},
       {"crowd_pushed",
        "one of twenty is caught by another's legs and does not come back to its place, 0.77 m off (until "
        "roundings changed, another's limb was 88 mm deep instead); and a hand whirls at 26 m/s, which that "
        "of "
        "one alone does in fine steps, too (17 to 49 m/s)"},
-      {"back_from_ragdoll",
-       "11 mm off a second after its muscles came back, 1 wanted: with a third of its strength the way back "
-       "of a body that lies folded is not shorter; how it lies is chaotic (2.5 mm and less, otherwise "
-       "rounded)"},
       {"hit_in_a_walk",
        "10 %: the elbow swings to its stop within a step, in which the shoulder bears what it cannot in fine "
        "steps"},
