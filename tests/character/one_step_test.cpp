@@ -327,6 +327,7 @@ TEST(OneStep, RestoredItGoesOnToTheBit) {
 std::vector<Transform<double>> swung(int parts, bool as_steps) {
   WorldSettings settings = one_step(1e-7);
   settings.accuracy.substeps = as_steps ? 1 : parts;
+  settings.ground = false;  // what feet kick there is chaotic
   fixtures::Playing<double> playing(settings);
   const int steps = as_steps ? parts : 1;
   for (int n = 0; n <= 30 * steps; ++n) {
@@ -361,7 +362,7 @@ TEST(OneStep, InPartsOfAFrameWhatIsLedMovesAsInSteps) {
     double apart = 0;
     for (std::size_t i = 0; i < in_parts.size(); ++i)
       apart = std::max(apart, (in_parts[i].translation - in_steps[i].translation).norm());
-    EXPECT_LT(apart, 0.01) << parts << " parts";  // the cubic between two targets is not the sine
+    EXPECT_LT(apart, 0.002) << parts << " parts";  // the cubic between two targets is not the sine
   }
 }
 

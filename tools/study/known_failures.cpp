@@ -27,8 +27,6 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"root_turned_by_pi",
      "in float: 1.05 mrad apart from the figure that is not turned, 1 wanted: roundings ring longer with a "
      "spectral radius of 0.92 than with 0.8"},
-    {"target_through_wall",
-     "in double: an arm that is pressed against the wall still swings by 15 mJ in the end, 1 wanted"},
 };
 
 }  // namespace

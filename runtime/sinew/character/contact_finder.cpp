@@ -75,7 +75,8 @@ void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
   gaps_.reserve(room.contacts);
   room_ = static_cast<std::size_t>(room.contacts);
   bounds_.reserve(room.colliders);
-  first_bound_.reserve(room.trees);
+  follows_.reserve(room.bodies);
+  for (auto* v : {&first_bound_, &first_body_}) v->reserve(room.trees);
   depenetrating_.reserve(room.trees);
 }
 
@@ -90,7 +91,8 @@ void ContactFinder<T>::bound(const CharacterState<T>& s, T h) {
     b.reach = T(kMargin) * s.tree.scale.length +
               h * (s.history.velocity[body].norm() + s.history.rotation_rate[body].norm() * arm + T(5) * h);
     for (int i = body; i >= 0 && !b.moved; i = s.tree.parent[i])
-      b.moved = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
+      b.moved =
+          s.tree.dof_count(i) > 0 && (s.problem.free[s.tree.first_dof[i]] || !s.deviation[i].on_animation);
     bounds_.push_back(b);
   }
 }
@@ -127,6 +129,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach) return;
+  allow_pressed(c);
   const T& most_gap = most_gap_[between_trees(c)];
   while (c.gap < most_gap && contacts_.size() >= most_)
     if (!make_room()) break;
@@ -138,6 +141,41 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   contacts_.push_back(c);
 }
 
+/// Which bodies of a tree follow a clip: all that moves them is driven. Where these shall be at the end of
+/// the part is in `guessed` then.
+template <class T>
+void ContactFinder<T>::find_followers(CharacterState<T>& s) {
+  first_body_.push_back(static_cast<int>(follows_.size()));
+  const bool any = !s.is_prop && !s.limp() && s.settings.root != RootDrive::kFree;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int parent = s.tree.parent[i];
+    const bool root = parent < 0 && s.tree.type[i] == JointType::kFree;
+    const bool unknown = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
+    Follows follows = parent < 0 ? Follows::kExactly : follows_[first_body_.back() + parent];
+    if (!any || !(root || s.joint_is_driven(i))) follows = Follows::kNot;
+    follows_.push_back(std::min(follows, unknown ? Follows::kRoughly : Follows::kExactly));
+  }
+  if (any) forward_kinematics<T>(s.tree, s.wanted, s.problem.common_origin, s.guessed);
+}
+
+/// What clips press may lie in each other; and what no unknown moves a little deeper: muscles lead that, with
+/// all their strength against a millimetre of the floor.
+template <class T>
+void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
+  Follows follows = follows_[first_body_[c.tree_a] + c.body_a];
+  if (c.tree_b >= 0) follows = std::min(follows, follows_[first_body_[c.tree_b] + c.body_b]);
+  if (follows == Follows::kNot) return;
+  Contact<T> wanted = c;
+  measure<T>(states_[c.tree_a]->guessed, c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, wanted);
+  const T most = c.plane ? std::numeric_limits<T>::infinity()
+                         : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
+  const T led = follows == Follows::kExactly ? T(kLedInto) * c.length_scale : T(0);
+  const T pressed = std::min(std::max(-wanted.gap, T(0)) + led, most);
+  c.slack += pressed;
+  c.gap += pressed;
+  c.start_gap = c.gap;
+}
+
 /// Drops the further half of the contacts between trees, or, if there are none, of the static ones; further
 /// ones are not taken any more. False where all are as near.
 template <class T>
@@ -146,14 +184,14 @@ bool ContactFinder<T>::make_room() {
   T& most_gap = most_gap_[any_between];
   gaps_.clear();
   for (const Contact<T>& c : contacts_)
-    if (between_trees(c) == any_between) gaps_.push_back(c.gap - c.offset);
+    if (between_trees(c) == any_between) gaps_.push_back(c.distance());
   if (gaps_.empty()) return false;
   const auto middle = gaps_.begin() + static_cast<std::ptrdiff_t>(gaps_.size() / 2);
   std::nth_element(gaps_.begin(), middle, gaps_.end());
   if (!(*std::min_element(gaps_.begin(), middle + 1) < *middle)) return false;
   most_gap = *middle;
   const auto further = [&](const Contact<T>& c) {
-    return between_trees(c) == any_between && !(c.gap - c.offset < most_gap);
+    return between_trees(c) == any_between && !(c.distance() < most_gap);
   };
   const auto kept = std::remove_if(contacts_.begin(), contacts_.end(), further);
   left_out_ += static_cast<int>(contacts_.end() - kept);
@@ -248,7 +286,7 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   const T approach = -closing.dot(c.normal);
   const bool reached = approach > T(0) && c.gap < h_ * approach;
   if (reached && c.gap > T(0) && is_level_with_support(c)) return;  // slides on to it
-  if (c.meeting != Meeting::kSolids) c.approach = approach;  // what strikes is a point or an edge
+  if (c.meeting != Meeting::kSolids) c.approach = approach;         // what strikes is a point or an edge
   thickness = std::min(thickness, half_thickness(c));
   const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
@@ -521,12 +559,14 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
   left_out_ = 0;
   bounds_.clear();
-  first_bound_.clear();
+  follows_.clear();
+  for (auto* v : {&first_bound_, &first_body_}) v->clear();
   const bool around = world.ground || !surroundings.obstacles.empty() || !surroundings.hosts.empty();
   if (!around && states.size() == 1 && !states[0]->settings.self_collision) return contacts_;
-  for (const CharacterState<T>* s : states) {
+  for (CharacterState<T>* s : states) {
     first_bound_.push_back(static_cast<int>(bounds_.size()));
     bound(*s, h);
+    find_followers(*s);
   }
   for (int n = 0; n < static_cast<int>(states.size()); ++n) {
     if (states[n]->settings.ground_contact) meet_static(n, surroundings);
@@ -542,6 +582,7 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
   const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
+  const T pressed = T(kPressedByClips) * s.tree.scale.length;
   room.moving.clear();
   room.from.clear();
   room.to.clear();
@@ -565,7 +606,9 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       Transform<double> pose = obstacle.local;
       pose.translation -= origin;
       room.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
-      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle}, T(0));
+      const bool box = obstacle.shape == Shape::kBox;
+      const T thin = T(box ? obstacle.size.minCoeff() : obstacle.size.x());
+      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle}, std::min(pressed, thin / 2));
     });
   const auto movers = [&] {
     if (room.moving.empty()) append_moving(s, h, room.moving);

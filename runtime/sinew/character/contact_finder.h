@@ -37,6 +37,10 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
 constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
 constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
+/// m of a human: what clips press into obstacles and each other, a sole that is a little low, a hand that
+/// leans on something: as deep it may lie there. Whatever goes deeper does so against a force.
+constexpr double kPressedByClips = 0.03;
+constexpr double kLedInto = 5e-3;  ///< m of a human: so much deeper what muscles lead back may go
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
@@ -49,7 +53,7 @@ template <class T, class Bears>
 bool is_level_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
                    const Bears& bears) {
   const auto nearest = [](const Contact<T>& of) {
-    return Vec3<T>(of.point - (of.radius + of.gap - of.offset) * of.normal);
+    return Vec3<T>(of.point - (of.radius + of.distance()) * of.normal);
   };
   const auto same = [&](const Contact<T>& rests) {
     return edge.meeting == Meeting::kEdges ? rests.tree_a == edge.tree_a && rests.body_a == edge.body_a
@@ -102,6 +106,8 @@ class ContactSearch {
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves do not meet the floor: a driven root bears what its feet
   /// would. Nor do they meet each other, where they are of one tree, or no muscles of either may be overcome.
+  /// What follows a clip begins to bear where the clip presses it, in the floor at any depth, elsewhere by
+  /// kPressedByClips at most.
   /// Allocates nothing; where the trees' room does not do, those between trees that are furthest apart are
   /// left out, and only if that does not do, such of static obstacles: see left_out().
   virtual std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
@@ -117,7 +123,7 @@ class ContactFinder final : public ContactSearch<T> {
  public:
   void reserve(const SolveRoom& room, int obstacles) override;
   std::size_t bytes(const SolveRoom& room) const override {
-    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound);
+    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound) + room.bodies;
   }
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
@@ -130,10 +136,19 @@ class ContactFinder final : public ContactSearch<T> {
   struct Bound {
     Vec3<T> center;
     T radius = T(0), reach = T(0);
-    bool moved = false;  ///< by some unknown
+    bool moved = false;  ///< by some unknown, or on the way back to its animation
+  };
+
+  /// How a body follows a clip.
+  enum class Follows : std::uint8_t {
+    kNot,
+    kRoughly,  ///< its joints are driven, but some unknown moves it
+    kExactly,  ///< or is on its way back
   };
 
   void bound(const CharacterState<T>& state, T h);
+  void find_followers(CharacterState<T>& state);
+  void allow_pressed(Contact<T>& contact) const;
   void find_near(int n, const Surroundings& surroundings);
   void meet_static(int n, const Surroundings& surroundings);
   void meet_hosts(int n, int collider, std::span<const HostObstacle> hosts);
@@ -193,6 +208,8 @@ class ContactFinder final : public ContactSearch<T> {
   CrossingEdges<T> edges_;          ///< of a pair of colliders
   std::vector<Bound> bounds_;       ///< all colliders of all states
   std::vector<int> first_bound_;    ///< [state]
+  std::vector<Follows> follows_;    ///< [body, trees one after the other] see find_followers
+  std::vector<int> first_body_;     ///< [state] in these
   std::vector<int> near_;           ///< obstacles that the present state may touch, ascending
   std::vector<int> depenetrating_;  ///< [state] contacts through which it is brought out of something
 };

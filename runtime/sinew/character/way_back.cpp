@@ -76,23 +76,26 @@ T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
 }
 
 /// Where a way back goes in a step, no further beyond a joint's limits than the joint is or its animation
-/// wants.
+/// wants. Where that carries the joint to its stop, the way back is as much shorter as it has to be.
 template <class T>
 std::array<T, 6> within_limits(const CharacterState<T>& s, int i, const std::array<T, 6>& offset) {
   constexpr int kHalvings = 10;
-  const std::array<T, 6>& now = s.deviation[i].offset;
-  std::array<T, 6> part = offset;
-  const auto beyond = [&] { return beyond_limits(s, i, at_offset<T>(s.tree, i, s.wanted[i], part)); };
+  const auto beyond = [&](const std::array<T, 6>& at) {
+    return beyond_limits(s, i, at_offset<T>(s.tree, i, s.wanted[i], at));
+  };
   const T most = std::max(beyond_limits(s, i, s.wanted[i]), beyond_limits(s, i, s.problem.start[i]));
-  if (!(beyond() > most)) return offset;
-  T low = T(0), high = T(1);
-  for (int n = 0; n < kHalvings; ++n) {
-    const T middle = (low + high) / 2;
-    for (std::size_t k = 0; k < part.size(); ++k) part[k] = now[k] + middle * (offset[k] - now[k]);
-    (beyond() > most ? high : low) = middle;
+  if (!(beyond(offset) > most)) return offset;
+  std::array<T, 6> inside = s.deviation[i].offset, outside = offset;
+  if (beyond(inside) > most) {
+    outside = inside;
+    inside = {};
   }
-  for (std::size_t k = 0; k < part.size(); ++k) part[k] = now[k] + low * (offset[k] - now[k]);
-  return part;
+  for (int n = 0; n < kHalvings; ++n) {
+    std::array<T, 6> middle;
+    for (std::size_t k = 0; k < middle.size(); ++k) middle[k] = (inside[k] + outside[k]) / 2;
+    (beyond(middle) > most ? outside : inside) = middle;
+  }
+  return inside;
 }
 
 /// How far a pose takes what may stand on the floor below it, m.

@@ -192,7 +192,7 @@ void measure_point(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
     c.point += along * axis;
   }
   c.normal = rotation * d.normal;
-  c.gap = d.distance - c.radius + c.offset;
+  c.gap = d.distance - c.radius + c.slack + c.offset;
   bend(rotation, d, c);
 }
 
@@ -205,7 +205,7 @@ void measure_corner(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& 
       c.shape, c.size, rotation.transpose() * (corner - at(&a, c.body_a, c.shape_pose.translation)));
   c.normal = -(rotation * d.normal);
   c.point = corner + d.distance * c.normal;
-  c.gap = d.distance - c.radius + c.offset;
+  c.gap = d.distance - c.radius + c.slack + c.offset;
   bend(rotation, d, c);
 }
 
@@ -220,7 +220,7 @@ void measure_edges(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
   if (size > std::numeric_limits<T>::epsilon() * axis_a.norm() * axis_b.norm()) c.normal = across / size;
   // Where a solve turns them parallel the nearest point goes to infinity.
   c.point += std::clamp(nearest_along(axis_a, axis_b, apart)[0], T(-2), T(2)) * axis_a;
-  c.gap = -c.normal.dot(apart) - c.radius + c.offset;
+  c.gap = -c.normal.dot(apart) - c.radius + c.slack + c.offset;
   c.bends = false;
 }
 
@@ -247,13 +247,13 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.point = at(&a, c.body_a, c.local_a);
   if (c.plane) {
     c.normal = Vec3<T>::UnitZ();
-    c.gap = c.point.z() - c.plane_height - c.radius + c.offset;
+    c.gap = c.point.z() - c.plane_height - c.radius + c.slack + c.offset;
     c.bends = false;
   } else if (c.host) {
     const SignedDistance<double> d =
         c.host->distance(*c.host_origin + (c.point - c.shape_pose.translation).template cast<double>());
     c.normal = d.normal.template cast<T>();
-    c.gap = T(d.distance) - c.radius + c.offset;
+    c.gap = T(d.distance) - c.radius + c.slack + c.offset;
     c.bends = false;
   } else if (c.meeting == Meeting::kPoint) {
     measure_point(a, b, c);
@@ -276,7 +276,7 @@ void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.before.setZero();
   measure(a, b, c);
   if (c.meeting == Meeting::kSolids) c.before = c.normal;
-  const Vec3<T> touch = c.point - (c.radius + (c.gap - c.offset) / 2) * c.normal;
+  const Vec3<T> touch = c.point - (c.radius + c.distance() / 2) * c.normal;
   c.material_a = a.rotation[c.body_a].transpose() * (touch - a.origin[c.body_a]);
   c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;
   const Vec3<T> tangent = c.normal.unitOrthogonal();

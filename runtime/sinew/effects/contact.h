@@ -113,7 +113,7 @@ struct Contact {
   Vec3<T> local_b = Vec3<T>::Zero(), half_axis_b = Vec3<T>::Zero();  ///< kCorner, kEdges: of b
   const Collider* solid_a = nullptr;                                 ///< kSolids
   Vec3<T> before = Vec3<T>::Zero();                                  ///< kSolids: see solid_gap()
-  T slack = T(0);  ///< kSolids: m, of depth that they leave to others
+  T slack = T(0);  ///< m, that they may lie in each other: what solids leave to others, and clips press
   T side = T(1);   ///< kEdges: see EdgePair
   T radius = T(0);
   Shape shape = Shape::kSphere;
@@ -160,6 +160,8 @@ struct Contact {
     stretch = T(1) + damping_time / h;
     lag = damping_time / h * std::max(-start_gap, T(0));
   }
+  /// m, between the shapes as they are.
+  T distance() const { return gap - offset - slack; }
   /// gap + τ·gap', m: what the normal force is a function of. Above the gap where the contact opens.
   T damped_gap() const { return stretch * gap + lag; }
   /// m, see ContactLaw.
