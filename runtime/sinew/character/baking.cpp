@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sinew/optimizer/bossak.h"
+#include "sinew/optimizer/joint_terms.h"
 #include "sinew/optimizer/joint_terms_pass.h"
 #include "sinew/optimizer/problem_pass.h"
 
@@ -192,13 +193,8 @@ void move_by_itself(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
 /// room for its own.
 template <class T>
 bool bears_at_limit(const StepSettings<T>& settings, TreeProblem<T>& p, int i) {
-  const auto joint = joint_step<T>(settings, p, i);
-  const JointTerms<T>& terms = settings.plan->joints;
   const std::ptrdiff_t others = std::ssize(p.rows);
-  JointOffset<T> offset;
-  if (terms.limits && terms.limits->look(joint, offset, p))
-    for (int k = 0; k < joint.dofs(); ++k) terms.limits->append(joint, offset, k, p);
-  if (terms.cones && p.law.swing_limit[i] >= 0) terms.cones->append(joint, p);
+  append_limit_rows(settings, p, i);
   const auto own = p.rows.begin() + others;
   const bool bears =
       std::any_of(own, p.rows.end(), [](const JointRow<T>& row) { return row.slope(row.value) > T(0); });

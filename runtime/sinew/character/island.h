@@ -93,6 +93,11 @@ class IslandStepper {
   bool may_land() const;
   bool strikes(const Contact<T>& contact, T h) const;
   bool passes_by(const Contact<T>& contact) const;
+  bool strikes_limit(CharacterState<T>& state, T h);
+  T closing(const CharacterState<T>& state, int joint, const JointRow<T>& row) const;
+  template <class Act>
+  void for_each_limit(CharacterState<T>& state, T h, const Act& act);
+  void add_limits(CharacterState<T>& state, int tree, T h);
   void append_loose(const CharacterState<T>& state);
   void add_to_rate(CharacterState<T>& state, int joint, const std::array<T, 6>& spin);
   void measure_led_at_start(const CharacterState<T>& state, int tree);
@@ -165,7 +170,7 @@ class IslandStepper {
   std::vector<Vec3<T>> missed_, unturned_;        ///< [body, the same] see begin_error
   std::vector<std::uint8_t> turned_far_;          ///< [tree] measure_constant_at_start has found something
   std::vector<std::array<T, 6>> jumps_;           ///< [body] of one tree, of its joint rates
-  std::vector<std::array<T, 6>> late_jumps_;      ///< the same, by the share of the step before they came
+  std::vector<std::array<T, 6>> late_jumps_;      ///< [body, trees one after the other] see take_landing
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   bool landed_ = false;                                     ///< land() has changed velocities
   std::vector<Landing> kept_;                               ///< [body, the same] before it did

@@ -1,11 +1,23 @@
 // Impacts in IslandStepper: what strikes within a step does so where it is, before the solve.
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "sinew/character/island.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
+#include "sinew/optimizer/joint_terms.h"
 
 namespace sinew {
+
+namespace {
+
+constexpr double kLimitSpeed =
+    2;  ///< rad/s of a human; joints that reach their limits more slowly rest there
+constexpr double kReached = 1e-6;    ///< rad, m of a human
+constexpr double kNearLimit = 1.5;  ///< rad; what is further off reaches no limit in a step
+
+}  // namespace
 
 /// Whether all can be struck as they are: their accelerations are known.
 template <class T>
@@ -30,6 +42,67 @@ bool IslandStepper<T>::passes_by(const Contact<T>& c) const {
                       [&](const auto& effect) { return effect->meets_on_the_way(trees_, c); });
 }
 
+/// How fast a joint's limit closes: of what muscles move, by how it moves against its animation. A clip that
+/// carries a joint to its stop does not strike there. `row`: at the start.
+template <class T>
+T IslandStepper<T>::closing(const CharacterState<T>& s, int i, const JointRow<T>& row) const {
+  const Kinematics<T>& k = s.problem.kinematics;
+  const int first = s.tree.first_dof[i];
+  std::array<T, 6> rate{};
+  if (s.limp()) {
+    const auto spin_of = [&](int body) {
+      const Mat3<T> spin = s.history.rotation_rate[body] * k.rotation[body].transpose();
+      return Vec3<T>(Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2);
+    };
+    const Vec3<T> spin = spin_of(i) - spin_of(s.tree.parent[i]);
+    for (int n = 0; n < s.tree.dof_count(i); ++n) rate[n] = k.w[first + n].dot(spin);
+  } else if (!s.deviation[i].on_animation) {
+    rate = spin_of_rate<T>(s.tree.type[i], s.deviation[i].offset, s.deviation[i].rate);
+  }
+  T sum = T(0);
+  for (int a = 0; a < row.count; ++a) sum += row.gradient[a] * rate[row.dof - first + a];
+  return sum;
+}
+
+/// Calls act(row, closes) for every limit of a tree's joints where it begins; closes: it may strike in h.
+template <class T>
+template <class Act>
+void IslandStepper<T>::for_each_limit(CharacterState<T>& s, T h, const Act& act) {
+  TreeProblem<T>& p = s.problem;
+  if (s.is_prop || (!p.law.present.ranges && !p.law.present.cones)) return;
+  const T slow = T(kLimitSpeed) / s.tree.scale.time;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    if (s.tree.parent[i] < 0 || s.tree.dof_count(i) == 0) continue;
+    p.clear_rows();
+    const Transform<T> guess = std::exchange(p.local[i], p.start[i]);
+    append_limit_rows(settings_, p, i);
+    p.local[i] = guess;
+    for (const JointRow<T>& row : p.rows) {
+      const T speed = closing(s, i, row);
+      act(row, speed > slow && row.value < h * speed && row.value + h * speed > T(0));
+    }
+  }
+  p.clear_rows();
+}
+
+/// Whether a joint strikes a limit within h, at the speed that its bodies have.
+template <class T>
+bool IslandStepper<T>::strikes_limit(CharacterState<T>& s, T h) {
+  if (!s.limp() && s.calm) return false;
+  bool any = false;
+  for_each_limit(s, h, [&](const JointRow<T>&, bool closes) { any = any || closes; });
+  return any;
+}
+
+/// The limits of all joints of a tree that give way.
+template <class T>
+void IslandStepper<T>::add_limits(CharacterState<T>& s, int tree, T h) {
+  for_each_limit(s, h, [&](const JointRow<T>& row, bool closes) {
+    if (!ends_.loose(tree, row.dof) || (!closes && !s.limp() && row.value < T(-kReached))) return;
+    if (row.value > T(-kNearLimit)) ends_.add_limit(tree, row, !closes, T(kLimitSpeed));
+  });
+}
+
 /// Impacts change velocities where they happen, as impulses do (strike()): at the end of the step a stretched
 /// limb has folded, and what strikes with it weighs a fraction. They are found along the way to the first
 /// guess, one after the other; until then each body goes on as it did. The solve finds what is left, and what
@@ -40,7 +113,9 @@ void IslandStepper<T>::land(T h) {
   T fastest = T(0);
   for (const Contact<T>& c : contacts_)
     if (strikes(c, h)) fastest = std::max(fastest, c.approach);
-  if (!(fastest > T(0)) || !may_land()) return;
+  const bool any_limit =
+      std::any_of(states_.begin(), states_.end(), [&](CharacterState<T>* s) { return strikes_limit(*s, h); });
+  if ((!(fastest > T(0)) && !any_limit) || !may_land()) return;
   loose_.clear();
   for (const CharacterState<T>* s : states_) append_loose(*s);
   ends_.begin(problems_, loose_);
@@ -52,6 +127,7 @@ void IslandStepper<T>::land(T h) {
     led_rates_.assign(s.tree.bodies, {});
     if (!s.limp()) measure_led_at_start(s, static_cast<int>(n));
     ends_.project(static_cast<int>(n), led_rates_, s.rate, {}, s.history);
+    add_limits(s, static_cast<int>(n), h);
   }
   for (const Contact<T>& c : contacts_) {
     const bool slides_on = c.fresh && c.approach == T(0);  // see ContactFinder::stiffen_for_impact
@@ -103,6 +179,7 @@ void IslandStepper<T>::take_landing(T h) {
   for (auto* v : {&struck_velocity_, &struck_momentum_})
     if (v->empty()) v->assign(start_sped_.size(), Vec3<T>::Zero());
   kept_.clear();
+  late_jumps_.assign(start_sped_.size(), {});
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
     History<T>& history = s.history;
@@ -119,14 +196,15 @@ void IslandStepper<T>::take_landing(T h) {
       struck_velocity_[first + i] += moved_[i];
       struck_momentum_[first + i] += r * (s.tree.inertia[i] * (r.transpose() * turned_[i]));
     }
-    late_jumps_.resize(s.tree.bodies);
-    ends_.answered(static_cast<int>(n), late_jumps_);  // of what missed() has found
+    const auto late = std::span(late_jumps_).subspan(first, s.tree.bodies);
+    ends_.answered(static_cast<int>(n), late);  // of what missed() has found
     if (!s.limp()) lead_back(s, static_cast<int>(n), h);
     first_guess(s, h);
     for (int i = 0; i < s.tree.bodies; ++i) {
       if (s.tree.dof_count(i) == 0 || !s.problem.free[s.tree.first_dof[i]]) continue;
-      for (T& late : late_jumps_[i]) late *= -h;
-      s.problem.local[i] = at_offset<T>(s.tree, i, s.problem.local[i], late_jumps_[i]);
+      std::array<T, 6> less;
+      for (std::size_t k = 0; k < less.size(); ++k) less[k] = -h * late[i][k];
+      s.problem.local[i] = at_offset<T>(s.tree, i, s.problem.local[i], less);
     }
   }
 }
@@ -140,7 +218,8 @@ void IslandStepper<T>::lead_back(CharacterState<T>& s, int tree, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     add_to_rate(s, i, jumps_[i]);
     Deviation<T>& d = s.deviation[i];
-    const std::array<T, 6> late = rate_of_spin<T>(s.tree.type[i], d.offset, late_jumps_[i]);
+    const std::array<T, 6> late =
+        rate_of_spin<T>(s.tree.type[i], d.offset, late_jumps_[first_body_[tree] + i]);
     for (int k = 0; k < s.tree.dof_count(i); ++k) d.offset[k] -= h * late[k];
   }
   s.settle_deviations();
@@ -167,14 +246,17 @@ void IslandStepper<T>::take_back_landing() {
   for (CharacterState<T>* s : states_) s->settle_deviations();
 }
 
-#define SINEW_LANDING_INSTANCES(T)                                                     \
-  template bool IslandStepper<T>::may_land() const;                                    \
-  template void IslandStepper<T>::land(T);                                             \
-  template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                 \
-  template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                  \
-  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int); \
-  template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);               \
-  template void IslandStepper<T>::take_landing(T);                                     \
+#define SINEW_LANDING_INSTANCES(T)                                                               \
+  template bool IslandStepper<T>::may_land() const;                                              \
+  template void IslandStepper<T>::land(T);                                                       \
+  template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                           \
+  template T IslandStepper<T>::closing(const CharacterState<T>&, int, const JointRow<T>&) const; \
+  template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                          \
+  template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                        \
+  template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                            \
+  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int);           \
+  template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);                         \
+  template void IslandStepper<T>::take_landing(T);                                               \
   template void IslandStepper<T>::take_back_landing();
 SINEW_LANDING_INSTANCES(float)
 SINEW_LANDING_INSTANCES(double)

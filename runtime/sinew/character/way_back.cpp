@@ -80,10 +80,12 @@ T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
 template <class T>
 std::array<T, 6> within_limits(const CharacterState<T>& s, int i, const std::array<T, 6>& offset) {
   constexpr int kHalvings = 10;
+  constexpr T kRoundings = T(1e-6);  // rad or m: clips that rest at a limit do so within roundings
   const auto beyond = [&](const std::array<T, 6>& at) {
     return beyond_limits(s, i, at_offset<T>(s.tree, i, s.wanted[i], at));
   };
-  const T most = std::max(beyond_limits(s, i, s.wanted[i]), beyond_limits(s, i, s.problem.start[i]));
+  const T most =
+      kRoundings + std::max(beyond_limits(s, i, s.wanted[i]), beyond_limits(s, i, s.problem.start[i]));
   if (!(beyond(offset) > most)) return offset;
   std::array<T, 6> inside = s.deviation[i].offset, outside = offset;
   if (beyond(inside) > most) {

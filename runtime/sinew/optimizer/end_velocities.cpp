@@ -491,6 +491,7 @@ void EndVelocities<T>::add_striking(const Contact<T>& c, T drift) {
   add(c, std::numeric_limits<T>::max(), T(0), Vec3<T>::Zero());
   if (pressed_.size() == at) return;
   pressed_[at].gap = c.start_gap;
+  pressed_[at].size = c.length_scale;
   pressed_[at].drift = drift;
 }
 
@@ -501,13 +502,25 @@ void EndVelocities<T>::add_bearing(const Contact<T>& c) {
   if (pressed_.size() > at) pressed_[at].bears = true;
 }
 
+template <class T>
+void EndVelocities<T>::add_limit(int tree, const JointRow<T>& joint, bool bears, T slow) {
+  const std::size_t at = pressed_.size();
+  add(tree, joint, std::numeric_limits<T>::max());
+  if (pressed_.size() == at) return;
+  pressed_[at].gap = std::max(-joint.value, T(0));
+  const Tree<T>& of = *problems_[tree]->tree;
+  pressed_[at].size = slides(of, joint.dof) ? of.scale.length : T(1);
+  pressed_[at].bears = bears && joint.value > T(-kTouches) * pressed_[at].size;
+  pressed_[at].slow = slow;
+}
+
 /// s until the next strike, less than `left`; `left`: none.
 template <class T>
 T EndVelocities<T>::wait_for_strike(T left, T slow) {
   for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
     Row& row = pressed_[at];
     const T opens = opening(row), speed = opens + row.drift;
-    if (row.bears || opens > -slow * row.unit) continue;
+    if (row.bears || opens > -std::max(slow, row.slow) * row.unit) continue;
     if (!(row.gap > T(0)))
       left = T(0);
     else if (speed < T(0))
@@ -538,7 +551,7 @@ bool EndVelocities<T>::strike(T h, T slow) {
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       T most = T(0);
       for_each([&](Row& row) {
-        most = row.gap > T(kTouches) * row.unit * row.unit ? most : std::max(most, press_row(row));
+        most = row.gap > T(kTouches) * row.size ? most : std::max(most, press_row(row));
       });
       if (most < T(kLeft)) break;
     }

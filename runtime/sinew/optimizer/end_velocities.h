@@ -46,8 +46,8 @@ class EndVelocities {
   /// matrix. `moved` and `turned` [body] are written. O(bodies).
   void respond(int tree, std::span<const T> force, std::span<Vec3<T>> moved, std::span<Vec3<T>> turned);
 
-  /// Joint rates [body] of the last answer of respond() or missed() for this tree, as joint offsets'; 0 where no unknown
-  /// moves the joint.
+  /// Joint rates [body] of the last answer of respond() or missed() for this tree, as joint offsets'; 0 where
+  /// no unknown moves the joint.
   void answered(int tree, std::span<std::array<T, 6>> rate);
 
   /// Takes out of generalised forces or impulses [dof] what the matrix' floor (composite.h) keeps from moving
@@ -77,6 +77,9 @@ class EndVelocities {
   void add_striking(const Contact<T>& contact, T drift);
   /// One that bears: what strikes elsewhere lets it close no faster than it does.
   void add_bearing(const Contact<T>& contact);
+  /// A limit of a tree's joint, which at more than `slow` (rad/s, m/s of a human) may strike; or, where it
+  /// has been reached and does not close (`bears`), bears.
+  void add_limit(int tree, const JointRow<T>& row, bool bears, T slow);
   /// Lets contacts that close faster than `slow` (m/s) strike one after the other within h: each is stopped,
   /// with what friction its impulse allows, and with it all that lies on by then. False: none does. O(those
   /// that strike · those that lie on · the depth of their bodies).
@@ -112,7 +115,9 @@ class EndVelocities {
     T mobility = T(0);  ///< 1/kg
     T impulse = T(0);   ///< N·s, N·m·s
     T least = T(0), most = T(0);  ///< of it
-    T gap = T(0), drift = T(0);   ///< m, m/s; see add_striking()
+    T gap = T(0), drift = T(0);   ///< m, m/s or rad, rad/s; see add_striking()
+    T size = T(1);                ///< m or rad, by a human's
+    T slow = T(0);                ///< m/s or rad/s of a human: more slowly it does not strike
     T floor = T(0);               ///< m/s or rad/s: that it opens by at least
     bool bears = false;           ///< see add_bearing()
     bool reduced = false;         ///< its entries and mobility are known

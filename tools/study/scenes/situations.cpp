@@ -512,9 +512,6 @@ const char* known_to_fail(const std::string& situation) {
        "roundings changed, another's limb was 88 mm deep instead); and a hand whirls at 26 m/s, which that "
        "of "
        "one alone does in fine steps, too (17 to 49 m/s)"},
-      {"hit_in_a_walk",
-       "10 %: the elbow swings to its stop within a step, in which the shoulder bears what it cannot in fine "
-       "steps"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
   };
   for (const Known& known : kKnown)
