@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "sinew/character/island.h"
 #include "sinew/character/touch_digest.h"
@@ -104,6 +105,11 @@ void IslandStepper<T>::find_accelerations() {
       p.couple[0].setZero();
     }
   }
+  const auto swap_led = [&] {  // at rest what began open stays so
+    for (Coupling<T>* c : couplings_)
+      for (Stencil<T>& e : c->stencils) std::swap(e.offset, e.led_from);
+  };
+  swap_led();
   SolveReport trial;
   trial.converged = true;
   if (!contacts_.empty() || std::any_of(states_.begin(), states_.end(), [](const auto* s) {
@@ -127,6 +133,7 @@ void IslandStepper<T>::find_accelerations() {
     write_pushes(*s, T(1));
   }
   if (trial.converged) begin_loaded(h);
+  swap_led();
 }
 
 /// What rests on something from the start on bears it like that since long: what the trial at rest found.

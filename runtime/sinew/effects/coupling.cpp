@@ -9,6 +9,7 @@
 namespace sinew {
 namespace {
 
+constexpr double kSlack = 1e-3;  ///< m, that a loop which bore nothing may be open: more, and it began so
 constexpr double kTorn = 0.02;  ///< m; a hundred times what the weight pulls a loop apart
 
 template <class T>
@@ -176,8 +177,10 @@ void lead_out(T h, Coupling<T>& c) {
     e.offset_before = e.offset;
     e.carried_before = e.carried;
     const Vec3<T> open = reach(c, e);
-    if ((open - e.offset).norm() > e.length + T(kTorn) * c.length_scale)
+    const T torn = e.carried.last.isZero(T(0)) ? T(kSlack) : T(kTorn);
+    if ((open - e.offset).norm() > e.length + torn * c.length_scale)
       e.offset = open * (T(1) - e.length / open.norm());
+    e.led_from = e.offset;
     const T left = e.offset.norm(), closes = T(kClosingSpeed) * c.speed_scale * h;
     e.offset *= left > closes ? T(1) - closes / left : T(0);
   }

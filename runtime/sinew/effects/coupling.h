@@ -66,6 +66,7 @@ struct Stencil {
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
+  Vec3<T> led_from = Vec3<T>::Zero();       ///< the offset before this step led it in
   CarriedForce<T> carried, carried_before;  ///< its pull, where a loop is rigid; the same
 };
 
