@@ -112,6 +112,35 @@ TYPED_TEST(Snapshot, RestoredIntoTheSameWorldRepeatsWhatHappened) {
   }
 }
 
+// As a host that predicts what others do, and takes it back when it knows.
+TYPED_TEST(Snapshot, StepsTakenAheadOfEachStepAndTakenBackChangeNothing) {
+  using T = TypeParam;
+  const auto add_boxes = [](World<T>& world) {
+    for (int n = 0; n < 3; ++n) {
+      PropSettings box;
+      box.shape = Shape::kBox;
+      box.size = {0.15, 0.1, 0.2};
+      box.pose.translation = {0.6 + 0.1 * n, 0.05 * n, 1 + 0.7 * n};
+      box.pose.rotation = Eigen::AngleAxisd(0.5 + n, Vec3<double>(0.3, 0.8, -0.5).normalized());
+      Status status;
+      EXPECT_GE(world.add_prop(box, status), 0) << status.reason;
+    }
+  };
+  Story<T> plain(0), predicted(0);
+  for (Story<T>* story : {&plain, &predicted}) {
+    story->hero().set_root_drive(RootDrive::kFree);
+    add_boxes(story->world);
+  }
+  std::vector<std::byte> before(predicted.world.snapshot_capacity());
+  for (int n = 0; n < 90; ++n) {
+    const std::size_t size = predicted.world.save(before);
+    for (int ahead = 0; ahead < 2; ++ahead) ASSERT_TRUE(predicted.world.step(T(1) / 60).ok());
+    ASSERT_TRUE(predicted.world.restore({before.data(), size}).ok());
+    for (Story<T>* story : {&plain, &predicted}) ASSERT_TRUE(story->world.step(T(1) / 60).ok());
+    ASSERT_EQ(saved(plain.world), saved(predicted.world)) << n;
+  }
+}
+
 TEST(SnapshotBytes, CapacityIsEnoughAndTooSmallARoomIsRefused) {
   Story<float> story;
   std::size_t most = 0;

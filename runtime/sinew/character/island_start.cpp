@@ -103,6 +103,8 @@ void IslandStepper<T>::find_accelerations() {
     if (s->tree.bodies == 1 && contacts_.empty() && p.effects.empty()) {  // nothing to find out
       p.kinematics.center[0] = p.prediction.center[0] + span * settings_.gravity;
       p.couple[0].setZero();
+      p.clear_rows();
+      std::fill(p.gradient.begin(), p.gradient.end(), T(0));
     }
   }
   const auto swap_led = [&] {  // at rest what began open stays so
