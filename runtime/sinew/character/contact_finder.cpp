@@ -158,6 +158,28 @@ void ContactFinder<T>::find_followers(CharacterState<T>& s) {
   if (any) forward_kinematics<T>(s.tree, s.wanted, s.problem.common_origin, s.guessed);
 }
 
+/// Whether a kinematic root takes its body into something further than clips press, at the end of the part.
+/// Nothing keeps it out, and limbs that were would be torn off: all pass, until none is in it any more.
+template <class T>
+bool ContactFinder<T>::led_into(int n, const PlacedCollider<T>& other) const {
+  const CharacterState<T>& s = *states_[n];
+  if (!s.root_is_kinematic() || s.tree.dofs == s.tree.dof_count(0)) return false;  // a platform presses
+  const T pressed = T(kPressedByClips) * s.tree.scale.length;
+  const auto is_in = [&](std::size_t c, const Kinematics<T>& k, T depth) {
+    const Collider& own = s.colliders[c];
+    const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
+    const PlacedCollider<T> placed{&own, body * own.local.template cast<T>(), s.bound_radius[c]};
+    const T far = placed.radius + other.radius;
+    return (placed.pose.translation - other.pose.translation).squaredNorm() < far * far &&
+           distance_between(placed, other).distance < -depth;
+  };
+  for (std::size_t c = 0; c < s.colliders.size(); ++c)
+    if ((s.colliders[c].joint == 0 && is_in(c, s.guessed, pressed)) ||
+        is_in(c, s.problem.kinematics, 2 * pressed))
+      return true;
+  return false;
+}
+
 /// What clips press may lie in each other; and what no unknown moves a little deeper: muscles lead that, with
 /// all their strength against a millimetre of the floor.
 template <class T>
@@ -442,6 +464,12 @@ void ContactFinder<T>::find_near(int n, const Surroundings& surroundings) {
 template <class T>
 void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
   find_near(n, surroundings);
+  std::erase_if(near_, [&](int o) {
+    const Collider& obstacle = surroundings.obstacles[o];
+    const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
+                            (obstacle.local.translation - common_origin_).template cast<T>()};
+    return led_into(n, {&obstacle, pose, T(bounding_radius(obstacle))});
+  });
   const CharacterState<T>& s = *states_[n];
   const T ground = T(world_->ground_height - common_origin_.z());
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
@@ -516,6 +544,17 @@ template <class T>
 void ContactFinder<T>::meet_tree(int n, int m) {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const int count = static_cast<int>(t.colliders.size());
+  const bool both =
+      n != m && s.root_is_kinematic() && t.root_is_kinematic() && t.tree.dofs > t.tree.dof_count(0);
+  for (int o = 0; o < count && both; ++o) {
+    const auto at = [&](const Kinematics<T>& k) {
+      const Collider& c = t.colliders[o];
+      const Transform<T> body{Quat<T>(k.rotation[c.joint]), k.origin[c.joint]};
+      return PlacedCollider<T>{&c, body * c.local.template cast<T>(), t.bound_radius[o]};
+    };
+    if ((t.colliders[o].joint == 0 && led_into(n, at(t.guessed))) || led_into(n, at(t.problem.kinematics)))
+      return;
+  }
   for (int c = 0; c < static_cast<int>(s.colliders.size()); ++c)
     for (int o = 0; o < count; ++o)
       if (n != m || s.may_touch[c * count + o]) meet_collider(n, c, m, o);

@@ -148,6 +148,7 @@ class ContactFinder final : public ContactSearch<T> {
 
   void bound(const CharacterState<T>& state, T h);
   void find_followers(CharacterState<T>& state);
+  bool led_into(int n, const PlacedCollider<T>& other) const;
   void allow_pressed(Contact<T>& contact) const;
   void find_near(int n, const Surroundings& surroundings);
   void meet_static(int n, const Surroundings& surroundings);
