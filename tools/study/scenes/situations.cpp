@@ -460,6 +460,91 @@ void bouncing_ball(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// What is left of each ball's speed along its flight, behind whom it is thrown at.
+void balls_at_heads(const Scene& scene, bool, Findings& found) {
+  constexpr double kAnyDepth = 1e9;  // m: balls that wait are far below
+  at_rates(scene, kRates, 1, kAnyDepth, found, [&](const Played&, const Judge& judge) {
+    const int people = static_cast<int>(scene.characters.size());
+    double left = -1;
+    for (int m = people; m < judge.members(); ++m) {
+      const Eigen::Vector3d thrown = judge.velocity(judge.frame_at(0.15), m);
+      left = std::max(left, judge.velocity(judge.frame_at(0.4), m).dot(thrown) / thrown.squaredNorm());
+    }
+    found.at_most("of a ball's speed is left", left, 0.7);
+  });
+}
+
+/// The same scene where nothing but a floor at `height` is beside it.
+Scene on_the_floor(Scene scene) {
+  scene.obstacles.clear();
+  for (scene::SceneCharacter& c : scene.characters) c.position.z() = 0;
+  return scene;
+}
+
+void run_on_a_platform(const Scene& scene, bool, Findings& found) {
+  for (const double hz : {30.0, 60.0, 120.0}) {
+    Scene at = scene;
+    at.frame_rate = hz;
+    const Played runs(at), on_floor(on_the_floor(at));
+    if (!runs.refused.empty()) return found.refuse(runs.refused);
+    const Eigen::Vector3d up(0, 0, scene.characters[0].position.z());
+    double most = 0;
+    for (std::size_t f = 0; f < runs.recording.frames.size(); ++f) {
+      const auto &now = runs.recording.frames[f].characters[0].model,
+                 &wanted = on_floor.recording.frames[f].characters[0].model;
+      for (std::size_t i = 0; i < now.size(); ++i)
+        most = std::max(most,
+                        ((now[i].translation - wanted[i].translation).template cast<double>() - up).norm());
+    }
+    found.at_most("off what it runs on the floor (m)", most, 1e-4);
+  }
+}
+
+/// m, that whoever was pushed is off where it would be otherwise, `later` (s) than the push or after it.
+double off_its_clip(const Scene& scene, double hz, double later, Findings& found) {
+  Scene at = scene;
+  at.frame_rate = hz;
+  const Played struck(at);
+  if (!struck.refused.empty()) found.refuse(struck.refused);
+  at.pushes.clear();
+  const Played unhurt(at);
+  double most = 0;
+  for (double t = scene.pushes[0].time + later; t < scene.duration; t += 1 / hz)
+    most = std::max(most, off(struck, 0, t, &unhurt));
+  return most;
+}
+
+void tap_in_a_run(const Scene& scene, bool, Findings& found) {
+  for (const double hz : {24.0, 25.0, 30.0, 60.0, 120.0})
+    found.at_most("off its clip 1.5 s later (m)", off_its_clip(scene, hz, 1.5, found), 1e-3);
+}
+
+void back_over_the_floor(const Scene& scene, bool, Findings& found) {
+  Scene stands = scene;
+  stands.pushes.clear();
+  stands.characters[0].strength = {{0, 1}};
+  stands.characters[0].root = {{0, RootDrive::kKinematic}};
+  at_rates(scene, kRates, 1, 0.02, found, [&](const Played& played, const Judge& judge) {
+    stands.frame_rate = 1 / judge.step();
+    const Played unhurt(stands);
+    found.at_most("off its clip 2 s later (m)", off(played, 0, 4.5, &unhurt), 1e-3);
+  });
+}
+
+void elbow_to_its_stop(const Scene& scene, bool, Findings& found) {
+  const double truth = off_its_clip(scene, 960, 0, found);
+  for (const double hz : kRates)
+    found.at_most("furthest off its walk, from that at 1/960 s",
+                  std::abs(off_its_clip(scene, hz, 0, found) / truth - 1), 0.2);
+}
+
+void moves_at_walking_pace(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, {30.0, 60.0, 120.0, 240.0}, 1, 2, found, [&](const Played&, const Judge& judge) {
+    // A foot swings at 4.7 m/s.
+    found.at_most("fastest body (m/s)", fastest_of(judge, 1, judge.frames() - 1), 8);
+  });
+}
+
 }  // namespace
 
 std::vector<Situation> situations() {
@@ -495,6 +580,13 @@ std::vector<Situation> situations() {
       {"thin_wall", "nothing flies through a thin wall", thin_wall},
       {"round_obstacles", "boxes and figures lie on balls and rails", round_obstacles},
       {"past_a_platform", "what slides past a platform stops as it does alone", past_a_platform},
+      {"balls_at_heads", "no ball flies through a head", balls_at_heads},
+      {"run_on_a_platform", "on a platform it runs as on the floor", run_on_a_platform},
+      {"tap_in_a_run", "who was tapped runs on as its clip does", tap_in_a_run},
+      {"back_over_the_floor", "no limb goes through the floor on its way back", back_over_the_floor},
+      {"elbow_to_its_stop", "a hit into a joint's stop has the effect of fine steps", elbow_to_its_stop},
+      {"handcuffs", "a rope that begins too short closes at a walking pace", moves_at_walking_pace},
+      {"led_through_each_other", "who is led into something is led on", moves_at_walking_pace},
   };
 }
 
@@ -503,9 +595,6 @@ const char* known_to_fail(const std::string& situation) {
     const char *name, *why;
   };
   static constexpr Known kKnown[] = {
-      {"corner",
-       "a hand is whipped to 8.0 to 8.9 m/s in the second after the impact, in steps of 1/60 s; 8 wanted, and "
-       "in steps of 1/480 s up to 8.7"},
       {"pit", "a hand reaches 15.6 m/s, 15 wanted; in steps of 1/240 s 37, of 1/960 s 55"},
       {"crowd_pushed",
        "one of twenty is caught by another's legs and does not come back to its place, 0.77 m off (until "
