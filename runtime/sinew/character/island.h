@@ -94,9 +94,9 @@ class IslandStepper {
   bool strikes(const Contact<T>& contact, T h) const;
   bool passes_by(const Contact<T>& contact) const;
   bool strikes_limit(CharacterState<T>& state, T h);
-  T closing(const CharacterState<T>& state, int joint, const JointRow<T>& row) const;
+  std::array<T, 6> rate_at_start(const CharacterState<T>& state, int joint) const;
   template <class Act>
-  void for_each_limit(CharacterState<T>& state, T h, const Act& act);
+  void for_each_limit(CharacterState<T>& state, T h, bool all, const Act& act);
   void add_limits(CharacterState<T>& state, int tree, T h);
   void append_loose(const CharacterState<T>& state);
   void add_to_rate(CharacterState<T>& state, int joint, const std::array<T, 6>& spin);

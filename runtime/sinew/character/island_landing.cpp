@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLimitSpeed =
     2;  ///< rad/s of a human; joints that reach their limits more slowly rest there
-constexpr double kReached = 1e-6;    ///< rad, m of a human
+constexpr double kReached = 1e-6;   ///< rad, m of a human
 constexpr double kNearLimit = 1.5;  ///< rad; what is further off reaches no limit in a step
 
 }  // namespace
@@ -42,43 +42,44 @@ bool IslandStepper<T>::passes_by(const Contact<T>& c) const {
                       [&](const auto& effect) { return effect->meets_on_the_way(trees_, c); });
 }
 
-/// How fast a joint's limit closes: of what muscles move, by how it moves against its animation. A clip that
-/// carries a joint to its stop does not strike there. `row`: at the start.
+/// How fast a joint [its degrees of freedom] moves towards its limits where the part begins: what muscles
+/// move, against its animation. A clip that carries a joint to its stop does not strike there.
 template <class T>
-T IslandStepper<T>::closing(const CharacterState<T>& s, int i, const JointRow<T>& row) const {
-  const Kinematics<T>& k = s.problem.kinematics;
-  const int first = s.tree.first_dof[i];
+std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>& s, int i) const {
   std::array<T, 6> rate{};
-  if (s.limp()) {
-    const auto spin_of = [&](int body) {
-      const Mat3<T> spin = s.history.rotation_rate[body] * k.rotation[body].transpose();
-      return Vec3<T>(Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2);
-    };
-    const Vec3<T> spin = spin_of(i) - spin_of(s.tree.parent[i]);
-    for (int n = 0; n < s.tree.dof_count(i); ++n) rate[n] = k.w[first + n].dot(spin);
-  } else if (!s.deviation[i].on_animation) {
-    rate = spin_of_rate<T>(s.tree.type[i], s.deviation[i].offset, s.deviation[i].rate);
+  if (!s.limp()) {
+    const Deviation<T>& d = s.deviation[i];
+    return d.on_animation ? rate : spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
   }
-  T sum = T(0);
-  for (int a = 0; a < row.count; ++a) sum += row.gradient[a] * rate[row.dof - first + a];
-  return sum;
+  const Kinematics<T>& k = s.problem.kinematics;
+  const auto spin_of = [&](int body) {
+    const Mat3<T> spin = s.history.rotation_rate[body] * k.rotation[body].transpose();
+    return Vec3<T>(Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2);
+  };
+  const Vec3<T> spin = spin_of(i) - spin_of(s.tree.parent[i]);
+  for (int n = 0; n < s.tree.dof_count(i); ++n) rate[n] = k.w[s.tree.first_dof[i] + n].dot(spin);
+  return rate;
 }
 
-/// Calls act(row, closes) for every limit of a tree's joints where it begins; closes: it may strike in h.
+/// Calls act(row, closes) for every limit of a tree's joints where the part begins; closes: it may strike
+/// within h. `all`: else not for joints that hardly move.
 template <class T>
 template <class Act>
-void IslandStepper<T>::for_each_limit(CharacterState<T>& s, T h, const Act& act) {
+void IslandStepper<T>::for_each_limit(CharacterState<T>& s, T h, bool all, const Act& act) {
   TreeProblem<T>& p = s.problem;
   if (s.is_prop || (!p.law.present.ranges && !p.law.present.cones)) return;
   const T slow = T(kLimitSpeed) / s.tree.scale.time;
   for (int i = 0; i < s.tree.bodies; ++i) {
     if (s.tree.parent[i] < 0 || s.tree.dof_count(i) == 0) continue;
+    const std::array<T, 6> rate = rate_at_start(s, i);
+    if (!all && std::all_of(rate.begin(), rate.end(), [&](T r) { return 2 * std::abs(r) < slow; })) continue;
     p.clear_rows();
     const Transform<T> guess = std::exchange(p.local[i], p.start[i]);
     append_limit_rows(settings_, p, i);
     p.local[i] = guess;
     for (const JointRow<T>& row : p.rows) {
-      const T speed = closing(s, i, row);
+      T speed = T(0);
+      for (int a = 0; a < row.count; ++a) speed += row.gradient[a] * rate[row.dof - s.tree.first_dof[i] + a];
       act(row, speed > slow && row.value < h * speed && row.value + h * speed > T(0));
     }
   }
@@ -90,14 +91,14 @@ template <class T>
 bool IslandStepper<T>::strikes_limit(CharacterState<T>& s, T h) {
   if (!s.limp() && s.calm) return false;
   bool any = false;
-  for_each_limit(s, h, [&](const JointRow<T>&, bool closes) { any = any || closes; });
+  for_each_limit(s, h, false, [&](const JointRow<T>&, bool closes) { any = any || closes; });
   return any;
 }
 
 /// The limits of all joints of a tree that give way.
 template <class T>
 void IslandStepper<T>::add_limits(CharacterState<T>& s, int tree, T h) {
-  for_each_limit(s, h, [&](const JointRow<T>& row, bool closes) {
+  for_each_limit(s, h, true, [&](const JointRow<T>& row, bool closes) {
     if (!ends_.loose(tree, row.dof) || (!closes && !s.limp() && row.value < T(-kReached))) return;
     if (row.value > T(-kNearLimit)) ends_.add_limit(tree, row, !closes, T(kLimitSpeed));
   });
@@ -246,17 +247,17 @@ void IslandStepper<T>::take_back_landing() {
   for (CharacterState<T>* s : states_) s->settle_deviations();
 }
 
-#define SINEW_LANDING_INSTANCES(T)                                                               \
-  template bool IslandStepper<T>::may_land() const;                                              \
-  template void IslandStepper<T>::land(T);                                                       \
-  template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                           \
-  template T IslandStepper<T>::closing(const CharacterState<T>&, int, const JointRow<T>&) const; \
-  template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                          \
-  template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                        \
-  template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                            \
-  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int);           \
-  template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);                         \
-  template void IslandStepper<T>::take_landing(T);                                               \
+#define SINEW_LANDING_INSTANCES(T)                                                                \
+  template bool IslandStepper<T>::may_land() const;                                               \
+  template void IslandStepper<T>::land(T);                                                        \
+  template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                            \
+  template std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>&, int) const; \
+  template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                           \
+  template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                         \
+  template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                             \
+  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int);            \
+  template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);                          \
+  template void IslandStepper<T>::take_landing(T);                                                \
   template void IslandStepper<T>::take_back_landing();
 SINEW_LANDING_INSTANCES(float)
 SINEW_LANDING_INSTANCES(double)
