@@ -134,11 +134,11 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
                                                      corner & 4 ? T(1) : T(-1))));
 }
 
-#define SINEW_EDGE_INSTANCES(T)                                                          \
-  template PlacedShape<T> ContactFinder<T>::placed(int, int) const;                      \
-  template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const;                 \
-  template void ContactFinder<T>::meet_edges(int, int, const Met&, T);                   \
-  template void ContactFinder<T>::meet_solids(int, int, const Met&, T);                  \
+#define SINEW_EDGE_INSTANCES(T)                                          \
+  template PlacedShape<T> ContactFinder<T>::placed(int, int) const;      \
+  template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const; \
+  template void ContactFinder<T>::meet_edges(int, int, const Met&, T);   \
+  template void ContactFinder<T>::meet_solids(int, int, const Met&, T);  \
   template void ContactFinder<T>::meet_corners(int, int, const Met&, T);
 SINEW_EDGE_INSTANCES(float)
 SINEW_EDGE_INSTANCES(double)

@@ -9,7 +9,6 @@
 #include "sinew/optimizer/joint_terms.h"
 
 namespace sinew {
-
 namespace {
 
 constexpr double kLimitSpeed =
@@ -52,11 +51,7 @@ std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>& s, int
     return d.on_animation ? rate : spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
   }
   const Kinematics<T>& k = s.problem.kinematics;
-  const auto spin_of = [&](int body) {
-    const Mat3<T> spin = s.history.rotation_rate[body] * k.rotation[body].transpose();
-    return Vec3<T>(Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2);
-  };
-  const Vec3<T> spin = spin_of(i) - spin_of(s.tree.parent[i]);
+  const Vec3<T> spin = angular_velocity(s.history, i) - angular_velocity(s.history, s.tree.parent[i]);
   for (int n = 0; n < s.tree.dof_count(i); ++n) rate[n] = k.w[s.tree.first_dof[i] + n].dot(spin);
   return rate;
 }
@@ -155,9 +150,8 @@ template <class T>
 void IslandStepper<T>::measure_led_at_start(const CharacterState<T>& s, int tree) {
   const Kinematics<T>& k = s.problem.kinematics;
   const auto twist = [&](int i) {
-    const Mat3<T> spin = s.history.rotation_rate[i] * k.rotation[i].transpose();
     Twist<T> of;
-    of.w = Vec3<T>(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1)) / 2;
+    of.w = angular_velocity(s.history, i);
     of.v = s.history.velocity[i] - of.w.cross(k.center[i]);
     return of;
   };

@@ -10,7 +10,7 @@ namespace sinew {
 namespace {
 
 constexpr double kSlack = 1e-3;  ///< m, that a loop which bore nothing may be open: more, and it began so
-constexpr double kTorn = 0.02;  ///< m; a hundred times what the weight pulls a loop apart
+constexpr double kTorn = 0.02;   ///< m; a hundred times what the weight pulls a loop apart
 
 template <class T>
 Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {

@@ -92,8 +92,8 @@ class Axes {
 };
 
 /// How far along a capsule's axis c + t·h, t in [−1, 1], it is nearest to a box about the origin: the zero of
-/// half the squared distance's derivative, which is piecewise linear and grows. Where it lies level with a face
-/// in its middle, and not at the end that rounding chooses.
+/// half the squared distance's derivative, which is piecewise linear and grows. Where it lies level with a
+/// face in its middle, and not at the end that rounding chooses.
 template <class T>
 T nearest_to_box(const Vec3<T>& c, const Vec3<T>& h, T radius, const Vec3<T>& size) {
   const T level = T(kLevel) * radius * h.norm();

@@ -550,9 +550,8 @@ bool EndVelocities<T>::strike(T h, T slow) {
     std::copy_n(done_.begin(), unknowns, before_.begin());
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       T most = T(0);
-      for_each([&](Row& row) {
-        most = row.gap > T(kTouches) * row.size ? most : std::max(most, press_row(row));
-      });
+      for_each(
+          [&](Row& row) { most = row.gap > T(kTouches) * row.size ? most : std::max(most, press_row(row)); });
       if (most < T(kLeft)) break;
     }
     for (int u = 0; u < unknowns; ++u) late_[u] += now / h * (done_[u] - before_[u]);
