@@ -180,8 +180,8 @@ bool ContactFinder<T>::led_into(int n, const PlacedCollider<T>& other) const {
   return false;
 }
 
-/// What clips press may lie in each other; and what no unknown moves a little deeper: muscles lead that, with
-/// all their strength against a millimetre of the floor.
+/// What clips press a little may lie in each other; what they press deeper is kept out the more. And what no
+/// unknown moves may go a little further: muscles lead that, with all their strength against a millimetre.
 template <class T>
 void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
   Follows follows = follows_[first_body_[c.tree_a] + c.body_a];
@@ -191,8 +191,9 @@ void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
   measure<T>(states_[c.tree_a]->guessed, c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, wanted);
   const T most = c.plane ? std::numeric_limits<T>::infinity()
                          : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
-  const T led = follows == Follows::kExactly ? T(kLedInto) * c.length_scale : T(0);
-  const T pressed = std::min(std::max(-wanted.gap, T(0)) + led, most);
+  const T clip = std::max(-wanted.gap, T(0)), led = follows == Follows::kExactly ? T(kLedInto) : T(0);
+  const T allowed = clip > most ? std::max(2 * most - clip, T(0)) : clip;
+  const T pressed = std::min(allowed + led * c.length_scale, most);
   c.slack += pressed;
   c.gap += pressed;
   c.start_gap = c.gap;
