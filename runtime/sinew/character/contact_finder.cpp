@@ -19,7 +19,9 @@ constexpr double kBelowFloor = 1;                    ///< m, that such a box goe
 constexpr int kFirstHost = 0x4000;                   ///< of contact identities
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
-constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kMostGripped = 4;    ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kGivesWay = 0.02;    ///< m of a human, see give_way()
+constexpr double kGivingSpeed = 0.1;  ///< m/s, see give_way()
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
@@ -258,6 +260,22 @@ void ContactFinder<T>::depenetrate(Contact<T>& c) const {
   c.depenetration_work = stored_energy(c) - stored;
 }
 
+/// What bears more than half the weight of a figure whose root is led gives way slowly, as far as clips
+/// press: the root has no need of it, and muscles may press a limb against it that can't get back but through
+/// it. True while it does.
+template <class T>
+bool ContactFinder<T>::give_way(Contact<T>& c) const {
+  const CharacterState<T>& s = *states_[c.tree_a];
+  if (c.tree_b >= 0 || !s.root_is_kinematic() || follows_[first_body_[c.tree_a] + c.body_a] == Follows::kNot)
+    return false;
+  const T weight = T(s.total_mass * world_->gravity.norm()), most = T(kGivesWay) * c.length_scale;
+  if (!(2 * c.lagged_normal_force > weight) || c.offset >= most) return false;
+  const T step = std::min(T(kGivingSpeed) * c.speed_scale * h_, most - c.offset);
+  c.offset += step;
+  c.gap += step;
+  return true;
+}
+
 /// How many contacts bring each tree out of something.
 template <class T>
 void ContactFinder<T>::count_depenetrating() {
@@ -284,7 +302,7 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.offset = found->offset;
   c.gap += c.offset;
   const T own = std::exchange(c.stiffness, found->stiffness);
-  depenetrate(c);
+  if (!give_way(c)) depenetrate(c);
   stiffen(c, own);
   // Friction of impulses is theirs (end_velocities.h).
   c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);

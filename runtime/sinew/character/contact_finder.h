@@ -184,6 +184,7 @@ class ContactFinder final : public ContactSearch<T> {
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
+  bool give_way(Contact<T>& contact) const;
   void count_depenetrating();
   bool is_level_with_support(const Contact<T>& contact) const;
   void stiffen_for_impact(Contact<T>& contact) const;
