@@ -19,9 +19,7 @@ constexpr double kBelowFloor = 1;                    ///< m, that such a box goe
 constexpr int kFirstHost = 0x4000;                   ///< of contact identities
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
-constexpr double kMostGripped = 4;    ///< weights that a contact may have to bear, in friction by what is led
-constexpr double kGivesWay = 0.02;    ///< m of a human, see give_way()
-constexpr double kGivingSpeed = 0.1;  ///< m/s, see give_way()
+constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
@@ -143,64 +141,6 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   contacts_.push_back(c);
 }
 
-/// Which bodies of a tree follow a clip: all that moves them is driven. Where these shall be at the end of
-/// the part is in `guessed` then.
-template <class T>
-void ContactFinder<T>::find_followers(CharacterState<T>& s) {
-  first_body_.push_back(static_cast<int>(follows_.size()));
-  const bool any = !s.is_prop && !s.limp() && s.settings.root != RootDrive::kFree;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const int parent = s.tree.parent[i];
-    const bool root = parent < 0 && s.tree.type[i] == JointType::kFree;
-    const bool unknown = s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]];
-    Follows follows = parent < 0 ? Follows::kExactly : follows_[first_body_.back() + parent];
-    if (!any || !(root || s.joint_is_driven(i))) follows = Follows::kNot;
-    follows_.push_back(std::min(follows, unknown ? Follows::kRoughly : Follows::kExactly));
-  }
-  if (any) forward_kinematics<T>(s.tree, s.wanted, s.problem.common_origin, s.guessed);
-}
-
-/// Whether a kinematic root takes its body into something further than clips press, at the end of the part.
-/// Nothing keeps it out, and limbs that were would be torn off: all pass, until none is in it any more.
-template <class T>
-bool ContactFinder<T>::led_into(int n, const PlacedCollider<T>& other) const {
-  const CharacterState<T>& s = *states_[n];
-  if (!s.root_is_kinematic() || s.tree.dofs == s.tree.dof_count(0)) return false;  // a platform presses
-  const T pressed = T(kPressedByClips) * s.tree.scale.length;
-  const auto is_in = [&](std::size_t c, const Kinematics<T>& k, T depth) {
-    const Collider& own = s.colliders[c];
-    const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
-    const PlacedCollider<T> placed{&own, body * own.local.template cast<T>(), s.bound_radius[c]};
-    const T far = placed.radius + other.radius;
-    return (placed.pose.translation - other.pose.translation).squaredNorm() < far * far &&
-           distance_between(placed, other).distance < -depth;
-  };
-  for (std::size_t c = 0; c < s.colliders.size(); ++c)
-    if ((s.colliders[c].joint == 0 && is_in(c, s.guessed, pressed)) ||
-        is_in(c, s.problem.kinematics, 2 * pressed))
-      return true;
-  return false;
-}
-
-/// What clips press a little may lie in each other; what they press deeper is kept out the more. And what no
-/// unknown moves may go a little further: muscles lead that, with all their strength against a millimetre.
-template <class T>
-void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
-  Follows follows = follows_[first_body_[c.tree_a] + c.body_a];
-  if (c.tree_b >= 0) follows = std::min(follows, follows_[first_body_[c.tree_b] + c.body_b]);
-  if (follows == Follows::kNot) return;
-  Contact<T> wanted = c;
-  measure<T>(states_[c.tree_a]->guessed, c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, wanted);
-  const T most = c.plane ? std::numeric_limits<T>::infinity()
-                         : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
-  const T clip = std::max(-wanted.gap, T(0)), led = follows == Follows::kExactly ? T(kLedInto) : T(0);
-  const T allowed = clip > most ? std::max(2 * most - clip, T(0)) : clip;
-  const T pressed = std::min(allowed + led * c.length_scale, most);
-  c.slack += pressed;
-  c.gap += pressed;
-  c.start_gap = c.gap;
-}
-
 /// Drops the further half of the contacts between trees, or, if there are none, of the static ones; further
 /// ones are not taken any more. False where all are as near.
 template <class T>
@@ -258,22 +198,6 @@ void ContactFinder<T>::depenetrate(Contact<T>& c) const {
   c.offset -= back;
   c.gap -= back;
   c.depenetration_work = stored_energy(c) - stored;
-}
-
-/// What bears more than half the weight of a figure whose root is led gives way slowly, as far as clips
-/// press: the root has no need of it, and muscles may press a limb against it that can't get back but through
-/// it. True while it does.
-template <class T>
-bool ContactFinder<T>::give_way(Contact<T>& c) const {
-  const CharacterState<T>& s = *states_[c.tree_a];
-  if (c.tree_b >= 0 || !s.root_is_kinematic() || follows_[first_body_[c.tree_a] + c.body_a] == Follows::kNot)
-    return false;
-  const T weight = T(s.total_mass * world_->gravity.norm()), most = T(kGivesWay) * c.length_scale;
-  if (!(2 * c.lagged_normal_force > weight) || c.offset >= most) return false;
-  const T step = std::min(T(kGivingSpeed) * c.speed_scale * h_, most - c.offset);
-  c.offset += step;
-  c.gap += step;
-  return true;
 }
 
 /// How many contacts bring each tree out of something.
@@ -483,12 +407,7 @@ void ContactFinder<T>::find_near(int n, const Surroundings& surroundings) {
 template <class T>
 void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
   find_near(n, surroundings);
-  std::erase_if(near_, [&](int o) {
-    const Collider& obstacle = surroundings.obstacles[o];
-    const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
-                            (obstacle.local.translation - common_origin_).template cast<T>()};
-    return led_into(n, {&obstacle, pose, T(bounding_radius(obstacle))});
-  });
+  std::erase_if(near_, [&](int o) { return led_through(n, surroundings.obstacles[o]); });
   const CharacterState<T>& s = *states_[n];
   const T ground = T(world_->ground_height - common_origin_.z());
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
@@ -507,8 +426,7 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
     meet_hosts(n, static_cast<int>(collider), surroundings.hosts);
     for (const int o : near_) {
       const Collider& obstacle = surroundings.obstacles[o];
-      const Transform<T> pose{obstacle.local.rotation.template cast<T>(),
-                              (obstacle.local.translation - common_origin_).template cast<T>()};
+      const Transform<T> pose = pose_of(obstacle);
       const Vec3<T> size = obstacle.size.template cast<T>();
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
       if (signed_distance<T>(obstacle.shape, size, apart).distance > b.radius + b.reach) continue;
@@ -563,17 +481,7 @@ template <class T>
 void ContactFinder<T>::meet_tree(int n, int m) {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const int count = static_cast<int>(t.colliders.size());
-  const bool both =
-      n != m && s.root_is_kinematic() && t.root_is_kinematic() && t.tree.dofs > t.tree.dof_count(0);
-  for (int o = 0; o < count && both; ++o) {
-    const auto at = [&](const Kinematics<T>& k) {
-      const Collider& c = t.colliders[o];
-      const Transform<T> body{Quat<T>(k.rotation[c.joint]), k.origin[c.joint]};
-      return PlacedCollider<T>{&c, body * c.local.template cast<T>(), t.bound_radius[o]};
-    };
-    if ((t.colliders[o].joint == 0 && led_into(n, at(t.guessed))) || led_into(n, at(t.problem.kinematics)))
-      return;
-  }
+  if (n != m && led_through(n, m)) return;
   for (int c = 0; c < static_cast<int>(s.colliders.size()); ++c)
     for (int o = 0; o < count; ++o)
       if (n != m || s.may_touch[c * count + o]) meet_collider(n, c, m, o);

@@ -40,7 +40,6 @@ constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
 /// m of a human: what clips press into obstacles and each other, a sole that is a little low, a hand that
 /// leans on something: as deep it may lie there. What they press by more is kept out, twice that wholly.
 constexpr double kPressedByClips = 0.03;
-constexpr double kLedInto = 5e-3;  ///< m of a human: so much deeper what muscles lead back may go
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
@@ -148,8 +147,15 @@ class ContactFinder final : public ContactSearch<T> {
 
   void bound(const CharacterState<T>& state, T h);
   void find_followers(CharacterState<T>& state);
-  bool led_into(int n, const PlacedCollider<T>& other) const;
+  PlacedCollider<T> collider_at(int n, std::size_t collider, const Kinematics<T>& kinematics) const;
+  bool led_through(int n, const Collider& obstacle) const;
+  bool led_through(int n, int m) const;
   void allow_pressed(Contact<T>& contact) const;
+  /// About the common origin.
+  Transform<T> pose_of(const Collider& obstacle) const {
+    return {obstacle.local.rotation.template cast<T>(),
+            (obstacle.local.translation - common_origin_).template cast<T>()};
+  }
   void find_near(int n, const Surroundings& surroundings);
   void meet_static(int n, const Surroundings& surroundings);
   void meet_hosts(int n, int collider, std::span<const HostObstacle> hosts);

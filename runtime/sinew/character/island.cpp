@@ -118,8 +118,9 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
                    rounded_off<kHalfOfDigits<T>, T>);
     s.rate[i] = joint_offset_value<T>(s.tree, i, p.start[i], p.local[i]);
     for (T& r : s.rate[i]) r /= h;
-    for (std::size_t k = 0; k < s.rate[i].size() && landed_; ++k)  // part of the way it went at the old one
-      s.rate[i][k] += late_jumps_[first_body_[tree] + i][k];
+    if (landed_)  // it went a part of the way at the speed before
+      for (std::size_t k = 0; k < s.rate[i].size(); ++k)
+        s.rate[i][k] += late_jumps_[first_body_[tree] + i][k];
     s.local[i] = p.local[i];
     if (falls) continue;
     const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, s.wanted[i], p.local[i]);

@@ -11,8 +11,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kLimitSpeed =
-    2;  ///< rad/s of a human; joints that reach their limits more slowly rest there
+/// rad/s of a human; joints that reach their limits more slowly rest there.
+constexpr double kLimitSpeed = 2;
 constexpr double kReached = 1e-6;   ///< rad, m of a human
 constexpr double kNearLimit = 1.5;  ///< rad; what is further off reaches no limit in a step
 
