@@ -11,6 +11,7 @@ constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges id
 constexpr int kCornerNumber = kAxisNumber + 1, kSolidNumber = kAxisNumber + 2;
 /// m, or of the thinnest half extent: what solids may lie in each other before they bear as wholes.
 constexpr double kSlack = 3.5e-3, kSlackPart = 0.2;
+constexpr double kBeyond = 5e-4;  ///< m of a human: and what they lie deeper than all that was found of them
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
   return 0x8000 | own << 11 | others << 7 | collider;
@@ -74,12 +75,30 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   }
 }
 
-/// Two solids as wholes, for what the step leads to and nobody looked for.
+/// What was found of the pair before bears as deep as it lies; the solids as wholes what is deeper.
+template <class T>
+void ContactFinder<T>::leave_to_others(Contact<T>& solids) const {
+  T depth = T(0);
+  for (const Contact<T>& c : contacts_) {
+    const bool same = c.tree_a == solids.tree_a && c.body_a == solids.body_a && c.tree_b == solids.tree_b &&
+                      c.body_b == solids.body_b && (c.tree_b >= 0 || ((c.id ^ solids.id) & 0xffff) == 0);
+    const bool turned = c.tree_a == solids.tree_b && c.body_a == solids.body_b && c.tree_b == solids.tree_a &&
+                        c.body_b == solids.body_a;
+    if (same || turned) depth = std::max(depth, -c.distance());
+  }
+  const T more = depth + T(kBeyond) * solids.length_scale - solids.slack;
+  if (!(more > T(0))) return;
+  solids.slack += more;
+  solids.gap += more;
+  solids.start_gap = solids.gap;
+}
+
+/// Two solids as wholes, for what the step leads to and nobody looked for; after all others of the pair.
 template <class T>
 void ContactFinder<T>::meet_solids(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
   const Collider& own = s.colliders[collider];
-  if (met.second || collider > kMostWithEdges) return;
+  if ((met.tree >= 0 && !met.second) || collider > kMostWithEdges) return;
   Contact<T> c = contact_with(met, contact_of(n, own), T(own.friction));
   c.meeting = Meeting::kSolids;
   c.solid_a = &own;
@@ -138,6 +157,7 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   template PlacedShape<T> ContactFinder<T>::placed(int, int) const;      \
   template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const; \
   template void ContactFinder<T>::meet_edges(int, int, const Met&, T);   \
+  template void ContactFinder<T>::leave_to_others(Contact<T>&) const;    \
   template void ContactFinder<T>::meet_solids(int, int, const Met&, T);  \
   template void ContactFinder<T>::meet_corners(int, int, const Met&, T);
 SINEW_EDGE_INSTANCES(float)
