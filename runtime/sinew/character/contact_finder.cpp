@@ -129,7 +129,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach) return;
-  if (c.meeting == Meeting::kSolids && c.gap < T(0)) leave_to_others(c);
+  if (c.meeting == Meeting::kSolids && c.gap < T(0) && crushes(c.tree_a, c.tree_b)) leave_to_others(c);
   allow_pressed(c);
   const T& most_gap = most_gap_[between_trees(c)];
   while (c.gap < most_gap && contacts_.size() >= most_)

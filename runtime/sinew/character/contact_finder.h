@@ -182,6 +182,7 @@ class ContactFinder final : public ContactSearch<T> {
   PlacedShape<T> placed(const Met& met, T unit) const;
   void meet_edges(int n, int collider, const Met& met, T reach);
   void meet_solids(int n, int collider, const Met& met, T reach);
+  bool crushes(int n, int m) const;
   void leave_to_others(Contact<T>& solids) const;
   void meet_corners(int n, int collider, const Met& met, T reach);
   void add(Contact<T>& contact, T reach);

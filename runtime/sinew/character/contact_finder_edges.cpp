@@ -75,7 +75,14 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
   }
 }
 
-/// What was found of the pair before bears as deep as it lies; the solids as wholes what is deeper.
+/// Whether one of two does not yield.
+template <class T>
+bool ContactFinder<T>::crushes(int n, int m) const {
+  return m < 0 || states_[n]->root_is_kinematic() || states_[m]->root_is_kinematic();
+}
+
+/// What crushes a limb has many points of it as deep as the whole: they bear, and the solids as wholes only
+/// what is deeper than all that was found of the pair. What yields comes free the sooner for both.
 template <class T>
 void ContactFinder<T>::leave_to_others(Contact<T>& solids) const {
   T depth = T(0);
@@ -93,12 +100,14 @@ void ContactFinder<T>::leave_to_others(Contact<T>& solids) const {
   solids.start_gap = solids.gap;
 }
 
-/// Two solids as wholes, for what the step leads to and nobody looked for; after all others of the pair.
+/// Two solids as wholes, for what the step leads to and nobody looked for. Once for a pair, see
+/// leave_to_others().
 template <class T>
 void ContactFinder<T>::meet_solids(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
   const Collider& own = s.colliders[collider];
-  if ((met.tree >= 0 && !met.second) || collider > kMostWithEdges) return;
+  if (met.tree >= 0 && met.second != crushes(n, met.tree)) return;
+  if (collider > kMostWithEdges) return;
   Contact<T> c = contact_with(met, contact_of(n, own), T(own.friction));
   c.meeting = Meeting::kSolids;
   c.solid_a = &own;
@@ -157,6 +166,7 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   template PlacedShape<T> ContactFinder<T>::placed(int, int) const;      \
   template PlacedShape<T> ContactFinder<T>::placed(const Met&, T) const; \
   template void ContactFinder<T>::meet_edges(int, int, const Met&, T);   \
+  template bool ContactFinder<T>::crushes(int, int) const;               \
   template void ContactFinder<T>::leave_to_others(Contact<T>&) const;    \
   template void ContactFinder<T>::meet_solids(int, int, const Met&, T);  \
   template void ContactFinder<T>::meet_corners(int, int, const Met&, T);
