@@ -10,12 +10,6 @@ constexpr double kLedInto = 5e-3;     ///< m of a human: so much deeper what mus
 constexpr double kGivesWay = 0.02;    ///< m of a human, see give_way()
 constexpr double kGivingSpeed = 0.1;  ///< m/s, see give_way()
 
-/// Whether a root is led, with limbs that it could tear off: a platform presses whatever is in its way.
-template <class T>
-bool leads_limbs(const CharacterState<T>& s) {
-  return s.root_is_kinematic() && s.tree.dofs > s.tree.dof_count(0);
-}
-
 template <class T>
 bool lie_deeper(const PlacedCollider<T>& a, const PlacedCollider<T>& b, T depth) {
   const T far = a.radius + b.radius;
@@ -56,7 +50,7 @@ PlacedCollider<T> ContactFinder<T>::collider_at(int n, std::size_t c, const Kine
 template <class T>
 bool ContactFinder<T>::led_through(int n, const Collider& obstacle) const {
   const CharacterState<T>& s = *states_[n];
-  if (!leads_limbs(s)) return false;
+  if (!s.leads_limbs()) return false;
   const PlacedCollider<T> other{&obstacle, pose_of(obstacle), T(bounding_radius(obstacle))};
   const T pressed = T(kPressedByClips) * s.tree.scale.length;
   for (std::size_t c = 0; c < s.colliders.size(); ++c) {
@@ -74,7 +68,7 @@ bool ContactFinder<T>::led_through(int n, const Collider& obstacle) const {
 template <class T>
 bool ContactFinder<T>::led_through(int n, int m) const {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
-  if (!leads_limbs(s) || !leads_limbs(t)) return false;
+  if (!s.leads_limbs() || !t.leads_limbs()) return false;
   const T pressed = T(kPressedByClips) * std::min(s.tree.scale.length, t.tree.scale.length);
   for (std::size_t c = 0; c < s.colliders.size(); ++c)
     for (std::size_t o = 0; o < t.colliders.size(); ++o) {

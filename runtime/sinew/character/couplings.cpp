@@ -68,6 +68,7 @@ template <class T>
 void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<CharacterState<T>* const> states,
                      std::span<const int> indices) {
   for (Coupling<T>* c : couplings) {
+    c->strained = false;
     for (CouplingNode<T>& node : c->nodes) {
       const auto found = std::find(indices.begin(), indices.end(), node.state);
       node.tree = found == indices.end() ? -1 : static_cast<int>(found - indices.begin());
@@ -75,6 +76,7 @@ void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<Characte
       if (node.tree < 0) {
         node.point = (node.place - origin).template cast<T>();
       } else {
+        c->strained = c->strained || states[node.tree]->leads_limbs();
         const Vec3<T> world = states[node.tree]->model()[node.body] * node.local;
         node.point = (world.template cast<double>() - origin).template cast<T>();
       }

@@ -266,6 +266,8 @@ struct CharacterState {
   void update_model();
   void bound_particles();
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
+  /// And has limbs, that it could tear off: what has none, as a platform, presses whatever is in its way.
+  bool leads_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }
 };
 
 #define SINEW_RATE_INSTANCES(prefix, T)                                                          \

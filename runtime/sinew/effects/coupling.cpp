@@ -9,8 +9,9 @@
 namespace sinew {
 namespace {
 
-constexpr double kSlack = 1e-3;  ///< m, that a loop which bore nothing may be open: more, and it began so
-constexpr double kTorn = 0.02;   ///< m; a hundred times what the weight pulls a loop apart
+constexpr double kSlack = 1e-3;   ///< m, that a loop which bore nothing may be open: more, and it began so
+constexpr double kYields = 1e-3;  ///< m; what ten weights pull a loop apart
+constexpr double kTorn = 0.02;    ///< m; a hundred times what the weight pulls a loop apart
 
 template <class T>
 Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {
@@ -180,8 +181,14 @@ void lead_out(T h, Coupling<T>& c) {
     const T torn = e.carried.last.isZero(T(0)) ? T(kSlack) : T(kTorn);
     if ((open - e.offset).norm() > e.length + torn * c.length_scale)
       e.offset = open * (T(1) - e.length / open.norm());
+    const Vec3<T> reached = open - e.offset;
+    const T size = reached.norm(), room = e.length + T(kYields) * c.length_scale - size;
+    if (c.strained && room < T(0)) e.offset -= room / size * reached;
     e.led_from = e.offset;
-    const T left = e.offset.norm(), closes = T(kClosingSpeed) * c.speed_scale * h;
+    const T left = e.offset.norm();
+    e.yields = c.strained && left > T(0);
+    T closes = T(kClosingSpeed) * c.speed_scale * h;
+    if (e.yields) closes = std::clamp(room, T(0), closes);
     e.offset *= left > closes ? T(1) - closes / left : T(0);
   }
   c.led = c.led || c.closes();

@@ -67,6 +67,7 @@ struct Stencil {
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
   Vec3<T> led_from = Vec3<T>::Zero();       ///< the offset before this step led it in
+  bool yields = false;                      ///< to a led root, in this step: see lead_out()
   CarriedForce<T> carried, carried_before;  ///< its pull, where a loop is rigid; the same
 };
 
@@ -90,6 +91,7 @@ struct Coupling {
   std::vector<Tetrahedron<T>> tetrahedra;
   bool active = true;
   bool leads_out = false;                     ///< stencils that begin open close at a walking pace (loops)
+  bool strained = false;                      ///< one who is tied has a led root, and limbs: see lead_out()
   bool led = false;                           ///< in this step: its velocities are led, too
   T length_scale = T(1), speed_scale = T(1);  ///< of what it ties, by a human's: see Scale
   double energy = 0;                          ///< J, when last measured
@@ -145,12 +147,14 @@ constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, a
 template <class T>
 Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
   const T open = e.offset.norm();
-  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
-                     : Vec3<T>(Vec3<T>::Zero());
+  return open > T(0) && !e.yields ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
+                                  : Vec3<T>(Vec3<T>::Zero());
 }
 
 /// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a
-/// teleport) begins anew. Call at the start of a part of a step, at the pose there.
+/// teleport) begins anew. A led root may take a limb further than what that is tied to lets it: the loop
+/// yields, beyond what ten weights pull it apart, and closes with no more than these. Call at the start of a
+/// part of a step, at the pose there.
 template <class T>
 void lead_out(T h, Coupling<T>& coupling);
 

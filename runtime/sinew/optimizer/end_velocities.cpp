@@ -353,6 +353,7 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
 
 template <class T>
 void EndVelocities<T>::add(const Coupling<T>& coupling, const Stencil<T>& e) {
+  if (e.yields) return;
   constexpr T kAnything = std::numeric_limits<T>::max();
   const Vec3<T> leads = closing_velocity(coupling, e);
   if (!(e.length > T(0))) {
