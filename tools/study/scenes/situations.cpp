@@ -545,6 +545,14 @@ void moves_at_walking_pace(const Scene& scene, bool, Findings& found) {
   });
 }
 
+void leash_too_short(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, {30.0, 60.0, 120.0, 240.0}, 1, 0.1, found, [&](const Played&, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 3);
+    found.at_most("fastest in the last second (m/s)", fastest_of(judge, end * 3 / 4, end), 0.2);
+  });
+}
+
 }  // namespace
 
 std::vector<Situation> situations() {
@@ -586,6 +594,7 @@ std::vector<Situation> situations() {
       {"back_over_the_floor", "no limb goes through the floor on its way back", back_over_the_floor},
       {"elbow_to_its_stop", "a hit into a joint's stop has the effect of fine steps", elbow_to_its_stop},
       {"handcuffs", "a rope that begins too short closes at a walking pace", moves_at_walking_pace},
+      {"leash_too_short", "a loop yields to a led root", leash_too_short},
       {"led_through_each_other", "who is led into something is led on", moves_at_walking_pace},
   };
 }
