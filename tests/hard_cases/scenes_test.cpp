@@ -2,10 +2,17 @@
 // one takes it off the list.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "fixtures/known_failure.h"
 #include "study/scenes/situation.h"
 
 namespace sinew::study {
+
+void PrintTo(const Situation& situation, std::ostream* out) {
+  *out << situation.name << ": " << situation.about;
+}
+
 namespace {
 
 class Situations : public testing::TestWithParam<Situation> {};
