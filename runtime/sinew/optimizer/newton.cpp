@@ -109,6 +109,30 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
   return false;
 }
 
+/// Where a full step leaves much of the slope, since the matrix has none of the negative curvature of what is
+/// compressed (cloth that crumples): as far as the slopes say, while the energy falls.
+template <class T>
+void NewtonSolver<T>::go_further(T slope, double& energy) {
+  const auto crumples = [](const Coupling<T>* c) { return !c->leads_out; };
+  if (lacks_energy(*trees_[0]) || std::none_of(couplings_.begin(), couplings_.end(), crumples)) return;
+  T t = T(1), left = inner_.slope_now(inner_.correction()) / slope;
+  const T furthest = T(1) / std::max(longest_correction(), std::numeric_limits<T>::min());
+  while (left > T(kUndershot)) {
+    const T next = std::min(t * std::clamp(T(1) / (T(1) - left), T(1.5), T(kMostFurther)), furthest);
+    if (!(next > T(1.5) * t)) return;
+    try_step(next);
+    const double further = evaluate();
+    if (!(further < energy)) {
+      try_step(t);
+      energy = evaluate();
+      return;
+    }
+    energy = further;
+    t = next;
+    left = inner_.slope_now(inner_.correction()) / slope;
+  }
+}
+
 template <class T>
 typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, bool slight, double& energy) {
   const T slope = inner_.slope(inner_.correction());
@@ -118,8 +142,10 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, bool
   for (int attempt = 0; attempt < 14; ++attempt) {
     try_step(t);
     energy = evaluate();
-    if (accepted(t, slope, before, energy, slight))
+    if (accepted(t, slope, before, energy, slight)) {
+      if (attempt == 0) go_further(slope, energy);
       return attempt == 0 ? Outcome::kFull : Outcome::kShortened;
+    }
     const T new_slope = inner_.slope_now(inner_.correction());
     if (attempt == 0 && inner_.has_contacts() && correct_step(tolerance, before, energy)) {
       ++report_.corrections;

@@ -70,6 +70,7 @@ class NewtonSolver {
   bool forces_mislead() const;
   void remember_charts();
   void try_step(T t);
+  void go_further(T slope, double& energy);
   bool converge_by_chords(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
   T longest_correction() const;

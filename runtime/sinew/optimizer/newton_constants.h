@@ -19,6 +19,8 @@ constexpr double kCautious = 0.1;  ///< of the tolerance, may be left after the 
 /// Of the forces that contacts bore in the last step, or of the weight: where those at the guess are so much
 /// larger, they are those of bodies that went through the floor, and their geometric terms mislead.
 constexpr double kMisleading = 1.5;
+/// Of the slope, what a full step leaves where the matrix is too stiff, and how much further to go at once.
+constexpr double kUndershot = 0.25, kMostFurther = 8;
 /// 1/m: what a whole Newton step through nothing but smooth terms leaves, by the square of its length. In
 /// limp flights at 1 to 10 rad/s rms half leave less than 6, 99 in 100 less than 30 to 130 (1/240 to 1/30 s).
 constexpr double kLeft = 30;

@@ -519,6 +519,20 @@ void tap_in_a_run(const Scene& scene, bool, Findings& found) {
     found.at_most("off its clip 1.5 s later (m)", off_its_clip(scene, hz, 1.5, found), 1e-3);
 }
 
+void cape_in_a_run(const Scene& scene, bool, Findings& found) {
+  for (const double hz : kRates) {
+    Scene with = scene, without = scene;
+    without.particles.clear();
+    with.frame_rate = without.frame_rate = hz;
+    const Played wears(with), runs(without);
+    found.sound(wears, 0.02);
+    double furthest = 0;
+    for (double t = 0.5; t < scene.duration; t += 0.1) furthest = std::max(furthest, off(wears, 0, t, &runs));
+    found.at_most("runner off his clip (m)", furthest, 0.02);
+    note_times(wears, found);
+  }
+}
+
 void back_over_the_floor(const Scene& scene, bool, Findings& found) {
   Scene stands = scene;
   stands.pushes.clear();
@@ -591,6 +605,7 @@ std::vector<Situation> situations() {
       {"balls_at_heads", "no ball flies through a head", balls_at_heads},
       {"run_on_a_platform", "on a platform it runs as on the floor", run_on_a_platform},
       {"tap_in_a_run", "who was tapped runs on as its clip does", tap_in_a_run},
+      {"cape_in_a_run", "a cape that legs crumple does not stop a runner", cape_in_a_run},
       {"back_over_the_floor", "no limb goes through the floor on its way back", back_over_the_floor},
       {"elbow_to_its_stop", "a hit into a joint's stop has the effect of fine steps", elbow_to_its_stop},
       {"handcuffs", "a rope that begins too short closes at a walking pace", moves_at_walking_pace},
