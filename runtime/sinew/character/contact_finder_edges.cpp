@@ -11,7 +11,8 @@ constexpr int kMostWithEdges = 127;  ///< colliders of a skeleton whose edges id
 constexpr int kCornerNumber = kAxisNumber + 1, kSolidNumber = kAxisNumber + 2;
 /// m, or of the thinnest half extent: what solids may lie in each other before they bear as wholes.
 constexpr double kSlack = 3.5e-3, kSlackPart = 0.2;
-constexpr double kBeyond = 5e-4;  ///< m of a human: and what they lie deeper than all that was found of them
+constexpr double kBeyond =
+    5e-4;  ///< m of a human, deeper than all that was found of a pair: see leave_to_others()
 /// In place of a point in contact_id(): an edge or axis of a collider and an edge or corner of what it meets.
 int feature(int own, int others, int collider) {
   return 0x8000 | own << 11 | others << 7 | collider;
