@@ -9,9 +9,10 @@
 namespace sinew {
 namespace {
 
-constexpr double kSlack = 1e-3;   ///< m, that a loop which bore nothing may be open: more, and it began so
-constexpr double kYields = 1e-3;  ///< m; what ten weights pull a loop apart
-constexpr double kTorn = 0.02;    ///< m; a hundred times what the weight pulls a loop apart
+// Weights that pull a loop as far apart as it is.
+constexpr double kSlack = 10;   ///< a loop that bore nothing: open by more, it began so
+constexpr double kYields = 10;  ///< to a led root
+constexpr double kTorn = 200;
 
 template <class T>
 Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {
@@ -179,10 +180,10 @@ void lead_out(T h, Coupling<T>& c) {
     e.carried_before = e.carried;
     const Vec3<T> open = reach(c, e);
     const T torn = e.carried.last.isZero(T(0)) ? T(kSlack) : T(kTorn);
-    if ((open - e.offset).norm() > e.length + torn * c.length_scale)
+    if ((open - e.offset).norm() > e.length + torn * e.sinks)
       e.offset = open * (T(1) - e.length / open.norm());
     const Vec3<T> reached = open - e.offset;
-    const T size = reached.norm(), room = e.length + T(kYields) * c.length_scale - size;
+    const T size = reached.norm(), room = e.length + T(kYields) * e.sinks - size;
     if (c.strained && room < T(0)) e.offset -= room / size * reached;
     e.led_from = e.offset;
     const T left = e.offset.norm();

@@ -62,6 +62,7 @@ struct Stencil {
   T weight[4] = {T(1), T(-1), T(0), T(0)};  ///< sum 0
   T stiffness = T(0);                       ///< N/m
   T length = T(0);                          ///< m
+  T sinks = T(0);                           ///< m, that a weight pulls a loop apart: see lead_out()
   bool only_pulls = false;                  ///< no energy while shorter than `length`
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
@@ -147,8 +148,8 @@ constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, a
 template <class T>
 Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
   const T open = e.offset.norm();
-  return open > T(0) && !e.yields ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
-                                  : Vec3<T>(Vec3<T>::Zero());
+  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
+                     : Vec3<T>(Vec3<T>::Zero());
 }
 
 /// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a

@@ -47,6 +47,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   for (const V& x : held) {
     Stencil<T>& e = loop.stencils.emplace_back();
     e.stiffness = T(settings.stiffness > 0 ? settings.stiffness : weight / (kSink * std::min(unit, 1.0)));
+    e.sinks = std::max(T(weight) / e.stiffness, T(kSink * unit));
     if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope)
       e.length = T(settings.length);
     e.only_pulls = settings.kind == LoopKind::kRope;
