@@ -124,11 +124,23 @@ Contact<T> ContactFinder<T>::contact_of(int n, const Collider& collider) const {
   return c;
 }
 
+/// See roll().
+template <class T>
+void ContactFinder<T>::let_roll(Contact<T>& c) const {
+  if (c.meeting != Meeting::kPoint || !(c.radius > T(0))) return;
+  const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
+  Vec3<T> spin = angular_velocity(states_[c.tree_a]->history, c.body_a);
+  if (b) spin -= angular_velocity(b->history, c.body_b);
+  roll<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr,
+          h_ * (spin - c.normal.dot(spin) * c.normal), c);
+}
+
 template <class T>
 void ContactFinder<T>::add(Contact<T>& c, T reach) {
   const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
   begin_step<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr, c);
   if (c.gap > reach) return;
+  let_roll(c);
   if (c.meeting == Meeting::kSolids && c.gap < T(0) && crushes(c.tree_a, c.tree_b)) leave_to_others(c);
   allow_pressed(c);
   const T& most_gap = most_gap_[between_trees(c)];
@@ -224,6 +236,8 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.lasting_last = found->lasting;
   c.lasting_before = found->before;
   c.smooth_before = found->smooth;
+  for (int k = 0; k < 2; ++k)
+    c.elastic_slip[k] = found->elastic[k] * T(world_->accuracy.stick_speed) * h_ * c.speed_scale;
   c.offset = found->offset;
   c.gap += c.offset;
   const T own = std::exchange(c.stiffness, found->stiffness);
@@ -281,9 +295,10 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
 }
 
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
-/// that it stands on, into the floor.
+/// that it stands on, into the floor. Not for what lies under that face, with its middle `other` (about the
+/// common origin): the box stands on that, a thin plate say.
 template <class T>
-void ContactFinder<T>::go_on_below(T unit, Met& box) const {
+void ContactFinder<T>::go_on_below(T unit, const Vec3<T>& other, Met& box) const {
   if (!world_->ground) return;
   const Transform<T> pose = pose_of(box);
   const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
@@ -293,6 +308,7 @@ void ContactFinder<T>::go_on_below(T unit, Met& box) const {
   const T height =
       (pose * Vec3<T>(box.size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
   if (height > T(kOnFloor) * unit) return;
+  if ((pose.inverse() * other).dot(face) > box.size[axis]) return;
   box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * unit * face);
   box.size[axis] += T(kBelowFloor) / 2 * unit;
 }
@@ -335,7 +351,8 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
     const Vec3<T> apart = pose.rotation.conjugate() * (bound.center - pose.translation);
     if (signed_distance<T>(Shape::kBox, met.size, apart).distance < bound.radius) {
       const T own = states_[n]->tree.scale.length;
-      go_on_below(met.tree < 0 ? own : std::max(own, states_[met.tree]->tree.scale.length), met);
+      go_on_below(met.tree < 0 ? own : std::max(own, states_[met.tree]->tree.scale.length), bound.center,
+                  met);
       face = way_out(n, collider, met.size, pose_of(met));
     }
   }

@@ -23,6 +23,7 @@ struct LaggedForce {
   T offset = T(0);                  ///< m, see Contact::offset
   T smooth = T(0);                  ///< N, see Contact::smooth_before
   T lasting = T(0), before = T(0);  ///< N, see Contact::lasting_last
+  std::array<T, 2> elastic{};       ///< see elastic_share()
 };
 
 /// Identities of the contacts of a world's nth tree begin here and end where the next one's begin.
@@ -185,10 +186,11 @@ class ContactFinder final : public ContactSearch<T> {
   bool crushes(int n, int m) const;
   void leave_to_others(Contact<T>& solids) const;
   void meet_corners(int n, int collider, const Met& met, T reach);
+  void let_roll(Contact<T>& contact) const;
   void add(Contact<T>& contact, T reach);
   bool make_room();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
-  void go_on_below(T unit, Met& box) const;
+  void go_on_below(T unit, const Vec3<T>& other, Met& box) const;
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;

@@ -94,8 +94,9 @@ void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
   if (follows == Follows::kNot) return;
   Contact<T> wanted = c;
   measure<T>(states_[c.tree_a]->guessed, c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, wanted);
-  const T most = c.plane ? std::numeric_limits<T>::infinity()
-                         : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
+  const T most = c.plane && states_[c.tree_a]->root_is_kinematic()
+                     ? std::numeric_limits<T>::infinity()
+                     : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
   const T clip = std::max(-wanted.gap, T(0)), led = follows == Follows::kExactly ? T(kLedInto) : T(0);
   const T allowed = clip > most ? std::max(2 * most - clip, T(0)) : clip;
   const T pressed = std::min(allowed + led * c.length_scale, most);

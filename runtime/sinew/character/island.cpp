@@ -358,6 +358,13 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
   }
 }
 
+/// Whether a contact that sticks keeps its place for good: what is passive does. Who follows an animation may
+/// creep back to it, as far below the stick speed as friction's load is below its most.
+template <class T>
+bool IslandStepper<T>::stays_where_it_sticks(const Contact<T>& c) const {
+  return states_[c.tree_a]->limp() || (c.tree_b >= 0 && states_[c.tree_b]->limp());
+}
+
 /// One part of the step, from `begin` to `end` (fractions of the frame): halved where it is long for an
 /// impact or the solve does not converge.
 template <class T>
@@ -417,9 +424,12 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (const Contact<T>& c : contacts_) {
     const T force = normal_force(c);
     const bool led = c.offset > T(0) && c.gap < c.offset;  // still inside
-    if (force > T(0) || led)
-      lagged_.push_back({c.id, force, c.stiffness, c.offset, c.smooth_force,
-                         rounded_off<kHalfOfDigits<T>>(c.lasting_force), c.lasting_last});
+    if (!(force > T(0) || led)) continue;
+    std::array<T, 2> elastic{};
+    if (stays_where_it_sticks(c)) elastic = elastic_share(c, settings_.stick);
+    for (T& e : elastic) e = rounded_off<kHalfOfDigits<T>>(e);
+    lagged_.push_back({c.id, force, c.stiffness, c.offset, c.smooth_force,
+                       rounded_off<kHalfOfDigits<T>>(c.lasting_force), c.lasting_last, elastic});
   }
   std::sort(lagged_.begin(), lagged_.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });

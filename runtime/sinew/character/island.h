@@ -67,6 +67,7 @@ class IslandStepper {
   void begin(const WorldSettings& world, const Surroundings& surroundings, T h,
              std::span<CharacterState<T>* const> states, std::span<const int> indices,
              std::span<Coupling<T>* const> couplings, std::span<const LaggedForce<T>> lagged);
+  bool stays_where_it_sticks(const Contact<T>& c) const;
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;

@@ -322,8 +322,8 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
-  // An identity in three parts of 45 bits, six numbers and at most three bytes more each.
-  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (17 + 6 * (sizeof(T) + 3)));
+  // An identity in three parts of 45 bits, eight numbers and at most three bytes more each.
+  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (17 + 8 * (sizeof(T) + 3)));
   {
     ResidualCoder<std::uint32_t> coder("contact", stream, true);
     std::array<std::uint32_t, 3> before{};
@@ -340,7 +340,7 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
     ResidualCoder<T> coder(name, stream, true, rounded);
     T before = T(0);
     for (LaggedForce<T>& contact : lagged) {
-      [[maybe_unused]] auto& [id, force, stiffness, offset, smooth, lasting, earlier] =
+      [[maybe_unused]] auto& [id, force, stiffness, offset, smooth, lasting, earlier, elastic] =
           contact;  // a new member will not compile here
       visit_contact(coder, contact, before);
     }
@@ -362,6 +362,12 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   // All of it, or what has lasted.
   visit("smooth contact force",
         [](auto& coder, auto& c, T&) { coder.value(c.smooth, std::min(c.force, c.lasting)); });
+  visit(
+      "elastic slip",
+      [](auto& coder, auto& c, T&) {
+        for (T& e : c.elastic) coder.value(e, T(0));
+      },
+      kHalfOfDigits<T>);
 }
 
 void visit_budget(BudgetState& budget, ByteStream& stream) {

@@ -267,8 +267,30 @@ void measure(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   c.material_point = at(&a, c.body_a, c.material_a);
   c.material_point_b = at(b, c.body_b, c.material_b);
   const Vec3<T> apart = c.material_point - c.material_point_b;  // zero when the step began
-  c.slip[0] = c.frame.col(0).dot(apart);
-  c.slip[1] = c.frame.col(1).dot(apart);
+  for (int k = 0; k < 2; ++k) c.slip[k] = c.elastic_slip[k] + c.frame.col(k).dot(apart);
+}
+
+namespace {
+
+/// Fixes the points that touch at `touch`, about the common origin, to their bodies.
+template <class T>
+void fix_material_points(const Kinematics<T>& a, const Kinematics<T>* b, const Vec3<T>& touch,
+                         Contact<T>& c) {
+  c.material_a = a.rotation[c.body_a].transpose() * (touch - a.origin[c.body_a]);
+  c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;
+}
+
+constexpr double kRollsLittle = 1e-3, kRollsFurthest = 2;  ///< rad in a step
+
+}  // namespace
+
+template <class T>
+void roll(const Kinematics<T>& a, const Kinematics<T>* b, const Vec3<T>& turn, Contact<T>& c) {
+  const T angle = turn.norm();
+  if (angle < T(kRollsLittle)) return;
+  const T half = std::min(angle, T(kRollsFurthest)) / 2;
+  const Vec3<T> arm = Eigen::AngleAxis<T>(-half, turn / angle) * Vec3<T>(-c.radius * c.normal);
+  fix_material_points<T>(a, b, c.point + half / std::sin(half) * arm, c);
 }
 
 template <class T>
@@ -277,10 +299,8 @@ void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c) {
   measure(a, b, c);
   if (c.meeting == Meeting::kSolids) c.before = c.normal;
   const Vec3<T> touch = c.point - (c.radius + c.distance() / 2) * c.normal;
-  c.material_a = a.rotation[c.body_a].transpose() * (touch - a.origin[c.body_a]);
-  c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;
-  const Vec3<T> tangent = c.normal.unitOrthogonal();
-  c.frame << tangent, c.normal.cross(tangent), c.normal;
+  fix_material_points<T>(a, b, touch, c);
+  c.frame = contact_frame<T>(c.normal);
   measure(a, b, c);
   c.start_gap = c.gap;
 }

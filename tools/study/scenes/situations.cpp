@@ -559,6 +559,42 @@ void moves_at_walking_pace(const Scene& scene, bool, Findings& found) {
   });
 }
 
+void slope(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played&, const Judge& judge) {
+    const int from = judge.frame_at(8), end = judge.frames() - 1;
+    for (int m = 0; m < judge.members(); ++m)
+      found.at_most("creeps in six seconds (m)",
+                    (judge.center_of_mass(end, m) - judge.center_of_mass(from, m)).norm(), 1e-3);
+  });
+}
+
+void rolling(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played&, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    for (int m = 0; m < judge.members(); ++m) {
+      const double way = (judge.center_of_mass(end, m) - judge.center_of_mass(0, m)).norm();
+      const double free =
+          scene.props[static_cast<std::size_t>(m)].settings.velocity.norm() * end * judge.step();
+      found.at_most("off the way of what nothing brakes, share", std::abs(way / free - 1), 0.02);
+    }
+  });
+}
+
+void thin_things(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played&, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    found.at_most("in each other (m)", deepest_between(judge, 1, end), 5e-3);
+    found.at_most("fastest at the end (m/s)", judge.fastest(end), 0.02);
+  });
+}
+
+void getting_up(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 0.03, found, [&](const Played&, const Judge& judge) {
+    found.at_least("height of the centre of mass at the end (m)",
+                   judge.center_of_mass(judge.frames() - 1, 0).z(), 0.8);
+  });
+}
+
 void leash_too_short(const Scene& scene, bool, Findings& found) {
   at_rates(scene, {30.0, 60.0, 120.0, 240.0}, 1, 0.1, found, [&](const Played&, const Judge& judge) {
     const int end = judge.frames() - 1;
@@ -609,6 +645,10 @@ std::vector<Situation> situations() {
       {"back_over_the_floor", "no limb goes through the floor on its way back", back_over_the_floor},
       {"elbow_to_its_stop", "a hit into a joint's stop has the effect of fine steps", elbow_to_its_stop},
       {"handcuffs", "a rope that begins too short closes at a walking pace", moves_at_walking_pace},
+      {"slope", "what lies on a slope stays where it is", slope},
+      {"rolling", "nothing brakes what rolls", rolling},
+      {"thin_things", "books, boards and plates lie on each other on the floor", thin_things},
+      {"getting_up", "who gets up does so on the floor, not through it", getting_up},
       {"leash_too_short", "a loop yields to a led root", leash_too_short},
       {"led_through_each_other", "who is led into something is led on", moves_at_walking_pace},
   };
