@@ -113,11 +113,12 @@ TEST(TalkJacobian, IsTheDerivativeOfThePoses) {
     for (int i = 0; i < 2; ++i) {
       const auto &before = both[0].kinematics, &after = both[1].kinematics;
       const V linear = (after.center[i] - before.center[i]) / (2 * step);
-      const V angular =
-          rotation_log<double>(Quat<double>(Mat3<double>(after.rotation[i] * before.rotation[i].transpose()))) /
-          (2 * step);
+      const V angular = rotation_log<double>(
+                            Quat<double>(Mat3<double>(after.rotation[i] * before.rotation[i].transpose()))) /
+                        (2 * step);
       EXPECT_LT((linear - kernel.block<3, 1>(6 * i, dof)).norm(), 1e-8) << "body " << i << ", dof " << dof;
-      EXPECT_LT((angular - kernel.block<3, 1>(6 * i + 3, dof)).norm(), 1e-8) << "body " << i << ", dof " << dof;
+      EXPECT_LT((angular - kernel.block<3, 1>(6 * i + 3, dof)).norm(), 1e-8)
+          << "body " << i << ", dof " << dof;
     }
   }
 }
@@ -141,8 +142,8 @@ TEST(TalkJacobian, ForcesGoBackByItsTranspose) {
 }
 
 TEST(TalkJacobian, FigureIsTheTalks) {
-  // "DOF Breakdown": root (chest) 6, pelvis 3, thighs 3 (*2), knees 1, feet 3, shoulders 3, elbows 1, wrists 3;
-  // "a typical character the complete Jacobian might be a 37x84 matrix".
+  // "DOF Breakdown": root (chest) 6, pelvis 3, thighs 3 (*2), knees 1, feet 3, shoulders 3, elbows 1, wrists
+  // 3; "a typical character the complete Jacobian might be a 37x84 matrix".
   Posed p(skeleton_of("figure"));
   EXPECT_EQ(p.tree.bodies, 14);
   EXPECT_EQ(p.tree.dofs, 37);

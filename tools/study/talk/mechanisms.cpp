@@ -61,7 +61,8 @@ void stiff_spring(const Scene& scene, bool, Findings& found) {
   found.at_most("implicit Euler off its formula (m)", off_by_hand(implicit, &Oscillator::implicit), 1e-6);
   found.at_most("semi-implicit off implicit Euler (m)", apart, 1e-6);
   const double first = kFirstSpeed / kOmega;
-  found.at_least("amplitude after 0.6 s, forward Euler (of the first)", amplitude_at_end(forward) / first, 10);
+  found.at_least("amplitude after 0.6 s, forward Euler (of the first)", amplitude_at_end(forward) / first,
+                 10);
   found.at_most("the same, implicit Euler", amplitude_at_end(implicit) / first, 0.1);
   found.at_most("amplitude gained by the runtime's scheme", amplitude_at_end(bossak) / first, 1.001);
   found.at_least("amplitude kept by the runtime's scheme", amplitude_at_end(bossak) / first, 0.9);
@@ -77,7 +78,8 @@ double pendulum_angle(double seconds) {
   for (int n = 0, steps = static_cast<int>(std::lround(seconds / h)); n < steps; ++n) {
     const double v2 = v + h / 2 * turned(q), v3 = v + h / 2 * turned(q + h / 2 * v),
                  v4 = v + h * turned(q + h / 2 * v2);
-    const double a1 = turned(q), a2 = turned(q + h / 2 * v), a3 = turned(q + h / 2 * v2), a4 = turned(q + h * v3);
+    const double a1 = turned(q), a2 = turned(q + h / 2 * v), a3 = turned(q + h / 2 * v2),
+                 a4 = turned(q + h * v3);
     q += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
     v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
   }
@@ -114,9 +116,13 @@ void linked_bodies(const Scene& scene, bool, Findings& found) {
   const Judge judge = played.judge();
   const int end = judge.frames() - 1;
   const Eigen::Vector3d from = judge.center_of_mass(0, 0), to = judge.center_of_mass(end, 0);
-  found.at_most("centre of mass off its straight way (m)", judge.worst(0, end, [&](int f) {
-    return (judge.center_of_mass(f, 0) - (from + (to - from) * (double(f) / end))).norm();
-  }), 1e-5);
+  found.at_most(
+      "centre of mass off its straight way (m)",
+      judge.worst(0, end,
+                  [&](int f) {
+                    return (judge.center_of_mass(f, 0) - (from + (to - from) * (double(f) / end))).norm();
+                  }),
+      1e-5);
   const auto& rows = played.telemetry.rows;
   const Vec3<double> first = rows[1].report.angular_momentum;
   double turned = 0;
@@ -146,9 +152,12 @@ void bar(const Scene& scene, bool, Findings& found) {
   }
   found.at_most("hands off the bar (m)", off, 1e-3);
   found.at_most("energy gained (J)", most_energy, 5);
-  found.at_least("its feet swing to and fro (m)", judge.worst(0, end, [&](int f) {
-    return point_at(played, f, 0, joint_named(scene, 0, "foot_l"), {0, 0, 0}).x();
-  }), 0.2);
+  found.at_least("its feet swing to and fro (m)",
+                 judge.worst(0, end,
+                             [&](int f) {
+                               return point_at(played, f, 0, joint_named(scene, 0, "foot_l"), {0, 0, 0}).x();
+                             }),
+                 0.2);
 }
 
 void handcuffs(const Scene& scene, bool, Findings& found) {
@@ -177,14 +186,16 @@ void handcuffs(const Scene& scene, bool, Findings& found) {
 
 /// rad, that each lever has turned from upright after the first step.
 double first_turn(const Played& played, int lever) {
-  const Eigen::Vector3d tip = joint_at(played, 1, lever, 0).rotation.cast<double>() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d tip =
+      joint_at(played, 1, lever, 0).rotation.cast<double>() * Eigen::Vector3d::UnitZ();
   return std::atan2(std::abs(tip.x()), tip.z());
 }
 
 void wrong_root(const Scene& scene, bool, Findings& found) {
   Scene fine = scene;
   fine.frame_rate = 600;
-  const Played euler(by_scheme(scene, Compared::kBdf1)), bossak(scene), euler_fine(by_scheme(fine, Compared::kBdf1));
+  const Played euler(by_scheme(scene, Compared::kBdf1)), bossak(scene),
+      euler_fine(by_scheme(fine, Compared::kBdf1));
   for (const Played* played : {&euler, &bossak, &euler_fine}) found.sound(*played, 1);
   if (!found.refused().empty()) return;
   // In truth they turn to 0.013, 0.018 and 0.038 rad in a sixtieth of a second: 0.01 cosh(h √a).
@@ -203,8 +214,8 @@ void wrong_root(const Scene& scene, bool, Findings& found) {
 
 std::vector<Situation> talk_mechanisms() {
   return {
-      {"stiff_spring", "forward Euler gains, implicit Euler loses; on a spring semi-implicit is implicit", stiff_spring,
-       "talk"},
+      {"stiff_spring", "forward Euler gains, implicit Euler loses; on a spring semi-implicit is implicit",
+       stiff_spring, "talk"},
       {"hinge", "one degree of freedom: a rod swings as it should", hinge, "talk"},
       {"linked_bodies", "two bodies in flight keep their momenta", linked_bodies, "talk"},
       {"bar", "hands stay on the bar", bar, "talk"},
