@@ -158,24 +158,33 @@ void limp(const Scene& scene, bool, Findings& found) {
   found.at_most("unknowns while it is strong", unknowns_in(played, 0, 0.49), 0);
   found.at_least("unknowns when it is limp", unknowns_in(played, 0.52, 0.6), 37);
   found.at_most("centre of mass in the end (m)", judge.center_of_mass(end, 0).z(), 0.3);
-  const double start = 75 * 9.81 * judge.center_of_mass(0, 0).z();
+  const double mass = scene.characters[0].asset->skeleton.total_mass();
+  const double start = mass * 9.81 * judge.center_of_mass(0, 0).z();
   found.at_most("energy gained (J)",
                 judge.worst(1, end,
                             [&](int f) {
                               const double height =
                                   (judge.center_of_mass(f, 0).z() + judge.center_of_mass(f - 1, 0).z()) / 2;
-                              return judge.kinetic(f, 0) + 75 * 9.81 * height - start;
+                              return judge.kinetic(f, 0) + mass * 9.81 * height - start;
                             }),
                 1);
 }
 
 // ---- "Kinematics": "Bake"
 
-/// deg, rms over time of how far both hands of the second figure are turned from those of the first.
-double hands_off(const Scene& scene, Findings& found) {
-  const Played played(scene);
+/// What baking the hands of the second figure changes.
+struct BakedHands {
+  double off = 0;       ///< deg, rms over time that they are turned from those of the first
+  double left_out = 0;  ///< of the steps in which the first's are solved for
+};
+
+BakedHands bake(const Scene& scene, double decay, Findings& found) {
+  Scene made = scene;
+  made.world.detail.baked_decay = decay;
+  const Played played(made);
   found.sound(played, 5e-3);
-  if (!found.refused().empty()) return 0;
+  if (!found.refused().empty()) return {};
+  BakedHands out;
   double squares = 0;
   int terms = 0;
   for (int f = 0; f < played.judge().frames(); ++f)
@@ -186,23 +195,33 @@ double hands_off(const Scene& scene, Findings& found) {
       squares += off * off;
       ++terms;
     }
-  return std::sqrt(squares / terms) * 180 / std::numbers::pi;
+  out.off = std::sqrt(squares / terms) * 180 / std::numbers::pi;
+  int baked = 0, steps = 0;
+  for (const scene::TelemetryRow& row : played.telemetry.rows) {
+    if (row.character == 1) baked += row.report.baked;
+    if (row.character == 0 && row.report.unknown_dofs >= 6) steps += 2;
+  }
+  out.left_out = double(baked) / steps;
+  return out;
 }
 
 void baked(const Scene& scene, bool, Findings& found) {
-  const double ours = hands_off(scene, found);
-  double best = 1e9;
-  for (const double decay : {0.5, 2.0, 8.0, 32.0}) {
-    Scene talk = scene;
-    talk.world.detail.baked_decay = decay;
-    best = std::min(best, hands_off(talk, found));
-  }
-  found.at_most("hands off those always solved for, rms (deg)", ours, 3);
-  found.at_least("the same by the talk's q'' = -k q', best of four k", best, 10);
+  const BakedHands own = bake(scene, 0, found);
+  if (!found.refused().empty()) return;
+  found.at_most("hands off those always solved for, rms (deg)", own.off, 3);
+  found.at_least("left out of the solves (of those with limp hands)", own.left_out, 0.6);
 }
 
+/// As it was in our own way, to be seen beside it: the best that any k makes of it.
 void baked_as_in_the_talk(const Scene& scene, bool, Findings& found) {
-  found.at_least("hands off those always solved for, rms (deg)", hands_off(scene, found), 10);
+  double best = 1e9;
+  for (const int decay : {1, 2, 8, 32, 128}) {
+    const BakedHands hands = bake(scene, decay, found);
+    if (!found.refused().empty()) return;
+    found.note(("with k = " + std::to_string(decay) + " 1/s, rms (deg)").c_str(), hands.off);
+    best = std::min(best, hands.off);
+  }
+  found.at_least("hands off those always solved for, rms, best k (deg)", best, 3);
 }
 
 }  // namespace
