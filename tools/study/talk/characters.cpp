@@ -108,8 +108,9 @@ void one_axis(const Scene& scene, bool, Findings& found) {
     most = most.cwiseMax((turn.angle() * turn.axis()).cwiseAbs());
   }
   found.at_least("turned about the axis that is overloaded (rad)", most.y(), 0.3);
-  // A muscle holds its target by a slope that is a millimetre per second at a metre wide.
-  found.at_most("about those that are not (rad)", std::max(most.x(), most.z()), 1e-4);
+  // A muscle that is not overloaded is off its target by the rounding of its kink, 1e-3 rad/s, and the way
+  // back keeps that for 0.1 s: 1e-4 rad, in steps of 1/60 s a tenth more.
+  found.at_most("about those that are not (rad)", std::max(most.x(), most.z()), 1.1e-4);
   found.at_most("unknowns while its muscles bear the load", unknowns_in(played, 0, 0.6), 0);
   found.at_most("unknowns that are not 3 when one does not", std::abs(unknowns_in(played, 0.7, 1.2) - 3), 0);
   found.at_most("most torque (of its limit)", torque_share(played), 1 + 1e-5);

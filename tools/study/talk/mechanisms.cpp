@@ -143,33 +143,45 @@ void linked_bodies(const Scene& scene, bool, Findings& found) {
 
 // ---- "Closed loops require constraints"
 
-void bar(const Scene& scene, bool, Findings& found) {
-  const Played played(scene);
-  found.sound(played, 5e-3);
-  if (!found.refused().empty()) return;
+/// m, furthest that a hand's grip is from where it holds the bar.
+double hands_off_bar(const Played& played, const Scene& scene) {
+  return played.judge().worst(1, played.judge().frames() - 1, [&](int f) {
+    double off = 0;
+    for (const LoopSettings& loop : scene.loops)
+      off = std::max(
+          off,
+          (point_at(played, f, 0, loop.a.joint, loop.a.frame.translation) - loop.b.frame.translation).norm());
+    return off;
+  });
+}
+
+/// J, most that a figure ever has beyond what it began with.
+double energy_gained(const Played& played, const Scene& scene) {
   const Judge judge = played.judge();
-  const int end = judge.frames() - 1;
-  double off = 0, most_energy = 0;
-  const double mass = scene.characters[0].asset->skeleton.total_mass();
-  const double first = 0.5 * mass * scene.characters[0].speeds.velocity.squaredNorm() +
-                       mass * 9.81 * judge.center_of_mass(0, 0).z();
-  for (int f = 1; f <= end; ++f) {
-    for (const char* hand : {"hand_l", "hand_r"}) {
-      const double y = hand[5] == 'l' ? 0.2 : -0.2;
-      const Eigen::Vector3d grip = point_at(played, f, 0, joint_named(scene, 0, hand), {0, 0, -0.17});
-      off = std::max(off, (grip - Eigen::Vector3d(0.1016064058, y, 2.5827945975)).norm());
-    }
+  const double mass = scene.characters[0].asset->skeleton.total_mass(), g = scene.world.gravity.norm();
+  const double speed = scene.characters[0].speeds.velocity.norm();
+  const double first = 0.5 * mass * speed * speed + mass * g * judge.center_of_mass(0, 0).z();
+  return judge.worst(1, judge.frames() - 1, [&](int f) {
     const double height = (judge.center_of_mass(f, 0).z() + judge.center_of_mass(f - 1, 0).z()) / 2;
-    most_energy = std::max(most_energy, judge.kinetic(f, 0) + mass * 9.81 * height - first);
-  }
-  found.at_most("hands off the bar (m)", off, 1e-3);
-  found.at_most("energy gained (J)", most_energy, 1);
-  found.at_least("its feet swing to and fro (m)",
-                 judge.worst(0, end,
-                             [&](int f) {
-                               return point_at(played, f, 0, joint_named(scene, 0, "foot_l"), {0, 0, 0}).x();
-                             }),
-                 0.2);
+    return judge.kinetic(f, 0) + mass * g * height - first;
+  });
+}
+
+void bar(const Scene& scene, bool, Findings& found) {
+  Scene fine = scene;
+  fine.frame_rate = 240;  // elbows whip: differences of poses at 60 Hz do not resolve their speed
+  const Played played(scene), resolved(fine);
+  for (const Played* p : {&played, &resolved}) found.sound(*p, 5e-3);
+  if (!found.refused().empty()) return;
+  found.at_most("hands off the bar (m)", hands_off_bar(played, scene), 1e-3);
+  found.at_most("energy gained at 240 Hz (J)", energy_gained(resolved, scene), 1);
+  found.at_least(
+      "its feet swing forwards (m)",
+      played.judge().worst(0, played.judge().frames() - 1,
+                           [&](int f) {
+                             return point_at(played, f, 0, joint_named(scene, 0, "foot_l"), {0, 0, 0}).x();
+                           }),
+      0.2);
 }
 
 void handcuffs(const Scene& scene, bool, Findings& found) {
