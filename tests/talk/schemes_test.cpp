@@ -59,7 +59,7 @@ TEST(ForwardEuler, FallsByItsOwnSum) {
   scene::Scene scene = talk_scene("stiff_contact");
   const auto now = after(scene, 0.25, Compared::kForwardEuler, 60);  // 15 steps
   EXPECT_NEAR(now[0].translation.x(), -0.7 + 3 * 0.25, 1e-6);
-  EXPECT_NEAR(now[0].translation.z(), 0.6 - 9.81 / 3600 * (15 * 14 / 2), 1e-6);
+  EXPECT_NEAR(now[0].translation.z(), 0.6 - 9.81 / 3600 * 15 * 14 / 2, 1e-6);
 }
 
 TEST(SemiImplicit, IsImplicitEulerWhereTheHessianDoesNotChange) {

@@ -8,7 +8,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p pictures
 
-# row NAME SCENE SCHEME SECONDS…: a strip, 400 pixels a moment
+# row NAME SCENE SCHEME SECONDS…: a strip, 400 pixels a moment; so high in the middle as $height says
+height=300
 row() {
   local name=$1 scene=$2 scheme=$3 inputs=() moment n=0
   shift 3
@@ -18,7 +19,7 @@ row() {
     inputs+=(-i "$work/$name.$n.png")
     n=$((n + 1))
   done
-  ffmpeg -nostdin -loglevel error -y "${inputs[@]}" -filter_complex "hstack=inputs=$n" "$work/$name.png"
+  ffmpeg -nostdin -loglevel error -y "${inputs[@]}" -filter_complex "hstack=inputs=$n,crop=iw:$height" "$work/$name.png"
 }
 
 # picture NAME ROW…: strips below each other, as JPEG
@@ -41,7 +42,9 @@ strip() { # strip SCENE SECONDS…: as the scene file has it, by the runtime's s
   picture "$scene" "$scene"
 }
 
+height=90
 for scheme in forward_euler semi_implicit bdf1; do row "spring_$scheme" stiff_spring $scheme 0.05 0.25 0.4 0.5; done
+height=300
 picture stiff_spring spring_forward_euler spring_semi_implicit spring_bdf1
 strip hinge 0 0.3 0.55 0.8
 strip linked_bodies 0 0.4 0.8 1.2
@@ -59,6 +62,6 @@ row wrong_bdf1 wrong_root bdf1 0 0.0167 0.0334 0.1
 row wrong_runtime wrong_root bossak 0 0.0167 0.0334 0.1
 picture wrong_root wrong_bdf1 wrong_runtime
 strip limp 0.4 0.8 1.1 2.5
-row baked_talk baked_as_in_the_talk bossak 0.25 0.35 0.5 0.8
-row baked_own baked bossak 0.25 0.35 0.5 0.8
+row baked_talk baked_as_in_the_talk bossak 0.25 0.33 0.5 0.6
+row baked_own baked bossak 0.25 0.33 0.5 0.6
 picture baked baked_talk baked_own
