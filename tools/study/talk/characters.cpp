@@ -206,23 +206,31 @@ BakedHands bake(const Scene& scene, double decay, Findings& found) {
   return out;
 }
 
+Scene struck_harder(Scene scene) {
+  for (scene::Push& push : scene.pushes) push.impulse *= 5;
+  return scene;
+}
+
 void baked(const Scene& scene, bool, Findings& found) {
-  const BakedHands own = bake(scene, 0, found);
+  const BakedHands own = bake(scene, 0, found), hard = bake(struck_harder(scene), 0, found);
   if (!found.refused().empty()) return;
   found.at_most("hands off those always solved for, rms (deg)", own.off, 3);
   found.at_least("left out of the solves (of those with limp hands)", own.left_out, 0.6);
+  found.note("after blows five times as hard, rms (deg)", hard.off);
 }
 
-/// As it was in our own way, to be seen beside it: the best that any k makes of it.
+/// The talk's law beside it: the best that any k makes of it.
 void baked_as_in_the_talk(const Scene& scene, bool, Findings& found) {
-  double best = 1e9;
+  double best = 1e9, best_hard = 1e9;
   for (const int decay : {1, 2, 8, 32, 128}) {
-    const BakedHands hands = bake(scene, decay, found);
+    const BakedHands hands = bake(scene, decay, found), hard = bake(struck_harder(scene), decay, found);
     if (!found.refused().empty()) return;
     found.note(("with k = " + std::to_string(decay) + " 1/s, rms (deg)").c_str(), hands.off);
     best = std::min(best, hands.off);
+    best_hard = std::min(best_hard, hard.off);
   }
   found.at_least("hands off those always solved for, rms, best k (deg)", best, 3);
+  found.note("after blows five times as hard, best k (deg)", best_hard);
 }
 
 }  // namespace
