@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <ostream>
 #include <set>
 
@@ -33,6 +35,21 @@ TEST(TalkScenes, AreAllJudged) {
     if (entry.path().extension() == ".json") files.insert(entry.path().stem().string());
   for (const Situation& situation : talk_scenes()) judged.insert(situation.name);
   EXPECT_EQ(files, judged);
+}
+
+TEST(TalkScenes, PageHasAPictureOfEach) {
+  const std::string folder = source_dir() + "/assets/scenes/talk/";
+  std::ifstream in(folder + "README.md");
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  for (const Situation& situation : talk_scenes()) {
+    std::string name = situation.name;
+    if (name == "baked_as_in_the_talk") name = "baked";  // a row of that picture
+    EXPECT_NE(page.find("](pictures/" + name + ".jpg)"), std::string::npos) << name;
+    std::error_code missing;
+    const auto size = std::filesystem::file_size(folder + "pictures/" + name + ".jpg", missing);
+    EXPECT_FALSE(missing) << name;
+    EXPECT_LT(size, 60000u) << name << ": too large for a page";
+  }
 }
 
 }  // namespace
