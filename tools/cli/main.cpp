@@ -133,15 +133,28 @@ struct EvaluateCommand {
   }
 };
 
+constexpr const char* kSchemes =
+    "scenes: bossak (the runtime's), or for comparison bdf1, bdf2, momentum, semi_implicit, forward_euler";
+
+/// A scene file, stepped by another scheme than it asks for where one is named.
+Error load_scene(const std::string& file, const std::string& scheme, sinew::scene::Scene& scene) {
+  if (Error error = sinew::scene::load_scene(file, scene)) return error;
+  if (scheme.empty()) return {};
+  const auto named = sinew::study::scheme_named(scheme);
+  if (!named) return {"there is no scheme '" + scheme + "'"};
+  scene.scheme = *named;
+  return {};
+}
+
 struct SimulateCommand {
-  std::string scene_file, output, preset, max_error, budget;
+  std::string scene_file, output, scheme, preset, max_error, budget;
   bool json_output = false, plot = false;
 
   Error run() const {
     bool as_json = false;
     if (Error error = cli::telemetry_format(output, as_json)) return error;
     sinew::scene::Scene scene;
-    if (Error error = sinew::scene::load_scene(scene_file, scene)) return error;
+    if (Error error = load_scene(scene_file, scheme, scene)) return error;
     if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
@@ -192,7 +205,7 @@ struct SimulateCommand {
 };
 
 struct RenderCommand {
-  std::string input, output, telemetry_file;
+  std::string input, output, scheme, telemetry_file;
   SourceOptions source;
   sinew::render::Options options;
   bool demo = false, no_overlay = false, json_output = false;
@@ -204,7 +217,7 @@ struct RenderCommand {
     options.overlay = !no_overlay;
     if (std::filesystem::path(input).extension() == ".json") {
       sinew::scene::Scene scene;
-      if (Error error = sinew::scene::load_scene(input, scene)) return error;
+      if (Error error = load_scene(input, scheme, scene)) return error;
       return render_scene(scene);
     }
     json conversion, report;
@@ -289,6 +302,7 @@ int main(int argc, char** argv) try {
   s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
   s->add_flag("--json", simulate.json_output);
+  s->add_option("--scheme", simulate.scheme, kSchemes);
   auto* preset = s->add_option("--preset", simulate.preset, "crowd, game, cinematic or reference");
   auto* within = s->add_option("--max-error", simulate.max_error,
                                "cheapest measured setting that stays within, such as 1cm or 2deg");
@@ -322,6 +336,7 @@ int main(int argc, char** argv) try {
   r->add_option("--telemetry", render.telemetry_file, "scenes: also write the telemetry CSV and its plot");
   r->add_flag("--no-overlay", render.no_overlay);
   r->add_flag("--json", render.json_output);
+  r->add_option("--scheme", render.scheme, kSchemes);
   render.source.add(*r);
 
   app.add_subcommand("study",

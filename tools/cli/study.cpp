@@ -14,6 +14,7 @@
 #include "study/maps.h"
 #include "study/scenes/situation.h"
 #include "study/study.h"
+#include "study/talk/talk.h"
 
 namespace sinew::cli {
 namespace {
@@ -162,9 +163,9 @@ convert::Error AccuracyCommand::run() const {
 
 convert::Error ScenesCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
-  std::vector<study::Situation> asked = study::situations();
+  std::vector<study::Situation> asked = talk ? study::talk_scenes() : study::situations();
   if (!only.empty()) std::erase_if(asked, [&](const study::Situation& s) { return s.name != only; });
-  if (asked.empty()) return {"there is no situation '" + only + "'"};
+  if (asked.empty()) return {"there is no scene '" + only + "'"};
   std::vector<study::SituationResult> results;
   const auto progress = progress_line("scenes");
   for (const study::Situation& situation : asked) {
@@ -176,13 +177,13 @@ convert::Error ScenesCommand::run() const {
     std::fflush(stdout);
   }
   const nlohmann::json summary = study::situations_json(results);
-  if (convert::Error error = write_atomically(directory + "/scenes.json", summary.dump(1) + "\n"))
-    return error;
+  const std::string file = directory + (talk ? "/talk.json" : "/scenes.json");
+  if (convert::Error error = write_atomically(file, summary.dump(1) + "\n")) return error;
   if (json_output)
     std::puts(summary.dump().c_str());
   else
-    std::printf("%d scenes passed, %d failed; %s/scenes.json\n", summary["passed"].get<int>(),
-                summary["failed"].get<int>(), directory.c_str());
+    std::printf("%d scenes passed, %d failed; %s\n", summary["passed"].get<int>(),
+                summary["failed"].get<int>(), file.c_str());
   return {};
 }
 

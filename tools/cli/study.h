@@ -28,6 +28,7 @@ struct AccuracyCommand {
 struct ScenesCommand {
   std::string directory = "out/study", only;
   bool quick = false, json_output = false;
+  bool talk = false;  ///< the seed talk's scenes, not the ordinary situations
 
   convert::Error run() const;
 };

@@ -25,6 +25,13 @@ struct MechanismCommand {
   }
 };
 
+void add_options(CLI::App& app, cli::ScenesCommand& command) {
+  app.add_option("-o,--output", command.directory, "directory for the JSON file (out/study)");
+  app.add_option("--scene", command.only, "run one");
+  app.add_flag("--quick", command.quick, "shorter runs, fewer seeds");
+  app.add_flag("--json", command.json_output);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -61,13 +68,14 @@ int main(int argc, char** argv) try {
                  "mean energies of many limp falls instead: JSON, pictures");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
   cost->add_flag("--json", accuracy.json_output);
-  cli::ScenesCommand scenes;
+  cli::ScenesCommand scenes, talk_scenes;
+  talk_scenes.talk = true;
   auto* ordinary = study->add_subcommand(
       "scenes", "ordinary situations, judged from poses\nExample: sinew study scenes --quick -o out/study");
-  ordinary->add_option("-o,--output", scenes.directory, "directory for scenes.json (out/study)");
-  ordinary->add_option("--scene", scenes.only, "run one");
-  ordinary->add_flag("--quick", scenes.quick, "shorter runs, fewer seeds");
-  ordinary->add_flag("--json", scenes.json_output);
+  add_options(*ordinary, scenes);
+  auto* talk = study->add_subcommand(
+      "talk", "the seed talk's scenes, judged from poses\nExample: sinew study talk --scene torque_limit");
+  add_options(*talk, talk_scenes);
   cli::EffectsCommand effects;
   auto* each = study->add_subcommand(
       "effects",
@@ -92,6 +100,8 @@ int main(int argc, char** argv) try {
     error = accuracy.run();
   else if (ordinary->parsed())
     error = scenes.run();
+  else if (talk->parsed())
+    error = talk_scenes.run();
   else
     error = effects.run();
   if (!error) return 0;

@@ -17,6 +17,9 @@ convert::Error Play<T>::set_up() {
     if (const Status status = character.set_target(starts_.back()); !status)
       return {"character '" + s_.characters[c].name + "' at the start: " + status.reason};
     character.reset();
+    CharacterDetail detail;
+    detail.bake = s_.characters[c].bake;
+    character.set_detail(detail);
     for (const auto& [joint, factor] : s_.characters[c].group_strength)
       character.set_strength(joint, T(asked_[c].groups.emplace_back(ramp_at(factor, 0))));
   }
@@ -26,7 +29,8 @@ convert::Error Play<T>::set_up() {
 
 template <class T>
 convert::Error Play<T>::add_all() {
-  Status status;
+  Status status = study::declare_scheme(s_.scheme, world_);
+  if (!status) return {std::string("scheme: ") + status.reason};
   for (const SceneCharacter& c : s_.characters) {
     CharacterSettings settings = c.settings;
     settings.strength = ramp_at(c.strength, 0);

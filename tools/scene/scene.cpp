@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -108,7 +109,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
                   {"asset",          "figure",         "name", "position",   "yaw_deg",     "clips",
                    "path",           "turn_rate",      "pose", "velocity",   "spin",        "random_spin",
                    "strength",       "group_strength", "root", "root_force", "root_torque", "ground_contact",
-                   "self_collision", "options",        "grid"});
+                   "self_collision", "options",        "grid", "bake"});
   SceneCharacter c;
   const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
@@ -153,6 +154,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
   c.settings.root_torque = in.time("root_torque", c.settings.root_torque);
   c.settings.ground_contact = in.flag("ground_contact", true);
   c.settings.self_collision = in.flag("self_collision", false);
+  c.bake = in.flag("bake", false);
   c.asset = asset;
   return c;
 }
@@ -254,9 +256,10 @@ void read_accuracy(const json& value, Scene& s) {
 }
 
 Scene parse(const json& root, const std::filesystem::path& base, std::span<const EffectRow> registry) {
-  const Reader in(root, "",
-                  {"title", "duration", "frame_rate", "accuracy", "gravity", "ground", "characters", "props",
-                   "obstacles", "loops", "particles", "pushes", "effects", "camera", "captions", "plot"});
+  const Reader in(
+      root, "",
+      {"title", "duration", "frame_rate", "accuracy", "scheme", "baking", "gravity", "ground", "characters",
+       "props", "obstacles", "loops", "particles", "pushes", "effects", "camera", "captions", "plot"});
   Scene s;
   s.title = in.text("title", "");
   s.duration = in.positive("duration", s.duration);
@@ -264,6 +267,14 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   if (s.frame_rate < 4 || s.frame_rate > 10000) fail("frame_rate", "must be between 4 and 10000");
   if (s.duration > 3600) fail("duration", "is longer than an hour");
   if (in.has("accuracy")) read_accuracy(in.at("accuracy"), s);
+  const std::optional<study::Compared> scheme = study::scheme_named(in.text("scheme", "bossak"));
+  if (!scheme) fail("scheme", "is bossak, bdf2, bdf1, momentum, semi_implicit or forward_euler");
+  s.scheme = *scheme;
+  if (in.has("baking")) {
+    const Reader baking(in.at("baking"), "baking", {"every", "decay"});
+    s.world.detail.bake_every = baking.count("every", s.world.detail.bake_every, 1, 1000);
+    s.world.detail.baked_decay = baking.time("decay", 0);
+  }
   s.world.gravity = in.vector("gravity", s.world.gravity);
   s.world.ground = in.flag("ground", true);
   const json& characters = in.list("characters");

@@ -14,6 +14,7 @@
 #include "scene/start.h"
 #include "scene/timeline.h"
 #include "sinew/character/world.h"
+#include "study/schemes/schemes.h"
 
 namespace sinew::scene {
 
@@ -44,6 +45,7 @@ struct SceneCharacter {
   std::vector<std::pair<int, Timeline<double>>> group_strength;
   Timeline<RootDrive> root{{0, RootDrive::kKinematic}};
   CharacterSettings settings;
+  bool bake = false;  ///< see CharacterDetail
 };
 
 struct SceneProp {
@@ -87,6 +89,7 @@ struct Scene {
   double frame_rate = 60;
   bool double_precision = false;
   WorldSettings world;
+  study::Compared scheme = study::Compared::kBossak;
   std::vector<SceneCharacter> characters;
   std::vector<SceneProp> props;
   std::vector<Collider> obstacles;

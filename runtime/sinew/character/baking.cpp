@@ -214,28 +214,32 @@ bool touched(const Tree<T>& tree, std::span<const Contact<T>> contacts, int inde
 }  // namespace
 
 template <class T>
-void choose_baked(CharacterState<T>& s, int bake_every, T h) {
+void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
+  const int bake_every = detail.bake_every;
+  const T kept = h / (1 + T(detail.baked_decay) * h);  // of a rate that q'' = −k·q' slows, implicitly
+  const bool decays = detail.baked_decay > 0;
   const bool asked = s.detail.bake || std::min(s.detail.most, s.levels.cap) <= Level::kPartial;
   const bool bakes = asked && bake_every > 1 && !s.is_prop && !s.pushed() &&
                      s.levels.steps % static_cast<std::uint32_t>(bake_every) != 0;
   for (int i = 0; i < s.tree.bodies; ++i) {
     s.baked[i] = 0;
     if (!bakes || !s.rig->bakes[i]) continue;
-    if (const int parent = s.tree.parent[i]; parent >= 0 && turn_of<T>(s.history, parent, h) > T(kExpectable))
-      continue;
+    const int parent = s.tree.parent[i];
+    if (!decays && parent >= 0 && turn_of<T>(s.history, parent, h) > T(kExpectable)) continue;
     const bool limp = has_no_muscle(s.problem, i);
     s.baked[i] = limp || (s.joint_is_driven(i) && s.deviation[i].released);
-    if (!limp) continue;
+    if (!limp && !(decays && s.baked[i])) continue;
     std::array<T, 6> moved{};
-    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * h;
+    for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * kept;
     s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);
   }
 }
 
 template <class T>
-void move_baked(CharacterState<T>& s, int index, std::span<const Contact<T>> contacts,
-                const StepSettings<T>& settings) {
+void move_baked(CharacterState<T>& s, const LevelOfDetail& detail, int index,
+                std::span<const Contact<T>> contacts, const StepSettings<T>& settings) {
   TreeProblem<T>& p = s.problem;
+  if (detail.baked_decay > 0) return;
   if (std::none_of(s.baked.begin(), s.baked.end(), [](std::uint8_t baked) { return baked != 0; })) return;
   forward_kinematics<T>(s.tree, p.local, p.common_origin, p.kinematics);
   for (int i = 0; i < s.tree.bodies; ++i)
@@ -243,7 +247,8 @@ void move_baked(CharacterState<T>& s, int index, std::span<const Contact<T>> con
 }
 
 template <class T>
-bool release_baked(CharacterState<T>& s, const StepSettings<T>& settings) {
+bool release_baked(CharacterState<T>& s, const LevelOfDetail& detail, const StepSettings<T>& settings) {
+  if (detail.baked_decay > 0) return false;
   TreeProblem<T>& p = s.problem;
   bool any = false;
   for (int i = 0; i < s.tree.bodies; ++i) {

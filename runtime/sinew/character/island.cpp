@@ -294,7 +294,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time),
                       height_of_floor<T>(world, settings_.common_origin.z()), h);
-    choose_baked<T>(*s, world.detail.bake_every, h);
+    choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
     write_pushes(*s, T(1));
@@ -321,13 +321,20 @@ void IslandStepper<T>::begin_solve() {
   }
   emphasise_friction(h);
   for (std::size_t n = 0; n < states_.size(); ++n)
-    move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+    move_baked<T>(*states_[n], world_->detail, static_cast<int>(n), contacts_, settings_);
   if (!landed_ && strikes_deep(h)) choose_guess(h);
 }
 
 /// In as many passes as the step has left.
 template <class T>
 SolveReport IslandStepper<T>::solve() {
+  if (const TimeScheme<T>* scheme = settings_.plan->scheme; scheme && scheme->solves()) {
+    scheme->solve(settings_, problems_, contacts_, couplings_);
+    SolveReport once;
+    once.outer_passes = once.factorisations = 1;
+    once.converged = true;
+    return once;
+  }
   Accuracy accuracy = world_->accuracy;
   accuracy.max_iterations = std::min(accuracy.max_iterations, std::max(passes_left_, kLeastPasses));
   const SolveReport report = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
@@ -341,12 +348,13 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
   const T h = settings_.h;
   begin_solve();
   SolveReport total = solve();
+  if (const TimeScheme<T>* scheme = settings_.plan->scheme; scheme && scheme->solves()) return total;
   for (int round = 1;; ++round) {
     if (may_split && !total.converged && passes_left_ > 0) return total;
     bool released = false;
     for (CharacterState<T>* s : states_) {
       released = release_overloaded(*s, h) || released;
-      released = release_baked(*s, settings_) || released;
+      released = release_baked(*s, world_->detail, settings_) || released;
     }
     if (!released || round == kReleaseRounds) return total;
     // Which points can move depends on what was released.

@@ -53,7 +53,7 @@ void IslandStepper<T>::choose_guess(T h) {
   const auto guess = [&](auto share_of) {
     for (std::size_t n = 0; n < states_.size(); ++n) {
       first_guess(*states_[n], h, share_of(n));
-      move_baked<T>(*states_[n], static_cast<int>(n), contacts_, settings_);
+      move_baked<T>(*states_[n], world_->detail, static_cast<int>(n), contacts_, settings_);
     }
   };
   guess([](std::size_t) { return T(0); });

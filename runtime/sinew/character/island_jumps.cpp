@@ -322,9 +322,11 @@ template <class T>
 bool IslandStepper<T>::choose_loose() {
   loose_.clear();
   bool led = false;
+  const bool by_itself = !(world_->detail.baked_decay > 0);  // what is baked; else it has the rate of its law
   for (const CharacterState<T>* s : states_)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
-      loose_.push_back((s->problem.free[dof] || s->baked[s->tree.dof_body[dof]]) && !holds(*s, dof));
+      loose_.push_back((s->problem.free[dof] || (by_itself && s->baked[s->tree.dof_body[dof]])) &&
+                       !holds(*s, dof));
       led = led || !loose_.back();
     }
   return led;

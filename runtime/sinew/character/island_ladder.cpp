@@ -6,6 +6,7 @@
 #include "sinew/character/island.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/effects/gravity.h"
+#include "sinew/optimizer/time_scheme.h"
 
 namespace sinew {
 namespace {
@@ -15,12 +16,13 @@ constexpr int kPassing = 30;  ///< steps after a tree was held
 }  // namespace
 
 /// Whether nothing can do work on the trees: no muscle, no drive, no push, no effect, no
-/// loop that is being closed.
+/// loop that is being closed; nor a scheme of another solve, whose books nobody keeps.
 template <class T>
 bool IslandStepper<T>::passive() const {
   const bool closing =
       std::any_of(couplings_.begin(), couplings_.end(), [](const Coupling<T>* c) { return c->closes(); });
-  if (closing) return false;
+  const TimeScheme<T>* scheme = settings_.plan->scheme;
+  if (closing || (scheme && scheme->solves())) return false;
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;

@@ -63,6 +63,9 @@ struct LevelOfDetail {
   double sleep_speed = 0.01;  ///< m/s of every body's centre; below, it rests
   double sleep_spin = 0.05;   ///< rad/s
   int bake_every = 4;         ///< the talk: wrists and ankles are dynamic a quarter of the time
+  /// 1/s. Above 0 baked joints move as the talk has it, q'' = −k·q', whatever their arm does and nothing
+  /// calls for a solve: for comparisons. 0: by themselves (baking.h).
+  double baked_decay = 0;
   Budget budget;
 };
 

@@ -1,5 +1,6 @@
 // A scheme in time that stands in for Bossak's (bossak.h), for comparisons. The runtime links none;
-// tools/study/schemes has implicit Euler, bdf2 and the seed talk's momentum scheme.
+// tools/study/schemes has implicit, semi-implicit and forward Euler, bdf2 and the seed talk's momentum
+// scheme.
 #pragma once
 
 #include <span>
@@ -8,6 +9,10 @@
 
 namespace sinew {
 
+template <class T>
+struct Contact;
+template <class T>
+struct Coupling;
 template <class T>
 struct StepSettings;
 template <class T>
@@ -34,6 +39,16 @@ class TimeScheme {
   virtual Vec3<T> couple(const StepSettings<T>& settings, const TreeProblem<T>& problem, int body) const {
     (void)settings, (void)problem, (void)body;
     return Vec3<T>::Zero();
+  }
+
+  /// True: its own solve() takes the optimizer's place, once in a step. Nothing is released, split or held to
+  /// its energy then: what such a scheme does wrong is to be seen.
+  virtual bool solves() const { return false; }
+  /// Begins where inertia and the targets lead (`local`); leaves the trees with kinematics, wrenches and
+  /// gradient at the end of the step. May make unknowns of what is overloaded, and may allocate.
+  virtual void solve(const StepSettings<T>& settings, std::span<TreeProblem<T>* const> trees,
+                     std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings) const {
+    (void)settings, (void)trees, (void)contacts, (void)couplings;
   }
 };
 

@@ -55,15 +55,15 @@ bool Findings::passed() const {
          std::all_of(criteria_.begin(), criteria_.end(), [](const Criterion& c) { return c.passed; });
 }
 
-std::string situation_file(const std::string& name) {
-  return SINEW_ASSETS_DIR "/scenes/situations/" + name + ".json";
+std::string situation_file(const Situation& situation) {
+  return std::string(SINEW_ASSETS_DIR "/scenes/") + situation.folder + "/" + situation.name + ".json";
 }
 
 SituationResult run_situation(const Situation& situation, bool quick) {
   SituationResult result{situation, {}, 0, known_to_fail(situation.name) != nullptr};
   const auto begin = std::chrono::steady_clock::now();
   scene::Scene scene;
-  if (const convert::Error error = scene::load_scene(situation_file(situation.name), scene))
+  if (const convert::Error error = scene::load_scene(situation_file(situation), scene))
     result.findings.refuse(error.message);
   else
     situation.judge(scene, quick, result.findings);

@@ -60,9 +60,10 @@ class Findings {
 };
 
 struct Situation {
-  const char* name;   ///< assets/scenes/situations/NAME.json
+  const char* name;   ///< assets/scenes/FOLDER/NAME.json
   const char* about;  ///< what is asked, in one line
   void (*judge)(const scene::Scene& scene, bool quick, Findings& findings);
+  const char* folder = "situations";
 };
 
 /// In the order in which they are printed.
@@ -79,7 +80,7 @@ struct SituationResult {
 const char* known_to_fail(const std::string& situation);
 
 /// Path of a situation's scene file.
-std::string situation_file(const std::string& name);
+std::string situation_file(const Situation& situation);
 
 SituationResult run_situation(const Situation& situation, bool quick);
 

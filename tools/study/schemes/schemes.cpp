@@ -1,9 +1,13 @@
 #include "study/schemes/schemes.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include "sinew/optimizer/problem.h"
+#include "study/schemes/forward_euler.h"
+#include "study/schemes/semi_implicit.h"
 
 namespace sinew::study {
 namespace {
@@ -209,6 +213,19 @@ void Bdf2<T>::advance(const Tree<T>& tree, const Kinematics<T>& kinematics, cons
   history.accelerates = false;
 }
 
+std::optional<Compared> scheme_named(const std::string& name) {
+  static constexpr std::array<std::pair<const char*, Compared>, 6> kNames{
+      {{"bossak", Compared::kBossak},
+       {"bdf2", Compared::kBdf2},
+       {"bdf1", Compared::kBdf1},
+       {"momentum", Compared::kMomentum},
+       {"semi_implicit", Compared::kSemiImplicit},
+       {"forward_euler", Compared::kForwardEuler}}};
+  const auto* const found =
+      std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return name == entry.first; });
+  return found == kNames.end() ? std::nullopt : std::optional(found->second);
+}
+
 template <class T>
 Status declare_scheme(Compared scheme, World<T>& world) {
   switch (scheme) {
@@ -220,6 +237,10 @@ Status declare_scheme(Compared scheme, World<T>& world) {
       return world.template declare<Bdf1>();
     case Compared::kMomentum:
       return world.template declare<Momentum>();
+    case Compared::kSemiImplicit:
+      return world.template declare<SemiImplicit>();
+    case Compared::kForwardEuler:
+      return world.template declare<ForwardEuler>();
   }
   return {};
 }

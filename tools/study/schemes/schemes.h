@@ -7,9 +7,14 @@
 //   bdf2      ĉ = a₀c₀ + a₁c₋₁ + βh(a₀ċ₀ + a₁ċ₋₁)   R̂ = R₀ exp(x)           α = 1/(βh²)
 //             a₀ = (1+w)²/(1+2w), a₁ = −w²/(1+2w), β = (1+w)/(1+2w), w = h/h₋₁; the first step is bdf1's
 //
+// semi_implicit.h and forward_euler.h have the two that the talk argues against.
+//
 // x is the torque-free rotation: I·(derivative of the rotation vector) = exp(−x) R₀ᵀ L*, L* = a₀L₀ + a₁L₋₁.
 // With an affine R̂ bdf2 would be as stable, but free spin would decay.
 #pragma once
+
+#include <optional>
+#include <string>
 
 #include "sinew/character/world.h"
 #include "sinew/optimizer/time_scheme.h"
@@ -52,7 +57,10 @@ class Bdf2 : public TimeScheme<T> {
                History<T>& history) const override;
 };
 
-enum class Compared { kBossak, kBdf2, kBdf1, kMomentum };
+enum class Compared { kBossak, kBdf2, kBdf1, kMomentum, kSemiImplicit, kForwardEuler };
+
+/// By the name that scene files give it: bossak, bdf2, bdf1, momentum, semi_implicit, forward_euler.
+std::optional<Compared> scheme_named(const std::string& name);
 
 /// Lets a world step by it; before anything is added. kBossak: as it does by itself.
 template <class T>
