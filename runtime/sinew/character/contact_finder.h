@@ -9,6 +9,7 @@
 #include "sinew/character/neighbour_grid.h"
 #include "sinew/character/state.h"
 #include "sinew/character/touching.h"
+#include "sinew/character/way_back.h"
 #include "sinew/effects/crossing_edges.h"
 #include "sinew/effects/static_shape.h"
 
@@ -38,9 +39,6 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 
 constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
 constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
-/// m of a human: what clips press into obstacles and each other, a sole that is a little low, a hand that
-/// leans on something: as deep it may lie there. What they press by more is kept out, twice that wholly.
-constexpr double kPressedByClips = 0.03;
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
@@ -106,10 +104,10 @@ class ContactSearch {
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
   /// sorted by id. Features that no unknown moves do not meet the floor: a driven root bears what its feet
   /// would. Nor do they meet each other, where they are of one tree, or no muscles of either may be overcome.
-  /// What follows a clip begins to bear where the clip presses it, in the floor at any depth, elsewhere as
-  /// kPressedByClips says.
-  /// Allocates nothing; where the trees' room does not do, those between trees that are furthest apart are
-  /// left out, and only if that does not do, such of static obstacles: see left_out().
+  /// What follows a clip begins to bear where the clip presses it, in the floor at any depth where its root
+  /// is kinematic, elsewhere as kPressedByClips says. Allocates nothing; where the trees' room does not do,
+  /// those between trees that are furthest apart are left out, and only if that does not do, such of static
+  /// obstacles: see left_out().
   virtual std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                                      std::span<CharacterState<T>* const> states, std::span<const int> indices,
                                      std::span<const LaggedForce<T>> lagged,

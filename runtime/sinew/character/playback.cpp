@@ -90,17 +90,18 @@ bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& p
                     s.problem.gradient);
   else
     check_under_loads(s, world, plan, h, room);
-  return play_checked(s, world.gravity, h);
+  return play_checked(s, world, h);
 }
 
 template <class T>
-bool play_checked(CharacterState<T>& s, const Vec3<double>& gravity, T h) {
+bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
   const TreeProblem<T>& p = s.problem;
   const int root_dofs = s.tree.type[0] == JointType::kFree ? s.tree.dof_count(0) : 0;
   const int begin = s.root_is_kinematic() && root_dofs > 0 ? 1 : 0, end = s.limited ? s.tree.bodies : begin;
   for (int i = begin; i < end; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
+  if (leads_into_floor(s, world)) return false;
   std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.played_from.swap(s.local);
@@ -110,7 +111,7 @@ bool play_checked(CharacterState<T>& s, const Vec3<double>& gravity, T h) {
   s.pose_changed();
   s.history.place = s.target[0].translation.template cast<double>();  // neighbours go by these two
   s.history.velocity[0] = root_velocity(s.tree, s.target[0]);
-  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = gravity};
+  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;

@@ -24,7 +24,7 @@ bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T
 
 /// The same where `state.problem.gradient` holds what the muscles would have to give.
 template <class T>
-bool play_checked(CharacterState<T>& state, const Vec3<double>& gravity, T h);
+bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
 /// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
 template <class T>
@@ -39,7 +39,7 @@ void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
   prefix bool has_plain_check<T>(const CharacterState<T>&);                                                  \
   prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&);                 \
   prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, const CheckRoom<T>&); \
-  prefix bool play_checked<T>(CharacterState<T>&, const Vec3<double>&, T);                                   \
+  prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                                  \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                                        \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)

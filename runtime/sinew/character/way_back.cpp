@@ -115,6 +115,19 @@ T below_floor(CharacterState<T>& s, std::span<const Transform<T>> pose, T ground
   return ground - lowest;
 }
 
+/// Its root gives way to what its feet meet.
+template <class T>
+bool is_raised_by_feet(const CharacterState<T>& s) {
+  return s.settings.root == RootDrive::kAssisted && s.settings.ground_contact && s.floats &&
+         !s.rig->support.points.empty();
+}
+
+/// m, that an animation may take feet into the floor.
+template <class T>
+T pressed_by_clip(const CharacterState<T>& s) {
+  return T(kPressedByClips) * s.tree.scale.length;
+}
+
 }  // namespace
 
 template <class T>
@@ -164,16 +177,28 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
     }
     p.target[i] = at_offset<T>(s.tree, i, s.wanted[i], within_limits(s, i, offset));
   }
-  const bool stands = s.settings.root == RootDrive::kAssisted && s.settings.ground_contact && s.floats;
-  if (s.calm || !stands || std::isinf(ground) || s.rig->support.points.empty()) return;
-  const T deeper = below_floor<T>(s, p.target, ground) - below_floor<T>(s, s.wanted, ground);
+  if (!is_raised_by_feet(s) || std::isinf(ground)) return;
+  const T target = below_floor<T>(s, p.target, ground),
+          clip = s.calm ? target : below_floor<T>(s, s.wanted, ground);
+  const T deeper = target - std::min(clip, pressed_by_clip(s));
   p.target[0].translation.z() += std::max(deeper, T(0));
+}
+
+template <class T>
+bool leads_into_floor(CharacterState<T>& s, const WorldSettings& world) {
+  if (!is_raised_by_feet(s) || !world.ground) return false;
+  for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+  s.problem.common_origin = s.wanted[0].translation;
+  const T ground = height_of_floor<T>(world, double(s.problem.common_origin.z()));
+  return below_floor<T>(s, s.wanted, ground) > pressed_by_clip(s);
 }
 
 template JointJet<float> animation_within<float>(const JointJet<float>&, const JointJet<float>&, float,
                                                  float);
 template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
                                                    double);
+template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
+template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 template void choose_targets<float>(CharacterState<float>&, float, float, float);
 template void choose_targets<double>(CharacterState<double>&, double, double, double);
 

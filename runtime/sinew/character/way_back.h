@@ -8,6 +8,10 @@
 
 namespace sinew {
 
+/// m of a human: what clips press into floor, obstacles and each other, a sole that is a little low, a hand
+/// that leans on something: as deep it may lie there. What they press by more is kept out, twice that wholly.
+constexpr double kPressedByClips = 0.03;
+
 /// From the common origin, at `origin_height` in the world (m); −∞ without a floor.
 template <class T>
 T height_of_floor(const WorldSettings& world, double origin_height) {
@@ -18,11 +22,17 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
 /// damped with time constant `return_time` (s, of a human), e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the
 /// offset from the animation; and no faster than the muscle can stop again with a third of its strength, or a
 /// return time far below the step would fling the joint across. It leads no joint further beyond its limits
-/// than it is. An assisted root goes back over the floor: it is raised by what the joints' ways back would
-/// take feet into it, or it would press them there for good. `ground` is the floor's height from the common
-/// origin (m), −∞ without one. `problem.kinematics` must be those at `problem.start`.
+/// than it is. An assisted root goes over the floor: it is raised by what the animation, beyond
+/// kPressedByClips, and the joints' ways back would take feet into it, or it would press them there for good.
+/// `ground` is the floor's height from the common origin (m), −∞ without one. `problem.kinematics` must be
+/// those at `problem.start`.
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
+
+/// Whether an animation whose root is assisted, not led, takes feet so deep into the floor that its root has
+/// to be raised, at the end of the next step: it can't be played. Writes `wanted`. O(bodies).
+template <class T>
+bool leads_into_floor(CharacterState<T>& state, const WorldSettings& world);
 
 /// Whether the rates (per frame) at both ends of a frame do not belong to the motion `whole` in it: a host
 /// that stopped its clip, or knows none. A motion that turns back has rates that are larger than what they
@@ -43,6 +53,8 @@ extern template JointJet<float> animation_within<float>(const JointJet<float>&, 
                                                         float);
 extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
                                                           double, double);
+extern template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
+extern template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 extern template void choose_targets<float>(CharacterState<float>&, float, float, float);
 extern template void choose_targets<double>(CharacterState<double>&, double, double, double);
 

@@ -135,7 +135,7 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
     const double again = now(settings.detail.budget);
     const Unchecked& u = batch[n];
     CharacterState<T>* state = u.state;
-    const bool played = checked ? play_checked(*state, settings.gravity, h)
+    const bool played = checked ? play_checked(*state, settings, h)
                                 : play(*state, settings, plan, h, room_of_check(*state, worker));
     const double spent = u.spent + share + now(settings.detail.budget) - again;
     worker.members.assign(1, state);
