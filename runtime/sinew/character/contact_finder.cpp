@@ -23,6 +23,8 @@ constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
+constexpr double kSlides =
+    20;  ///< what slips by as much less than it turns rolls, the more the less it slips
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 /// m, where something is led as a whole: it presses on whatever has stopped what strikes, and loads it.
 constexpr double kImpactDepthLed = 0.025;
@@ -124,15 +126,21 @@ Contact<T> ContactFinder<T>::contact_of(int n, const Collider& collider) const {
   return c;
 }
 
-/// See roll().
+/// See roll(). What slides turns about a point that is somewhere else.
 template <class T>
 void ContactFinder<T>::let_roll(Contact<T>& c) const {
   if (c.meeting != Meeting::kPoint || !(c.radius > T(0))) return;
-  const CharacterState<T>* b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
-  Vec3<T> spin = angular_velocity(states_[c.tree_a]->history, c.body_a);
-  if (b) spin -= angular_velocity(b->history, c.body_b);
-  roll<T>(states_[c.tree_a]->problem.kinematics, b ? &b->problem.kinematics : nullptr,
-          h_ * (spin - c.normal.dot(spin) * c.normal), c);
+  const CharacterState<T>&a = *states_[c.tree_a], *b = c.tree_b < 0 ? nullptr : states_[c.tree_b];
+  const Vec3<T> touch = c.point - c.radius * c.normal;
+  Vec3<T> spin = angular_velocity(a.history, c.body_a), slip = a.point_velocity(c.body_a, touch);
+  if (b) {
+    spin -= angular_velocity(b->history, c.body_b);
+    slip -= b->point_velocity(c.body_b, touch);
+  }
+  spin -= c.normal.dot(spin) * c.normal;
+  slip -= c.normal.dot(slip) * c.normal;
+  const T rolls = 1 - T(kSlides) * slip.norm() / (c.radius * spin.norm());
+  if (rolls > T(0)) roll<T>(a.problem.kinematics, b ? &b->problem.kinematics : nullptr, rolls * h_ * spin, c);
 }
 
 template <class T>

@@ -280,7 +280,8 @@ void fix_material_points(const Kinematics<T>& a, const Kinematics<T>* b, const V
   c.material_b = b ? Vec3<T>(b->rotation[c.body_b].transpose() * (touch - b->origin[c.body_b])) : touch;
 }
 
-constexpr double kRollsLittle = 1e-3, kRollsFurthest = 2;  ///< rad in a step
+/// rad in a step; of less the chord falls short by a thousandth of the way.
+constexpr double kRollsLittle = 0.1, kRollsFurthest = 2;
 
 }  // namespace
 
