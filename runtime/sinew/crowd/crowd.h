@@ -38,9 +38,8 @@ struct CrowdSettings {
 
 /// What a character plays.
 struct CrowdTrack {
-  const Clip* clip = nullptr;  ///< valid while it plays; null: the host writes `jets` before every step
-  double time = 0;             ///< s, of the clip; a step moves it on by rate · h
-  double rate = 1;
+  const Clip* clip = nullptr;   ///< valid while it plays; null: the host writes `jets` before every step
+  ClipTime time;                ///< s, of the clip, with its rates; a step moves it on by h
   Transform<float> place = {};  ///< clip → world
 };
 
