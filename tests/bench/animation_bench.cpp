@@ -6,6 +6,7 @@
 
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
+#include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
@@ -83,6 +84,24 @@ void blend(benchmark::State& state, BlendMode mode, bool masked) {
   per_joint(state);
 }
 
+/// What is left of a transition, on top of a sampled pose: all joints turn, the first `moving` also shift.
+void inertialize(benchmark::State& state) {
+  const Clip clip = fixtures::random_clip({});
+  const int moving = static_cast<int>(state.range(0));
+  std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
+  (void)SamplingJob<float>{&clip, 1, a}.Run();
+  (void)SamplingJob<float>{&clip, 3, b}.Run();
+  std::vector<float> numbers(inertial_numbers(kJoints, moving));
+  InertialState<float> transition{numbers, kJoints, moving};
+  (void)begin_inertial<float>(a, b, 1, transition);
+  transition.elapsed = 0.3f;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(InertializeJob<float>{b, &transition, {}, out}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
 void model_pose(benchmark::State& state) {
   const Clip clip = fixtures::random_clip({});
   std::vector<Transform<float>> poses(kJoints), model(kJoints);
@@ -132,6 +151,7 @@ void skinning(benchmark::State& state) {
 }
 
 BENCHMARK(model_pose);
+BENCHMARK(inertialize)->ArgName("moving")->Arg(1)->Arg(kJoints);
 BENCHMARK(two_bone);
 BENCHMARK(skinning);
 BENCHMARK_CAPTURE(blend, mix, BlendMode::kMix, false);
