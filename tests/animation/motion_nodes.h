@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "fixtures/clips.h"
+#include "sinew/animation/blend_space.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/phase_map.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/animation/smooth_input.h"
@@ -292,6 +294,94 @@ struct LookNode : LimbNode<T> {
   }
 };
 
+/// A loop of 4 s and one of 3 s that step together, mixed by a filtered input.
+inline PhaseMap phase_map(std::span<const PhaseMarker> markers, double duration) {
+  PhaseMap map;
+  (void)fit_phase_map(markers, duration, 1, map);
+  return map;
+}
+constexpr PhaseMarker kSlowSteps[] = {{0, 0.3}, {0.5, 2.6}}, kFastSteps[] = {{0, 1.1}, {0.5, 2.5}};
+template <class T>
+struct SyncNode : MotionNode<T> {
+  Clip slow = node_clip(1),
+       fast = random_clip(
+           {.joints = kNodeJoints, .duration = 3, .knot_interval = 0.5f, .moving = kNodeJoints, .seed = 2});
+  PhaseMap maps[2] = {phase_map(kSlowSteps, 4), phase_map(kFastSteps, 3)};
+  std::vector<JointJet<T>> other = std::vector<JointJet<T>>(kNodeJoints);
+  SmoothInput<double> input;
+  double goal = 0;
+  TimeJet<double> phase;
+  ClipTime times[2];
+  void run(double h) {
+    const PhaseMember members[] = {{&maps[0], TimeJet<double>(1.0) - input.x}, {&maps[1], input.x}};
+    (void)PhaseJob{members, h, &phase, times}.Run();
+  }
+  void begin() override {
+    input = {};
+    goal = 0;
+    phase = TimeJet<double>(0.1);
+    run(0);
+  }
+  void step(double h) override {
+    this->now += h;
+    while (h > 0) {  // long frames in parts
+      const double part = std::min(h, 1 / 240.0);
+      input.step(goal, SmoothInput<double>::pole_of(0.15), part);
+      run(part);
+      h -= part;
+    }
+  }
+  void change(int k) override { goal = k == 0 ? 1 : k == 1 ? 0.2 : 0.7; }
+  void pose(std::span<JointJet<T>> out) override {
+    sample<T>(slow, times[0], out);
+    sample<T>(fast, times[1], other);
+    const TimeJet<double>& w = input.x;
+    crossfade<T>(out, other, {T(w.value), T(w.rate), T(w.acceleration)}, out);
+  }
+};
+
+/// Five clips by two parameters that the game sets in steps, three of the points on a line.
+inline BlendSpace node_space() {
+  constexpr double kPoints[] = {0, 0, 1, 0, 2, 0, 0.5, 1.5, 1.5, 1.5};
+  BlendSpace space;
+  (void)bake_blend_space(kPoints, 2, 33, space);
+  return space;
+}
+template <class T>
+struct SpaceNode : MotionNode<T> {
+  BlendSpace space = node_space();
+  Clip clips[5] = {node_clip(1), node_clip(2), node_clip(3), node_clip(4), node_clip(5)};
+  std::vector<JointJet<T>> jets[5];
+  std::vector<Transform<T>> rest = std::vector<Transform<T>>(kNodeJoints);
+  SmoothInput<T> input[2];
+  Vec3<T> goal;
+  SpaceNode() {
+    for (auto& j : jets) j.resize(kNodeJoints);
+  }
+  void begin() override {
+    goal = {0, 0, 0};
+    for (auto& x : input) x = {};
+  }
+  void step(double h) override {
+    this->now += h;
+    for (int d = 0; d < 2; ++d) input[d].step(goal[d], SmoothInput<T>::pole_of(T(0.15)), T(h));
+  }
+  void change(int k) override {
+    goal = k == 0 ? Vec3<T>(1, T(1.2), 0) : k == 1 ? Vec3<T>(2, T(0.1), 0) : Vec3<T>(T(0.6), T(2), 0);
+  }
+  void pose(std::span<JointJet<T>> out) override {
+    const TimeJet<T> parameters[] = {input[0].x, input[1].x};
+    TimeJet<T> weights[5];
+    blend_space_weights<T>(space, parameters, weights);
+    BlendLayer<T> layers[5];
+    for (int i = 0; i < 5; ++i) {
+      sample<T>(clips[i], this->now, jets[i]);
+      layers[i] = {jets[i], weights[i]};
+    }
+    (void)BlendingJob<T>{layers, rest, out}.Run();
+  }
+};
+
 /// One node and what it promises.
 template <class T>
 struct NodeCase {
@@ -325,6 +415,8 @@ std::vector<NodeCase<T>> motion_nodes() {
   add("dead_blend", 2, {0.5, 0.7, 1.1, 2, 2.4}, std::make_unique<DeadBlendNode<T>>());
   add("two_bone_to_a_target_that_jumps", 2, {0.5, 0.7, 1.1}, std::make_unique<ReachNode<T>>());
   add("aim_at_a_target_in_steps", 2, {0.5, 0.7}, std::make_unique<LookNode<T>>());
+  add("step_together", 2, {0.5, 0.7, 1.5}, std::make_unique<SyncNode<T>>());
+  add("blend_space", 2, {0.5, 0.7, 1.5}, std::make_unique<SpaceNode<T>>());
   return all;
 }
 

@@ -197,7 +197,7 @@ void expect_table(const std::string& a, const std::string& b) {
     clips.in_b.push_back(index_of(joint.name, clips.b.skeleton));
   const std::pair<const char*, Way> ways[] = {
       {"the old clip alone", [](const Change& c, double t) { return c.old(t); }},
-      {"the new clip alone", [](const Change& c, double t) { return c.next(t); }},
+      {"cut", [](const Change& c, double t) { return c.next(t); }},
       {"crossfade, linear", faded([](double u) { return u; })},
       {"crossfade, smoothstep", faded([](double u) { return u * u * (3 - 2 * u); })},
       {"crossfade, quintic", faded([](double u) { return u * u * u * (10 - 15 * u + 6 * u * u); })},
