@@ -17,6 +17,7 @@
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/mesh_additive_job.h"
 #include "sinew/animation/phase_map.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/sampling_job.h"
@@ -382,6 +383,24 @@ struct SpaceNode : MotionNode<T> {
   }
 };
 
+/// A moving difference in model space on top of a motion, by a weight that sways and a mask.
+template <class T>
+struct MeshAdditiveNode : MotionNode<T> {
+  Clip base = node_clip(1), aim = node_clip(2), reference = node_clip(3);
+  std::vector<int> parents = {-1, 0, 1, 2, 3, 4, 2, 6, 0, 8, 9};
+  std::vector<T> mask = {0, 1, T(0.5), T(0.25), 1, 0, T(0.75), 1, 1, 0, T(0.1)};
+  std::vector<JointJet<T>> from = std::vector<JointJet<T>>(kNodeJoints), difference = from;
+  std::vector<Quat<TimeJet<T>>> scratch = std::vector<Quat<TimeJet<T>>>(2 * kNodeJoints);
+  void pose(std::span<JointJet<T>> out) override {
+    sample<T>(reference, this->now, from);
+    sample<T>(aim, this->now, difference);
+    subtract_in_model<T>(parents, from, difference, scratch, difference);
+    sample<T>(base, this->now, out);
+    const TimeJet<T> w = swaying_weight<T>(this->now, 0.3, 0.2, 1);
+    (void)MeshAdditiveJob<T>{parents, out, difference, w, mask, scratch}.Run();
+  }
+};
+
 /// One node and what it promises.
 template <class T>
 struct NodeCase {
@@ -406,6 +425,7 @@ std::vector<NodeCase<T>> motion_nodes() {
   add("sampler_past_the_end", 0, {4}, std::make_unique<SampleNode<T>>(node_clip(1, false), at_normal_speed));
   add("mix", 2, {}, std::make_unique<BlendNode<T>>(mix, mix));
   add("override_and_additive", 2, {}, std::make_unique<BlendNode<T>>(over, more));
+  add("additive_in_model_space", 2, {}, std::make_unique<MeshAdditiveNode<T>>());
   add("crossfade_quintic", 2, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, QuinticEase>>());
   add("crossfade_smoothstep", 1, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, SmoothstepEase>>());
   add("crossfade_by_filtered_input", 2, {0.5, 0.6, 1.5}, std::make_unique<CrossfadeNode<T, FilteredEase>>());

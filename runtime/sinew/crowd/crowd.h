@@ -18,6 +18,7 @@
 #include <span>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/clip_time.h"
 #include "sinew/animation/instruction_set.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"

@@ -25,7 +25,7 @@ struct Moving {
 };
 
 template <class P>
-Moving<P> moving(const PackedJets<P>& jets) {
+[[gnu::always_inline]] inline Moving<P> moving(const PackedJets<P>& jets) {
   const P* x = jets.number;
   Moving<P> m;
   quaternion_jet(x + kRotation, x + kOmega, x + kAlpha, m.rotation);
@@ -35,7 +35,7 @@ Moving<P> moving(const PackedJets<P>& jets) {
 }
 
 template <class P>
-PackedJets<P> packed(const Moving<P>& m) {
+[[gnu::always_inline]] inline PackedJets<P> packed(const Moving<P>& m) {
   PackedJets<P> jets;
   P p[4], dp[4], ddp[4], rotation[4], omega[3], alpha[3];
   for (int i = 0; i < 4; ++i) {
@@ -62,10 +62,11 @@ struct BlockLayer {
   PackedJets<P> jets;
   P mask;
   TimeJet<P> weight;
-  bool full;  ///< where the mask is 1 the layer is all there is
+  bool full;    ///< where the mask is 1 the layer is all there is
+  bool masked;  ///< otherwise the mask is 1 throughout
 
   BlockLayer(const BlendLayerData<typename P::Scalar>& layer, const Block<P>& block)
-      : jets(block.load(layer.jets)) {
+      : jets(block.load(layer.jets)), masked(layer.mask != nullptr) {
     mask = layer.mask ? block.load(layer.mask) : P::all(1);
     weight = {layer.weight[0] * mask, layer.weight[1] * mask, layer.weight[2] * mask};
     full = layer.weight[0] == 1 && layer.weight[1] == 0 && layer.weight[2] == 0;
@@ -103,14 +104,22 @@ void mix(const BlendData<typename P::Scalar>& data, const Block<P>& block, Packe
     for (int i = 0; i < 4; ++i) sum.rotation[i] = sum.rotation[i] + layer.weight * m.rotation[i];
     for (int i = 0; i < 3; ++i) sum.translation[i] = sum.translation[i] + layer.weight * m.translation[i];
     total = total + layer.weight;
-    replace_where_not(layer.mask, 0, layer.jets, jets);
-    contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
+    if (layer.masked) {
+      replace_where_not(layer.mask, 0, layer.jets, jets);
+      contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
+    } else {
+      jets = layer.jets;
+      contributors = contributors + P::all(1);
+    }
   }
   const TimeJet<P> inverse = TimeJet<P>{P::all(1), zero, zero} / total;
   for (TimeJet<P>& x : sum.translation) x = inverse * x;  // the length of the quaternion cancels by itself
   contributors = where_equal(total.value, 0, zero, contributors);  // weights that only begin to grow
-  const P several = where_negative(P::all(1) - contributors, P::all(1), zero);
-  replace_where_equal(several, 1, packed(sum), jets);
+  const auto several = contributors > P::all(1);
+  if (!any(!several))
+    jets = packed(sum);
+  else if (any(several))
+    replace_where_equal(select(several, P::all(1), zero), 1, packed(sum), jets);
 }
 
 /// (1 − w)·below + w·layer, both as quaternions on the side of `reference`.
@@ -122,6 +131,10 @@ void override_below(const BlockLayer<P>& layer, const P* reference, PackedJets<P
     m.rotation[i] = m.rotation[i] + layer.weight * (over.rotation[i] - m.rotation[i]);
   for (int i = 0; i < 3; ++i)
     m.translation[i] = m.translation[i] + layer.weight * (over.translation[i] - m.translation[i]);
+  if (!layer.masked) {
+    below = layer.full ? layer.jets : packed(m);
+    return;
+  }
   replace_where_not(layer.mask, 0, packed(m), below);
   if (layer.full) replace_where_equal(layer.mask, 1, layer.jets, below);
 }
@@ -144,7 +157,10 @@ void add_to_below(const BlockLayer<P>& layer, PackedJets<P>& below) {
   multiply(m.rotation, part, turned);
   for (int i = 0; i < 4; ++i) m.rotation[i] = turned[i];
   for (int i = 0; i < 3; ++i) m.translation[i] = m.translation[i] + layer.weight * over.translation[i];
-  replace_where_not(layer.mask, 0, packed(m), below);
+  if (layer.masked)
+    replace_where_not(layer.mask, 0, packed(m), below);
+  else
+    below = packed(m);
 }
 
 template <class T>

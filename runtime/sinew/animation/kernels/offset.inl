@@ -36,7 +36,7 @@ template <class P>
 [[gnu::always_inline]] inline void load_offsets(const typename P::Scalar* offsets, const Block<P>& block,
                                                 P (&out)[kOffsetPart]) {
   const int first = block.joint[0];
-  if (block.joint[P::kLanes - 1] == first + P::kLanes - 1) {
+  if (block.whole) {
     const auto* from = offsets_of(offsets, first);
     for (int i = 0; i < kOffsetPart; ++i) out[i] = P::load(from + i * kOffsetBlock);
   } else {

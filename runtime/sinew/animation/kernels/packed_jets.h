@@ -16,31 +16,28 @@ struct PackedJets {
   P number[kNumbers];
 };
 
-/// Which joints a pack holds; the last one repeats where there are fewer joints than lanes.
+/// Which joints a pack holds; the last one repeats where there are fewer joints than lanes. Whole blocks read
+/// and write at fixed distances: addresses of single joints would cost as much as the arithmetic.
 template <class P>
 struct Block {
   using T = typename P::Scalar;
   int joint[P::kLanes];
+  bool whole;
 
-  Block(int first, int end) {
+  Block(int first, int end) : whole(first + P::kLanes <= end) {
     for (int i = 0; i < P::kLanes; ++i) joint[i] = first + i < end ? first + i : end - 1;
   }
   P load(const T* numbers) const {
+    if (whole) return P::load(numbers + joint[0]);
     P x;
     for (int i = 0; i < P::kLanes; ++i) x.v[i] = numbers[joint[i]];
     return x;
   }
   PackedJets<P> load(const JetLayout<T>* jets) const {
     const T* from = reinterpret_cast<const T*>(jets);
-    PackedJets<P> packed;
-    for (int c = 0; c < kNumbers; c += 4) {
-      P m[4];
-      for (int r = 0; r < 4; ++r)
-        m[r] = load_fours<P>([&](int group) { return from + kNumbers * joint[4 * group + r] + c; });
-      transpose(m);
-      for (int r = 0; r < 4; ++r) packed.number[c + r] = m[r];
-    }
-    return packed;
+    if (!whole) return load_part(from);
+    const T* first = from + kNumbers * joint[0];
+    return load_at([&](int lane) { return first + kNumbers * lane; });
   }
   /// At rest in the poses given, or at the parent's origin.
   PackedJets<P> still(const PoseLayout<T>* poses) const {
@@ -56,14 +53,38 @@ struct Block {
   }
   void store(const PackedJets<P>& packed, JetLayout<T>* jets) const {
     T* to = reinterpret_cast<T*>(jets);
+    if (!whole) return store_part(packed, to);
+    T* first = to + kNumbers * joint[0];
+    store_at(packed, [&](int lane) { return first + kNumbers * lane; });
+  }
+
+ private:
+  template <class At>
+  [[gnu::always_inline]] static PackedJets<P> load_at(At at) {
+    PackedJets<P> packed;
+    for (int c = 0; c < kNumbers; c += 4) {
+      P m[4];
+      for (int r = 0; r < 4; ++r) m[r] = load_fours<P>([&](int group) { return at(4 * group + r) + c; });
+      transpose(m);
+      for (int r = 0; r < 4; ++r) packed.number[c + r] = m[r];
+    }
+    return packed;
+  }
+  template <class At>
+  [[gnu::always_inline]] static void store_at(const PackedJets<P>& packed, At at) {
     for (int c = 0; c < kNumbers; c += 4) {
       P m[4] = {packed.number[c], packed.number[c + 1], packed.number[c + 2], packed.number[c + 3]};
       transpose(m);
-      for_each_index<P::kLanes / 4>([&](auto group) {
-        for (int r = 0; r < 4; ++r)
-          sinew::store<4 * group, 4>(m[r], to + kNumbers * joint[4 * group + r] + c);
+      for_each_index<P::kLanes / 4>([&](auto group) __attribute__((always_inline)) {
+        for (int r = 0; r < 4; ++r) sinew::store<4 * group, 4>(m[r], at(4 * group + r) + c);
       });
     }
+  }
+  [[gnu::noinline]] PackedJets<P> load_part(const T* from) const {
+    return load_at([&](int lane) { return from + kNumbers * joint[lane]; });
+  }
+  [[gnu::noinline]] void store_part(const PackedJets<P>& packed, T* to) const {
+    store_at(packed, [&](int lane) { return to + kNumbers * joint[lane]; });
   }
 };
 
