@@ -68,7 +68,7 @@ void crowd_frame(benchmark::State& state, InstructionSet set, int lanes) {
   settings.instruction_set = set;
   settings.lanes = lanes;
   const auto crowd = crowd_of(rig, settings);
-  for (int i = 0; i < settings.capacity; ++i) (void)crowd->play(i, {&clip, 0.01 * i, 1, {}});
+  for (int i = 0; i < settings.capacity; ++i) (void)crowd->play(i, {&clip, 0.01 * i, {}});
   for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
   if (!crowd->overloaded().empty()) state.SkipWithError("a character left its animation");
   per_character(state, settings.capacity);
@@ -275,7 +275,7 @@ void population_frame(benchmark::State& state, double hits_per_second, int threa
     const int row = i / columns, column = i % columns;
     Transform<float> place;
     place.translation = {2.5f * float(row), 2.5f * float(column), 0};
-    (void)people->play(i, {&clip, 0.013 * i, 1, place});
+    (void)people->play(i, {&clip, 0.013 * i, place});
   }
   JobSystem jobs(threads);
   std::mt19937 random(1);

@@ -460,7 +460,7 @@ TEST(Crowd, RefusesWhatCannotBeMeant) {
   EXPECT_FALSE(crowd->step(NAN).ok());
   const Clip other = fixtures::random_clip({.joints = 3});
   EXPECT_EQ(crowd->play(0, {&other}).code, Code::kInvalidArgument);
-  EXPECT_FALSE(crowd->play(0, {nullptr, 0, 1, {Quat<float>(NAN, 0, 0, 0), {0, 0, 0}}}).ok());
+  EXPECT_FALSE(crowd->play(0, {nullptr, 0, {Quat<float>(NAN, 0, 0, 0), {0, 0, 0}}}).ok());
 }
 
 }  // namespace

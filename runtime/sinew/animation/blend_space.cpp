@@ -71,7 +71,9 @@ Status bake_blend_space(std::span<const double> points, int dimensions, int node
   BlendSpace space;
   space.clips = static_cast<int>(points.size()) / dimensions;
   space.dimensions = dimensions;
-  const auto coordinate = [&](int clip, int d) { return points[std::size_t(clip * dimensions + d)]; };
+  const auto coordinate = [&](int clip, int d) {
+    return points[std::size_t(clip) * std::size_t(dimensions) + std::size_t(d)];
+  };
   for (int d = 0; d < dimensions; ++d) {
     double low = coordinate(0, d), high = low;
     for (int i = 1; i < space.clips; ++i) {
