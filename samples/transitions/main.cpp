@@ -3,6 +3,7 @@
 // [SECONDS]
 #include <sinew/animation/crossfade.h>
 #include <sinew/animation/inertialize_job.h>
+#include <sinew/animation/root_motion.h>
 #include <sinew/animation/sampling_job.h>
 #include <sinew/animation/smooth_input.h>
 #include <sinew/character/world.h>
@@ -29,7 +30,15 @@ class Player {
   void play(int clip) {
     clip_ = clip;
     time_ = 0;
+    place_ = {};
     sample(next_);
+    if (begun_) {  // the new clip goes on where the character is and where it is heading
+      place_ = ground(jets_[0]) * ground(next_[0]).inverse();
+      sinew::place_root(place_, next_[0]);
+    } else {
+      jets_ = next_;
+      begun_ = true;
+    }
     (void)sinew::begin_inertial<float>(jets_, next_, 0.25f, state_);
   }
   /// What the animation wants h seconds later, at `speed`.
@@ -45,10 +54,17 @@ class Player {
  private:
   void sample(std::vector<sinew::JointJet<float>>& out) const {
     (void)sinew::SamplingJob<float>{&asset_.clips[clip_], time_, out}.Run();
+    sinew::place_root(place_, out[0]);
+  }
+  static sinew::Transform<float> ground(const sinew::JointJet<float>& root) {
+    const sinew::JointJet<float> travel = sinew::split_root(root).travel;
+    return {travel.rotation, travel.translation};
   }
 
   const sinew::Asset& asset_;
   int joints_, clip_ = 0;
+  bool begun_ = false;
+  sinew::Transform<float> place_;  ///< clip → world
   sinew::ClipTime time_;
   std::vector<float> numbers_;
   std::vector<sinew::JointJet<float>> next_, jets_;
