@@ -94,7 +94,7 @@ int run(const char* file, const char* output, int count, double seconds, int thr
   const auto people = sinew::Population::create(asset->skeleton, settings, status);
   for (int n = 0; people && n < count; ++n) {
     const Walker& w = walkers[static_cast<std::size_t>(n)];
-    status = people->play(n, {&walk, w.phase, 1, w.place});
+    status = people->play(n, {&walk, w.phase, w.place});
     if (!status) break;
   }
   if (!status) {

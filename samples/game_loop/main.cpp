@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     for (; accumulator >= kStep; accumulator -= kStep) {
       before.assign(hero.model().begin(), hero.model().end());
       clock += kStep;
-      sinew::SamplingJob<float>{&asset.clips.front(), clock, 1, jets}.Run();
+      sinew::SamplingJob<float>{&asset.clips.front(), clock, jets}.Run();
       hero.set_target(jets);
       if (fresh) hero.reset();
       fresh = false;

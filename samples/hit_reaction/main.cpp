@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
   int most = 0;
   for (int frame = 0; frame <= 180; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, 1, jets}.Run();
+    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
     hero.set_target(jets);
     if (frame == 0) hero.reset();
     if (frame == 60)

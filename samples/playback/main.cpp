@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
   const sinew::Clip& clip = asset.clips.front();
   for (int frame = 0; frame <= seconds * 60; ++frame) {
-    sinew::SamplingJob<float>{&clip, frame / 60.0, 1, jets}.Run();
+    sinew::SamplingJob<float>{&clip, frame / 60.0, jets}.Run();
     world.character(hero).set_target(jets);
     if (frame == 0)
       world.character(hero).reset();

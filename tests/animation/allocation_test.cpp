@@ -28,8 +28,8 @@ TEST(Allocation, SamplingToSkinningTakesNothingFromTheHeap) {
   bool ok = true;
   const long start = fixtures::allocations;
   for (double t = 0; t < 1; t += 0.1) {
-    ok &= SamplingJob<float>{&clip, t, 1, a, poses}.Run().ok();
-    ok &= SamplingJob<float>{&clip, t + 1, 1, b}.Run().ok();
+    ok &= SamplingJob<float>{&clip, t, a, poses}.Run().ok();
+    ok &= SamplingJob<float>{&clip, t + 1, b}.Run().ok();
     const BlendLayer<float> layers[] = {
         {a}, {b, {0.5f, 0, 0}, mask, BlendMode::kOverride}, {b, {0.1f, 0, 0}, {}, BlendMode::kAdditive}};
     ok &= BlendingJob<float>{layers, {}, pose}.Run().ok();

@@ -159,8 +159,8 @@ TEST(Blending, EveryJointCountAndInstructionSetGivesTheSameBits) {
   const Clip one = fixtures::random_clip({.joints = 21, .moving = 9, .seed = 5});
   const Clip two = fixtures::random_clip({.joints = 21, .moving = 9, .seed = 6});
   std::vector<JointJet<float>> a(21), b(21), all(21);
-  ASSERT_TRUE((SamplingJob<float>{&one, 1, 1, a}.Run().ok()));
-  ASSERT_TRUE((SamplingJob<float>{&two, 1, 1, b}.Run().ok()));
+  ASSERT_TRUE((SamplingJob<float>{&one, 1, a}.Run().ok()));
+  ASSERT_TRUE((SamplingJob<float>{&two, 1, b}.Run().ok()));
   const kernels::BlendLayerData<float> data[] = {
       {kernels::layout(a.data()), nullptr, {0.3f, 1, 2}, kernels::BlendLayerData<float>::kMix},
       {kernels::layout(b.data()), nullptr, {0.9f, -1, 7}, kernels::BlendLayerData<float>::kMix},

@@ -137,7 +137,7 @@ TEST(Sampling, PosesAloneAreThoseOfTheJets) {
   std::vector<JointJet<float>> jets(21);
   std::vector<Transform<float>> poses(21);
   for (double t = 0; t < 5; t += 0.137) {
-    ASSERT_TRUE((SamplingJob<float>{&clip, t, 1, jets, poses}.Run().ok()));
+    ASSERT_TRUE((SamplingJob<float>{&clip, t, jets, poses}.Run().ok()));
     for (int j = 0; j < 21; ++j) {
       EXPECT_EQ(poses[j].rotation.coeffs(), jets[j].rotation.coeffs());
       EXPECT_EQ(poses[j].translation, jets[j].translation);
@@ -149,8 +149,8 @@ TEST(Sampling, ShorterOutputSamplesItsJointsAndNothingElse) {
   const Clip clip = fixtures::random_clip({.joints = 21, .duration = 2, .moving = 9});
   std::vector<JointJet<float>> all(21), few(21);
   for (JointJet<float>& jet : few) jet.omega.setConstant(77);
-  ASSERT_TRUE((SamplingJob<float>{&clip, 0.4, 1, all}.Run().ok()));
-  ASSERT_TRUE((SamplingJob<float>{&clip, 0.4, 1, std::span(few).first(6)}.Run().ok()));
+  ASSERT_TRUE((SamplingJob<float>{&clip, 0.4, all}.Run().ok()));
+  ASSERT_TRUE((SamplingJob<float>{&clip, 0.4, std::span(few).first(6)}.Run().ok()));
   for (int j = 0; j < 6; ++j) {
     EXPECT_EQ(few[j].rotation.coeffs(), all[j].rotation.coeffs());
     EXPECT_EQ(few[j].alpha, all[j].alpha);
@@ -164,8 +164,8 @@ TEST(Sampling, FloatAgreesWithDouble) {
   std::vector<JointJet<float>> single(21);
   std::vector<JointJet<double>> twice(21);
   for (double t = 0; t < 2; t += 0.0731) {
-    ASSERT_TRUE((SamplingJob<float>{&clip, t, 1, single}.Run().ok()));
-    ASSERT_TRUE((SamplingJob<double>{&clip, t, 1, twice}.Run().ok()));
+    ASSERT_TRUE((SamplingJob<float>{&clip, t, single}.Run().ok()));
+    ASSERT_TRUE((SamplingJob<double>{&clip, t, twice}.Run().ok()));
     for (int j = 0; j < 21; ++j) {
       // 15 knots a second: second derivatives are 225 times a sum of six controls rounded to 1e-7.
       EXPECT_LT(single[j].rotation.cast<double>().angularDistance(twice[j].rotation), 1e-5);

@@ -16,7 +16,7 @@ using Pose = std::vector<JointJet<double>>;
 
 inline Pose sampled(const Clip& clip, double time) {
   Pose jets(clip.joint_count);
-  EXPECT_TRUE((SamplingJob<double>{&clip, time, 1, jets}.Run().ok()));
+  EXPECT_TRUE((SamplingJob<double>{&clip, time, jets}.Run().ok()));
   return jets;
 }
 

@@ -30,7 +30,7 @@ Clip fitted(int degree, convert::FitReport& report) {
 
 std::vector<JointJet<double>> sampled(const Clip& clip, double t, double rate = 1) {
   std::vector<JointJet<double>> jets(2);
-  EXPECT_TRUE((SamplingJob<double>{&clip, t, rate, jets}.Run().ok()));
+  EXPECT_TRUE((SamplingJob<double>{&clip, {t, rate}, jets}.Run().ok()));
   return jets;
 }
 
@@ -79,9 +79,9 @@ TEST(Sampling, RefusesWhatCannotBeMeant) {
   convert::FitReport report;
   const Clip clip = fitted(3, report);
   std::vector<JointJet<float>> jets(2);
-  EXPECT_FALSE((SamplingJob<float>{nullptr, 0, 1, jets}.Run().ok()));
-  EXPECT_EQ((SamplingJob<float>{&clip, NAN, 1, jets}.Run().code), Code::kNotFinite);
-  EXPECT_FALSE((SamplingJob<float>{&clip, 0, 1e9, jets}.Run().ok()));
+  EXPECT_FALSE((SamplingJob<float>{nullptr, 0, jets}.Run().ok()));
+  EXPECT_EQ((SamplingJob<float>{&clip, NAN, jets}.Run().code), Code::kNotFinite);
+  EXPECT_FALSE((SamplingJob<float>{&clip, {0, 1e9}, jets}.Run().ok()));
   Clip broken = clip;
   broken.groups[0].controls.pop_back();
   EXPECT_FALSE(validate(broken).ok());

@@ -6,6 +6,7 @@
 
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
+#include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/sampling_job.h"
@@ -33,7 +34,7 @@ void sequential(benchmark::State& state) {
   std::vector<JointJet<T>> jets(kJoints);
   double time = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(SamplingJob<T>{&clip, time, 1, jets}.Run());
+    benchmark::DoNotOptimize(SamplingJob<T>{&clip, time, jets}.Run());
     benchmark::ClobberMemory();
     time += 1 / 60.0;
   }
@@ -45,7 +46,7 @@ void poses_only(benchmark::State& state) {
   std::vector<Transform<float>> poses(kJoints);
   double time = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(SamplingJob<float>{&clip, time, 1, {}, poses}.Run());
+    benchmark::DoNotOptimize(SamplingJob<float>{&clip, time, {}, poses}.Run());
     benchmark::ClobberMemory();
     time += 1 / 60.0;
   }
@@ -61,7 +62,7 @@ void random_seek(benchmark::State& state) {
   for (double& t : times) t = std::uniform_real_distribution<double>(0, clip.duration)(random);
   std::size_t n = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(SamplingJob<T>{&clip, times[n++ % times.size()], 1, jets}.Run());
+    benchmark::DoNotOptimize(SamplingJob<T>{&clip, times[n++ % times.size()], jets}.Run());
     benchmark::ClobberMemory();
   }
   per_joint(state);
@@ -71,13 +72,31 @@ void random_seek(benchmark::State& state) {
 void blend(benchmark::State& state, BlendMode mode, bool masked) {
   const Clip clip = fixtures::random_clip({});
   std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
-  (void)SamplingJob<float>{&clip, 1, 1, a}.Run();
-  (void)SamplingJob<float>{&clip, 3, 1, b}.Run();
+  (void)SamplingJob<float>{&clip, 1, a}.Run();
+  (void)SamplingJob<float>{&clip, 3, b}.Run();
   std::vector<float> mask(kJoints, 0.5f);
   const std::span<const float> weights = masked ? std::span<const float>(mask) : std::span<const float>();
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}, weights, mode}};
   for (auto _ : state) {
     benchmark::DoNotOptimize(BlendingJob<float>{layers, {}, out}.Run());
+    benchmark::ClobberMemory();
+  }
+  per_joint(state);
+}
+
+/// What is left of a transition, on top of a sampled pose: all joints turn, the first `moving` also shift.
+void inertialize(benchmark::State& state) {
+  const Clip clip = fixtures::random_clip({});
+  const int moving = static_cast<int>(state.range(0));
+  std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
+  (void)SamplingJob<float>{&clip, 1, a}.Run();
+  (void)SamplingJob<float>{&clip, 3, b}.Run();
+  std::vector<float> numbers(inertial_numbers(kJoints, moving));
+  InertialState<float> transition{numbers, kJoints, moving};
+  (void)begin_inertial<float>(a, b, 1, transition);
+  transition.elapsed = 0.3f;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(InertializeJob<float>{b, &transition, {}, out}.Run());
     benchmark::ClobberMemory();
   }
   per_joint(state);
@@ -89,7 +108,7 @@ void model_pose(benchmark::State& state) {
   std::vector<int> parents(kJoints);
   for (int i = 0; i < kJoints; ++i) parents[i] = i % 5 == 0 ? i - 5 : i - 1;
   parents[0] = -1;
-  (void)SamplingJob<float>{&clip, 1, 1, {}, poses}.Run();
+  (void)SamplingJob<float>{&clip, 1, {}, poses}.Run();
   for (auto _ : state) {
     benchmark::DoNotOptimize(ModelPoseJob<float>{parents, {}, poses, {}, model}.Run());
     benchmark::ClobberMemory();
@@ -102,7 +121,7 @@ void two_bone(benchmark::State& state) {
   const Clip clip = fixtures::random_clip({});
   std::vector<JointJet<float>> sampled(kJoints), jets(kJoints);
   const std::vector<int> parents = {-1, 0, 1, 2, 3, 4, 5, 6};
-  (void)SamplingJob<float>{&clip, 1, 1, sampled}.Run();
+  (void)SamplingJob<float>{&clip, 1, sampled}.Run();
   const MovingTransform<float> end = model_motion<float>(sampled, parents, 7);
   for (auto _ : state) {
     jets = sampled;
@@ -132,6 +151,7 @@ void skinning(benchmark::State& state) {
 }
 
 BENCHMARK(model_pose);
+BENCHMARK(inertialize)->ArgName("moving")->Arg(1)->Arg(kJoints);
 BENCHMARK(two_bone);
 BENCHMARK(skinning);
 BENCHMARK_CAPTURE(blend, mix, BlendMode::kMix, false);

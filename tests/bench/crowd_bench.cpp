@@ -41,7 +41,7 @@ void playback(benchmark::State& state) {
   double time = 0;
   for (auto _ : state) {
     for (int i = 0; i < characters; ++i) {
-      (void)SamplingJob<float>{&clip, time + 0.01 * i, 1, {}, poses}.Run();
+      (void)SamplingJob<float>{&clip, time + 0.01 * i, {}, poses}.Run();
       const std::span out(models.data() + std::size_t(i) * joints, joints);
       (void)ModelPoseJob<float>{parents, {}, poses, {}, out}.Run();
     }
@@ -68,7 +68,7 @@ void crowd_frame(benchmark::State& state, InstructionSet set, int lanes) {
   settings.instruction_set = set;
   settings.lanes = lanes;
   const auto crowd = crowd_of(rig, settings);
-  for (int i = 0; i < settings.capacity; ++i) (void)crowd->play(i, {&clip, 0.01 * i, 1, {}});
+  for (int i = 0; i < settings.capacity; ++i) (void)crowd->play(i, {&clip, 0.01 * i, {}});
   for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
   if (!crowd->overloaded().empty()) state.SkipWithError("a character left its animation");
   per_character(state, settings.capacity);
@@ -89,7 +89,7 @@ void crowd_check(benchmark::State& state, InstructionSet set, int lanes, bool gr
   const auto crowd = crowd_of(rig, settings);
   for (int i = 0; i < settings.capacity; ++i) {
     (void)crowd->play(i, {});
-    (void)SamplingJob<float>{&clip, 0.01 * i, 1, crowd->jets(i)}.Run();
+    (void)SamplingJob<float>{&clip, 0.01 * i, crowd->jets(i)}.Run();
   }
   for (auto _ : state) benchmark::DoNotOptimize(crowd->step(kStep));
   per_character(state, settings.capacity);
@@ -109,7 +109,7 @@ void crowd_kernel(benchmark::State& state, bool sampling) {
     float numbers[16];
   };
   std::vector<CrowdTrack> tracks;
-  for (int i = 0; i < 16; ++i) tracks.push_back({&clip, 0.01 * i, 1, {}});
+  for (int i = 0; i < 16; ++i) tracks.push_back({&clip, 0.01 * i, {}});
   const std::vector<std::uint8_t> all(16, 1);
   const auto instant = std::make_unique<crowd_kernels::Instant>();
   std::vector<Line> rows(crowd_kernels::row_bytes(joints) / sizeof(Line));
@@ -211,7 +211,7 @@ struct OnClip {
   }
   void aim(double time) {
     for (int n = 0; n < characters; ++n) {
-      (void)SamplingJob<float>{&clip, time + 0.1 * n, 1, jets}.Run();
+      (void)SamplingJob<float>{&clip, time + 0.1 * n, jets}.Run();
       const int row = n / columns, column = n % columns;
       jets[0].translation += Vec3<float>(apart * float(row), apart * float(column), 0);
       (void)world.character(n).set_target(jets);
@@ -275,7 +275,7 @@ void population_frame(benchmark::State& state, double hits_per_second, int threa
     const int row = i / columns, column = i % columns;
     Transform<float> place;
     place.translation = {2.5f * float(row), 2.5f * float(column), 0};
-    (void)people->play(i, {&clip, 0.013 * i, 1, place});
+    (void)people->play(i, {&clip, 0.013 * i, place});
   }
   JobSystem jobs(threads);
   std::mt19937 random(1);

@@ -31,7 +31,7 @@ void sampled_frame(benchmark::State& state) {
   std::vector<JointJet<float>> jets(scene.skeleton.joints.size());
   double time = 0;
   for (auto _ : state) {
-    (void)SamplingJob<float>{&clip, time += 1 / 60.0, 1, jets, {}}.Run();
+    (void)SamplingJob<float>{&clip, time += 1 / 60.0, jets, {}}.Run();
     (void)scene.character().set_target(jets);
     benchmark::DoNotOptimize(scene.world.step(1 / 60.f));
   }
@@ -46,7 +46,7 @@ void plain_playback(benchmark::State& state) {
   for (const Joint& joint : skeleton.joints) parents.push_back(joint.parent);
   double time = 0;
   for (auto _ : state) {
-    (void)SamplingJob<float>{&clip, time += 1 / 60.0, 1, {}, poses}.Run();
+    (void)SamplingJob<float>{&clip, time += 1 / 60.0, {}, poses}.Run();
     (void)ModelPoseJob<float>{parents, {}, poses, {}, model}.Run();
     benchmark::ClobberMemory();
   }

@@ -61,7 +61,7 @@ std::vector<Vec3<double>> path(const Asset& asset, const char* joint) {
   std::vector<JointJet<double>> jets(asset.skeleton.joints.size());
   const int index = asset.skeleton.find(joint);
   for (int f = 0; f < static_cast<int>(120 * asset.clips[0].duration); ++f) {
-    const SamplingJob<double> job{&asset.clips[0], f / 120.0, 1, jets};
+    const SamplingJob<double> job{&asset.clips[0], f / 120.0, jets};
     EXPECT_TRUE(job.Run());
     inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
                               moment);

@@ -52,8 +52,7 @@ struct Scene {
   CrowdTrack track(int i) const {
     CrowdTrack track;
     track.clip = &clips[i % 3];
-    track.time = 0.137 * i;
-    track.rate = 0.8 + 0.05 * (i % 9);
+    track.time = {0.137 * i, 0.8 + 0.05 * (i % 9)};
     const int column = i % 10, row = i / 10;
     track.place = {rotation_exp<float>({0, 0, 0.7f * float(i)}), {3.f * float(column), 2.f * float(row), 0}};
     return track;
@@ -261,8 +260,7 @@ TEST(Crowd, ClipsSampledTogetherHaveTheBitsOfClipsSampledOneByOne) {
       for (int i = 0; i < settings.capacity; ++i) {
         CrowdTrack track;  // clips of one batch differ, then those of one batch are the same
         track.clip = i < 32 ? &clips[i % 5] : i < 48 ? &clips[1] : &many;
-        track.time = 0.31 * i - 2;
-        track.rate = 0.8 + 0.05 * (i % 9);
+        track.time = {0.31 * i - 2, 0.8 + 0.05 * (i % 9), 0.3 * (i % 4) - 0.4};
         track.place = {rotation_exp<float>({0, 0.02f * float(i % 5), 0.7f * float(i)}),
                        {3.f * float(i % 10), 2.f * float(i), 0.01f * float(i % 7)}};
         tracks.push_back(track);
@@ -272,9 +270,9 @@ TEST(Crowd, ClipsSampledTogetherHaveTheBitsOfClipsSampledOneByOne) {
       for (int n = 0; n < 3; ++n) {
         for (int i = 0; i < settings.capacity; ++i) {
           CrowdTrack& track = tracks[i];
-          track.time += track.rate * kStep;
+          track.time = track.time.after(kStep);
           const std::span jets = by_host->jets(i);
-          ASSERT_TRUE((SamplingJob<float>{track.clip, track.time, track.rate, jets}.Run().ok()));
+          ASSERT_TRUE((SamplingJob<float>{track.clip, track.time, jets}.Run().ok()));
           place_root(track.place, jets[0]);
         }
         ASSERT_TRUE(together->step(kStep).ok());
@@ -412,7 +410,7 @@ TEST(Crowd, InactiveCharactersAreLeftAloneAndChangeNobody) {
   EXPECT_TRUE(some->overloaded().empty() || some->overloaded().size() == all->overloaded().size());
   for (int i = 0; i < settings.capacity; ++i) {
     if (i % 3 != 1 || (i >= 16 && i < 32)) {
-      EXPECT_EQ(some->track(i).time, scene.track(i).time);
+      EXPECT_EQ(some->track(i).time.value, scene.track(i).time.value);
       EXPECT_EQ(some->model(i)[0].translation, scene.rig.joints[0].rest.translation.cast<float>());
       continue;
     }
@@ -462,7 +460,7 @@ TEST(Crowd, RefusesWhatCannotBeMeant) {
   EXPECT_FALSE(crowd->step(NAN).ok());
   const Clip other = fixtures::random_clip({.joints = 3});
   EXPECT_EQ(crowd->play(0, {&other}).code, Code::kInvalidArgument);
-  EXPECT_FALSE(crowd->play(0, {nullptr, 0, 1, {Quat<float>(NAN, 0, 0, 0), {0, 0, 0}}}).ok());
+  EXPECT_FALSE(crowd->play(0, {nullptr, 0, {Quat<float>(NAN, 0, 0, 0), {0, 0, 0}}}).ok());
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct People {
     for (int n = 0; n < count; ++n) {
       Transform<float> place;
       place.translation = {0, spacing * float(n), 0};
-      EXPECT_TRUE(population->play(n, {&clip, 0.1 * n, 1, place}).ok());
+      EXPECT_TRUE(population->play(n, {&clip, 0.1 * n, place}).ok());
     }
   }
   void step(const ParallelFor& parallel_for = {}) const {

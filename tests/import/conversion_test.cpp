@@ -257,7 +257,7 @@ TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
   const Converted made = convert_gltf(gltf);
   ASSERT_EQ(made.asset.clips.size(), 1u);
   std::vector<JointJet<float>> jets(made.asset.skeleton.joints.size());
-  ASSERT_TRUE((SamplingJob<float>{&made.asset.clips[0], 0.5, 1, jets}.Run().ok()));
+  ASSERT_TRUE((SamplingJob<float>{&made.asset.clips[0], 0.5, jets}.Run().ok()));
   const auto leg = static_cast<std::size_t>(joint_named(made, "leg"));
   EXPECT_NEAR(jets[leg].translation.norm(), 0.6, 1.1e-3);  // the curve's budget is 1 mm
   EXPECT_THAT(made, NotesSay("1 joint changes its distance to the parent, by up to 100 mm"));

@@ -100,7 +100,7 @@ TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {
     ASSERT_TRUE(validate(out.skeleton).ok()) << "mutation " << n;
     for (const Clip& clip : out.clips) {
       std::vector<JointJet<float>> jets(out.skeleton.joints.size());
-      ASSERT_TRUE((SamplingJob<float>{&clip, 0.3, 1, jets}.Run().ok()));
+      ASSERT_TRUE((SamplingJob<float>{&clip, 0.3, jets}.Run().ok()));
     }
   }
   EXPECT_GT(refused, 600);  // every truncation at least

@@ -127,7 +127,7 @@ struct Pass {
   }
   /// Poses, and the wrenches [body] that the clip asks for; false when it has no such frame.
   bool run(const Clip& clip, int frame) {
-    if (!SamplingJob<double>{&clip, frame / kRate, 1, jets}.Run()) return false;
+    if (!SamplingJob<double>{&clip, frame / kRate, jets}.Run()) return false;
     inertial_wrenches<double>(tree, jets, {0, 0, -9.81}, Vec3<double>::Zero(), kinematics, motion, force,
                               moment);
     return true;

@@ -25,9 +25,13 @@ struct BlendLayer {
   BlendMode mode = BlendMode::kMix;
 };
 
-/// Blends jets joint by joint. Rotations are summed as quaternions in R⁴, of ±q the one nearer to what is
-/// below (to the first mixed layer), and normalised; all derivatives are those of the blended pose by the
-/// product rule: P'' = Σ (w·p'' + 2w'·p' + w''·p).
+/// Blends jets joint by joint. Rotations are summed as quaternions in R⁴ and normalised; all derivatives are
+/// those of the blended pose by the product rule: P'' = Σ (w·p'' + 2w'·p' + w''·p).
+///
+/// Which of ±q enters the sum: with `rest` the one nearer to the rest pose, so that two layers more than half
+/// a turn apart blend through rest, as a body does, whatever their order; it flips only where a joint is half
+/// a turn away from rest. Without `rest` the one nearer to what is below (to the first mixed layer), which
+/// flips where two layers are half a turn apart: then the pose jumps.
 ///
 /// Mixed layers come first whatever their place in the list, the others follow in order. Exact where the mask
 /// says so: at mask 0 a layer leaves the bits below it alone; at mask 1 a constant override of weight 1, or
@@ -38,7 +42,7 @@ template <class T>
 struct BlendingJob {
   static constexpr int kMaxLayers = 16;
   std::span<const BlendLayer<T>> layers;
-  std::span<const Transform<T>> rest = {};  ///< local transforms; empty = identity
+  std::span<const Transform<T>> rest = {};  ///< local transforms; empty = identity, see above
   std::span<JointJet<T>> out;
 
   Status Validate() const;  ///< `Status::index`: layer at fault

@@ -5,33 +5,37 @@
 #include <cmath>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/clip_time.h"
 
 namespace sinew {
 
-/// A time within the clip, how many whole loops came before it, and how fast it passes there: not at all
-/// where a pose is held before the beginning or after the end.
+/// A time within the clip, how many whole loops came before it, and how it passes there: not at all where a
+/// pose is held before the beginning or after the end.
 struct ClipPlace {
-  double time = 0;   ///< s, 0 … duration
-  double loops = 0;  ///< whole ones
-  double speed = 0;  ///< playback rate
+  double time = 0;          ///< s, 0 … duration
+  double loops = 0;         ///< whole ones
+  double rate = 0;          ///< of playback
+  double acceleration = 0;  ///< 1/s
 
-  ClipPlace(const Clip& clip, double at, double rate) : speed(rate) {
+  ClipPlace(const Clip& clip, const ClipTime& when) : rate(when.rate), acceleration(when.acceleration) {
+    const double at = when.value;
     if (clip.loops && clip.duration > 0) {
       loops = std::floor(at / clip.duration);
       time = std::clamp(at - loops * clip.duration, 0.0, double(clip.duration));
     } else if (!clip.loops) {
       time = std::clamp(at, 0.0, double(clip.duration));
-      if (at < 0 || at > clip.duration) speed = 0;
+      if (at < 0 || at > clip.duration) rate = acceleration = 0;
     }
   }
 
-  /// What whole and broken loops have added to the root's translation (m), and add to its velocity (m/s).
-  /// Only of clips that loop and last.
+  /// What whole and broken loops have added to the root's translation (m), and what they add to its velocity
+  /// (m/s) by the rate of time and to its acceleration (m/s²) by that rate's. Only of clips that loop and
+  /// last.
   Vec3<double> shift(const Clip& clip) const {
     return clip.root_step.cast<double>() * (loops + time / clip.duration);
   }
-  Vec3<double> drift(const Clip& clip) const {
-    return clip.root_step.cast<double>() * (speed / clip.duration);
+  Vec3<double> drift(const Clip& clip, double by) const {
+    return clip.root_step.cast<double>() * (by / clip.duration);
   }
 };
 

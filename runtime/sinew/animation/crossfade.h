@@ -24,15 +24,17 @@ struct EaseWeight : TimeJet<T> {
 };
 
 /// out = (1 − w)·a + w·b per joint with exact derivatives: the BlendingJob of two layers that needs no
-/// status. 0 ≤ w ≤ 1. `out` may be `a` or `b`. Spans of equal length.
+/// status. 0 ≤ w ≤ 1. `out` may be `a` or `b`. Spans of equal length; `rest` as in BlendingJob.
 template <class T>
 void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
-               std::span<JointJet<T>> out);
+               std::span<JointJet<T>> out, std::span<const Transform<T>> rest = {});
 
 extern template void crossfade<float>(std::span<const JointJet<float>>, std::span<const JointJet<float>>,
-                                      const EaseWeight<float>&, std::span<JointJet<float>>);
+                                      const EaseWeight<float>&, std::span<JointJet<float>>,
+                                      std::span<const Transform<float>>);
 extern template void crossfade<double>(std::span<const JointJet<double>>, std::span<const JointJet<double>>,
-                                       const EaseWeight<double>&, std::span<JointJet<double>>);
+                                       const EaseWeight<double>&, std::span<JointJet<double>>,
+                                       std::span<const Transform<double>>);
 
 /// Moves a pose in the world: the root's transform and motion are turned and shifted by `place`.
 template <class T>

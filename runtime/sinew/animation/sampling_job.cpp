@@ -14,20 +14,19 @@ using kernels::SplineSpan;
 
 static_assert(sizeof(Clip::Track) == sizeof(int), "kernels read tracks as joint indices");
 
-/// Control points within reach of `time` and their weights, derivatives scaled by the playback rate.
+/// Control points within reach of a place and their weights, differentiated by the chain rule.
 template <class T>
-SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, double time, double rate,
-                      std::size_t joints) {
-  const KnotPlace place(clip, group, time);
+SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, const ClipPlace& at, std::size_t joints) {
+  const KnotPlace place(clip, group, at.time);
   const BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(place.u));
-  const T scale = T(rate / group.knot_interval);
+  const T scale = T(at.rate / group.knot_interval), bend = T(at.acceleration / group.knot_interval);
   SplineSpan<T> span;
   span.terms = group.degree + 1;
   control_rows(group, place.first, span.rows);
   for (int t = 0; t < span.terms; ++t) {
     span.value[t] = w.value[t];
     span.first[t] = scale * w.first[t];
-    span.second[t] = scale * scale * w.second[t];
+    span.second[t] = scale * scale * w.second[t] + bend * w.first[t];
   }
   span.joints = &group.tracks.data()->joint;
   span.tracks = static_cast<int>(group.tracks.size());
@@ -35,14 +34,14 @@ SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, double time, d
   return span;
 }
 
-/// Samples all groups at a place; `speed` is the playback rate, 0 for a pose that is held.
+/// Samples all groups at a place.
 template <class T, class Out>
-void sample(const Clip& clip, double time, double speed, std::span<Out> out) {
+void sample(const Clip& clip, const ClipPlace& place, std::span<Out> out) {
   const auto* still = kernels::layout(clip.constants.data());
   SINEW_DISPATCH(constants(still, static_cast<int>(out.size()), out.data()));
   for (const Clip::Group& group : clip.groups) {
     if (group.tracks.empty()) continue;
-    const SplineSpan<T> span = span_at<T>(clip, group, time, speed, out.size());
+    const SplineSpan<T> span = span_at<T>(clip, group, place, out.size());
     if (group.rotation)
       SINEW_DISPATCH(rotations(span, out.data()));
     else
@@ -55,10 +54,10 @@ void sample(const Clip& clip, double time, double speed, std::span<Out> out) {
 template <class T>
 Status SamplingJob<T>::Validate() const {
   if (!clip) return Status::error(Code::kInvalidArgument, "no clip");
-  if (!std::isfinite(time) || !std::isfinite(rate))
-    return Status::error(Code::kNotFinite, "time or rate is not finite");
-  if (std::abs(time) > 1e9 || std::abs(rate) > 1e4)
-    return Status::error(Code::kOutOfRange, "time or rate is absurd");
+  if (!std::isfinite(time.value) || !std::isfinite(time.rate) || !std::isfinite(time.acceleration))
+    return Status::error(Code::kNotFinite, "time or its rates are not finite");
+  if (std::abs(time.value) > 1e9 || std::abs(time.rate) > 1e4 || std::abs(time.acceleration) > 1e7)
+    return Status::error(Code::kOutOfRange, "time or its rates are absurd");
   return {};
 }
 
@@ -67,17 +66,16 @@ Status SamplingJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   const std::span<JointJet<T>> moving = jets.first(std::min(jets.size(), std::size_t(clip->joint_count)));
   const std::span<Transform<T>> still = poses.first(std::min(poses.size(), std::size_t(clip->joint_count)));
-  const ClipPlace place(*clip, time, rate);
-  if (!moving.empty())
-    sample<T>(*clip, place.time, place.speed, std::span(kernels::layout(moving.data()), moving.size()));
-  if (!still.empty())
-    sample<T>(*clip, place.time, place.speed, std::span(kernels::layout(still.data()), still.size()));
+  const ClipPlace place(*clip, time);
+  if (!moving.empty()) sample<T>(*clip, place, std::span(kernels::layout(moving.data()), moving.size()));
+  if (!still.empty()) sample<T>(*clip, place, std::span(kernels::layout(still.data()), still.size()));
   if (clip->loops && clip->duration > 0) {
     const Vec3<T> shift = place.shift(*clip).template cast<T>();
     if (!still.empty()) still[0].translation += shift;
     if (!moving.empty()) {
       moving[0].translation += shift;
-      moving[0].velocity += place.drift(*clip).template cast<T>();
+      moving[0].velocity += place.drift(*clip, place.rate).template cast<T>();
+      moving[0].acceleration += place.drift(*clip, place.acceleration).template cast<T>();
     }
   }
   return {};

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/clip_time.h"
 
 namespace sinew {
 
@@ -12,6 +13,11 @@ namespace sinew {
 ///
 ///     ω = 2·Im(p̄ p')/n,  α = 2·Im(p̄ p'')/n − ω·2(p·p')/n,  n = p·p      (no trigonometry)
 ///
+/// Time is a motion τ(t), and the chain rule exact: ω = τ'·ω_clip, α = τ'²·α_clip + τ''·ω_clip, translations
+/// alike. So slow motion, synchronised cycles and warps keep their accelerations. Within a clip and over the
+/// seam of a loop the result is as smooth as τ (C² at least for cubic clips); where a clip that does not loop
+/// begins or ends its pose is held, and velocity jumps to 0.
+///
 /// Runs 8 joints at a time where the processor has AVX2, 4 elsewhere; the bits are the same.
 ///
 /// `Run` returns an error and leaves the output unspecified when `Validate` fails. Output longer than the
@@ -19,8 +25,7 @@ namespace sinew {
 template <class T>
 struct SamplingJob {
   const Clip* clip = nullptr;  ///< valid, as `validate(const Clip&)` says
-  double time = 0;             ///< s; looping clips wrap (root motion accumulates by root_step), others clamp
-  double rate = 1;             ///< playback rate s: velocities scale by s, accelerations by s²
+  ClipTime time;  ///< a number alone: normal speed. Loops wrap (root_step accumulates), others hold the ends
   std::span<JointJet<T>> jets = {};    ///< poses, velocities, accelerations
   std::span<Transform<T>> poses = {};  ///< poses only, at about half the cost; one or the other or both
 

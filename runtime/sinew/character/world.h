@@ -3,7 +3,7 @@
 //     World<float> world(settings);
 //     int hero = world.add_character(asset.skeleton, {}, status);
 //     …each frame:
-//     SamplingJob<float>{&clip, time, 1, jets}.Run();     // what the animation wants at the END of the frame
+//     SamplingJob<float>{&clip, time, jets}.Run();     // what the animation wants at the END of the frame
 //     world.character(hero).set_target(jets);
 //     world.step(1 / 60.f);
 //     draw(world.character(hero).model());                // joint → world transforms

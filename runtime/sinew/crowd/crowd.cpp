@@ -141,7 +141,7 @@ struct Crowd::Impl {
   void sample(int character) {
     const CrowdTrack& track = tracks[character];
     const std::span out(jets_of(character), joints);
-    (void)SamplingJob<float>{track.clip, track.time, track.rate, out}.Run();
+    (void)SamplingJob<float>{track.clip, track.time, out}.Run();
     place_root(track.place, out[0]);
     stale[character] = 0;
   }
@@ -150,7 +150,7 @@ struct Crowd::Impl {
     bool together = true;
     for (int i = first; i < first + lanes; ++i) {
       if (!active[i]) continue;
-      if (tracks[i].clip) tracks[i].time += tracks[i].rate * step;
+      if (tracks[i].clip) tracks[i].time = tracks[i].time.after(step);
       stale[i] = tracks[i].clip != nullptr;
       together &= sampled_in_batches(tracks[i]);
     }
@@ -235,8 +235,7 @@ Status Crowd::play(int character, const CrowdTrack& track) {
     if (track.clip->joint_count != impl_->joints)
       return Status::error(Code::kInvalidArgument, "clip has another number of joints than the rig",
                            character);
-    if (Status status = SamplingJob<float>{track.clip, track.time, track.rate}.Validate(); !status)
-      return status;
+    if (Status status = SamplingJob<float>{track.clip, track.time}.Validate(); !status) return status;
   }
   if (!track.place.rotation.coeffs().allFinite() || !track.place.translation.allFinite())
     return Status::error(Code::kNotFinite, "place is not finite", character);

@@ -2,7 +2,7 @@
 //
 //     Status status;
 //     auto crowd = Crowd::create(asset.skeleton, {.capacity = 1000}, status);
-//     for (int i = 0; i < 1000; ++i) (void)crowd->play(i, {&clip, start[i], 1, place[i]});
+//     for (int i = 0; i < 1000; ++i) (void)crowd->play(i, {&clip, start[i], place[i]});
 //     …each frame:
 //     crowd->step(1 / 60.0, jobs);
 //     for (int i : crowd->overloaded()) promote(i, crowd->jets(i));   // into a World
@@ -18,6 +18,7 @@
 #include <span>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/clip_time.h"
 #include "sinew/animation/instruction_set.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -38,9 +39,8 @@ struct CrowdSettings {
 
 /// What a character plays.
 struct CrowdTrack {
-  const Clip* clip = nullptr;  ///< valid while it plays; null: the host writes `jets` before every step
-  double time = 0;             ///< s, of the clip; a step moves it on by rate · h
-  double rate = 1;
+  const Clip* clip = nullptr;   ///< valid while it plays; null: the host writes `jets` before every step
+  ClipTime time = {};           ///< s, of the clip, with its rates; a step moves it on by h
   Transform<float> place = {};  ///< clip → world
 };
 

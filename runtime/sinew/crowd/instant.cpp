@@ -20,16 +20,18 @@ bool same_knots(const Clip::Group& a, const Clip::Group& b) {
 void add_groups(const Clip& clip, const ClipPlace& at, int lane, TrackGroup* alike, Instant& instant) {
   const Clip::Group* last = nullptr;
   KnotPlace knots;
-  float scale = 0;
+  float scale = 0, bend = 0;
   for (const Clip::Group& group : clip.groups) {
     if (group.tracks.empty()) continue;
     if (!last || !same_knots(*last, group)) {
       knots = KnotPlace(clip, group, at.time);
-      scale = float(at.speed / group.knot_interval);
+      scale = float(at.rate / group.knot_interval);
+      bend = float(at.acceleration / group.knot_interval);
       last = &group;
     }
     instant.u[instant.group_count] = float(knots.u);
     instant.scale[instant.group_count] = scale;
+    instant.bend[instant.group_count] = bend;
     TrackGroup& out = instant.group[instant.group_count++];
     control_rows(group, knots.first, out.rows);
     out.joints = &group.tracks.data()->joint;
@@ -60,7 +62,7 @@ void set_instant(std::span<const CrowdTrack> lanes, std::span<const std::uint8_t
     if (takes_part[lane]) shown = lane;
     const CrowdTrack& track = lanes[shown];
     const Clip& clip = *track.clip;
-    const ClipPlace at(clip, track.time, track.rate);
+    const ClipPlace at(clip, track.time);
     if (shown == lane) {
       const int known = int(std::find(clips, clips + clip_count, &clip) - clips);
       if (known == clip_count) {
@@ -76,10 +78,12 @@ void set_instant(std::span<const CrowdTrack> lanes, std::span<const std::uint8_t
     const bool moves_on = clip.loops && clip.duration > 0;
     const Vec3<float> none = Vec3<float>::Constant(-0.f);
     const Vec3<float> shift = moves_on ? at.shift(clip).cast<float>().eval() : none;
-    const Vec3<float> drift = moves_on ? at.drift(clip).cast<float>().eval() : none;
+    const Vec3<float> drift = moves_on ? at.drift(clip, at.rate).cast<float>().eval() : none;
+    const Vec3<float> push = moves_on ? at.drift(clip, at.acceleration).cast<float>().eval() : none;
     for (int a = 0; a < 3; ++a) {
       instant.shift[a][lane] = shift[a];
       instant.drift[a][lane] = drift[a];
+      instant.push[a][lane] = push[a];
       instant.place[a][lane] = track.place.translation[a];
     }
     for (int a = 0; a < 4; ++a) instant.turn[a][lane] = track.place.rotation.coeffs()[a];

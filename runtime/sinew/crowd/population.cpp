@@ -82,7 +82,7 @@ bool Population::Impl::enter(int character, double h) {
     return false;
   }
   const CrowdTrack& track = crowd->track(character);
-  (void)SamplingJob<float>{track.clip, track.time - track.rate * h, track.rate, jets}.Run();
+  (void)SamplingJob<float>{track.clip, track.time.after(-h), jets}.Run();
   place_root(track.place, jets[0]);
   const int place = free.back();
   if (!world->character(place).set_target(jets)) return false;

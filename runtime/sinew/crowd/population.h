@@ -2,7 +2,7 @@
 // weak for their animation, or whom one of these may touch.
 //
 //     auto people = Population::create(asset.skeleton, settings, status);
-//     for (int i = 0; i < 1000; ++i) (void)people->play(i, {&clip, start[i], 1, place[i]});
+//     for (int i = 0; i < 1000; ++i) (void)people->play(i, {&clip, start[i], place[i]});
 //     …each frame:
 //     (void)people->push(i, chest, {60, 0, 0});
 //     (void)people->step(1 / 60.f, jobs);

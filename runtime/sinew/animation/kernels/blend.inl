@@ -2,18 +2,10 @@
 #include "sinew/animation/kernels/jet_algebra.h"
 #include "sinew/animation/kernels/kernels.h"
 #include "sinew/animation/kernels/lanes.h"
+#include "sinew/animation/kernels/packed_jets.h"
 
 namespace sinew::kernels {
 namespace {
-
-constexpr int kNumbers = 20;  ///< of a jet, padding included
-constexpr int kRotation = 0, kOmega = 4, kAlpha = 7, kTranslation = 10, kVelocity = 13, kAcceleration = 16;
-
-/// Jets of a pack of joints, number by number in the order of JetLayout.
-template <class P>
-struct PackedJets {
-  P number[kNumbers];
-};
 
 /// jets = other where a equals b.
 template <class P>
@@ -26,57 +18,6 @@ void replace_where_not(const P& a, typename P::Scalar b, const PackedJets<P>& ot
   for (int i = 0; i < kNumbers; ++i) jets.number[i] = where_equal(a, b, jets.number[i], other.number[i]);
 }
 
-/// Which joints a pack holds; the last one repeats where there are fewer joints than lanes.
-template <class P>
-struct Block {
-  using T = typename P::Scalar;
-  int joint[P::kLanes];
-
-  Block(int first, int end) {
-    for (int i = 0; i < P::kLanes; ++i) joint[i] = first + i < end ? first + i : end - 1;
-  }
-  P load(const T* numbers) const {
-    P x;
-    for (int i = 0; i < P::kLanes; ++i) x.v[i] = numbers[joint[i]];
-    return x;
-  }
-  PackedJets<P> load(const JetLayout<T>* jets) const {
-    const T* from = reinterpret_cast<const T*>(jets);
-    PackedJets<P> packed;
-    for (int c = 0; c < kNumbers; c += 4) {
-      P m[4];
-      for (int r = 0; r < 4; ++r)
-        m[r] = load_fours<P>([&](int group) { return from + kNumbers * joint[4 * group + r] + c; });
-      transpose(m);
-      for (int r = 0; r < 4; ++r) packed.number[c + r] = m[r];
-    }
-    return packed;
-  }
-  /// At rest in the poses given, or at the parent's origin.
-  PackedJets<P> still(const PoseLayout<T>* poses) const {
-    PackedJets<P> packed;
-    for (P& number : packed.number) number = P::all(0);
-    packed.number[kRotation + 3] = P::all(1);
-    if (!poses) return packed;
-    for (int i = 0; i < P::kLanes; ++i) {
-      for (int c = 0; c < 4; ++c) packed.number[kRotation + c].v[i] = poses[joint[i]].rotation[c];
-      for (int c = 0; c < 3; ++c) packed.number[kTranslation + c].v[i] = poses[joint[i]].translation[c];
-    }
-    return packed;
-  }
-  void store(const PackedJets<P>& packed, JetLayout<T>* jets) const {
-    T* to = reinterpret_cast<T*>(jets);
-    for (int c = 0; c < kNumbers; c += 4) {
-      P m[4] = {packed.number[c], packed.number[c + 1], packed.number[c + 2], packed.number[c + 3]};
-      transpose(m);
-      for_each_index<P::kLanes / 4>([&](auto group) {
-        for (int r = 0; r < 4; ++r)
-          sinew::store<4 * group, 4>(m[r], to + kNumbers * joint[4 * group + r] + c);
-      });
-    }
-  }
-};
-
 /// A quaternion in R⁴ and a translation, moving.
 template <class P>
 struct Moving {
@@ -84,7 +25,7 @@ struct Moving {
 };
 
 template <class P>
-Moving<P> moving(const PackedJets<P>& jets) {
+[[gnu::always_inline]] inline Moving<P> moving(const PackedJets<P>& jets) {
   const P* x = jets.number;
   Moving<P> m;
   quaternion_jet(x + kRotation, x + kOmega, x + kAlpha, m.rotation);
@@ -94,7 +35,7 @@ Moving<P> moving(const PackedJets<P>& jets) {
 }
 
 template <class P>
-PackedJets<P> packed(const Moving<P>& m) {
+[[gnu::always_inline]] inline PackedJets<P> packed(const Moving<P>& m) {
   PackedJets<P> jets;
   P p[4], dp[4], ddp[4], rotation[4], omega[3], alpha[3];
   for (int i = 0; i < 4; ++i) {
@@ -121,17 +62,18 @@ struct BlockLayer {
   PackedJets<P> jets;
   P mask;
   TimeJet<P> weight;
-  bool full;  ///< where the mask is 1 the layer is all there is
+  bool full;    ///< where the mask is 1 the layer is all there is
+  bool masked;  ///< otherwise the mask is 1 throughout
 
   BlockLayer(const BlendLayerData<typename P::Scalar>& layer, const Block<P>& block)
-      : jets(block.load(layer.jets)) {
+      : jets(block.load(layer.jets)), masked(layer.mask != nullptr) {
     mask = layer.mask ? block.load(layer.mask) : P::all(1);
     weight = {layer.weight[0] * mask, layer.weight[1] * mask, layer.weight[2] * mask};
     full = layer.weight[0] == 1 && layer.weight[1] == 0 && layer.weight[2] == 0;
   }
 };
 
-/// Quaternion of a layer, of the two that mean its rotation the one nearer to `reference`.
+/// Quaternions of a motion, of the two that mean its rotation the one nearer to `reference`.
 template <class P>
 Moving<P> aligned(const PackedJets<P>& jets, const P* reference) {
   Moving<P> m = moving(jets);
@@ -142,7 +84,8 @@ Moving<P> aligned(const PackedJets<P>& jets, const P* reference) {
   return m;
 }
 
-/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none stays.
+/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none stays at
+/// rest, as `jets` are.
 template <class P>
 void mix(const BlendData<typename P::Scalar>& data, const Block<P>& block, PackedJets<P>& jets) {
   const P zero = P::all(0);
@@ -150,35 +93,48 @@ void mix(const BlendData<typename P::Scalar>& data, const Block<P>& block, Packe
   for (TimeJet<P>& x : sum.rotation) x = {zero, zero, zero};
   for (TimeJet<P>& x : sum.translation) x = {zero, zero, zero};
   TimeJet<P> total{zero, zero, zero};
-  P contributors = zero, reference[4] = {zero, zero, zero, zero};
+  P contributors = zero, reference[4];
+  for (int i = 0; i < 4; ++i) reference[i] = jets.number[kRotation + i];
   for (int n = 0; n < data.layer_count; ++n) {
     if (data.layers[n].mode != BlendLayerData<typename P::Scalar>::kMix) continue;
     const BlockLayer<P> layer(data.layers[n], block);
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 4 && !data.rest; ++i)  // then the first layer's, joint by joint
       reference[i] = where_equal(contributors, 0, layer.jets.number[kRotation + i], reference[i]);
     const Moving<P> m = aligned(layer.jets, reference);
     for (int i = 0; i < 4; ++i) sum.rotation[i] = sum.rotation[i] + layer.weight * m.rotation[i];
     for (int i = 0; i < 3; ++i) sum.translation[i] = sum.translation[i] + layer.weight * m.translation[i];
     total = total + layer.weight;
-    replace_where_not(layer.mask, 0, layer.jets, jets);
-    contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
+    if (layer.masked) {
+      replace_where_not(layer.mask, 0, layer.jets, jets);
+      contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
+    } else {
+      jets = layer.jets;
+      contributors = contributors + P::all(1);
+    }
   }
   const TimeJet<P> inverse = TimeJet<P>{P::all(1), zero, zero} / total;
   for (TimeJet<P>& x : sum.translation) x = inverse * x;  // the length of the quaternion cancels by itself
   contributors = where_equal(total.value, 0, zero, contributors);  // weights that only begin to grow
-  const P several = where_negative(P::all(1) - contributors, P::all(1), zero);
-  replace_where_equal(several, 1, packed(sum), jets);
+  const auto several = contributors > P::all(1);
+  if (!any(!several))
+    jets = packed(sum);
+  else if (any(several))
+    replace_where_equal(select(several, P::all(1), zero), 1, packed(sum), jets);
 }
 
-/// (1 − w)·below + w·layer.
+/// (1 − w)·below + w·layer, both as quaternions on the side of `reference`.
 template <class P>
-void override_below(const BlockLayer<P>& layer, PackedJets<P>& below) {
-  Moving<P> m = moving(below);
-  const Moving<P> over = aligned(layer.jets, below.number + kRotation);
+void override_below(const BlockLayer<P>& layer, const P* reference, PackedJets<P>& below) {
+  Moving<P> m = aligned(below, reference);
+  const Moving<P> over = aligned(layer.jets, reference);
   for (int i = 0; i < 4; ++i)
     m.rotation[i] = m.rotation[i] + layer.weight * (over.rotation[i] - m.rotation[i]);
   for (int i = 0; i < 3; ++i)
     m.translation[i] = m.translation[i] + layer.weight * (over.translation[i] - m.translation[i]);
+  if (!layer.masked) {
+    below = layer.full ? layer.jets : packed(m);
+    return;
+  }
   replace_where_not(layer.mask, 0, packed(m), below);
   if (layer.full) replace_where_equal(layer.mask, 1, layer.jets, below);
 }
@@ -201,7 +157,10 @@ void add_to_below(const BlockLayer<P>& layer, PackedJets<P>& below) {
   multiply(m.rotation, part, turned);
   for (int i = 0; i < 4; ++i) m.rotation[i] = turned[i];
   for (int i = 0; i < 3; ++i) m.translation[i] = m.translation[i] + layer.weight * over.translation[i];
-  replace_where_not(layer.mask, 0, packed(m), below);
+  if (layer.masked)
+    replace_where_not(layer.mask, 0, packed(m), below);
+  else
+    below = packed(m);
 }
 
 template <class T>
@@ -211,11 +170,14 @@ void blend_all(const BlendData<T>& data, int joints, JetLayout<T>* out) {
   for (int first = 0; first < joints; first += P::kLanes) {
     const Block<P> block(first, joints);
     PackedJets<P> jets = block.still(data.rest);
+    const PackedJets<P> rest = jets;
+    const P* reference = (data.rest ? rest : jets).number + kRotation;
     mix(data, block, jets);
     for (int n = 0; n < data.layer_count; ++n) {
       if (data.layers[n].mode == Layer::kMix) continue;
       const BlockLayer<P> layer(data.layers[n], block);
-      data.layers[n].mode == Layer::kOverride ? override_below(layer, jets) : add_to_below(layer, jets);
+      data.layers[n].mode == Layer::kOverride ? override_below(layer, reference, jets)
+                                              : add_to_below(layer, jets);
     }
     block.store(jets, out);
   }

@@ -45,18 +45,48 @@ struct BlendData {
   const PoseLayout<T>* rest = nullptr;  ///< or null for the identity
 };
 
+constexpr int kOffsetBlock = 16;  ///< joints whose offsets stand side by side
+
+/// Offsets of all joints, [block][value, rate, acceleration][x y z][kOffsetBlock]: of rotations as modified
+/// Rodrigues parameters, of translations in metres.
+template <class T>
+struct OffsetNumbers {
+  T *rotations = nullptr, *translations = nullptr;
+  int translated = 0;  ///< joints with an offset of their translation, the first ones
+};
+template <class T>
+struct OffsetFade {
+  OffsetNumbers<T> offsets;
+  T elapsed = 0, duration = 0;  ///< s
+  const T* profile = nullptr;   ///< [joint] part of the duration, or null for 1
+};
+/// What a unit of rate and of acceleration at the start have become: displacement, rate, acceleration.
+template <class T>
+struct Extrapolation {
+  T of_rate[3], of_acceleration[3];
+};
+
 /// `constants`: what joints without a track keep. `rotations`, `translations`: the joints of one group.
 #define SINEW_KERNELS_OF(T, Out)                                           \
   void constants(const PoseLayout<float>* poses, int joints, Out<T>* out); \
   void rotations(const SplineSpan<T>& span, Out<T>* out);                  \
   void translations(const SplineSpan<T>& span, Out<T>* out);
-#define SINEW_ALL_KERNELS                                                      \
-  SINEW_KERNELS_OF(float, JetLayout)                                           \
-  SINEW_KERNELS_OF(float, PoseLayout)                                          \
-  SINEW_KERNELS_OF(double, JetLayout)                                          \
-  SINEW_KERNELS_OF(double, PoseLayout)                                         \
-  void blend(const BlendData<float>& data, int joints, JetLayout<float>* out); \
-  void blend(const BlendData<double>& data, int joints, JetLayout<double>* out);
+/// `start_offsets`: how far a motion is from another. `add_offsets`: what is left of it, added to the other.
+/// `extrapolate`: a motion that goes on from an instant, more and more slowly.
+#define SINEW_OFFSET_KERNELS_OF(T)                                                                    \
+  void start_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints,                    \
+                     const OffsetNumbers<T>& out);                                                    \
+  void add_offsets(const JetLayout<T>* to, const OffsetFade<T>& fade, int joints, JetLayout<T>* out); \
+  void extrapolate(const JetLayout<T>* from, const Extrapolation<T>& data, int joints, JetLayout<T>* out);
+#define SINEW_ALL_KERNELS                                                        \
+  SINEW_KERNELS_OF(float, JetLayout)                                             \
+  SINEW_KERNELS_OF(float, PoseLayout)                                            \
+  SINEW_KERNELS_OF(double, JetLayout)                                            \
+  SINEW_KERNELS_OF(double, PoseLayout)                                           \
+  void blend(const BlendData<float>& data, int joints, JetLayout<float>* out);   \
+  void blend(const BlendData<double>& data, int joints, JetLayout<double>* out); \
+  SINEW_OFFSET_KERNELS_OF(float)                                                 \
+  SINEW_OFFSET_KERNELS_OF(double)
 namespace baseline {
 SINEW_ALL_KERNELS
 }

@@ -37,7 +37,7 @@ const PoseLayout<T>* layout(const Transform<T>* poses) {
 }
 
 /// The kernel of this processor.
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(SINEW_BASELINE_ONLY)
 #define SINEW_DISPATCH(call) (kernels::has_avx2() ? kernels::avx2::call : kernels::baseline::call)
 #else
 #define SINEW_DISPATCH(call) kernels::baseline::call

@@ -31,11 +31,13 @@ struct Instant {
   TrackGroup group[kGroups];  ///< of all lanes, in the order of their clips
   float u[kGroups];           ///< parameter of the group's span, 0 … 1
   float scale[kGroups];       ///< playback rate / knot interval, 1/s
+  float bend[kGroups];        ///< how that rate changes / knot interval, 1/s²
   /// [lane] the lane whose clip it shows: itself, or another where it does not take part.
   int shows[kMaxLanes];
   const kernels::PoseLayout<float>* constants[kMaxLanes];  ///< [lane] → [joint]
   float shift[3][kMaxLanes];                               ///< added to the root's translation (m), and
-  float drift[3][kMaxLanes];                               ///< to its velocity (m/s); −0 changes no bit
+  float drift[3][kMaxLanes];                               ///< to its velocity (m/s)
+  float push[3][kMaxLanes];                                ///< and acceleration (m/s²); −0 changes no bit
   float turn[4][kMaxLanes];                                ///< clip → world, x y z w
   float place[3][kMaxLanes];                               ///< m
 };

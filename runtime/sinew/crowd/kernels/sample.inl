@@ -39,7 +39,7 @@ struct SampleRoom {
 template <class P>
 void weigh(const Instant& instant, const SampleRoom& room) {
   for (int g = 0; g < instant.group_count; g += P::kLanes) {
-    const P u = P::load(instant.u + g), scale = P::load(instant.scale + g);
+    const P u = P::load(instant.u + g), scale = P::load(instant.scale + g), bend = P::load(instant.bend + g);
     bool cubic = false, quintic = false;
     float degree[P::kLanes];
     for (int i = 0; i < P::kLanes; ++i) {
@@ -60,7 +60,7 @@ void weigh(const Instant& instant, const SampleRoom& room) {
     for (int t = 0; t < 6; ++t) {
       store<0, P::kLanes>(w.value[t], room.weights[0][t] + g);
       store<0, P::kLanes>(scale * w.first[t], room.weights[1][t] + g);
-      store<0, P::kLanes>(scale * scale * w.second[t], room.weights[2][t] + g);
+      store<0, P::kLanes>(scale * scale * w.second[t] + bend * w.first[t], room.weights[2][t] + g);
     }
   }
 }
@@ -239,6 +239,7 @@ void place_root(const Instant& instant, int first, JointJet<P>& root) {
   for (int a = 0; a < 3; ++a) {
     root.translation[a] += P::load(instant.shift[a] + first);
     root.velocity[a] += P::load(instant.drift[a] + first);
+    root.acceleration[a] += P::load(instant.push[a] + first);
     at[a] = P::load(instant.place[a] + first);
   }
   const Quat<P> turn(P::load(instant.turn[3] + first), P::load(instant.turn[0] + first),

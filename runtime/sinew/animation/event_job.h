@@ -1,0 +1,69 @@
+// What happens at certain times of a clip: footsteps, sounds, windows in which a blow counts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sinew/skeleton/status.h"
+
+namespace sinew {
+
+/// Something at an instant of a clip (begin = end) or during a part of it. Times in seconds of the clip.
+struct ClipEvent {
+  float begin = 0, end = 0;                ///< 0 ≤ begin ≤ end ≤ duration
+  std::uint32_t name = 0;                  ///< the game's number or hash
+  bool always = false;                     ///< reported whatever the weight
+  std::array<std::byte, 16> payload = {};  ///< the game's
+};
+
+enum class EventKind : std::uint8_t { kInstant, kBegin, kEnd };
+
+struct EventHit {
+  const ClipEvent* event = nullptr;
+  EventKind kind = EventKind::kInstant;
+  float weight = 0;
+  float seconds_ago = 0;  ///< before the end of the frame: a pose then is p − v·s + a·s²/2
+};
+
+/// The caller's place for hits of a frame, of any number of clips.
+struct EventSink {
+  std::span<EventHit> hits;
+  int count = 0;
+  int lost = 0;  ///< hits that found no place
+
+  void add(const EventHit& hit) {
+    if (std::size_t(count) < hits.size())
+      hits[std::size_t(count++)] = hit;
+    else
+      ++lost;
+  }
+};
+
+/// Reports what a clip passed between two times, in order. Forwards that is (from, to], backwards [to, from):
+/// frames that follow each other report every event exactly once, at any frame rate, over any number of
+/// loops, and also where the direction turns. Backwards, a part is entered at its end.
+///
+/// Times as given to SamplingJob, without wrapping. Allocates nothing; cost grows with events and loops.
+struct EventJob {
+  std::span<const ClipEvent> events;
+  double duration = 0;  ///< s, of the clip
+  bool loops = false;
+  double from = 0, to = 0;  ///< s, clip time at the last frame and now
+  bool starts = false;      ///< the clip begins to play in this frame: `from` itself belongs to it
+  float step = 0;           ///< s of real time between the two
+  float weight = 1;         ///< of the clip
+  float threshold = 0.5f;   ///< least weight for instants and beginnings: one of two footsteps; ends always
+  EventSink* out = nullptr;
+
+  Status Validate() const;  ///< `Status::index`: event
+  Status Run() const;
+};
+
+/// Ends what the clip is in the middle of at a time, when it stops being played there: a beginning that was
+/// reported is always followed by an end. `backwards`: it came from later times.
+void end_events(std::span<const ClipEvent> events, double duration, bool loops, double at, bool backwards,
+                EventSink& out);
+
+}  // namespace sinew
