@@ -1,4 +1,4 @@
-// Trajectories against the references in ../shared/mechanisms/reference (ten digits and more, independent
+// Trajectories against the references in assets/mechanisms/reference (twelve digits, found by independent
 // routes).
 #include "mechanisms.h"
 
@@ -11,7 +11,7 @@ struct Reference {
 };
 
 Reference reference_of(const std::string& name) {
-  std::ifstream file(kShared + "reference/" + name + ".csv");
+  std::ifstream file(kOwn + "reference/" + name + ".csv");
   Reference table;
   std::string line, cell;
   std::getline(file, line);
@@ -31,11 +31,11 @@ struct Deviation {
   long steps = 0;
 };
 
-/// Joint coordinates and rates that the table has, by name; `nfourbar_2` has the rocker only.
+/// Joint coordinates and rates that the table has, by name; `nfourbar_2` has its first rocker only.
 Deviation deviation(const std::string& name, Formulation formulation, Tangent tangent, Method method,
                     double tolerance) {
   const Reference reference = reference_of(name);
-  const Mechanism mechanism = loaded(kShared + name + ".json");
+  const Mechanism mechanism = loaded(kOwn + name + ".json");
   const Model model(mechanism);
   SimulationSettings settings;
   settings.formulation = formulation;
@@ -53,7 +53,6 @@ Deviation deviation(const std::string& name, Formulation formulation, Tangent ta
   for (std::size_t c = 1; c < reference.columns.size(); ++c) {
     const std::string kind = reference.columns[c].substr(0, 2);
     std::string of = reference.columns[c].substr(2);
-    if (of == "rocker_angle") of = mechanism.joints[0].name;  // nfourbar_2
     for (std::size_t s = 0; s < run.samples.size(); ++s) {
       const Sample& sample = run.samples[s];
       const double is = reference.rows[s][c];
@@ -89,9 +88,6 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 class References : public testing::TestWithParam<Case> {
  protected:
-  void SetUp() override {
-    if (!have_shared()) GTEST_SKIP() << kNoShared;
-  }
   void expect_agreement(Formulation formulation, Tangent tangent, Method method) const {
     for (const double tolerance : {1e-6, 1e-9}) {
       const Case& c = GetParam();
@@ -119,6 +115,9 @@ TEST_P(References, Ode15sROnResidualsWithNumericTangent) {
 TEST_P(References, DasslOnResiduals) {
   expect_agreement(Formulation::kRr, Tangent::kAnalytic, Method::kDassl);
 }
+TEST_P(References, StrictDasslOnResiduals) {
+  expect_agreement(Formulation::kRr, Tangent::kAnalytic, Method::kDasslStrict);
+}
 
 INSTANTIATE_TEST_SUITE_P(Mechanisms, References,
                          testing::Values(Case{"fivebar_pendulum", 1e4, 1e5}, Case{"fivebar_planar", 1e5, 1e5},
@@ -131,7 +130,6 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, References,
                          [](const auto& given) { return std::string(given.param.name); });
 
 TEST(Reference, ArticulatedInertiasReachTheDigitsOfTheTables) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
   // At 1e-13 what is left is rounding amplified by the motion: 14 × angles for the five-bar, 1.5 for the
   // driver.
   for (const char* name : {"fivebar_pendulum", "driver_nonstiff"}) {
@@ -141,14 +139,13 @@ TEST(Reference, ArticulatedInertiasReachTheDigitsOfTheTables) {
 }
 
 TEST(Reference, BricardKeepsEnergyAndClosureInHundredsOfSteps) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
   for (const auto& [formulation, tangent, method] :
        {std::tuple{Formulation::kDsr, Tangent::kNumeric, Method::kDe},
         {Formulation::kRr, Tangent::kAnalytic, Method::kOde15sR},
         {Formulation::kRr, Tangent::kNumeric, Method::kOde15sR},
-        {Formulation::kDsr, Tangent::kNumeric, Method::kDassl},
-        {Formulation::kRr, Tangent::kNumeric, Method::kDassl},
-        {Formulation::kRr, Tangent::kAnalytic, Method::kDassl}}) {
+        {Formulation::kDsr, Tangent::kNumeric, Method::kDasslStrict},
+        {Formulation::kRr, Tangent::kNumeric, Method::kDasslStrict},
+        {Formulation::kRr, Tangent::kAnalytic, Method::kDasslStrict}}) {
     const Deviation d = deviation("bricard", formulation, tangent, method, 1e-5);
     EXPECT_LT(d.drift, 1e-3);    // J
     EXPECT_LT(d.closure, 1e-8);  // m
@@ -156,31 +153,41 @@ TEST(Reference, BricardKeepsEnergyAndClosureInHundredsOfSteps) {
   }
 }
 
+TEST(Reference, PublishedDasslDriftsWhereTheStrictVariantDoesNot) {
+  // It keeps a rate of convergence from step to step, which is too hopeful where the mass turns: it misses
+  // the 1e-3 J of the test above, a known failure and the reason why the strict variant exists.
+  double drift = 0;
+  for (const Tangent tangent : {Tangent::kNumeric, Tangent::kAnalytic}) {
+    const Deviation d = deviation("bricard", Formulation::kRr, tangent, Method::kDassl, 1e-5);
+    drift = std::max(drift, d.drift);
+    EXPECT_LT(d.closure, 1e-8);  // m
+  }
+  EXPECT_GT(drift, 1e-3) << "J: DASSL as published keeps energy now and belongs into the test above";
+}
+
 TEST(Reference, FixedStepSchemesConvergeToTheReference) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
   for (const char* name : {"driver_stiff", "bricard"}) {
     const Reference reference = reference_of(name);
-    const Model model(loaded(kShared + name + ".json"));
+    const Model model(loaded(kOwn + name + ".json"));
     double error[2];
     for (int i = 0; i < 2; ++i) {
       SimulationSettings settings;
       settings.method = Method::kBdf2;
-      settings.t_end = settings.output.emplace_back(reference.rows[10][0]);
+      settings.t_end = settings.output.emplace_back(reference.rows[5][0]);
       settings.integrator.rtol = settings.integrator.atol = 1e-8;
       settings.integrator.fixed_step = settings.t_end / (i == 0 ? 500 : 1000);
       const SimulationResult run = simulate(model, settings);
       ASSERT_EQ(run.stopped, "");
       error[i] = 0;
       for (int k = 0; k < model.size(); ++k)
-        error[i] = std::max(error[i], std::abs(run.samples.back().y[k] - reference.rows[10][1 + k]));
+        error[i] = std::max(error[i], std::abs(run.samples.back().y[k] - reference.rows[5][1 + k]));
     }
     EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.3) << name;
   }
 }
 
 TEST(Reference, FixedStepSchemesCrossSingularPositions) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
-  const Model model(loaded(kShared + "nfourbar_2.json"));
+  const Model model(loaded(kOwn + "nfourbar_2.json"));
   for (const Method method : {Method::kBdf1, Method::kBdf2}) {
     SimulationSettings settings;
     settings.method = method;
@@ -192,7 +199,6 @@ TEST(Reference, FixedStepSchemesCrossSingularPositions) {
 }
 
 TEST(Reference, SingularPositionsArePassedAtEveryTolerance) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
   // In the horizontal position the loops lose rank and rounding is magnified without bound; steps that shrank
   // on its account would never get across.
   for (const double tolerance : {1e-4, 1e-5, 1e-7, 1e-8, 1e-10})

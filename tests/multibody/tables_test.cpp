@@ -75,10 +75,9 @@ TEST(Tables, GrowthExponentIsTheSlopeOfLogarithms) {
 TEST(Peers, ComeToTheSameMotion) {
   const std::vector<Peer> all = peers();
   if (all.empty()) GTEST_SKIP() << "built without SINEW_PEERS";
-  if (!multibody::have_shared()) GTEST_SKIP() << multibody::kNoShared;
   for (const char* name : {"fivebar_pendulum", "driver_stiff", "bricard", "suspension_5ps"}) {
     StudyCase c;
-    ASSERT_EQ(load_case(multibody::kShared, name, c), "");
+    ASSERT_EQ(load_case(multibody::kOwn, name, c), "");
     for (const Peer& peer : all) {
       const Measurement m = peer.measure(c, 1e-7, 1);
       EXPECT_EQ(m.stopped, "") << peer.name << " on " << name;

@@ -33,8 +33,13 @@ const std::map<std::string, FormulationChoice>& formulations() {
 
 const std::map<std::string, Method>& methods() {
   static const std::map<std::string, Method> all = {
-      {"DE", Method::kDe},       {"ode15s", Method::kOde15s}, {"ode15sR", Method::kOde15sR},
-      {"DASSL", Method::kDassl}, {"bdf1", Method::kBdf1},     {"bdf2", Method::kBdf2},
+      {"DE", Method::kDe},
+      {"ode15s", Method::kOde15s},
+      {"ode15sR", Method::kOde15sR},
+      {"DASSL", Method::kDassl},
+      {"DASSL-strict", Method::kDasslStrict},
+      {"bdf1", Method::kBdf1},
+      {"bdf2", Method::kBdf2},
   };
   return all;
 }

@@ -145,10 +145,9 @@ bool Equations::residual(double t, const Vector& y, const Vector& yp, Vector& r)
 
 bool Equations::analytic_tangent(double t, const Vector& y) {
   if (!prepare(t, y)) return false;
-  semi_recursive_.mass_matrix(motion_, mass_);
   Matrix k = Matrix::Zero(n_, n_), d = Matrix::Zero(n_, n_);
   add_force_tangent(*model_, t, q_, qd_, motion_, k, d);
-  rz_.reduce(mass_, inertia_);
+  inertia_is_mass_ = true;
   rz_.reduce(k, stiffness_);
   rz_.reduce(d, damping_);
   return true;
@@ -160,6 +159,7 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
   damping_.resize(nf, nf);
   inertia_ = Matrix::Zero(nf, nf);
   if (formulation_ != Formulation::kRr) inertia_.setIdentity();
+  inertia_is_mass_ = formulation_ == Formulation::kRr && reusable;
   Vector base(nf), moved(nf), state = y, rate = yp, qdd(n_);
   const auto evaluate = [&](Vector& out) {
     if (formulation_ == Formulation::kRr) return independent_residual(t, state, rate.tail(n_), out);
@@ -177,18 +177,13 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
     stiffness_.col(j) = (moved - base) / dq;
     state[k] = y[k];
     state[n_ + k] += dv;
-    // Codes that evaluate the tangent for one c only take velocity and acceleration together.
+    // Codes that evaluate the tangent for one c only take velocity and acceleration together; the others get
+    // the mass by itself, when they factorise.
     if (formulation_ == Formulation::kRr && !reusable) rate[n_ + k] += c * dv;
     if (!evaluate(moved)) return false;
     damping_.col(j) = (moved - base) / dv;
     state[n_ + k] = y[n_ + k];
     rate[n_ + k] = yp[n_ + k];
-    if (formulation_ == Formulation::kRr && reusable) {
-      rate[n_ + k] += 1;  // linear: any increment serves
-      if (!evaluate(moved)) return false;
-      inertia_.col(j) = moved - base;
-      rate[n_ + k] = yp[n_ + k];
-    }
   }
   return true;
 }
@@ -199,9 +194,15 @@ bool Equations::tangent(double t, const Vector& y, const Vector& yp, double c, b
                                              : numeric_tangent(t, y, yp, c, reusable);
 }
 
+void Equations::renew_mass() {
+  semi_recursive_.mass_matrix(motion_, mass_);
+  rz_.reduce(mass_, inertia_);
+}
+
 bool Equations::factorise(double c) {
   ++counts_.factorisations;
   c_ = c;
+  if (inertia_is_mass_) renew_mass();
   // Equations 79 and 84 with the position rows eliminated: half the size.
   iteration_ = c * inertia_ + damping_ + stiffness_ / c;
   if (!iteration_.allFinite()) return false;

@@ -66,6 +66,7 @@ class Equations : public System {
   bool independent_residual(double t, const Vector& y, const Vector& qdd, Vector& out);
   bool numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable);
   bool analytic_tangent(double t, const Vector& y);
+  void renew_mass();
 
   const Model* model_;
   Formulation formulation_;
@@ -87,6 +88,7 @@ class Equations : public System {
   Matrix stiffness_, damping_, inertia_, iteration_;
   Eigen::PartialPivLU<Matrix> factor_;
   double c_ = 0;
+  bool inertia_is_mass_ = false;  ///< and so can be renewed without evaluating the tangent
 };
 
 }  // namespace sinew::multibody

@@ -53,10 +53,7 @@ Measurement quickest_within(const StudyCase& c, const std::vector<Measurement>& 
                  best->tolerance, repeats);
 }
 
-std::string default_directory() {
-  const std::string shared = std::string(SINEW_SOURCE_DIR) + "/../shared/mechanisms";
-  return std::filesystem::exists(shared) ? shared : std::string(SINEW_SOURCE_DIR) + "/assets/mechanisms";
-}
+constexpr const char* kMechanisms = SINEW_SOURCE_DIR "/assets/mechanisms";
 
 /// Names of those files that the directory has.
 std::vector<std::string> present(const std::string& directory, const std::vector<std::string>& names) {
@@ -70,7 +67,7 @@ class Study {
  public:
   Study(const TablesOptions& options, const std::function<void(int, int)>& progress, TablesResult& out)
       : options_(options), progress_(progress), out_(out), repeats_(options.quick ? 3 : 9), peers_(peers()) {
-    directory_ = options.mechanisms.empty() ? default_directory() : options.mechanisms;
+    directory_ = options.mechanisms.empty() ? kMechanisms : options.mechanisms;
     out_ = {};
     out_.tolerance = options.tolerance;
     out_.peers = !peers_.empty();

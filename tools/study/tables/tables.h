@@ -10,8 +10,7 @@
 namespace sinew::study {
 
 struct TablesOptions {
-  std::string
-      mechanisms;  ///< directory of the mechanism files; "": ../shared/mechanisms, else assets/mechanisms
+  std::string mechanisms;   ///< directory of the mechanism files; "": assets/mechanisms
   double tolerance = 1e-5;  ///< the paper's
   bool quick = false;       ///< fewer repeats and tolerances
 };
