@@ -32,7 +32,7 @@ TEST(Tables, RunOnTheMechanismsOfTheRepositoryAlone) {
   ASSERT_EQ(run_tables(options, {}, result), "");
   EXPECT_EQ(result.names(false), (std::vector<std::string>{"chain", "figure1"}));
   EXPECT_EQ(result.names(true), (std::vector<std::string>{"four_bar"}));
-  for (const Measurement& m : result.simulations) {
+  for (const SimulationRun& m : result.simulations) {
     EXPECT_EQ(m.stopped, "") << m.mechanism << " " << m.method;
     EXPECT_LT(m.error.q, 1e-2) << m.mechanism << " " << m.method;  // 1e3 tolerances, against DE at 1e-12
     EXPECT_LT(m.closure, 1e-8) << m.mechanism << " " << m.method;
@@ -121,7 +121,7 @@ TEST(Tables, ConclusionsFollowTheFigures) {
 TEST(Tables, CostAtAnErrorLiesOnTheLowerEnvelopeOfTheRuns) {
   TablesResult result;
   const auto run = [&](double error, double cost) {
-    Measurement m;
+    SimulationRun m;
     m.mechanism = "m", m.method = "DE · DTR", m.error.q = error, m.instructions = cost;
     result.curves.push_back(m);
   };
@@ -146,7 +146,7 @@ TEST(Peers, ComeToTheSameMotion) {
     StudyCase c;
     ASSERT_EQ(load_case(multibody::kOwn, name, c), "");
     for (const Peer& peer : all) {
-      const Measurement m = peer.measure(c, 1e-7, 1);
+      const SimulationRun m = peer.measure(c, 1e-7, 1);
       EXPECT_EQ(m.stopped, "") << peer.name << " on " << name;
       EXPECT_LT(m.error.q, 3e-3) << peer.name << " on "
                                  << name;  // they control local errors only, some loosely

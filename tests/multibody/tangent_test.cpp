@@ -192,5 +192,52 @@ TEST(Tangent, MassApartLeavesFewTangentsToAskFor) {
   }
 }
 
+/// c·M + D + K/c of a mechanism at a state.
+Matrix iteration_matrix(const Model& model, double t, double c, const Vector& q, const Vector& qd) {
+  BodyMotion motion(model);
+  Matrix stiffness, damping, mass(model.size(), model.size());
+  analytic(model, t, q, qd, stiffness, damping);
+  move_to(model, q, motion);
+  SemiRecursive(model).mass_matrix(motion, mass);
+  return c * mass + damping + stiffness / c;
+}
+
+TEST(TreeFactor, SolvesAsADenseFactorDoesOnEveryOpenMechanism) {
+  std::mt19937 random(20260713);
+  std::normal_distribution<double> normal(0, 0.3);
+  std::vector<Mechanism> all = {
+      sliding_bodies()};  // springs between two branches: entries outside the tree's
+  for (const std::string& path : open_mechanisms()) all.push_back(loaded(path));
+  for (const Mechanism& mechanism : all) {
+    const Model model(mechanism);
+    TreeFactor factor(model);
+    for (const double c : {1e2, 1e4}) {
+      Vector q(model.size()), qd(model.size()), b(model.size());
+      for (Vector* v : {&q, &qd, &b})
+        for (double& x : *v) x = normal(random);
+      const Matrix a = iteration_matrix(model, 0.1, c, q, qd);
+      ASSERT_TRUE(factor.factorise(a)) << mechanism.name;
+      Vector x = b;
+      factor.solve(x);
+      // Backward error: rounding of a hundred operations, and room for what pivoting would have saved.
+      EXPECT_LT((a * x - b).norm(), 1e-10 * a.norm() * x.norm()) << mechanism.name << " c = " << c;
+    }
+  }
+}
+
+TEST(TreeFactor, LeavesOutWhatBranchesDoNotShare) {
+  // 41 joints of the driver: arms, legs and head hang on a spine; no force goes from branch to branch.
+  const Model model(loaded(kOwn + "driver_stiff.json"));
+  EXPECT_LT(TreeFactor(model).entries(), 41 * 41 / 2);
+}
+
+TEST(TreeFactor, RefusesAMatrixThatAsksForPivoting) {
+  const Model model(loaded(kOwn + "fivebar_pendulum.json"));
+  TreeFactor factor(model);
+  Matrix a = Matrix::Ones(5, 5);
+  a(4, 4) = 0;
+  EXPECT_FALSE(factor.factorise(a));
+}
+
 }  // namespace
 }  // namespace sinew::multibody

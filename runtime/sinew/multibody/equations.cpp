@@ -37,7 +37,8 @@ Equations::Equations(const Model& model, Formulation formulation, Tangent tangen
       bias_(Vector::Zero(n_)),
       force_(n_),
       reduced_(n_),
-      mass_(Matrix::Zero(n_, n_)) {}
+      mass_(Matrix::Zero(n_, n_)),
+      tree_factor_(model) {}
 
 std::string Equations::start(Vector& y) {
   const Mechanism& mechanism = model_->mechanism();
@@ -206,6 +207,9 @@ bool Equations::factorise(double c) {
   // Equations 79 and 84 with the position rows eliminated: half the size.
   iteration_ = c * inertia_ + damping_ + stiffness_ / c;
   if (!iteration_.allFinite()) return false;
+  by_tree_ = inertia_is_mass_ && tangent_kind_ == Tangent::kAnalytic && rz_.trivial() &&
+             tree_factor_.factorise(iteration_);
+  if (by_tree_) return true;
   factor_.compute(iteration_);
   return factor_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0;
 }
@@ -223,7 +227,11 @@ void Equations::solve(Vector& r) {
   // The analytic tangent is that of the forces: derivatives' residuals become forces by the mass matrix.
   if (derivatives && tangent_kind_ == Tangent::kAnalytic) second = inertia_ * second;
   second -= stiffness_ * first / c_;
-  const Vector rate = factor_.solve(second);
+  Vector rate = second;
+  if (by_tree_)
+    tree_factor_.solve(rate);
+  else
+    rate = factor_.solve(second);
   if (!rz_.trivial()) {
     // Dependent rows: q'_d follows Rz q'_i, and the independent residual has already taken its share of
     // q''_d.

@@ -12,6 +12,7 @@
 #include "sinew/multibody/articulated.h"
 #include "sinew/multibody/semi_recursive.h"
 #include "sinew/multibody/system.h"
+#include "sinew/multibody/tree_factor.h"
 #include "sinew/multibody/velocity_transformation.h"
 
 namespace sinew::multibody {
@@ -86,6 +87,8 @@ class Equations : public System {
 
   // Tangent parts in independent coordinates: −∂Q/∂q, −∂Q/∂q' and the mass (identity for derivatives).
   Matrix stiffness_, damping_, inertia_, iteration_;
+  TreeFactor tree_factor_;  ///< of open chains on residuals with the analytic tangent
+  bool by_tree_ = false;    ///< that one holds the iteration matrix, not the dense one
   Eigen::PartialPivLU<Matrix> factor_;
   double c_ = 0;
   bool inertia_is_mass_ = false;  ///< and so can be renewed without evaluating the tangent

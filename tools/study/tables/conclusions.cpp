@@ -189,8 +189,8 @@ Conclusion few_tangents(const TablesResult& r) {
           gather(r, any,
                  [&](const StudiedMechanism& m, Evidence& e) {
                    const std::string f = m.closed() ? "RR-Rz-JF" : "RR-JF";
-                   const Measurement *s = find(r, m.name, "ode15sR · " + f),
-                                     *d = find(r, m.name, "DASSL · " + f);
+                   const SimulationRun *s = find(r, m.name, "ode15sR · " + f),
+                                       *d = find(r, m.name, "DASSL · " + f);
                    if (!r.counted || !s || !d || !s->stopped.empty() || !d->stopped.empty()) return false;
                    e.holds = 2 * s->tangents < d->tangents;
                    e.figures = text("%ld, %ld", s->tangents, d->tangents);

@@ -14,7 +14,7 @@ struct Point {
 /// Runs of a method that no other run of it beats in both, from cheap and coarse to dear and accurate.
 std::vector<Point> envelope(const TablesResult& r, const std::string& mechanism, const std::string& method) {
   std::vector<Point> points;
-  for (const Measurement& m : r.curves)
+  for (const SimulationRun& m : r.curves)
     if (m.mechanism == mechanism && m.method == method && m.stopped.empty() && m.instructions > 0 &&
         m.error.q > 0)
       points.push_back({m.error.q, m.instructions});
@@ -25,15 +25,15 @@ std::vector<Point> envelope(const TablesResult& r, const std::string& mechanism,
   return front;
 }
 
-const Measurement* counted(const TablesResult& r, const std::string& mechanism, const std::string& method) {
-  const Measurement* m = find(r, mechanism, method);
+const SimulationRun* counted(const TablesResult& r, const std::string& mechanism, const std::string& method) {
+  const SimulationRun* m = find(r, mechanism, method);
   return m && m->stopped.empty() && m->instructions > 0 ? m : nullptr;
 }
 
-const Measurement* cheapest(const TablesResult& r, const std::string& mechanism, const Methods& methods) {
-  const Measurement* best = nullptr;
+const SimulationRun* cheapest(const TablesResult& r, const std::string& mechanism, const Methods& methods) {
+  const SimulationRun* best = nullptr;
   for (const std::string& method : methods)
-    if (const Measurement* m = counted(r, mechanism, method);
+    if (const SimulationRun* m = counted(r, mechanism, method);
         m && (!best || m->instructions < best->instructions))
       best = m;
   return best;
@@ -72,7 +72,7 @@ double cost_at_error(const TablesResult& r, const std::string& mechanism, const 
 }
 
 Ratio ratio(const TablesResult& r, const std::string& mechanism, const Methods& a, const Methods& b) {
-  const Measurement *of_a = cheapest(r, mechanism, a), *of_b = cheapest(r, mechanism, b);
+  const SimulationRun *of_a = cheapest(r, mechanism, a), *of_b = cheapest(r, mechanism, b);
   if (!of_a || !of_b) return {};
   const double error = std::max(of_a->error.q, of_b->error.q);
   const double cost_a = cheapest_at(r, mechanism, a, error), cost_b = cheapest_at(r, mechanism, b, error);
@@ -82,7 +82,7 @@ Ratio ratio(const TablesResult& r, const std::string& mechanism, const Methods& 
 Methods methods_of(const TablesResult& r, const std::string& mechanism,
                    std::initializer_list<const char*> integrators) {
   Methods out;
-  for (const Measurement& m : r.simulations)
+  for (const SimulationRun& m : r.simulations)
     for (const char* integrator : integrators)
       if (m.mechanism == mechanism && m.method.starts_with(std::string(integrator) + " · "))
         out.push_back(m.method);

@@ -133,9 +133,9 @@ std::function<void()> simulation_of(const StudyCase& c, const std::string& formu
   return [model = Model(c.mechanism), settings = settings_of(options)] { (void)simulate(model, settings); };
 }
 
-Measurement measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
-                    double tolerance, int repeats) {
-  Measurement m;
+SimulationRun measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
+                      double tolerance, int repeats) {
+  SimulationRun m;
   m.mechanism = c.name;
   m.method = integrator + " · " + formulation;
   m.tolerance = tolerance;

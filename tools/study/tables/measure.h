@@ -41,7 +41,7 @@ std::string load_case(const std::string& directory, const std::string& name, Stu
 std::string load_mechanism_only(const std::string& directory, const std::string& name, StudyCase& out);
 
 /// One simulation: which, how long, how true.
-struct Measurement {
+struct SimulationRun {
   std::string mechanism;
   std::string method;       ///< "DE · DTR", "Simbody · CPodes", …
   double tolerance = 0;     ///< relative and absolute
@@ -58,8 +58,8 @@ struct Measurement {
 double cpu_seconds();
 
 /// Simulates with Sinew; `repeats` times, the quickest counts.
-Measurement measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
-                    double tolerance, int repeats);
+SimulationRun measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
+                      double tolerance, int repeats);
 
 /// A simulation to be run once, without sampling: what is counted.
 std::function<void()> simulation_of(const StudyCase& c, const std::string& formulation,

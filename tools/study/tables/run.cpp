@@ -49,12 +49,12 @@ std::vector<Pairing> contenders(const StudyCase& c) {
 }
 
 /// Runs of one mechanism at tolerances from 1e-2 down to 1e-11, each formulation and integrator that may win.
-std::vector<Measurement> work_precision(const StudyCase& c, bool quick) {
-  std::vector<Measurement> runs;
+std::vector<SimulationRun> work_precision(const StudyCase& c, bool quick) {
+  std::vector<SimulationRun> runs;
   for (const Pairing& p : contenders(c)) {
     if (c.stiff && std::string(p.integrator) == "DE") continue;  // stability would limit every one of them
     for (double exponent = -2; exponent >= -11; exponent -= quick ? 1 : 0.25) {
-      Measurement m = measure(c, p.formulation, p.integrator, std::pow(10, exponent), 1);
+      SimulationRun m = measure(c, p.formulation, p.integrator, std::pow(10, exponent), 1);
       if (m.stopped.empty()) runs.push_back(m);
     }
   }
@@ -62,10 +62,10 @@ std::vector<Measurement> work_precision(const StudyCase& c, bool quick) {
 }
 
 /// The quickest run within an error, measured again as often as the other was.
-Measurement quickest_within(const StudyCase& c, const std::vector<Measurement>& runs, const TrueError& error,
-                            int repeats) {
-  const Measurement* best = nullptr;
-  for (const Measurement& m : runs)
+SimulationRun quickest_within(const StudyCase& c, const std::vector<SimulationRun>& runs,
+                              const TrueError& error, int repeats) {
+  const SimulationRun* best = nullptr;
+  for (const SimulationRun& m : runs)
     if (m.error.within(error) && (!best || m.milliseconds < best->milliseconds)) best = &m;
   if (!best) return {};
   const std::size_t cut = best->method.find(" · ");
@@ -149,7 +149,7 @@ class Study {
   }
 
   void simulate_rows(const StudyCase& c) {
-    std::vector<Measurement> runs;
+    std::vector<SimulationRun> runs;
     std::vector<CountJob> jobs;
     for (const Pairing& row : rows_of(c)) {
       for (const double tolerance : tolerances()) {
@@ -168,14 +168,14 @@ class Study {
     tick();
   }
 
-  void compare(const StudyCase& c, const std::vector<Measurement>& ours) {
+  void compare(const StudyCase& c, const std::vector<SimulationRun>& ours) {
     for (const Peer& peer : peers_) {
-      const Measurement theirs =
+      const SimulationRun theirs =
           peer.measure(c, options_.tolerance, c.stiff && !peer.stiff_too ? 1 : repeats_);
       tick();
       out_.comparisons.push_back({theirs, theirs.stopped.empty()
                                               ? quickest_within(c, ours, theirs.error, repeats_)
-                                              : Measurement{}});
+                                              : SimulationRun{}});
     }
   }
 
@@ -202,16 +202,17 @@ std::string run_tables(const TablesOptions& options, const std::function<void(in
   return Study(options, progress, out).run();
 }
 
-const Measurement* find(const TablesResult& result, const std::string& mechanism, const std::string& method) {
-  for (const Measurement& m : result.simulations)
+const SimulationRun* find(const TablesResult& result, const std::string& mechanism,
+                          const std::string& method) {
+  for (const SimulationRun& m : result.simulations)
     if (m.mechanism == mechanism && m.method == method) return &m;
   return nullptr;
 }
 
-const Measurement* best_simulation(const TablesResult& result, const std::string& mechanism) {
-  const auto cost = [&](const Measurement& m) { return result.counted ? m.instructions : m.milliseconds; };
-  const Measurement* best = nullptr;
-  for (const Measurement& m : result.simulations)
+const SimulationRun* best_simulation(const TablesResult& result, const std::string& mechanism) {
+  const auto cost = [&](const SimulationRun& m) { return result.counted ? m.instructions : m.milliseconds; };
+  const SimulationRun* best = nullptr;
+  for (const SimulationRun& m : result.simulations)
     if (m.mechanism == mechanism && m.stopped.empty() && (!best || cost(m) < cost(*best))) best = &m;
   return best;
 }

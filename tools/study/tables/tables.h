@@ -33,7 +33,7 @@ struct EvaluationCost {
 
 /// A run beside Sinew's quickest run of at most the same true error (Tables V and VI).
 struct Comparison {
-  Measurement peer, ours;
+  SimulationRun peer, ours;
   /// How many times quicker; 0 when no run of ours was as accurate.
   double factor() const { return ours.method.empty() ? 0 : peer.milliseconds / ours.milliseconds; }
 };
@@ -57,8 +57,8 @@ struct Conclusion {
 struct TablesResult {
   std::vector<StudiedMechanism> mechanisms;
   std::vector<EvaluationCost> evaluations;  ///< I and III
-  std::vector<Measurement> simulations;     ///< II and IV: at `tolerance`
-  std::vector<Measurement> curves;          ///< the same rows at other tolerances too, for equal errors
+  std::vector<SimulationRun> simulations;   ///< II and IV: at `tolerance`
+  std::vector<SimulationRun> curves;        ///< the same rows at other tolerances too, for equal errors
   std::vector<Comparison> comparisons;      ///< V and VI
   std::vector<ChainPoint> chains;
   std::vector<Conclusion> conclusions;
@@ -81,8 +81,9 @@ std::string verdict(const Conclusion& conclusion);
 
 /// Cheapest simulation of a mechanism by instructions, or by time where they were not counted; nullptr when
 /// there is none.
-const Measurement* best_simulation(const TablesResult& result, const std::string& mechanism);
-const Measurement* find(const TablesResult& result, const std::string& mechanism, const std::string& method);
+const SimulationRun* best_simulation(const TablesResult& result, const std::string& mechanism);
+const SimulationRun* find(const TablesResult& result, const std::string& mechanism,
+                          const std::string& method);
 const EvaluationCost* evaluation(const TablesResult& result, const std::string& mechanism,
                                  const std::string& formulation);
 

@@ -103,7 +103,7 @@ Grid simulations(const TablesResult& r, const std::string& title,
                  const std::vector<std::string>& mechanisms) {
   Grid grid{title, {{{"integrator · formulation", false}}}};
   std::vector<std::string> methods;
-  for (const Measurement& m : r.simulations)
+  for (const SimulationRun& m : r.simulations)
     if (std::find(mechanisms.begin(), mechanisms.end(), m.mechanism) != mechanisms.end() &&
         std::find(methods.begin(), methods.end(), m.method) == methods.end())
       methods.push_back(m.method);
@@ -115,7 +115,7 @@ Grid simulations(const TablesResult& r, const std::string& title,
     auto& row = grid.rows.emplace_back();
     row.push_back({method, false});
     for (const std::string& mechanism : mechanisms) {
-      const Measurement* m = find(r, mechanism, method);
+      const SimulationRun* m = find(r, mechanism, method);
       if (!m || !m->stopped.empty()) {
         row.insert(row.end(), {{"–", false}, {"", false}, {m ? brief(m->stopped) : "", false}, {"", false}});
         continue;
@@ -147,7 +147,9 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
               {"factor", false}}}};
   for (const Comparison& c : r.comparisons) {
     if (is_closed(r, c.peer.mechanism) == open) continue;
-    const auto error = [](const Measurement& m) { return exponent(m.error.q) + " / " + exponent(m.error.u); };
+    const auto error = [](const SimulationRun& m) {
+      return exponent(m.error.q) + " / " + exponent(m.error.u);
+    };
     auto& row = grid.rows.emplace_back();
     row = {{c.peer.mechanism, false}, {c.peer.method, false}};
     if (!c.peer.stopped.empty()) {
@@ -170,7 +172,7 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
   return grid;
 }
 
-nlohmann::json as_json(const Measurement& m) {
+nlohmann::json as_json(const SimulationRun& m) {
   return {{"mechanism", m.mechanism},
           {"method", m.method},
           {"tolerance", m.tolerance},
@@ -275,7 +277,7 @@ std::string tables_csv(const TablesResult& r) {
       "m,"
       "energy_drift_J,stopped\n";
   char line[512];
-  const auto add = [&](const char* table, const Measurement& m) {
+  const auto add = [&](const char* table, const SimulationRun& m) {
     std::snprintf(line, sizeof line, "%s,%s,%s,%g,%.0f,%.5g,%.3g,%.3g,%ld,%ld,%ld,%ld,%.3g,%.3g,\"%s\"\n",
                   table, m.mechanism.c_str(), m.method.c_str(), m.tolerance, m.instructions, m.milliseconds,
                   m.error.q, m.error.u, m.steps, m.evaluations, m.tangents, m.factorisations, m.closure,
@@ -283,7 +285,7 @@ std::string tables_csv(const TablesResult& r) {
     csv += line;
   };
   for (const EvaluationCost& e : r.evaluations) {
-    Measurement one;
+    SimulationRun one;
     one.mechanism = e.mechanism;
     one.method = e.formulation;
     one.milliseconds = 1e-3 * e.microseconds;
@@ -291,7 +293,7 @@ std::string tables_csv(const TablesResult& r) {
     one.evaluations = 1;
     add(is_closed(r, e.mechanism) ? "III" : "I", one);
   }
-  for (const Measurement& m : r.curves) add(is_closed(r, m.mechanism) ? "IV" : "II", m);
+  for (const SimulationRun& m : r.curves) add(is_closed(r, m.mechanism) ? "IV" : "II", m);
   for (const Comparison& c : r.comparisons) {
     const char* table = is_closed(r, c.peer.mechanism) ? "VI" : "V";
     add(table, c.peer);
@@ -307,8 +309,8 @@ nlohmann::json tables_json(const TablesResult& r) {
                                   {"formulation", e.formulation},
                                   {"us", e.microseconds},
                                   {"instructions", e.instructions}});
-  for (const Measurement& m : r.simulations) out["simulations"].push_back(as_json(m));
-  for (const Measurement& m : r.curves) out["curves"].push_back(as_json(m));
+  for (const SimulationRun& m : r.simulations) out["simulations"].push_back(as_json(m));
+  for (const SimulationRun& m : r.curves) out["curves"].push_back(as_json(m));
   for (const Comparison& c : r.comparisons)
     out["comparisons"].push_back(
         {{"peer", as_json(c.peer)}, {"sinew", as_json(c.ours)}, {"factor", c.factor()}});
