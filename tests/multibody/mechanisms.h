@@ -36,7 +36,8 @@ inline std::vector<std::string> open_mechanisms() {
 }
 inline std::vector<std::string> closed_mechanisms() {
   return paths_of({"four_bar", "four_bar_rod", "bricard", "bricard_slender", "driver_nonstiff_hands",
-                   "driver_stiff_hands", "suspension_5ps", "suspension_mfs", "slider_crank"});
+                   "driver_stiff_hands", "suspension_5ps", "suspension_mfs", "slider_crank", "andrews",
+                   "governor"});
 }
 
 /// The start of the mechanism with every coordinate and rate moved by a normal deviate of that size.

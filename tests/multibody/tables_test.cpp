@@ -48,7 +48,7 @@ TEST(Tables, RunOnTheMechanismsOfTheRepositoryAlone) {
 TEST(Tables, AllMechanismsOfThePaperHaveTheirReferencesInTheRepository) {
   for (const char* name : {"fivebar_pendulum", "fivebar_planar", "driver_nonstiff", "driver_stiff",
                            "driver_nonstiff_hands", "driver_stiff_hands", "bricard", "bricard_slender",
-                           "suspension_5ps", "suspension_mfs", "nfourbar_2", "slider_crank"}) {
+                           "suspension_5ps", "suspension_mfs", "nfourbar_2", "slider_crank", "governor"}) {
     StudyCase c;
     ASSERT_EQ(load_mechanism_only(source_dir() + "/assets/mechanisms", name, c), "");
     EXPECT_GE(c.reference.t.size(), 26u) << name;

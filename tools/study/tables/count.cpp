@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <sstream>
 
 namespace sinew::study {
@@ -70,7 +71,10 @@ bool can_count() {
 #endif
 }
 
-std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs) {
+namespace {
+
+/// Counts the jobs one after the other, in one process.
+std::vector<double> count_in_turn(const std::string& directory, const std::vector<CountJob>& jobs) {
   std::vector<double> counted(jobs.size(), 0);
   const Scratch scratch;
   if (jobs.empty() || !scratch.exists() || !can_count()) return counted;
@@ -88,6 +92,19 @@ std::vector<double> count(const std::string& directory, const std::vector<CountJ
   if (std::system(command.c_str()) != 0) return counted;
   for (std::size_t i = 0; i < jobs.size(); ++i)
     counted[i] = total_of(scratch.file("out." + std::to_string(i + 1)));
+  return counted;
+}
+
+}  // namespace
+
+std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs) {
+  // Every second job in a process of its own: neighbours in the list cost about the same.
+  std::vector<CountJob> half[2];
+  for (std::size_t i = 0; i < jobs.size(); ++i) half[i % 2].push_back(jobs[i]);
+  auto odd = std::async(std::launch::async, [&] { return count_in_turn(directory, half[1]); });
+  const std::vector<double> parts[2] = {count_in_turn(directory, half[0]), odd.get()};
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < jobs.size(); ++i) counted.push_back(parts[i % 2][i / 2]);
   return counted;
 }
 

@@ -18,7 +18,7 @@ struct CountJob {
 /// Whether valgrind and the program that it runs are there.
 bool can_count();
 
-/// Instructions of each job, in their order; 0 for one that could not be run. All run in one process under
+/// Instructions of each job, in their order; 0 for one that could not be run. All run in two processes under
 /// callgrind, fifty times slower than by themselves.
 std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs);
 

@@ -34,9 +34,14 @@ const std::vector<std::string> kOpenEvaluations = {"DTR", "DSR", "RR"},
 const std::vector<std::string> kOpen = {"fivebar_pendulum", "driver_nonstiff", "driver_stiff"},
                                kMoreOpen = {"fivebar_planar", "chain", "figure1"},
                                kClosed = {"bricard", "suspension_5ps", "suspension_mfs"},
-                               kMoreClosed = {"bricard_slender",    "driver_nonstiff_hands",
-                                              "driver_stiff_hands", "nfourbar_2",
-                                              "slider_crank",       "four_bar"};
+                               kMoreClosed = {"bricard_slender",
+                                              "driver_nonstiff_hands",
+                                              "driver_stiff_hands",
+                                              "nfourbar_2",
+                                              "slider_crank",
+                                              "four_bar",
+                                              "andrews",
+                                              "governor"};
 
 const std::vector<Pairing>& rows_of(const StudyCase& c) {
   return c.closed() ? kClosedRows : kOpenRows;
@@ -117,8 +122,7 @@ class Study {
   /// Tolerances of the curves; among them the paper's.
   std::vector<double> tolerances() const {
     std::vector<double> all = {options_.tolerance};
-    for (const double decades :
-         options_.quick ? std::vector<double>{-1, 1} : std::vector<double>{-3, -2, -1, 1, 2})
+    for (const double decades : options_.quick ? std::vector<double>{-1, 1} : std::vector<double>{-2, -1, 1})
       all.push_back(options_.tolerance * std::pow(10, decades));
     return all;
   }
