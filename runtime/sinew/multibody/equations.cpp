@@ -20,14 +20,15 @@ std::string text(double x) {
 
 }  // namespace
 
-Equations::Equations(const Model& model, Formulation formulation, Tangent tangent)
+Equations::Equations(const Model& model, Formulation formulation, Tangent tangent, Closure closure)
     : model_(&model),
       formulation_(formulation),
       tangent_kind_(tangent),
+      closure_(closure),
       n_(model.size()),
       motion_(model),
       applied_(model),
-      rz_(model),
+      rz_(model, closure == Closure::kInSteps ? LoopFactor::Kind::kNormal : LoopFactor::Kind::kOrthogonal),
       articulated_(model),
       semi_recursive_(model),
       recursive_residual_(model),
@@ -74,8 +75,15 @@ std::string Equations::start(Vector& y) {
 bool Equations::prepare(double t, const Vector& y) {
   q_ = y.head(n_);
   qd_ = y.tail(n_);
-  if (!q_.allFinite() || !qd_.allFinite() || !rz_.close_positions(q_, motion_, kClosed)) return false;
-  rz_.close_rates(qd_);
+  if (!q_.allFinite() || !qd_.allFinite()) return false;
+  if (closure_ == Closure::kInSteps) {
+    move_to(*model_, q_, motion_);
+    rz_.linearise(motion_);
+    rz_.follow(qd_);
+  } else {
+    if (!rz_.close_positions(q_, motion_, kClosed)) return false;
+    rz_.close_rates(qd_);
+  }
   set_rates(*model_, qd_, motion_);
   apply_forces(*model_, t, q_, qd_, motion_, applied_);
   return true;
@@ -150,8 +158,15 @@ bool Equations::analytic_tangent(double t, const Vector& y) {
   add_force_tangent(*model_, t, q_, qd_, motion_, k, d);
   inertia_is_mass_ = true;
   rz_.reduce(k, stiffness_);
+  if (closure_ == Closure::kInSteps && !rz_.trivial()) reduce_rows(k, stiffness_to_all_);
   rz_.reduce(d, damping_);
   return true;
+}
+
+void Equations::move_position(int k, double by, Vector& y) const {
+  Vector along = Vector::Unit(n_, k);
+  if (closure_ == Closure::kInSteps) rz_.follow(along);  // otherwise the evaluation makes them follow
+  y.head(n_) += by * along;
 }
 
 bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) {
@@ -173,10 +188,10 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
   for (int j = 0; j < nf; ++j) {
     const int k = rz_.independent()[j];
     const double dq = root * std::max(1.0, std::abs(y[k])), dv = root * std::max(1.0, std::abs(y[n_ + k]));
-    state[k] += dq;
+    move_position(k, dq, state);
     if (!evaluate(moved)) return false;
     stiffness_.col(j) = (moved - base) / dq;
-    state[k] = y[k];
+    state.head(n_) = y.head(n_);
     state[n_ + k] += dv;
     // Codes that evaluate the tangent for one c only take velocity and acceleration together; the others get
     // the mass by itself, when they factorise.
@@ -193,6 +208,15 @@ bool Equations::tangent(double t, const Vector& y, const Vector& yp, double c, b
   ++counts_.tangents;
   return tangent_kind_ == Tangent::kAnalytic ? analytic_tangent(t, y)
                                              : numeric_tangent(t, y, yp, c, reusable);
+}
+
+void Equations::reduce_rows(const Matrix& a, Matrix& out) const {
+  out.resize(rz_.freedom(), n_);
+  Vector column;
+  for (int j = 0; j < n_; ++j) {
+    rz_.reduce(Vector(a.col(j)), column);
+    out.col(j) = column;
+  }
 }
 
 void Equations::renew_mass() {
@@ -226,7 +250,10 @@ void Equations::solve(Vector& r) {
   const Vector acceleration = derivatives ? second : Vector(Vector::Zero(nf));
   // The analytic tangent is that of the forces: derivatives' residuals become forces by the mass matrix.
   if (derivatives && tangent_kind_ == Tangent::kAnalytic) second = inertia_ * second;
-  second -= stiffness_ * first / c_;
+  if (closure_ == Closure::kInSteps && tangent_kind_ == Tangent::kAnalytic && !rz_.trivial())
+    second -= stiffness_to_all_ * r.head(n_) / c_;  // dependent positions have residuals of their own
+  else
+    second -= stiffness_ * first / c_;
   Vector rate = second;
   if (by_tree_)
     tree_factor_.solve(rate);

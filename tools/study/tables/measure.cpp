@@ -31,6 +31,12 @@ Formulation kind_of(const std::string& formulation) {
                                           : Formulation::kRr;
 }
 
+/// Index 2 where the name says so.
+multibody::Closure closure_of(const std::string& formulation) {
+  return formulation.find("-Rz2") == std::string::npos ? multibody::Closure::kInEvaluations
+                                                       : multibody::Closure::kInSteps;
+}
+
 /// The study's stiff mechanisms, by their names in the paper's set.
 bool known_stiff(const std::string& name) {
   return name == "suspension_mfs" || name.find("driver_stiff") == 0;
@@ -178,11 +184,11 @@ EvaluationWork evaluations_of(const StudyCase& c, const std::string& formulation
     Equations equations;
     std::vector<Vector> states, rates;
     Vector out;
-    Shared(const StudyCase& of, Formulation kind)
-        : model(of.mechanism), equations(model, kind, Tangent::kAnalytic) {}
+    Shared(const StudyCase& of, Formulation kind, multibody::Closure closure)
+        : model(of.mechanism), equations(model, kind, Tangent::kAnalytic, closure) {}
   };
   const Formulation kind = kind_of(formulation);
-  const auto work = std::make_shared<Shared>(c, kind);
+  const auto work = std::make_shared<Shared>(c, kind, closure_of(formulation));
   Equations derivatives(work->model, Formulation::kDsr, Tangent::kNumeric);
   Vector start;
   if (!work->equations.start(start).empty() || !derivatives.start(start).empty()) return {};

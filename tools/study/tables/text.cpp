@@ -255,7 +255,7 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   }
   if (!closed.empty()) {
     out += evaluations(r, "Table III. Closed chains: instructions and time of one derivative or residual",
-                       closed, {"DSR-Rz", "RR-Rz"})
+                       closed, {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2"})
                .text(bold, plain);
     out += simulations(r, "Table IV. Closed chains: simulation" + at, closed).text(bold, plain);
   }
