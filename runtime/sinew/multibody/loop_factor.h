@@ -24,9 +24,9 @@ class LoopFactor {
   void compute(const Matrix& a, Kind kind);
   /// argmin |a·x − b|, for one column or many.
   template <class B>
-  Matrix solve(const B& b) const {
-    if (normal_) return cholesky_.solve(a_.transpose() * b);
-    return orthogonal_.solve(b);
+  auto solve(const B& b) const {
+    using Solution = Eigen::Matrix<double, Eigen::Dynamic, B::ColsAtCompileTime>;
+    return normal_ ? Solution(cholesky_.solve(a_.transpose() * b)) : Solution(orthogonal_.solve(b));
   }
   /// Smallest over largest pivot, about that of singular values; 1 without columns.
   double conditioning() const { return conditioning_; }
