@@ -54,6 +54,25 @@ TEST(Formulations, SemiRecursiveAndResidualAgreeOnClosedChains) {
   }
 }
 
+TEST(Formulations, OnClosedPositionsIndexTwoIsTheSameMechanics) {
+  // Cholesky against orthogonal factors: squaring costs digits, 1e-10 at the conditioning where it is given
+  // up.
+  std::mt19937 random(20260714);
+  for (const std::string& path : closed_mechanisms()) {
+    const Model model(loaded(path));
+    Equations in_evaluations(model, Formulation::kDsr, Tangent::kNumeric),
+        in_steps(model, Formulation::kDsr, Tangent::kNumeric, Closure::kInSteps);
+    for (int trial = 0; trial < 5; ++trial) {
+      Vector unused, y = disturbed_start(in_evaluations, 0.02, random), a(y.size()), b(y.size());
+      ASSERT_EQ(in_steps.start(unused), "");
+      ASSERT_TRUE(in_evaluations.close(y));
+      ASSERT_TRUE(in_evaluations.derivative(0.1, y, a));
+      ASSERT_TRUE(in_steps.derivative(0.1, y, b));
+      EXPECT_LT((a - b).norm(), 1e-9 * (1 + a.norm())) << path << " trial " << trial;
+    }
+  }
+}
+
 TEST(Formulations, ClosedChainsObeyTheirLoopsAndMultipliersExplainTheRest) {
   // Directly: Φ_q q'' = γ, and what M q'' − Q lacks is in the range of Φ_qᵀ (equation 34), by a projector
   // from a singular value decomposition, in which no choice of independent coordinates occurs.

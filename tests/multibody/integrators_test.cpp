@@ -73,7 +73,9 @@ TEST(Integrators, OdeSuiteAndDasslShowTheOrderTheyAreLimitedTo) {
     return k == 1 ? measured_order(method, k, 1e-4, 1e-7) : measured_order(method, k, 1e-6, 1e-9);
   };
   for (int k = 1; k <= 5; ++k) EXPECT_NEAR(slope(Method::kOde15sR, k), k, 0.5) << "ode15sR, order " << k;
-  for (int k = 1; k <= 4; ++k) EXPECT_NEAR(slope(Method::kDassl, k), k, 0.6) << "DASSL, order " << k;
+  for (int k = 1; k <= 4; ++k)
+    for (const Method method : {Method::kDassl, Method::kDasslStrict})
+      EXPECT_NEAR(slope(method, k), k, 0.6) << "DASSL, order " << k;
 }
 
 TEST(Integrators, ShampineGordonShowsItsOrderWithLocalExtrapolation) {
@@ -112,7 +114,7 @@ TEST(Integrators, FixedStepSchemesAreOfFirstAndSecondOrder) {
 }
 
 TEST(Integrators, InterpolationInsideAStepIsAsGoodAsItsEnds) {
-  for (const Method method : {Method::kDe, Method::kOde15sR, Method::kDassl}) {
+  for (const Method method : {Method::kDe, Method::kOde15sR, Method::kDassl, Method::kDasslStrict}) {
     Oscillator system;
     const Vector y0{{1, 0}};
     const auto integrator = start(method, system, 0, y0, kWalkTime, {.rtol = 1e-8, .atol = 1e-8});
@@ -155,8 +157,7 @@ TEST(Integrators, PendulumComesBackAfterThePeriodOfTheEllipticIntegral) {
 }
 
 TEST(Integrators, StiffMechanismIsReportedByTheExplicitMethodOnly) {
-  if (!have_shared()) GTEST_SKIP() << kNoShared;
-  const Model model(loaded(kShared + "driver_stiff.json"));
+  const Model model(loaded(kOwn + "driver_stiff.json"));
   SimulationSettings settings;
   const SimulationResult implicit = simulate(model, settings);
   settings.formulation = Formulation::kDtr;

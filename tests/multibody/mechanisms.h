@@ -1,12 +1,11 @@
-// Mechanisms of the tests: the own ones in assets/, and those of the paper with their references in
-// ../shared.
+// Mechanisms of the tests: small ones made for them, and those of the paper with their reference
+// trajectories.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -19,13 +18,6 @@
 namespace sinew::multibody {
 
 inline const std::string kOwn = source_dir() + "/assets/mechanisms/";
-inline const std::string kShared = shared_dir() + "/mechanisms/";
-
-inline bool have_shared() {
-  return std::filesystem::exists(kShared);
-}
-inline constexpr const char* kNoShared = "../shared/mechanisms is not there";
-
 inline Mechanism loaded(const std::string& path) {
   Mechanism m;
   const std::string fault = mechanism::load_mechanism(path, m);
@@ -33,21 +25,19 @@ inline Mechanism loaded(const std::string& path) {
   return m;
 }
 
-/// Open chains and closed ones of assets/, and of the paper when they are there.
-inline std::vector<std::string> open_mechanisms() {
-  std::vector<std::string> all = {kOwn + "pendulum.json", kOwn + "chain.json", kOwn + "figure1.json"};
-  if (have_shared())
-    for (const char* name : {"fivebar_pendulum", "fivebar_planar", "driver_nonstiff", "driver_stiff"})
-      all.push_back(kShared + name + ".json");
+inline std::vector<std::string> paths_of(std::initializer_list<const char*> names) {
+  std::vector<std::string> all;
+  for (const char* name : names) all.push_back(kOwn + name + ".json");
   return all;
 }
+inline std::vector<std::string> open_mechanisms() {
+  return paths_of({"pendulum", "chain", "figure1", "fivebar_pendulum", "fivebar_planar", "driver_nonstiff",
+                   "driver_stiff"});
+}
 inline std::vector<std::string> closed_mechanisms() {
-  std::vector<std::string> all = {kOwn + "four_bar.json", kOwn + "four_bar_rod.json"};
-  if (have_shared())
-    for (const char* name : {"bricard", "bricard_slender", "driver_nonstiff_hands", "driver_stiff_hands",
-                             "suspension_5ps", "suspension_mfs", "slider_crank"})
-      all.push_back(kShared + name + ".json");
-  return all;
+  return paths_of({"four_bar", "four_bar_rod", "bricard", "bricard_slender", "driver_nonstiff_hands",
+                   "driver_stiff_hands", "suspension_5ps", "suspension_mfs", "slider_crank", "andrews",
+                   "governor"});
 }
 
 /// The start of the mechanism with every coordinate and rate moved by a normal deviate of that size.

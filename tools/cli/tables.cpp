@@ -14,7 +14,7 @@ using convert::Error;
 
 void add_options(CLI::App& app, TablesCommand& command) {
   app.add_option("-o,--output", command.directory, "directory for text, CSV, JSON and the plot (out/study)");
-  app.add_option("--mechanisms", command.mechanisms, "directory of mechanism files (../shared/mechanisms)");
+  app.add_option("--mechanisms", command.mechanisms, "directory of mechanism files (assets/mechanisms)");
   app.add_option("--tolerance", command.tolerance, "relative and absolute (1e-5)")
       ->check(CLI::Range(1e-12, 1e-1));
   app.add_flag("--quick", command.quick, "fewer repeats and tolerances");
@@ -26,7 +26,7 @@ Error TablesCommand::run() const {
   std::filesystem::create_directories(directory, failed);
   if (failed) return {directory + ": cannot be made: " + failed.message()};
   study::TablesResult result;
-  if (std::string why = study::run_tables({mechanisms, tolerance, quick}, progress_line("tables"), result);
+  if (std::string why = study::run_tables({mechanisms, tolerance, quick, {}}, progress_line("tables"), result);
       !why.empty())
     return {why};
   const nlohmann::json summary = study::tables_json(result);

@@ -7,6 +7,7 @@
 namespace sinew::mechanism {
 namespace {
 
+using multibody::Closure;
 using multibody::Formulation;
 using multibody::Method;
 using multibody::Tangent;
@@ -14,6 +15,7 @@ using multibody::Tangent;
 struct FormulationChoice {
   Formulation formulation;
   Tangent tangent;
+  Closure closure = Closure::kInEvaluations;
 };
 
 const std::map<std::string, FormulationChoice>& formulations() {
@@ -27,14 +29,23 @@ const std::map<std::string, FormulationChoice>& formulations() {
       {"RR-JF", {Formulation::kRr, Tangent::kAnalytic}},
       {"RR-Rz-JN", {Formulation::kRr, Tangent::kNumeric}},
       {"RR-Rz-JF", {Formulation::kRr, Tangent::kAnalytic}},
+      {"DSR-Rz2", {Formulation::kDsr, Tangent::kNumeric, Closure::kInSteps}},
+      {"DSR-Rz2-JF", {Formulation::kDsr, Tangent::kAnalytic, Closure::kInSteps}},
+      {"RR-Rz2-JN", {Formulation::kRr, Tangent::kNumeric, Closure::kInSteps}},
+      {"RR-Rz2-JF", {Formulation::kRr, Tangent::kAnalytic, Closure::kInSteps}},
   };
   return all;
 }
 
 const std::map<std::string, Method>& methods() {
   static const std::map<std::string, Method> all = {
-      {"DE", Method::kDe},       {"ode15s", Method::kOde15s}, {"ode15sR", Method::kOde15sR},
-      {"DASSL", Method::kDassl}, {"bdf1", Method::kBdf1},     {"bdf2", Method::kBdf2},
+      {"DE", Method::kDe},
+      {"ode15s", Method::kOde15s},
+      {"ode15sR", Method::kOde15sR},
+      {"DASSL", Method::kDassl},
+      {"DASSL-strict", Method::kDasslStrict},
+      {"bdf1", Method::kBdf1},
+      {"bdf2", Method::kBdf2},
   };
   return all;
 }
@@ -62,6 +73,7 @@ multibody::SimulationSettings settings_of(const SimulateOptions& o) {
   multibody::SimulationSettings s;
   s.formulation = formulations().at(o.formulation).formulation;
   s.tangent = formulations().at(o.formulation).tangent;
+  s.closure = formulations().at(o.formulation).closure;
   s.method = methods().at(o.integrator);
   s.integrator = {.rtol = o.rtol, .atol = o.atol, .max_step = o.max_step, .fixed_step = o.fixed_step};
   s.t_end = o.t_end;

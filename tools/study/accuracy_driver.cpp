@@ -19,7 +19,7 @@ std::string directory() {
 
 /// One integrator at one tolerance; `simulate` runs it once.
 AccuracyPoint point(const StudyCase& c, const std::string& engine, const std::string& option,
-                    double tolerance, int runs, const std::function<Measurement()>& simulate) {
+                    double tolerance, int runs, const std::function<SimulationRun()>& simulate) {
   AccuracyPoint p;
   p.engine = engine;
   p.option = option;
@@ -27,7 +27,7 @@ AccuracyPoint point(const StudyCase& c, const std::string& engine, const std::st
   p.accuracy.tolerance = tolerance;
   std::vector<double> times;
   for (int n = 0; n < runs; ++n) {
-    const Measurement m = simulate();
+    const SimulationRun m = simulate();
     p.survived = m.stopped.empty() && std::isfinite(m.error.q);
     if (!p.survived) return p;
     p.error = m.error.q;

@@ -8,14 +8,20 @@ namespace sinew::multibody {
 namespace {
 
 constexpr double kRound = std::numeric_limits<double>::epsilon();
-constexpr int kNewtonIterations = 4;
 constexpr double kNewtonTolerance = 0.33;  ///< of the error test
 constexpr double kUnknownRate = 100;
 
 }  // namespace
 
-Dassl::Dassl(System& system, double t0, const Vector& y0, double end, const IntegratorSettings& settings)
-    : system_(&system), settings_(settings), end_(end), t_(t0), y_(y0), residual_(y0.size()) {
+Dassl::Dassl(System& system, double t0, const Vector& y0, double end, Variant variant,
+             const IntegratorSettings& settings)
+    : system_(&system),
+      settings_(settings),
+      end_(end),
+      t_(t0),
+      variant_(variant),
+      y_(y0),
+      residual_(y0.size()) {
   if (settings_.max_order <= 0 || settings_.max_order > kMaxOrder) settings_.max_order = kMaxOrder;
   for (Vector& p : phi_) p = Vector::Zero(y0.size());
 }
@@ -24,7 +30,7 @@ std::string Dassl::first_step() {
   Vector yp(y_.size());
   if (!system_->derivative(t_, y_, yp)) return stopped(t_, "the equations cannot be evaluated at the start");
   h_ = 1e-3 * (end_ - t_);
-  const double slope = worst_component(yp, y_, settings_);
+  const double slope = norm(yp);
   if (slope > 0.5 / h_) h_ = 0.5 / slope;
   if (settings_.max_step > 0) h_ = std::min(h_, settings_.max_step);
   phi_[1] = y_;
@@ -64,54 +70,70 @@ void Dassl::coefficients() {
   for (int j = same_steps_ + 1; j <= k_ + 1; ++j) phi_[j] *= beta_[j];
 }
 
-bool Dassl::correct(double t, Vector& y, Vector& yp, Vector& e) {
-  for (bool fresh = false;; fresh = true) {
-    y.setZero();
-    yp.setZero();
-    for (int j = 1; j <= k_ + 1; ++j) {
-      y += phi_[j];
-      yp += gamma_[j] * phi_[j];
-    }
-    e.setZero();
-    if (need_tangent_ || fresh) {
-      need_tangent_ = false;
-      fresh = true;
-      if (!system_->tangent(t, y, yp, c_, false) || !system_->factorise(c_)) {
-        need_tangent_ = true;
-        return false;
-      }
+double Dassl::norm(const Vector& x) const {
+  if (variant_ == Variant::kStrict) return worst_component(x, y_, settings_);
+  const auto weighted = x.array() / (settings_.atol + settings_.rtol * y_.array().abs());
+  return std::sqrt(weighted.square().mean());
+}
+
+void Dassl::predict(Vector& y, Vector& yp) const {
+  y.setZero();
+  yp.setZero();
+  for (int j = 1; j <= k_ + 1; ++j) {
+    y += phi_[j];
+    yp += gamma_[j] * phi_[j];
+  }
+}
+
+NewtonConvergence::Answer Dassl::judge(int iteration, double size, double negligible) {
+  using Answer = NewtonConvergence::Answer;
+  if (variant_ == Variant::kStrict) return newton_.judge(size, negligible);
+  if (!std::isfinite(size)) return Answer::kGiveUp;
+  if (size <= negligible) return Answer::kConverged;
+  if (iteration == 0) {
+    first_correction_ = size;
+  } else {
+    const double rate = std::pow(size / first_correction_, 1.0 / iteration);
+    if (rate > 0.9) return Answer::kGiveUp;
+    rate_bound_ = rate / (1 - rate);
+  }
+  if (rate_bound_ * size <= kNewtonTolerance) return Answer::kConverged;
+  return iteration + 1 < newton_.at_most() ? Answer::kGoOn : Answer::kGiveUp;
+}
+
+bool Dassl::iterate(double t, bool fresh, Vector& y, Vector& yp, Vector& e) {
+  if (fresh && !system_->tangent(t, y, yp, c_, false)) return false;
+  const double rounding = 100 * kRound * norm(y);
+  newton_.forget_rate();  // strict: of earlier steps
+  newton_.begin();
+  auto answer = NewtonConvergence::Answer::kGoOn;
+  for (int m = 0; answer == NewtonConvergence::Answer::kGoOn; ++m) {
+    ++counts_.newton_iterations;
+    if (!system_->residual(t, y, yp, residual_)) return false;
+    if (fresh && m == 0) {
+      if (!system_->factorise(c_)) return false;
       c_factored_ = c_;
+      rate_bound_ = kUnknownRate;
     }
-    const double negligible = 100 * kRound * worst_component(y, y_, settings_);
-    // The book keeps the rate of earlier steps. With an old matrix that is too hopeful for residuals, whose
-    // mass turns with the mechanism: one iteration then passed as converged, and Bricard drifted by 3e-3 J.
-    double first = 0, rate_bound = kUnknownRate;
-    bool converged = false;
-    for (int m = 0; m < kNewtonIterations; ++m) {
-      ++counts_.newton_iterations;
-      if (!system_->residual(t, y, yp, residual_)) break;
-      if (!fresh) residual_ *= 2 / (1 + c_ / c_factored_);
-      system_->solve(residual_);
-      y -= residual_;
-      e -= residual_;
-      yp -= c_ * residual_;
-      const double size = worst_component(residual_, y_, settings_);
-      if (!std::isfinite(size)) break;
-      if (size <= negligible || size <= h_ * system_->noise() / settings_.atol) converged = true;
-      if (m == 0) {
-        first = size;
-      } else {
-        const double rate = std::pow(size / first, 1.0 / m);
-        if (rate > 0.9) break;
-        rate_bound = rate / (1 - rate);
-      }
-      if (rate_bound * size <= kNewtonTolerance) converged = true;
-      if (converged) return true;
-    }
-    if (fresh) {
-      need_tangent_ = true;
-      return false;
-    }
+    system_->solve(residual_);
+    if (!fresh) residual_ *= 2 / (1 + c_ / c_factored_);
+    y -= residual_;
+    e -= residual_;
+    yp -= c_ * residual_;
+    answer = judge(m, norm(residual_), std::max(rounding, h_ * system_->noise() / settings_.atol));
+  }
+  return answer == NewtonConvergence::Answer::kConverged;
+}
+
+bool Dassl::correct(double t, Vector& y, Vector& yp, Vector& e) {
+  for (bool fresh = need_tangent_;; fresh = true) {
+    predict(y, yp);
+    e.setZero();
+    need_tangent_ = false;
+    if (iterate(t, fresh, y, yp, e)) return true;
+    if (!fresh) continue;
+    need_tangent_ = true;
+    return false;
   }
 }
 
@@ -124,7 +146,7 @@ std::string Dassl::step() {
   if (!started_)
     if (std::string why = first_step(); !why.empty()) return why;
   if (settings_.max_step > 0) h_ = std::min(h_, settings_.max_step);
-  if (100 * kRound * worst_component(y_, y_, settings_) > 1) return stopped(t_, kTooAccurate);
+  if (100 * kRound * norm(y_) > 1) return stopped(t_, kTooAccurate);
   Vector y(y_.size()), yp(y_.size()), e(y_.size());
   int error_failures = 0, newton_failures = 0;
   for (;;) {
@@ -141,17 +163,17 @@ std::string Dassl::step() {
       continue;
     }
     const double unavoidable = h_ * system_->noise() / settings_.atol;
-    const double size = std::max(0.0, worst_component(e, y_, settings_) - unavoidable);
+    const double size = std::max(0.0, norm(e) - unavoidable);
     const double error_k = sigma_[k + 1] * size;
     double error_below = 0, estimate = error_k;
     int next = k;
     if (k > 1) {
       const Vector below = phi_[k + 1] + e;
-      error_below = sigma_[k] * worst_component(below, y_, settings_);
+      error_below = sigma_[k] * norm(below);
       const double here = (k + 1) * error_k, lower = k * error_below;
       bool drop = k == 2 && lower <= 0.5 * here;
       if (k > 2) {
-        const double two_below = (k - 1) * sigma_[k - 1] * worst_component(phi_[k] + below, y_, settings_);
+        const double two_below = (k - 1) * sigma_[k - 1] * norm(phi_[k] + below);
         drop = std::max(lower, two_below) <= here;
       }
       if (drop) next = k - 1, estimate = error_below;
@@ -199,7 +221,7 @@ void Dassl::choose_next(const Vector& e, double error_k, double error_below, int
   if (next == k - 1) {
     estimate = error_below;
   } else if (k < settings_.max_order && k + 1 < same_steps_ && order_change_ != 1) {
-    const double error_above = worst_component(e - phi_[k + 2], y_, settings_) / (k + 2);
+    const double error_above = norm(e - phi_[k + 2]) / (k + 2);
     const double here = (k + 1) * error_k, above = (k + 2) * error_above, below = k * error_below;
     if (k > 1 && below <= std::min(here, above)) {
       k_ = k - 1;

@@ -20,14 +20,15 @@ std::string text(double x) {
 
 }  // namespace
 
-Equations::Equations(const Model& model, Formulation formulation, Tangent tangent)
+Equations::Equations(const Model& model, Formulation formulation, Tangent tangent, Closure closure)
     : model_(&model),
       formulation_(formulation),
       tangent_kind_(tangent),
+      closure_(closure),
       n_(model.size()),
       motion_(model),
       applied_(model),
-      rz_(model),
+      rz_(model, closure == Closure::kInSteps ? LoopFactor::Kind::kNormal : LoopFactor::Kind::kOrthogonal),
       articulated_(model),
       semi_recursive_(model),
       recursive_residual_(model),
@@ -37,7 +38,8 @@ Equations::Equations(const Model& model, Formulation formulation, Tangent tangen
       bias_(Vector::Zero(n_)),
       force_(n_),
       reduced_(n_),
-      mass_(Matrix::Zero(n_, n_)) {}
+      mass_(Matrix::Zero(n_, n_)),
+      tree_factor_(model) {}
 
 std::string Equations::start(Vector& y) {
   const Mechanism& mechanism = model_->mechanism();
@@ -73,8 +75,15 @@ std::string Equations::start(Vector& y) {
 bool Equations::prepare(double t, const Vector& y) {
   q_ = y.head(n_);
   qd_ = y.tail(n_);
-  if (!q_.allFinite() || !qd_.allFinite() || !rz_.close_positions(q_, motion_, kClosed)) return false;
-  rz_.close_rates(qd_);
+  if (!q_.allFinite() || !qd_.allFinite()) return false;
+  if (closure_ == Closure::kInSteps) {
+    move_to(*model_, q_, motion_);
+    rz_.linearise(motion_);
+    rz_.follow(qd_);
+  } else {
+    if (!rz_.close_positions(q_, motion_, kClosed)) return false;
+    rz_.close_rates(qd_);
+  }
   set_rates(*model_, qd_, motion_);
   apply_forces(*model_, t, q_, qd_, motion_, applied_);
   return true;
@@ -145,13 +154,19 @@ bool Equations::residual(double t, const Vector& y, const Vector& yp, Vector& r)
 
 bool Equations::analytic_tangent(double t, const Vector& y) {
   if (!prepare(t, y)) return false;
-  semi_recursive_.mass_matrix(motion_, mass_);
   Matrix k = Matrix::Zero(n_, n_), d = Matrix::Zero(n_, n_);
   add_force_tangent(*model_, t, q_, qd_, motion_, k, d);
-  rz_.reduce(mass_, inertia_);
+  inertia_is_mass_ = true;
   rz_.reduce(k, stiffness_);
+  if (closure_ == Closure::kInSteps && !rz_.trivial()) reduce_rows(k, stiffness_to_all_);
   rz_.reduce(d, damping_);
   return true;
+}
+
+void Equations::move_position(int k, double by, Vector& y) const {
+  Vector along = Vector::Unit(n_, k);
+  if (closure_ == Closure::kInSteps) rz_.follow(along);  // otherwise the evaluation makes them follow
+  y.head(n_) += by * along;
 }
 
 bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) {
@@ -160,6 +175,7 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
   damping_.resize(nf, nf);
   inertia_ = Matrix::Zero(nf, nf);
   if (formulation_ != Formulation::kRr) inertia_.setIdentity();
+  inertia_is_mass_ = formulation_ == Formulation::kRr && reusable;
   Vector base(nf), moved(nf), state = y, rate = yp, qdd(n_);
   const auto evaluate = [&](Vector& out) {
     if (formulation_ == Formulation::kRr) return independent_residual(t, state, rate.tail(n_), out);
@@ -172,23 +188,18 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
   for (int j = 0; j < nf; ++j) {
     const int k = rz_.independent()[j];
     const double dq = root * std::max(1.0, std::abs(y[k])), dv = root * std::max(1.0, std::abs(y[n_ + k]));
-    state[k] += dq;
+    move_position(k, dq, state);
     if (!evaluate(moved)) return false;
     stiffness_.col(j) = (moved - base) / dq;
-    state[k] = y[k];
+    state.head(n_) = y.head(n_);
     state[n_ + k] += dv;
-    // Codes that evaluate the tangent for one c only take velocity and acceleration together.
+    // Codes that evaluate the tangent for one c only take velocity and acceleration together; the others get
+    // the mass by itself, when they factorise.
     if (formulation_ == Formulation::kRr && !reusable) rate[n_ + k] += c * dv;
     if (!evaluate(moved)) return false;
     damping_.col(j) = (moved - base) / dv;
     state[n_ + k] = y[n_ + k];
     rate[n_ + k] = yp[n_ + k];
-    if (formulation_ == Formulation::kRr && reusable) {
-      rate[n_ + k] += 1;  // linear: any increment serves
-      if (!evaluate(moved)) return false;
-      inertia_.col(j) = moved - base;
-      rate[n_ + k] = yp[n_ + k];
-    }
   }
   return true;
 }
@@ -199,12 +210,30 @@ bool Equations::tangent(double t, const Vector& y, const Vector& yp, double c, b
                                              : numeric_tangent(t, y, yp, c, reusable);
 }
 
+void Equations::reduce_rows(const Matrix& a, Matrix& out) const {
+  out.resize(rz_.freedom(), n_);
+  Vector column;
+  for (int j = 0; j < n_; ++j) {
+    rz_.reduce(Vector(a.col(j)), column);
+    out.col(j) = column;
+  }
+}
+
+void Equations::renew_mass() {
+  semi_recursive_.mass_matrix(motion_, mass_);
+  rz_.reduce(mass_, inertia_);
+}
+
 bool Equations::factorise(double c) {
   ++counts_.factorisations;
   c_ = c;
+  if (inertia_is_mass_) renew_mass();
   // Equations 79 and 84 with the position rows eliminated: half the size.
   iteration_ = c * inertia_ + damping_ + stiffness_ / c;
   if (!iteration_.allFinite()) return false;
+  by_tree_ = inertia_is_mass_ && tangent_kind_ == Tangent::kAnalytic && rz_.trivial() &&
+             tree_factor_.factorise(iteration_);
+  if (by_tree_) return true;
   factor_.compute(iteration_);
   return factor_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0;
 }
@@ -221,8 +250,15 @@ void Equations::solve(Vector& r) {
   const Vector acceleration = derivatives ? second : Vector(Vector::Zero(nf));
   // The analytic tangent is that of the forces: derivatives' residuals become forces by the mass matrix.
   if (derivatives && tangent_kind_ == Tangent::kAnalytic) second = inertia_ * second;
-  second -= stiffness_ * first / c_;
-  const Vector rate = factor_.solve(second);
+  if (closure_ == Closure::kInSteps && tangent_kind_ == Tangent::kAnalytic && !rz_.trivial())
+    second -= stiffness_to_all_ * r.head(n_) / c_;  // dependent positions have residuals of their own
+  else
+    second -= stiffness_ * first / c_;
+  Vector rate = second;
+  if (by_tree_)
+    tree_factor_.solve(rate);
+  else
+    rate = factor_.solve(second);
   if (!rz_.trivial()) {
     // Dependent rows: q'_d follows Rz q'_i, and the independent residual has already taken its share of
     // q''_d.

@@ -12,6 +12,7 @@
 #include "sinew/multibody/articulated.h"
 #include "sinew/multibody/semi_recursive.h"
 #include "sinew/multibody/system.h"
+#include "sinew/multibody/tree_factor.h"
 #include "sinew/multibody/velocity_transformation.h"
 
 namespace sinew::multibody {
@@ -26,6 +27,16 @@ enum class Tangent {
   kAnalytic,  ///< JF: equations 76–85
 };
 
+/// When the loops are closed.
+enum class Closure {
+  kInEvaluations,  ///< in every evaluation, by orthogonal factors: the right-hand side is smooth and has no
+                   ///< drift
+  kInSteps,        ///< index 2, as section 2.2.2 of the paper has it: positions are integrated as they are,
+             ///< dependent rates follow by Rz (one small Cholesky factor per evaluation), and each accepted
+             ///< step is closed. Dependent rates stay in the state, but nothing reads them: so a re-choice
+             ///< restarts nothing.
+};
+
 struct EvaluationCounts {
   long derivatives = 0, residuals = 0;  ///< including those for numeric tangents
   long tangents = 0, factorisations = 0;
@@ -33,7 +44,8 @@ struct EvaluationCounts {
 
 class Equations : public System {
  public:
-  Equations(const Model& model, Formulation formulation, Tangent tangent);
+  Equations(const Model& model, Formulation formulation, Tangent tangent,
+            Closure closure = Closure::kInEvaluations);
 
   /// Start of the mechanism: closes the loops from the file's q0 and checks the rates against them. Returns
   /// what is wrong, naming the loop, or "".
@@ -66,10 +78,16 @@ class Equations : public System {
   bool independent_residual(double t, const Vector& y, const Vector& qdd, Vector& out);
   bool numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable);
   bool analytic_tangent(double t, const Vector& y);
+  void renew_mass();
+  /// Moves position k, and with it what follows it, by so much.
+  void move_position(int k, double by, Vector& y) const;
+  /// Rzᵀ·a [independent×N].
+  void reduce_rows(const Matrix& a, Matrix& out) const;
 
   const Model* model_;
   Formulation formulation_;
   Tangent tangent_kind_;
+  Closure closure_;
   int n_;
   BodyMotion motion_;
   AppliedForces applied_;
@@ -85,8 +103,12 @@ class Equations : public System {
 
   // Tangent parts in independent coordinates: −∂Q/∂q, −∂Q/∂q' and the mass (identity for derivatives).
   Matrix stiffness_, damping_, inertia_, iteration_;
+  Matrix stiffness_to_all_;  ///< index 2: of the independent forces to all positions [independent×N]
+  TreeFactor tree_factor_;   ///< of open chains on residuals with the analytic tangent
+  bool by_tree_ = false;     ///< that one holds the iteration matrix, not the dense one
   Eigen::PartialPivLU<Matrix> factor_;
   double c_ = 0;
+  bool inertia_is_mass_ = false;  ///< and so can be renewed without evaluating the tangent
 };
 
 }  // namespace sinew::multibody

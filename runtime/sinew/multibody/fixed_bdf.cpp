@@ -1,18 +1,35 @@
 #include "sinew/multibody/fixed_bdf.h"
 
-#include <algorithm>
-#include <cmath>
+#include "sinew/multibody/newton.h"
 
 namespace sinew::multibody {
 namespace {
 
-constexpr int kNewtonIterations = 30;
+constexpr int kMatrices = 6;               ///< per step, at most
+constexpr int kIterations = 5;             ///< with one matrix
 constexpr double kNewtonTolerance = 0.01;  ///< of the integration tolerance
 
 }  // namespace
 
 FixedBdf::FixedBdf(System& system, double t0, const Vector& y0, int order, const IntegratorSettings& settings)
     : system_(&system), settings_(settings), order_(order), t0_(t0), t_(t0), y_(y0), before_(y0) {}
+
+bool FixedBdf::iterate(double t, double c, Vector& y, Vector& yp) {
+  if (!system_->tangent(t, y, yp, c, false)) return false;
+  NewtonConvergence newton(kNewtonTolerance, kIterations);
+  Vector r(y.size());
+  auto answer = NewtonConvergence::Answer::kGoOn;
+  for (bool first = true; answer == NewtonConvergence::Answer::kGoOn; first = false) {
+    ++counts_.newton_iterations;
+    if (!system_->residual(t, y, yp, r) || (first && !system_->factorise(c))) return false;
+    system_->solve(r);
+    y -= r;
+    yp -= c * r;
+    const double negligible = settings_.fixed_step * system_->noise() / settings_.atol;
+    answer = newton.judge(worst_component(r, y_, settings_), negligible);
+  }
+  return answer == NewtonConvergence::Answer::kConverged;
+}
 
 std::string FixedBdf::step() {
   const double h = settings_.fixed_step;
@@ -25,19 +42,9 @@ std::string FixedBdf::step() {
   const double t = t0_ + h * static_cast<double>(counts_.steps + 1);
   const double c = (second ? 1.5 : 1.0) / h;
   const Vector past = second ? Vector((-2 * y_ + 0.5 * before_) / h) : Vector(-y_ / h);
-  Vector y = y_ + h * rate_, yp = c * y + past, r(y.size());
+  Vector y = y_ + h * rate_, yp = c * y + past;
   bool converged = false;
-  for (int i = 0; i < kNewtonIterations && !converged; ++i) {
-    ++counts_.newton_iterations;
-    if (i % 5 == 0 && (!system_->tangent(t, y, yp, c, false) || !system_->factorise(c))) break;
-    if (!system_->residual(t, y, yp, r)) break;
-    system_->solve(r);
-    y -= r;
-    yp -= c * r;
-    const double size = worst_component(r, y_, settings_);
-    if (!std::isfinite(size)) break;
-    converged = size <= std::max(kNewtonTolerance, h * system_->noise() / settings_.atol);
-  }
+  for (int i = 0; i < kMatrices && !converged; ++i) converged = iterate(t, c, y, yp);
   if (!converged) return stopped(t_, "Newton's method does not converge at this step length");
   rate_before_ = rate_;
   before_ = y_;

@@ -6,7 +6,7 @@
 namespace sinew::multibody {
 
 /// y1' = (y1 − y0)/h, or (3y1 − 4y0 + y−1)/2h from the second step on; each step solved by Newton's method
-/// until the correction is below a hundredth of the tolerance. No error control: the step is the accuracy.
+/// until the error left is below a hundredth of the tolerance. No error control: the step is the accuracy.
 class FixedBdf : public Integrator {
  public:
   FixedBdf(System& system, double t0, const Vector& y0, int order, const IntegratorSettings& settings);
@@ -19,6 +19,9 @@ class FixedBdf : public Integrator {
   int order() const override { return order_; }
 
  private:
+  /// Newton's method from y with a new matrix. False: another one is needed.
+  bool iterate(double t, double c, Vector& y, Vector& yp);
+
   System* system_;
   IntegratorSettings settings_;
   int order_;

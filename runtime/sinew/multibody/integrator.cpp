@@ -18,7 +18,9 @@ std::unique_ptr<Integrator> start(Method method, System& system, double t0, cons
     case Method::kOde15sR:
       return std::make_unique<Ndf>(system, t0, y0, end, settings);
     case Method::kDassl:
-      return std::make_unique<Dassl>(system, t0, y0, end, settings);
+      return std::make_unique<Dassl>(system, t0, y0, end, Dassl::Variant::kPublished, settings);
+    case Method::kDasslStrict:
+      return std::make_unique<Dassl>(system, t0, y0, end, Dassl::Variant::kStrict, settings);
     case Method::kBdf1:
     case Method::kBdf2:
       break;

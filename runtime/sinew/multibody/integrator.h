@@ -41,12 +41,13 @@ class Integrator {
 };
 
 enum class Method {
-  kDe,       ///< Shampine–Gordon Adams PECE, orders 1–12
-  kOde15s,   ///< NDF 1–5, quasi-constant step, on derivatives
-  kOde15sR,  ///< the same on residuals
-  kDassl,    ///< BDF 1–5, fixed leading coefficient, on residuals
-  kBdf1,     ///< implicit Euler, fixed step
-  kBdf2,     ///< second-order BDF, fixed step
+  kDe,           ///< Shampine–Gordon Adams PECE, orders 1–12
+  kOde15s,       ///< NDF 1–5, quasi-constant step, on derivatives
+  kOde15sR,      ///< the same on residuals
+  kDassl,        ///< BDF 1–5, fixed leading coefficient, as published: root mean square, rates kept
+  kDasslStrict,  ///< the same in the norm and with the rule of convergence of the other methods
+  kBdf1,         ///< implicit Euler, fixed step
+  kBdf2,         ///< second-order BDF, fixed step
 };
 
 /// `system` must outlive the integrator. y0 at t0; y' there is asked of the system. `end` only scales the

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kRound = std::numeric_limits<double>::epsilon();
 constexpr double kKappa[] = {0, -0.1850, -1.0 / 9, -0.0823, -0.0415, 0};
-constexpr int kNewtonIterations = 4;
 
 double gamma(int k) {
   double sum = 0;
@@ -101,34 +100,23 @@ bool Ndf::correct(double t_new, const Vector& predicted, const Vector& psi, Vect
   d.setZero();
   Vector y = predicted, yp = psi / h_;
   if (!tangent_valid_ && !new_tangent(t_new, y, yp)) return false;
-  if (!factor_valid_) {
-    if (!system_->factorise(c)) return false;
-    factor_valid_ = true;
-    contraction_ = 0;
-  }
-  const double negligible = 100 * kRound * worst_error(y, y, settings_);
-  double before = 0;
-  for (int i = 0; i < kNewtonIterations; ++i) {
+  const double rounding = 100 * kRound * worst_error(y, y, settings_);
+  newton_.begin();
+  for (auto answer = NewtonConvergence::Answer::kGoOn; answer == NewtonConvergence::Answer::kGoOn;) {
     ++counts_.newton_iterations;
     if (!system_->residual(t_new, y, yp, residual_)) return false;
+    if (!factor_valid_) {
+      if (!system_->factorise(c)) return false;
+      factor_valid_ = factor_fresh_ = true;
+      newton_.forget_rate();
+    }
     system_->solve(residual_);
-    const double size = worst_error(residual_, predicted, settings_);
-    if (!std::isfinite(size)) return false;
     d -= residual_;
     y = predicted + d;
     yp = (alpha(k_) * d + psi) / h_;
-    if (size <= negligible || size <= h_ * system_->noise() / settings_.atol) return true;
-    if (i == 0) {
-      if (contraction_ > 0 && size * contraction_ / (1 - contraction_) <= 0.05) return true;
-    } else {
-      const double rate = size / before;
-      if (rate >= 0.9) return false;
-      contraction_ = std::max(0.9 * contraction_, rate);
-      const double left = size * contraction_ / (1 - contraction_);
-      if (left <= 0.5) return true;
-      if (left * std::pow(contraction_, kNewtonIterations - 1 - i) > 0.5) return false;
-    }
-    before = size;
+    const double negligible = std::max(rounding, h_ * system_->noise() / settings_.atol);
+    answer = newton_.judge(worst_error(residual_, predicted, settings_), negligible);
+    if (answer == NewtonConvergence::Answer::kConverged) return true;
   }
   return false;
 }
@@ -148,12 +136,16 @@ std::string Ndf::step() {
       psi += gamma(m) * difference_[m];
     }
     bool converged = correct(t_new, predicted, psi, d);
+    if (!converged && !factor_fresh_) {  // the mass may have turned: cheaper to renew than a tangent
+      factor_valid_ = false;
+      converged = correct(t_new, predicted, psi, d);
+    }
     if (!converged && !tangent_fresh_) {
       if (new_tangent(t_new, predicted, psi / h_)) converged = correct(t_new, predicted, psi, d);
     }
     if (!converged) {
       ++counts_.newton_failures;
-      tangent_valid_ = false;
+      tangent_valid_ = factor_fresh_ = false;
       change_step(0.3);
       continue;
     }
@@ -174,7 +166,7 @@ std::string Ndf::step() {
     difference_[k_ + 2] = d - difference_[k_ + 1];
     difference_[k_ + 1] = d;
     for (int m = k_; m >= 0; --m) difference_[m] += difference_[m + 1];
-    tangent_fresh_ = false;
+    tangent_fresh_ = factor_fresh_ = false;
     // A correction of the state shifts the whole history with it: only the zeroth difference changes.
     if (system_->accept(t_, state_)) tangent_valid_ = false;
     difference_[0] = state_;

@@ -9,6 +9,7 @@
 #include <array>
 
 #include "sinew/multibody/integrator.h"
+#include "sinew/multibody/newton.h"
 
 namespace sinew::multibody {
 
@@ -41,8 +42,9 @@ class Ndf : public Integrator {
   double t_, h_ = 0;
   int k_ = 1;
   int equal_steps_ = 0;
-  bool started_ = false, tangent_valid_ = false, tangent_fresh_ = false, factor_valid_ = false;
-  double contraction_ = 0;  ///< Newton's rate in the present factor, 0: unknown
+  bool started_ = false, tangent_valid_ = false, tangent_fresh_ = false, factor_valid_ = false,
+       factor_fresh_ = false;
+  NewtonConvergence newton_{0.5, 4};
   std::array<Vector, kMaxOrder + 3> difference_;
   Vector state_, residual_, rate_;
 

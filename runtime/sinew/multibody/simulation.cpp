@@ -70,7 +70,7 @@ std::vector<double> instants(double t_end, int intervals) {
 SimulationResult simulate(const Model& model, const SimulationSettings& settings,
                           const std::function<void(double)>& progress) {
   SimulationResult result;
-  Equations equations(model, settings.formulation, settings.tangent);
+  Equations equations(model, settings.formulation, settings.tangent, settings.closure);
   Vector y0;
   result.stopped = equations.start(y0);
   if (!result.stopped.empty()) return result;

@@ -11,6 +11,7 @@ namespace sinew::multibody {
 struct SimulationSettings {
   Formulation formulation = Formulation::kRr;
   Tangent tangent = Tangent::kAnalytic;
+  Closure closure = Closure::kInEvaluations;
   Method method = Method::kOde15sR;
   IntegratorSettings integrator;
   double t_end = 0;            ///< s; 0: the file's

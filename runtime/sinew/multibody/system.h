@@ -20,7 +20,9 @@ class System {
   /// Evaluates the parts of ∂F/∂y + c·∂F/∂y' at a state. `reusable`: `factorise` will be called with other c
   /// as well (quasi-constant step codes), otherwise only with this one.
   virtual bool tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) = 0;
-  /// Factorises ∂F/∂y + c·∂F/∂y' from the parts last evaluated. False: singular.
+  /// Factorises ∂F/∂y + c·∂F/∂y' from the parts last evaluated. What a system knows without differences, the
+  /// mass matrix, it renews at the state of its last evaluation (equations 81–83 keep the two apart), so
+  /// methods evaluate the residual first. False: singular.
   virtual bool factorise(double c) = 0;
   /// Solves with that factor in place: r → δ.
   virtual void solve(Vector& r) = 0;

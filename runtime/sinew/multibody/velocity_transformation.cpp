@@ -6,17 +6,15 @@
 namespace sinew::multibody {
 namespace {
 
-/// Relative singular value below which the loops are taken to say nothing: a position error of 1e-10 m then
-/// moves the dependent coordinates by less than 1e-3.
-constexpr double kSingular = 1e-7;
 constexpr double kRounding = 1e-16;  ///< m
 constexpr double kFarthestMove = 1;  ///< rad or m, in one iteration
 constexpr int kMaxIterations = 12;
 
 }  // namespace
 
-VelocityTransformation::VelocityTransformation(const Model& model)
+VelocityTransformation::VelocityTransformation(const Model& model, LoopFactor::Kind kind)
     : model_(&model),
+      kind_(kind),
       jacobian_(Matrix::Zero(model.loop_rows, model.size())),
       phi_(Vector::Zero(model.loop_rows)),
       zero_(Vector::Zero(model.size())) {
@@ -26,7 +24,7 @@ VelocityTransformation::VelocityTransformation(const Model& model)
 bool VelocityTransformation::choose(const BodyMotion& motion) {
   closure_jacobian(*model_, motion, jacobian_);
   Eigen::ColPivHouseholderQR<Matrix> pivoted(jacobian_.rows(), jacobian_.cols());
-  pivoted.setThreshold(kSingular);
+  pivoted.setThreshold(LoopFactor::kSingular);
   pivoted.compute(jacobian_);
   // Passing through a singular position the rank drops for a moment: keep the larger set of dependent ones.
   if (pivoted.rank() < static_cast<Eigen::Index>(dependent_.size())) return false;
@@ -43,8 +41,7 @@ bool VelocityTransformation::choose(const BodyMotion& motion) {
   by_dependent_.resize(jacobian_.rows(), nd);
   by_independent_.resize(jacobian_.rows(), nf);
   rates_.resize(nd, nf);
-  factor_ = Eigen::CompleteOrthogonalDecomposition<Matrix>(jacobian_.rows(), nd);
-  factor_.setThreshold(kSingular);
+  factor_.resize(jacobian_.rows(), nd);
   split(jacobian_);
   return true;
 }
@@ -53,9 +50,7 @@ void VelocityTransformation::split(const Matrix& jacobian) {
   for (std::size_t i = 0; i < dependent_.size(); ++i) by_dependent_.col(i) = jacobian.col(dependent_[i]);
   for (std::size_t i = 0; i < independent_.size(); ++i)
     by_independent_.col(i) = jacobian.col(independent_[i]);
-  factor_.compute(by_dependent_);
-  const auto pivots = factor_.matrixQTZ().diagonal().cwiseAbs();
-  conditioning_ = pivots.size() == 0 ? 1 : pivots.minCoeff() / pivots.maxCoeff();
+  factor_.compute(by_dependent_, kind_);
 }
 
 bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& motion, double tolerance) {
@@ -72,8 +67,7 @@ bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& m
     const double open = phi_.cwiseAbs().maxCoeff();
     // Near a singular position a gap is magnified by 1/σ in positions and by 1/σ³ in accelerations: close it
     // to rounding there, that is until it shrinks no more.
-    const bool closed =
-        open <= tolerance && (conditioning_ > kWeak || open <= kRounding || open > 0.1 * best);
+    const bool closed = open <= tolerance && (weakest() > kWeak || open <= kRounding || open > 0.1 * best);
     if (closed) {
       rates_ = -factor_.solve(by_independent_);
       return true;
@@ -85,6 +79,21 @@ bool VelocityTransformation::close_positions(Eigen::Ref<Vector> q, BodyMotion& m
     for (std::size_t d = 0; d < dependent_.size(); ++d) q[dependent_[d]] -= step[d];
   }
   return false;
+}
+
+void VelocityTransformation::linearise(const BodyMotion& motion) {
+  if (trivial()) return;
+  closure_jacobian(*model_, motion, jacobian_);
+  split(jacobian_);
+  rates_ = -factor_.solve(by_independent_);
+}
+
+void VelocityTransformation::follow(Eigen::Ref<Vector> qd) const {
+  for (std::size_t d = 0; d < dependent_.size(); ++d) {
+    double sum = 0;
+    for (int i = 0; i < freedom(); ++i) sum += rates_(d, i) * qd[independent_[i]];
+    qd[dependent_[d]] = sum;
+  }
 }
 
 void VelocityTransformation::close_rates(Eigen::Ref<Vector> qd) const {

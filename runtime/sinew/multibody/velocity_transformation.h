@@ -5,10 +5,12 @@
 // found from the loops by least squares, so redundant equations (Bricard: 5 of rank 4) do no harm, and with
 // small singular values cut off, so that a mechanism passing through a singular position keeps what the
 // integrator predicts for the directions that the loops leave undetermined there. Least squares are solved by
-// orthogonal factorisation where the paper solves the normal equations: half the digits are lost by squaring.
+// orthogonal factorisation, or as the paper does by normal equations (loop_factor.h): half the digits are
+// lost by squaring.
 #pragma once
 
 #include "sinew/multibody/loop_closure.h"
+#include "sinew/multibody/loop_factor.h"
 
 namespace sinew::multibody {
 
@@ -17,7 +19,7 @@ class VelocityTransformation {
   /// Value of `weakest` below which rounding is felt in accelerations: loops are closed to rounding there.
   static constexpr double kWeak = 1e-2;
 
-  explicit VelocityTransformation(const Model& model);
+  VelocityTransformation(const Model& model, LoopFactor::Kind kind);
 
   const std::vector<int>& independent() const { return independent_; }
   const std::vector<int>& dependent() const { return dependent_; }
@@ -34,12 +36,17 @@ class VelocityTransformation {
 
   /// Smallest over largest singular value (by pivots) with which the loops determine the dependent
   /// coordinates; 0 at a singular position.
-  double weakest() const { return conditioning_; }
+  double weakest() const { return factor_.conditioning(); }
 
   /// Solves the loops for the dependent coordinates of q by Newton from where they are; sets the poses of
   /// `motion` and factorises Φ_q there. False when the loops cannot be closed from here.
   /// Closed means |Φ| ≤ `tolerance` (m).
   bool close_positions(Eigen::Ref<Vector> q, BodyMotion& motion, double tolerance);
+  /// Factorises Φ_q at the poses of `motion` without closing the loops there: index 2.
+  void linearise(const BodyMotion& motion);
+  /// Dependent rates (or directions of motion) q'_d = ∂q_d/∂q_i·q'_i, by the transformation of the last
+  /// place.
+  void follow(Eigen::Ref<Vector> qd) const;
   /// Replaces the dependent rates by what the independent ones imply.
   void close_rates(Eigen::Ref<Vector> qd) const;
   /// Dependent accelerations at zero independent ones (equation 38): poses and rates must be set; fills
@@ -60,10 +67,10 @@ class VelocityTransformation {
   void split(const Matrix& jacobian);
 
   const Model* model_;
+  LoopFactor::Kind kind_;
   std::vector<int> independent_, dependent_;
   Matrix jacobian_, by_dependent_, by_independent_, rates_;
-  Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
-  double conditioning_ = 1;  ///< smallest over largest pivot of the factor
+  LoopFactor factor_;
   Vector phi_, zero_;
 };
 

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <random>
 
+#include "study/tables/count.h"
 #include "study/tables/measure.h"
 
 namespace sinew::study {
-namespace {
 
-using multibody::Formulation;
-using multibody::Vector;
-
-/// Rods of 0.1 m and 0.1 kg, hinges alternately about x and y.
 multibody::Mechanism chain_of(int links) {
   multibody::Mechanism m;
   m.name = "chain of " + std::to_string(links);
@@ -36,52 +30,38 @@ multibody::Mechanism chain_of(int links) {
   return m;
 }
 
-double time_of(const multibody::Model& model, Formulation formulation, int repeats) {
-  multibody::Equations equations(model, formulation, multibody::Tangent::kNumeric);
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal(0, 0.1);
-  Vector y(2 * model.size()), yp(y.size()), r(y.size());
-  for (double& x : y) x = normal(random);
-  yp.setOnes();
-  const int rounds = std::max(1, 4000 / model.size());
-  double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < repeats; ++i) {
-    const double begin = cpu_seconds();
-    for (int k = 0; k < rounds; ++k) {
-      if (formulation == Formulation::kRr)
-        equations.residual(0, y, yp, r);
-      else
-        equations.derivative(0, y, r);
-    }
-    best = std::min(best, (cpu_seconds() - begin) / rounds);
-  }
-  return 1e6 * best;
-}
-
-}  // namespace
-
 std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& done_one) {
   std::vector<ChainPoint> chains;
+  std::vector<CountJob> jobs;
   const int repeats = quick ? 3 : 7;
   for (const int links : {5, 10, 20, 50, 100, 200, 500, 1000}) {
     if (quick && links > 200) break;
-    const multibody::Model model(chain_of(links));
+    const std::string name = "chain:" + std::to_string(links);
+    StudyCase c;
+    if (!load_mechanism_only("", name, c).empty()) continue;
     ChainPoint& point = chains.emplace_back();
     point.links = links;
-    point.dtr = time_of(model, Formulation::kDtr, repeats);
-    point.rr = time_of(model, Formulation::kRr, repeats);
-    point.dsr = time_of(model, Formulation::kDsr, links > 200 ? 2 : repeats);
+    point.dtr = evaluation_time(c, "DTR", repeats);
+    point.rr = evaluation_time(c, "RR", repeats);
+    point.dsr = evaluation_time(c, "DSR", links > 200 ? 2 : repeats);
+    for (const char* formulation : {"DTR", "DSR", "RR"}) jobs.push_back({name, formulation, "", 0});
     if (done_one) done_one();
+  }
+  const std::vector<double> counted = count(".", jobs);
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    chains[i].dtr_instructions = counted[3 * i];
+    chains[i].dsr_instructions = counted[3 * i + 1];
+    chains[i].rr_instructions = counted[3 * i + 2];
   }
   return chains;
 }
 
-double growth_exponent(const std::vector<ChainPoint>& chains, double ChainPoint::*time, int from) {
-  // Slope of the least-squares line through (log links, log time).
+double growth_exponent(const std::vector<ChainPoint>& chains, double ChainPoint::*cost, int from) {
+  // Slope of the least-squares line through (log links, log cost).
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const ChainPoint& c : chains) {
-    if (c.links < from || !(c.*time > 0)) continue;
-    const double lx = std::log(c.links), ly = std::log(c.*time);
+    if (c.links < from || !(c.*cost > 0)) continue;
+    const double lx = std::log(c.links), ly = std::log(c.*cost);
     n += 1, x += lx, y += ly, xx += lx * lx, xy += lx * ly;
   }
   const double spread = n * xx - x * x;
@@ -89,10 +69,11 @@ double growth_exponent(const std::vector<ChainPoint>& chains, double ChainPoint:
 }
 
 std::string chains_csv(const std::vector<ChainPoint>& chains) {
-  std::string csv = "links,DTR_us,DSR_us,RR_us\n";
+  std::string csv = "links,DTR_us,DSR_us,RR_us,DTR_instructions,DSR_instructions,RR_instructions\n";
   char line[128];
   for (const ChainPoint& c : chains) {
-    std::snprintf(line, sizeof line, "%d,%.4g,%.4g,%.4g\n", c.links, c.dtr, c.dsr, c.rr);
+    std::snprintf(line, sizeof line, "%d,%.4g,%.4g,%.4g,%.0f,%.0f,%.0f\n", c.links, c.dtr, c.dsr, c.rr,
+                  c.dtr_instructions, c.dsr_instructions, c.rr_instructions);
     csv += line;
   }
   return csv;

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <random>
 #include <sstream>
+
+#include "study/tables/chains.h"
 
 namespace sinew::study {
 namespace {
@@ -17,6 +20,22 @@ using multibody::Formulation;
 using multibody::Model;
 using multibody::Tangent;
 using multibody::Vector;
+
+constexpr int kStates = 16;  ///< of a mechanism at which evaluations are measured
+const std::string kChainPrefix = "chain:";
+
+/// "DTR", "DSR…" and "RR…": what they evaluate.
+Formulation kind_of(const std::string& formulation) {
+  return formulation.starts_with("DTR")   ? Formulation::kDtr
+         : formulation.starts_with("DSR") ? Formulation::kDsr
+                                          : Formulation::kRr;
+}
+
+/// Index 2 where the name says so.
+multibody::Closure closure_of(const std::string& formulation) {
+  return formulation.find("-Rz2") == std::string::npos ? multibody::Closure::kInEvaluations
+                                                       : multibody::Closure::kInSteps;
+}
 
 /// The study's stiff mechanisms, by their names in the paper's set.
 bool known_stiff(const std::string& name) {
@@ -38,9 +57,9 @@ bool read_reference(const std::string& path, const multibody::Mechanism& mechani
     }
     place.push_back(at);
   }
-  if (std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }) != 2 * n) return false;
+  if (std::none_of(place.begin(), place.end(), [](int p) { return p >= 0; })) return false;
   while (std::getline(file, line)) {
-    Vector y(2 * n);
+    Vector y = Vector::Constant(2 * n, std::numeric_limits<double>::quiet_NaN());
     std::size_t column = 0;
     for (std::stringstream cells(line); std::getline(cells, cell, ','); ++column) {
       if (column == 0) out.t.push_back(std::stod(cell));
@@ -73,22 +92,34 @@ TrueError error_of(const Trajectory& trajectory, const Trajectory& reference) {
   const std::size_t samples = std::min(trajectory.y.size(), reference.y.size());
   for (std::size_t s = 0; s < samples; ++s) {
     const Vector &y = trajectory.y[s], &is = reference.y[s];
-    const Vector relative = (y - is).cwiseAbs().cwiseQuotient((is.cwiseAbs().array() + 1).matrix());
     const Eigen::Index n = y.size() / 2;
-    worst.q = std::max(worst.q, relative.head(n).maxCoeff());
-    worst.u = std::max(worst.u, relative.tail(n).maxCoeff());
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      if (std::isnan(is[i])) continue;  // the table does not say
+      const double error = std::abs(y[i] - is[i]) / (1 + std::abs(is[i]));
+      double& where = i < n ? worst.q : worst.u;
+      where = std::isfinite(error) ? std::max(where, error) : std::numeric_limits<double>::infinity();
+    }
   }
   return worst;
 }
 
-std::string load_case(const std::string& directory, const std::string& name, StudyCase& out) {
+std::string load_mechanism_only(const std::string& directory, const std::string& name, StudyCase& out) {
   out = {};
   out.name = name;
   out.stiff = known_stiff(name);
-  if (std::string why = mechanism::load_mechanism(directory + "/" + name + ".json", out.mechanism);
-      !why.empty())
-    return why;
-  if (read_reference(directory + "/reference/" + name + ".csv", out.mechanism, out.reference)) return {};
+  if (name.starts_with(kChainPrefix)) {
+    out.mechanism = chain_of(std::atoi(name.c_str() + kChainPrefix.size()));
+    return {};
+  }
+  const std::string why = mechanism::load_mechanism(directory + "/" + name + ".json", out.mechanism);
+  if (why.empty())
+    (void)read_reference(directory + "/reference/" + name + ".csv", out.mechanism, out.reference);
+  return why;
+}
+
+std::string load_case(const std::string& directory, const std::string& name, StudyCase& out) {
+  if (std::string why = load_mechanism_only(directory, name, out); !why.empty()) return why;
+  if (!out.reference.t.empty()) return {};
   multibody::SimulationSettings settings;
   settings.formulation = Formulation::kDsr;
   settings.method = multibody::Method::kDe;
@@ -99,9 +130,18 @@ std::string load_case(const std::string& directory, const std::string& name, Stu
   return run.stopped.empty() ? "" : directory + "/" + name + ".json: " + run.stopped;
 }
 
-Measurement measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
-                    double tolerance, int repeats) {
-  Measurement m;
+std::function<void()> simulation_of(const StudyCase& c, const std::string& formulation,
+                                    const std::string& integrator, double tolerance) {
+  mechanism::SimulateOptions options;
+  options.formulation = formulation;
+  options.integrator = integrator;
+  options.rtol = options.atol = tolerance;
+  return [model = Model(c.mechanism), settings = settings_of(options)] { (void)simulate(model, settings); };
+}
+
+SimulationRun measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
+                      double tolerance, int repeats) {
+  SimulationRun m;
   m.mechanism = c.name;
   m.method = integrator + " · " + formulation;
   m.tolerance = tolerance;
@@ -134,36 +174,58 @@ Measurement measure(const StudyCase& c, const std::string& formulation, const st
   return m;
 }
 
-double evaluation_time(const StudyCase& c, Formulation formulation, int repeats) {
-  const Model model(c.mechanism);
-  Equations equations(model, formulation, Tangent::kAnalytic),
-      derivatives(model, Formulation::kDsr, Tangent::kNumeric);
+int evaluations_per_run(const std::string& mechanism) {
+  return mechanism.starts_with(kChainPrefix) ? 1 : kStates;
+}
+
+EvaluationWork evaluations_of(const StudyCase& c, const std::string& formulation) {
+  struct Shared {
+    Model model;
+    Equations equations;
+    std::vector<Vector> states, rates;
+    Vector out;
+    Shared(const StudyCase& of, Formulation kind, multibody::Closure closure)
+        : model(of.mechanism), equations(model, kind, Tangent::kAnalytic, closure) {}
+  };
+  const Formulation kind = kind_of(formulation);
+  const auto work = std::make_shared<Shared>(c, kind, closure_of(formulation));
+  Equations derivatives(work->model, Formulation::kDsr, Tangent::kNumeric);
   Vector start;
-  if (!equations.start(start).empty() || !derivatives.start(start).empty()) return 0;
+  if (!work->equations.start(start).empty() || !derivatives.start(start).empty()) return {};
   std::mt19937 random(1);
   std::normal_distribution<double> off(0, 1e-6);
-  constexpr int kStates = 16;
-  std::vector<Vector> states, rates;
-  for (int i = 0; i < kStates; ++i) {
-    Vector y = c.reference.y[i * (c.reference.y.size() - 1) / (kStates - 1)], yp(y.size());
+  const int states = evaluations_per_run(c.name);
+  const bool whole = !c.reference.y.empty() && c.reference.y[0].allFinite();
+  for (int i = 0; i < states; ++i) {
+    Vector y = whole && states > 1 ? c.reference.y[i * (c.reference.y.size() - 1) / (states - 1)] : start;
+    Vector yp = Vector::Ones(y.size());
     for (double& x : y) x += off(random);
-    if (!derivatives.derivative(0, y, yp)) continue;
-    states.push_back(y);
-    rates.push_back(yp);
+    // A state that cannot be evaluated (exactly singular) is replaced by the start.
+    if (kind == Formulation::kRr && states > 1 && !derivatives.derivative(0, y, yp)) y = start, yp.setZero();
+    work->states.push_back(y);
+    work->rates.push_back(yp);
   }
-  Vector out(start.size());
-  const int rounds = std::max(1, 2000 / model.size());
+  work->out.resize(start.size());
+  const auto run = [work, kind] {
+    for (std::size_t s = 0; s < work->states.size(); ++s) {
+      if (kind == Formulation::kRr)
+        work->equations.residual(0, work->states[s], work->rates[s], work->out);
+      else
+        work->equations.derivative(0, work->states[s], work->out);
+    }
+  };
+  return {run, states};
+}
+
+double evaluation_time(const StudyCase& c, const std::string& formulation, int repeats) {
+  const EvaluationWork work = evaluations_of(c, formulation);
+  if (!work.run) return 0;
+  const int rounds = std::max(1, 2000 / static_cast<int>(c.mechanism.joints.size()));
   double best = std::numeric_limits<double>::infinity();
   for (int r = 0; r < repeats; ++r) {
     const double begin = cpu_seconds();
-    for (int i = 0; i < rounds; ++i)
-      for (std::size_t s = 0; s < states.size(); ++s) {
-        if (formulation == Formulation::kRr)
-          equations.residual(0, states[s], rates[s], out);
-        else
-          equations.derivative(0, states[s], out);
-      }
-    best = std::min(best, (cpu_seconds() - begin) / (rounds * static_cast<double>(states.size())));
+    for (int i = 0; i < rounds; ++i) work.run();
+    best = std::min(best, (cpu_seconds() - begin) / (rounds * static_cast<double>(work.evaluations)));
   }
   return 1e6 * best;
 }

@@ -13,7 +13,7 @@ struct Peer {
   std::string name;
   bool stiff_too =
       true;  ///< false: stability limits it on stiff mechanisms; measured there once, not repeated
-  std::function<Measurement(const StudyCase&, double tolerance, int repeats)> measure;
+  std::function<SimulationRun(const StudyCase&, double tolerance, int repeats)> measure;
 };
 
 /// All that this build knows; none without SINEW_PEERS.

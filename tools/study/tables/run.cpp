@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <limits>
 
+#include "study/tables/count.h"
 #include "study/tables/peers.h"
 #include "study/tables/tables.h"
 
 namespace sinew::study {
 namespace {
+
+constexpr const char* kMechanisms = SINEW_SOURCE_DIR "/assets/mechanisms";
 
 struct Pairing {
   const char* formulation;
@@ -15,26 +18,51 @@ struct Pairing {
 };
 
 /// Rows of Tables II and IV.
-const std::vector<Pairing> kOpenRows = {{"DTR", "DE"},        {"DSR", "DE"},        {"DTR", "ode15s"},
-                                        {"DSR", "ode15s"},    {"DSR-JF", "ode15s"}, {"RR-JN", "ode15sR"},
-                                        {"RR-JF", "ode15sR"}, {"RR-JN", "DASSL"},   {"RR-JF", "DASSL"}};
+const std::vector<Pairing> kOpenRows = {{"DTR", "DE"},        {"DSR", "DE"},
+                                        {"DTR", "ode15s"},    {"DSR", "ode15s"},
+                                        {"DSR-JF", "ode15s"}, {"RR-JN", "ode15sR"},
+                                        {"RR-JF", "ode15sR"}, {"RR-JN", "DASSL"},
+                                        {"RR-JF", "DASSL"},   {"RR-JF", "DASSL-strict"}};
+/// "Rz2": loops closed once per accepted step (index 2), as the paper has it; "Rz": in every evaluation.
 const std::vector<Pairing> kClosedRows = {
-    {"DSR-Rz", "DE"},        {"DSR-Rz", "ode15s"},  {"DSR-Rz-JF", "ode15s"}, {"RR-Rz-JN", "ode15sR"},
-    {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JN", "DASSL"}, {"RR-Rz-JF", "DASSL"}};
+    {"DSR-Rz", "DE"},        {"DSR-Rz", "ode15s"},     {"DSR-Rz-JF", "ode15s"},  {"RR-Rz-JN", "ode15sR"},
+    {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JN", "DASSL"},    {"RR-Rz-JF", "DASSL"},    {"RR-Rz-JF", "DASSL-strict"},
+    {"DSR-Rz2", "DE"},       {"DSR-Rz2-JF", "ode15s"}, {"RR-Rz2-JN", "ode15sR"}, {"RR-Rz2-JF", "ode15sR"},
+    {"RR-Rz2-JF", "DASSL"}};
+
+const std::vector<std::string> kOpenEvaluations = {"DTR", "DSR", "RR"},
+                               kClosedEvaluations = {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2"};
+
+/// What the study knows, open chains first; the quick form takes those of Tables I to IV.
+const std::vector<std::string> kOpen = {"fivebar_pendulum", "driver_nonstiff", "driver_stiff"},
+                               kMoreOpen = {"fivebar_planar", "chain", "figure1"},
+                               kClosed = {"bricard", "suspension_5ps", "suspension_mfs"},
+                               kMoreClosed = {"bricard_slender",
+                                              "driver_nonstiff_hands",
+                                              "driver_stiff_hands",
+                                              "nfourbar_2",
+                                              "slider_crank",
+                                              "four_bar",
+                                              "andrews",
+                                              "governor"};
+
+const std::vector<Pairing>& rows_of(const StudyCase& c) {
+  return c.closed() ? kClosedRows : kOpenRows;
+}
 
 /// What of ours stands against the peers: for each its quickest form.
 std::vector<Pairing> contenders(const StudyCase& c) {
-  if (c.closed()) return {{"DSR-Rz", "DE"}, {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JF", "DASSL"}};
+  if (c.closed()) return {{"DSR-Rz2", "DE"}, {"RR-Rz2-JF", "ode15sR"}, {"RR-Rz2-JF", "DASSL"}};
   return {{"DTR", "DE"}, {"DSR", "DE"}, {"RR-JF", "ode15sR"}, {"RR-JF", "DASSL"}};
 }
 
 /// Runs of one mechanism at tolerances from 1e-2 down to 1e-11, each formulation and integrator that may win.
-std::vector<Measurement> work_precision(const StudyCase& c, bool quick) {
-  std::vector<Measurement> runs;
+std::vector<SimulationRun> work_precision(const StudyCase& c, bool quick) {
+  std::vector<SimulationRun> runs;
   for (const Pairing& p : contenders(c)) {
     if (c.stiff && std::string(p.integrator) == "DE") continue;  // stability would limit every one of them
     for (double exponent = -2; exponent >= -11; exponent -= quick ? 1 : 0.25) {
-      Measurement m = measure(c, p.formulation, p.integrator, std::pow(10, exponent), 1);
+      SimulationRun m = measure(c, p.formulation, p.integrator, std::pow(10, exponent), 1);
       if (m.stopped.empty()) runs.push_back(m);
     }
   }
@@ -42,10 +70,10 @@ std::vector<Measurement> work_precision(const StudyCase& c, bool quick) {
 }
 
 /// The quickest run within an error, measured again as often as the other was.
-Measurement quickest_within(const StudyCase& c, const std::vector<Measurement>& runs, const TrueError& error,
-                            int repeats) {
-  const Measurement* best = nullptr;
-  for (const Measurement& m : runs)
+SimulationRun quickest_within(const StudyCase& c, const std::vector<SimulationRun>& runs,
+                              const TrueError& error, int repeats) {
+  const SimulationRun* best = nullptr;
+  for (const SimulationRun& m : runs)
     if (m.error.within(error) && (!best || m.milliseconds < best->milliseconds)) best = &m;
   if (!best) return {};
   const std::size_t cut = best->method.find(" · ");
@@ -53,97 +81,108 @@ Measurement quickest_within(const StudyCase& c, const std::vector<Measurement>& 
                  best->tolerance, repeats);
 }
 
-std::string default_directory() {
-  const std::string shared = std::string(SINEW_SOURCE_DIR) + "/../shared/mechanisms";
-  return std::filesystem::exists(shared) ? shared : std::string(SINEW_SOURCE_DIR) + "/assets/mechanisms";
-}
-
-/// Names of those files that the directory has.
-std::vector<std::string> present(const std::string& directory, const std::vector<std::string>& names) {
-  std::vector<std::string> out;
-  for (const std::string& name : names)
-    if (std::filesystem::exists(directory + "/" + name + ".json")) out.push_back(name);
-  return out;
-}
-
 class Study {
  public:
   Study(const TablesOptions& options, const std::function<void(int, int)>& progress, TablesResult& out)
       : options_(options), progress_(progress), out_(out), repeats_(options.quick ? 3 : 9), peers_(peers()) {
-    directory_ = options.mechanisms.empty() ? default_directory() : options.mechanisms;
+    directory_ = options.mechanisms.empty() ? kMechanisms : options.mechanisms;
     out_ = {};
     out_.tolerance = options.tolerance;
     out_.peers = !peers_.empty();
-    out_.open =
-        present(directory_, {"fivebar_pendulum", "driver_nonstiff", "driver_stiff", "chain", "figure1"});
-    out_.closed = present(directory_, {"bricard", "suspension_5ps", "suspension_mfs", "four_bar"});
-    compared_closed_ = out_.closed;
-    for (const std::string& name : present(directory_, {"driver_nonstiff_hands", "driver_stiff_hands"}))
-      compared_closed_.push_back(name);
-    if (peers_.empty()) compared_closed_ = out_.closed;
-    const int compared = static_cast<int>(out_.open.size() + compared_closed_.size());
-    total_ = static_cast<int>(out_.open.size() * (3 + kOpenRows.size()) +
-                              out_.closed.size() * (2 + kClosedRows.size())) +
-             compared * static_cast<int>(1 + peers_.size()) + (options.quick ? 6 : 8);
+    out_.counted = can_count();
+    for (const auto& [names, always] :
+         {std::pair{&kOpen, true}, {&kMoreOpen, false}, {&kClosed, true}, {&kMoreClosed, false}})
+      for (const std::string& name : *names)
+        if (chosen(name, always)) names_.push_back(name);
+    total_ = static_cast<int>(names_.size()) * 16 + 9;
   }
 
   std::string run() {
-    if (out_.open.empty() && out_.closed.empty()) return directory_ + ": no mechanism of the study is there";
-    for (const std::string& name : out_.open)
-      if (std::string why = of_one(name, {"DTR", "DSR", "RR"}, kOpenRows, true); !why.empty()) return why;
-    for (const std::string& name : compared_closed_) {
-      const bool tabled = std::find(out_.closed.begin(), out_.closed.end(), name) != out_.closed.end();
-      if (std::string why = of_one(name, {"DSR-Rz", "RR-Rz"}, kClosedRows, tabled); !why.empty()) return why;
-    }
+    if (names_.empty()) return directory_ + ": no mechanism of the study is there";
+    for (const std::string& name : names_)
+      if (std::string why = of_one(name); !why.empty()) return why;
     out_.chains = measure_chains(options_.quick, [this] { tick(); });
     out_.conclusions = conclusions_of(out_);
+    if (progress_) progress_(total_, total_);
     return {};
   }
 
  private:
+  bool chosen(const std::string& name, bool always) const {
+    const auto& only = options_.only;
+    if (!only.empty())
+      always = std::find(only.begin(), only.end(), name) != only.end();
+    else if (!options_.quick || options_.mechanisms != "")
+      always = true;
+    return always && std::filesystem::exists(directory_ + "/" + name + ".json");
+  }
+
   void tick() {
     ++done_;
     if (progress_) progress_(std::min(done_, total_), total_);
   }
 
-  std::string of_one(const std::string& name, const std::vector<std::string>& formulations,
-                     const std::vector<Pairing>& rows, bool tabled) {
+  /// Tolerances of the curves; among them the paper's.
+  std::vector<double> tolerances() const {
+    std::vector<double> all = {options_.tolerance};
+    for (const double decades : options_.quick ? std::vector<double>{-1, 1} : std::vector<double>{-2, -1, 1})
+      all.push_back(options_.tolerance * std::pow(10, decades));
+    return all;
+  }
+
+  std::string of_one(const std::string& name) {
     StudyCase c;
     if (std::string why = load_case(directory_, name, c); !why.empty()) return why;
-    for (const std::string& f : tabled ? formulations : std::vector<std::string>{}) {
-      const auto kind = f == "DTR"             ? multibody::Formulation::kDtr
-                        : f.starts_with("DSR") ? multibody::Formulation::kDsr
-                                               : multibody::Formulation::kRr;
-      out_.evaluations.push_back({name, f, evaluation_time(c, kind, 3 * repeats_)});
-      tick();
-    }
-    for (const Pairing& row : tabled ? rows : std::vector<Pairing>{}) {
-      out_.simulations.push_back(measure(c, row.formulation, row.integrator, options_.tolerance, repeats_));
-      tick();
-    }
-    const std::vector<Measurement> ours = work_precision(c, options_.quick);
-    tick();
-    if (tabled && !c.stiff) set_against_implicit(c, ours);
-    compare(c, ours);
+    const multibody::Model model(c.mechanism);
+    out_.mechanisms.push_back(
+        {name, model.size(), model.loop_rows, static_cast<int>(c.mechanism.bodies.size()), c.stiff});
+    evaluate(c);
+    simulate_rows(c);
+    if (!peers_.empty()) compare(c, work_precision(c, options_.quick));
     return {};
   }
 
-  void set_against_implicit(const StudyCase& c, std::vector<Measurement> runs) {
-    const Measurement explicit_run =
-        measure(c, c.closed() ? "DSR-Rz" : "DTR", "DE", options_.tolerance, repeats_);
-    std::erase_if(runs, [](const Measurement& m) { return m.method.starts_with("DE"); });
-    out_.explicit_or_implicit.push_back(
-        {explicit_run, quickest_within(c, runs, explicit_run.error, repeats_)});
+  void evaluate(const StudyCase& c) {
+    std::vector<CountJob> jobs;
+    for (const std::string& f : c.closed() ? kClosedEvaluations : kOpenEvaluations) {
+      out_.evaluations.push_back({c.name, f, evaluation_time(c, f, 3 * repeats_)});
+      jobs.push_back({c.name, f, "", 0});
+    }
+    const std::vector<double> counted = count(directory_, jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+      out_.evaluations[out_.evaluations.size() - jobs.size() + i].instructions =
+          counted[i] / evaluations_per_run(c.name);
+    tick();
   }
 
-  void compare(const StudyCase& c, const std::vector<Measurement>& ours) {
+  void simulate_rows(const StudyCase& c) {
+    std::vector<SimulationRun> runs;
+    std::vector<CountJob> jobs;
+    for (const Pairing& row : rows_of(c)) {
+      for (const double tolerance : tolerances()) {
+        const bool papers = tolerance == options_.tolerance;
+        runs.push_back(measure(c, row.formulation, row.integrator, tolerance, papers ? repeats_ : 1));
+        jobs.push_back({c.name, row.formulation, row.integrator, tolerance});
+      }
+      tick();
+    }
+    const std::vector<double> counted = count(directory_, jobs);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      runs[i].instructions = counted[i];
+      out_.curves.push_back(runs[i]);
+      if (runs[i].tolerance == options_.tolerance) out_.simulations.push_back(runs[i]);
+    }
+    tick();
+  }
+
+  void compare(const StudyCase& c, const std::vector<SimulationRun>& ours) {
     for (const Peer& peer : peers_) {
-      const Measurement theirs =
+      const SimulationRun theirs =
           peer.measure(c, options_.tolerance, c.stiff && !peer.stiff_too ? 1 : repeats_);
       tick();
       out_.comparisons.push_back({theirs, theirs.stopped.empty()
                                               ? quickest_within(c, ours, theirs.error, repeats_)
-                                              : Measurement{}});
+                                              : SimulationRun{}});
     }
   }
 
@@ -153,34 +192,43 @@ class Study {
   int repeats_, done_ = 0, total_ = 0;
   std::vector<Peer> peers_;
   std::string directory_;
-  std::vector<std::string> compared_closed_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace
+
+std::vector<std::string> TablesResult::names(bool closed) const {
+  std::vector<std::string> out;
+  for (const StudiedMechanism& m : mechanisms)
+    if (m.closed() == closed) out.push_back(m.name);
+  return out;
+}
 
 std::string run_tables(const TablesOptions& options, const std::function<void(int, int)>& progress,
                        TablesResult& out) {
   return Study(options, progress, out).run();
 }
 
-const Measurement* find(const TablesResult& result, const std::string& mechanism, const std::string& method) {
-  for (const Measurement& m : result.simulations)
+const SimulationRun* find(const TablesResult& result, const std::string& mechanism,
+                          const std::string& method) {
+  for (const SimulationRun& m : result.simulations)
     if (m.mechanism == mechanism && m.method == method) return &m;
   return nullptr;
 }
 
-const Measurement* best_simulation(const TablesResult& result, const std::string& mechanism) {
-  const Measurement* best = nullptr;
-  for (const Measurement& m : result.simulations)
-    if (m.mechanism == mechanism && m.stopped.empty() && (!best || m.milliseconds < best->milliseconds))
-      best = &m;
+const SimulationRun* best_simulation(const TablesResult& result, const std::string& mechanism) {
+  const auto cost = [&](const SimulationRun& m) { return result.counted ? m.instructions : m.milliseconds; };
+  const SimulationRun* best = nullptr;
+  for (const SimulationRun& m : result.simulations)
+    if (m.mechanism == mechanism && m.stopped.empty() && (!best || cost(m) < cost(*best))) best = &m;
   return best;
 }
 
-double evaluation(const TablesResult& result, const std::string& mechanism, const std::string& formulation) {
-  for (const EvaluationTime& e : result.evaluations)
-    if (e.mechanism == mechanism && e.formulation == formulation) return e.microseconds;
-  return 0;
+const EvaluationCost* evaluation(const TablesResult& result, const std::string& mechanism,
+                                 const std::string& formulation) {
+  for (const EvaluationCost& e : result.evaluations)
+    if (e.mechanism == mechanism && e.formulation == formulation) return &e;
+  return nullptr;
 }
 
 }  // namespace sinew::study

@@ -10,56 +10,82 @@
 namespace sinew::study {
 
 struct TablesOptions {
-  std::string
-      mechanisms;  ///< directory of the mechanism files; "": ../shared/mechanisms, else assets/mechanisms
-  double tolerance = 1e-5;  ///< the paper's
-  bool quick = false;       ///< fewer repeats and tolerances
+  std::string mechanisms;              ///< directory of the mechanism files; "": assets/mechanisms
+  double tolerance = 1e-5;             ///< the paper's
+  bool quick = false;                  ///< fewer mechanisms, repeats and tolerances
+  std::vector<std::string> only = {};  ///< mechanisms; none: all that the study knows
 };
 
-/// Time of one evaluation (Tables I and III).
-struct EvaluationTime {
+/// A mechanism of the tables.
+struct StudiedMechanism {
+  std::string name;
+  int coordinates = 0, loop_equations = 0, bodies = 0;
+  bool stiff = false;
+  bool closed() const { return loop_equations > 0; }
+};
+
+/// Cost of one evaluation (Tables I and III).
+struct EvaluationCost {
   std::string mechanism, formulation;
   double microseconds = 0;
+  double instructions = 0;  ///< counted; 0: not counted
 };
 
 /// A run beside Sinew's quickest run of at most the same true error (Tables V and VI).
 struct Comparison {
-  Measurement peer, ours;
+  SimulationRun peer, ours;
   /// How many times quicker; 0 when no run of ours was as accurate.
   double factor() const { return ours.method.empty() ? 0 : peer.milliseconds / ours.milliseconds; }
 };
 
+/// What one mechanism says about a claim.
+struct Evidence {
+  std::string about;  ///< the mechanism
+  bool holds = false;
+  std::string figures;  ///< "1.9 and 2.1"
+};
+
+/// A conclusion of the paper, judged.
 struct Conclusion {
-  enum class Verdict { kHolds, kDoesNot, kNotMeasured };
-  std::string claim;  ///< of the paper
-  Verdict verdict = Verdict::kNotMeasured;
-  std::string evidence;  ///< in a sentence, with the figures
+  std::string place;  ///< "section 5, no. 6"
+  std::string claim;
+  std::string figures_are;         ///< what the figures of the evidence mean
+  std::vector<Evidence> evidence;  ///< none: not measured
+  std::string note;                ///< where it does not hold: what was tried; or why it was not measured
 };
 
 struct TablesResult {
-  std::vector<std::string> open, closed;    ///< mechanisms of Tables I, II and III, IV
-  std::vector<EvaluationTime> evaluations;  ///< I and III
-  std::vector<Measurement> simulations;     ///< II and IV
+  std::vector<StudiedMechanism> mechanisms;
+  std::vector<EvaluationCost> evaluations;  ///< I and III
+  std::vector<SimulationRun> simulations;   ///< II and IV: at `tolerance`
+  std::vector<SimulationRun> curves;        ///< the same rows at other tolerances too, for equal errors
   std::vector<Comparison> comparisons;      ///< V and VI
-  /// DE at `tolerance` on each non-stiff mechanism, and the quickest implicit run within its error.
-  std::vector<Comparison> explicit_or_implicit;
   std::vector<ChainPoint> chains;
   std::vector<Conclusion> conclusions;
   double tolerance = 0;
-  bool peers = false;  ///< built with SINEW_PEERS
+  bool peers = false;    ///< built with SINEW_PEERS
+  bool counted = false;  ///< instructions were counted: without valgrind nothing is judged
+
+  std::vector<std::string> names(bool closed) const;
 };
 
 /// "" or what is wrong. `progress(done, total)` may be empty.
 std::string run_tables(const TablesOptions& options, const std::function<void(int, int)>& progress,
                        TablesResult& out);
 
-/// Checks what the paper concludes against the measurements.
+/// Checks what the paper concludes against what was counted.
 std::vector<Conclusion> conclusions_of(const TablesResult& result);
 
-/// Quickest accurate-enough simulation of a mechanism; nullptr when there is none.
-const Measurement* best_simulation(const TablesResult& result, const std::string& mechanism);
-const Measurement* find(const TablesResult& result, const std::string& mechanism, const std::string& method);
-double evaluation(const TablesResult& result, const std::string& mechanism, const std::string& formulation);
+/// "holds", "holds on 4 of 6", "does not hold", "not measured".
+std::string verdict(const Conclusion& conclusion);
+
+/// Cheapest simulation of a mechanism by instructions, or by time where they were not counted; nullptr when
+/// there is none.
+const SimulationRun* best_simulation(const TablesResult& result, const std::string& mechanism);
+const SimulationRun* find(const TablesResult& result, const std::string& mechanism,
+                          const std::string& method);
+const EvaluationCost* evaluation(const TablesResult& result, const std::string& mechanism,
+                                 const std::string& formulation);
 
 /// The six tables, the work of chains and the conclusions; bold text stands between `bold` and `plain`.
 std::string tables_text(const TablesResult& result, const std::string& bold, const std::string& plain);

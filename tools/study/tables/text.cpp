@@ -30,16 +30,10 @@ std::string brief(const std::string& reason) {
   return line.size() <= 60 ? line : line.substr(0, 57) + "…";
 }
 
-std::string verdict(const Conclusion& c) {
-  switch (c.verdict) {
-    case Conclusion::Verdict::kHolds:
-      return "holds";
-    case Conclusion::Verdict::kDoesNot:
-      return "does not hold here";
-    case Conclusion::Verdict::kNotMeasured:
-      break;
-  }
-  return "not measured";
+/// Instructions in thousands or millions.
+std::string instructions(double x) {
+  if (!(x > 0)) return "–";
+  return x < 1e5 ? number(x / 1e3) + " k" : number(x / 1e6) + " M";
 }
 
 struct Cell {
@@ -81,16 +75,25 @@ struct Grid {
 Grid evaluations(const TablesResult& r, const std::string& title, const std::vector<std::string>& mechanisms,
                  const std::vector<std::string>& formulations) {
   Grid grid{title, {{{"formulation", false}}}};
-  for (const std::string& m : mechanisms) grid.rows[0].push_back({m, false});
+  for (const std::string& m : mechanisms) {
+    grid.rows[0].push_back({m, false});
+    grid.rows[0].push_back({"µs", false});
+  }
   for (const std::string& f : formulations) {
     auto& row = grid.rows.emplace_back();
     row.push_back({f, false});
     for (const std::string& m : mechanisms) {
-      const double here = evaluation(r, m, f);
-      const bool best = std::all_of(formulations.begin(), formulations.end(), [&](const std::string& other) {
-        return here <= evaluation(r, m, other);
-      });
-      row.push_back({number(here), best});
+      const auto cost = [&](const std::string& formulation) {
+        const EvaluationCost* e = evaluation(r, m, formulation);
+        return !e ? 0 : r.counted ? e->instructions : e->microseconds;
+      };
+      const double here = cost(f);
+      const bool best =
+          here > 0 && std::all_of(formulations.begin(), formulations.end(),
+                                  [&](const std::string& other) { return here <= cost(other); });
+      const EvaluationCost* e = evaluation(r, m, f);
+      row.push_back({e ? instructions(e->instructions) : "–", best});
+      row.push_back({e ? number(e->microseconds) : "–", false});
     }
   }
   return grid;
@@ -100,30 +103,35 @@ Grid simulations(const TablesResult& r, const std::string& title,
                  const std::vector<std::string>& mechanisms) {
   Grid grid{title, {{{"integrator · formulation", false}}}};
   std::vector<std::string> methods;
-  for (const Measurement& m : r.simulations)
+  for (const SimulationRun& m : r.simulations)
     if (std::find(mechanisms.begin(), mechanisms.end(), m.mechanism) != mechanisms.end() &&
         std::find(methods.begin(), methods.end(), m.method) == methods.end())
       methods.push_back(m.method);
   for (const std::string& m : mechanisms) {
     grid.rows[0].push_back({m, false});
-    grid.rows[0].push_back({"error q / u", false});
-    grid.rows[0].push_back({"steps", false});
+    for (const char* column : {"ms", "error q / u", "steps"}) grid.rows[0].push_back({column, false});
   }
   for (const std::string& method : methods) {
     auto& row = grid.rows.emplace_back();
     row.push_back({method, false});
     for (const std::string& mechanism : mechanisms) {
-      const Measurement* m = find(r, mechanism, method);
+      const SimulationRun* m = find(r, mechanism, method);
       if (!m || !m->stopped.empty()) {
-        row.insert(row.end(), {{"–", false}, {m ? brief(m->stopped) : "", false}, {"", false}});
+        row.insert(row.end(), {{"–", false}, {"", false}, {m ? brief(m->stopped) : "", false}, {"", false}});
         continue;
       }
-      row.push_back({number(m->milliseconds), m == best_simulation(r, mechanism)});
+      row.push_back({instructions(m->instructions), m == best_simulation(r, mechanism)});
+      row.push_back({number(m->milliseconds), false});
       row.push_back({exponent(m->error.q) + " / " + exponent(m->error.u), false});
       row.push_back({std::to_string(m->steps), false});
     }
   }
   return grid;
+}
+
+bool is_closed(const TablesResult& r, const std::string& mechanism) {
+  return std::any_of(r.mechanisms.begin(), r.mechanisms.end(),
+                     [&](const StudiedMechanism& m) { return m.name == mechanism && m.closed(); });
 }
 
 Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
@@ -138,9 +146,10 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
               {"error q / u", false},
               {"factor", false}}}};
   for (const Comparison& c : r.comparisons) {
-    const bool is_open = std::find(r.open.begin(), r.open.end(), c.peer.mechanism) != r.open.end();
-    if (is_open != open) continue;
-    const auto error = [](const Measurement& m) { return exponent(m.error.q) + " / " + exponent(m.error.u); };
+    if (is_closed(r, c.peer.mechanism) == open) continue;
+    const auto error = [](const SimulationRun& m) {
+      return exponent(m.error.q) + " / " + exponent(m.error.u);
+    };
     auto& row = grid.rows.emplace_back();
     row = {{c.peer.mechanism, false}, {c.peer.method, false}};
     if (!c.peer.stopped.empty()) {
@@ -163,34 +172,94 @@ Grid comparisons(const TablesResult& r, const std::string& title, bool open) {
   return grid;
 }
 
-nlohmann::json as_json(const Measurement& m) {
-  return {{"mechanism", m.mechanism}, {"method", m.method},
-          {"tolerance", m.tolerance}, {"ms", m.milliseconds},
-          {"error_q", m.error.q},     {"error_u", m.error.u},
-          {"steps", m.steps},         {"evaluations", m.evaluations},
-          {"tangents", m.tangents},   {"factorisations", m.factorisations},
-          {"closure_m", m.closure},   {"energy_drift_J", m.energy_drift},
+nlohmann::json as_json(const SimulationRun& m) {
+  return {{"mechanism", m.mechanism},
+          {"method", m.method},
+          {"tolerance", m.tolerance},
+          {"ms", m.milliseconds},
+          {"instructions", m.instructions},
+          {"error_q", m.error.q},
+          {"error_u", m.error.u},
+          {"steps", m.steps},
+          {"evaluations", m.evaluations},
+          {"tangents", m.tangents},
+          {"factorisations", m.factorisations},
+          {"closure_m", m.closure},
+          {"energy_drift_J", m.energy_drift},
           {"stopped", m.stopped}};
+}
+
+}  // namespace
+
+namespace {
+
+/// The paper's mechanisms that differ from ours in a way that the tables cannot show.
+constexpr const char* kDifferences =
+    "The paper simulates Bricard's mechanism for 5 s, here it runs for 10; the paper's MFS has 14 degrees of "
+    "freedom, here it "
+    "has 13 (tie rods are distance equations, so their spins are no coordinates). Mechanisms beyond its own "
+    "are marked by not "
+    "being in its tables; the paper's data are not published, the figures of other mechanisms are not to be "
+    "compared with "
+    "its own.\n\n";
+
+std::string conclusions_text(const TablesResult& r, const std::string& bold, const std::string& plain) {
+  std::string out = "Conclusions of the paper, judged by instructions on every mechanism\n\n";
+  int index = 0;
+  for (const Conclusion& c : r.conclusions) {
+    const std::string is = verdict(c);
+    out += std::to_string(++index) + ". " + c.claim + " (" + c.place + "): " + bold + is + plain + ".";
+    std::string list;
+    for (const Evidence& e : c.evidence)
+      list += (list.empty() ? " " : "; ") + e.about + " " + e.figures + (e.holds ? "" : " (not)");
+    if (!list.empty()) out += " " + c.figures_are + ":" + list + ".";
+    if (!c.note.empty() && is != "holds") out += " " + c.note + ".";
+    out += "\n";
+  }
+  return out;
+}
+
+std::string chains_text(const TablesResult& r, const std::string& bold, const std::string& plain) {
+  Grid chains{"Work of serial chains: one evaluation",
+              {{{"links", false},
+                {"DTR", false},
+                {"µs", false},
+                {"DSR", false},
+                {"µs", false},
+                {"RR", false},
+                {"µs", false}}}};
+  for (const ChainPoint& c : r.chains)
+    chains.rows.push_back({{std::to_string(c.links), false},
+                           {instructions(c.dtr_instructions), false},
+                           {number(c.dtr), false},
+                           {instructions(c.dsr_instructions), false},
+                           {number(c.dsr), false},
+                           {instructions(c.rr_instructions), false},
+                           {number(c.rr), false}});
+  return chains.text(bold, plain);
 }
 
 }  // namespace
 
 std::string tables_text(const TablesResult& r, const std::string& bold, const std::string& plain) {
   const std::string at =
-      " at tolerance " + exponent(r.tolerance) + " (ms of CPU time; error max |Δ|/(1+|x|))";
+      " at tolerance " + exponent(r.tolerance) +
+      " (instructions; ms of CPU time; error max |Δ|/(1+|x|); the fewest instructions are bold)";
+  const std::vector<std::string> open = r.names(false), closed = r.names(true);
   std::string out;
-  if (!r.open.empty()) {
-    out += evaluations(r, "Table I. Open chains: time of one derivative or residual (µs)", r.open,
+  if (!open.empty()) {
+    out += evaluations(r, "Table I. Open chains: instructions and time of one derivative or residual", open,
                        {"DTR", "DSR", "RR"})
                .text(bold, plain);
-    out += simulations(r, "Table II. Open chains: time of the simulation" + at, r.open).text(bold, plain);
+    out += simulations(r, "Table II. Open chains: simulation" + at, open).text(bold, plain);
   }
-  if (!r.closed.empty()) {
-    out += evaluations(r, "Table III. Closed chains: time of one derivative or residual (µs)", r.closed,
-                       {"DSR-Rz", "RR-Rz"})
+  if (!closed.empty()) {
+    out += evaluations(r, "Table III. Closed chains: instructions and time of one derivative or residual",
+                       closed, {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2"})
                .text(bold, plain);
-    out += simulations(r, "Table IV. Closed chains: time of the simulation" + at, r.closed).text(bold, plain);
+    out += simulations(r, "Table IV. Closed chains: simulation" + at, closed).text(bold, plain);
   }
+  out += kDifferences;
   if (r.peers) {
     out += comparisons(r, "Table V. Open chains against independent programs" + at, true).text(bold, plain);
     out +=
@@ -198,48 +267,35 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   } else {
     out += "Tables V and VI (against independent programs) need a build with -DSINEW_PEERS=ON.\n\n";
   }
-  Grid chains{"Work of serial chains: time of one evaluation (µs)",
-              {{{"links", false}, {"DTR", false}, {"DSR", false}, {"RR", false}}}};
-  for (const ChainPoint& c : r.chains)
-    chains.rows.push_back({{std::to_string(c.links), false},
-                           {number(c.dtr), false},
-                           {number(c.dsr), false},
-                           {number(c.rr), false}});
-  out += chains.text(bold, plain) + "Conclusions of the paper\n\n";
-  int index = 0;
-  for (const Conclusion& c : r.conclusions)
-    out += std::to_string(++index) + ". " + c.claim + ": " + bold + verdict(c) + plain + ". " + c.evidence +
-           "\n";
-  return out;
+  return out + chains_text(r, bold, plain) + conclusions_text(r, bold, plain);
 }
 
 std::string tables_csv(const TablesResult& r) {
   std::string csv =
-      "table,mechanism,method,tolerance,ms,error_q,error_u,steps,evaluations,tangents,factorisations,closure_"
+      "table,mechanism,method,tolerance,instructions,ms,error_q,error_u,steps,evaluations,tangents,"
+      "factorisations,closure_"
       "m,"
       "energy_drift_J,stopped\n";
   char line[512];
-  const auto add = [&](const char* table, const Measurement& m) {
-    std::snprintf(line, sizeof line, "%s,%s,%s,%g,%.5g,%.3g,%.3g,%ld,%ld,%ld,%ld,%.3g,%.3g,\"%s\"\n", table,
-                  m.mechanism.c_str(), m.method.c_str(), m.tolerance, m.milliseconds, m.error.q, m.error.u,
-                  m.steps, m.evaluations, m.tangents, m.factorisations, m.closure, m.energy_drift,
-                  m.stopped.c_str());
+  const auto add = [&](const char* table, const SimulationRun& m) {
+    std::snprintf(line, sizeof line, "%s,%s,%s,%g,%.0f,%.5g,%.3g,%.3g,%ld,%ld,%ld,%ld,%.3g,%.3g,\"%s\"\n",
+                  table, m.mechanism.c_str(), m.method.c_str(), m.tolerance, m.instructions, m.milliseconds,
+                  m.error.q, m.error.u, m.steps, m.evaluations, m.tangents, m.factorisations, m.closure,
+                  m.energy_drift, m.stopped.c_str());
     csv += line;
   };
-  const auto is_open = [&](const std::string& name) {
-    return std::find(r.open.begin(), r.open.end(), name) != r.open.end();
-  };
-  for (const EvaluationTime& e : r.evaluations) {
-    Measurement one;
+  for (const EvaluationCost& e : r.evaluations) {
+    SimulationRun one;
     one.mechanism = e.mechanism;
     one.method = e.formulation;
     one.milliseconds = 1e-3 * e.microseconds;
+    one.instructions = e.instructions;
     one.evaluations = 1;
-    add(is_open(e.mechanism) ? "I" : "III", one);
+    add(is_closed(r, e.mechanism) ? "III" : "I", one);
   }
-  for (const Measurement& m : r.simulations) add(is_open(m.mechanism) ? "II" : "IV", m);
+  for (const SimulationRun& m : r.curves) add(is_closed(r, m.mechanism) ? "IV" : "II", m);
   for (const Comparison& c : r.comparisons) {
-    const char* table = is_open(c.peer.mechanism) ? "V" : "VI";
+    const char* table = is_closed(r, c.peer.mechanism) ? "VI" : "V";
     add(table, c.peer);
     if (!c.ours.method.empty()) add(table, c.ours);
   }
@@ -248,17 +304,29 @@ std::string tables_csv(const TablesResult& r) {
 
 nlohmann::json tables_json(const TablesResult& r) {
   nlohmann::json out = {{"tolerance", r.tolerance}, {"peers", r.peers}};
-  for (const EvaluationTime& e : r.evaluations)
-    out["evaluations"].push_back(
-        {{"mechanism", e.mechanism}, {"formulation", e.formulation}, {"us", e.microseconds}});
-  for (const Measurement& m : r.simulations) out["simulations"].push_back(as_json(m));
+  for (const EvaluationCost& e : r.evaluations)
+    out["evaluations"].push_back({{"mechanism", e.mechanism},
+                                  {"formulation", e.formulation},
+                                  {"us", e.microseconds},
+                                  {"instructions", e.instructions}});
+  for (const SimulationRun& m : r.simulations) out["simulations"].push_back(as_json(m));
+  for (const SimulationRun& m : r.curves) out["curves"].push_back(as_json(m));
   for (const Comparison& c : r.comparisons)
     out["comparisons"].push_back(
         {{"peer", as_json(c.peer)}, {"sinew", as_json(c.ours)}, {"factor", c.factor()}});
   for (const ChainPoint& c : r.chains)
     out["chains"].push_back({{"links", c.links}, {"DTR_us", c.dtr}, {"DSR_us", c.dsr}, {"RR_us", c.rr}});
-  for (const Conclusion& c : r.conclusions)
-    out["conclusions"].push_back({{"claim", c.claim}, {"verdict", verdict(c)}, {"evidence", c.evidence}});
+  for (const Conclusion& c : r.conclusions) {
+    nlohmann::json evidence = nlohmann::json::array();
+    for (const Evidence& e : c.evidence)
+      evidence.push_back({{"about", e.about}, {"holds", e.holds}, {"figures", e.figures}});
+    out["conclusions"].push_back({{"place", c.place},
+                                  {"claim", c.claim},
+                                  {"verdict", verdict(c)},
+                                  {"figures_are", c.figures_are},
+                                  {"evidence", evidence},
+                                  {"note", c.note}});
+  }
   return out;
 }
 

@@ -14,9 +14,9 @@ std::vector<Peer> odeint_peers();    ///< the same
 /// Repeats `simulate(trajectory, measurement)`, which answers "" or why it stopped and adds nothing to the
 /// CPU time but the integration; fills error and the quickest time.
 template <class Simulate>
-Measurement measure_peer(const std::string& name, const StudyCase& c, double tolerance, int repeats,
+SimulationRun measure_peer(const std::string& name, const StudyCase& c, double tolerance, int repeats,
                          Simulate simulate) {
-  Measurement m;
+  SimulationRun m;
   m.mechanism = c.name;
   m.method = name;
   m.tolerance = tolerance;

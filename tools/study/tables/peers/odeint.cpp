@@ -13,7 +13,7 @@ namespace odeint = boost::numeric::odeint;
 
 struct NoEvaluation {};
 
-std::string adams(const StudyCase& c, double tolerance, Trajectory& out, Measurement& m, double& seconds) {
+std::string adams(const StudyCase& c, double tolerance, Trajectory& out, SimulationRun& m, double& seconds) {
   using Stepper = odeint::adaptive_adams_bashforth_moulton<8, State>;
   using Controlled = odeint::controlled_adams_bashforth_moulton<Stepper>;
   const multibody::Model model(c.mechanism);
@@ -81,7 +81,7 @@ std::vector<Peer> odeint_peers() {
   const std::string name = "Odeint · Adams (ABM 8)";
   return {{name, false, [name](const StudyCase& c, double tolerance, int repeats) {
              return measure_peer(name, c, tolerance, repeats,
-                                 [&](Trajectory& out, Measurement& m, double& seconds) {
+                                 [&](Trajectory& out, SimulationRun& m, double& seconds) {
                                    return adams(c, tolerance, out, m, seconds);
                                  });
            }}};

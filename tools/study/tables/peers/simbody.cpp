@@ -38,7 +38,7 @@ std::vector<bool> redundant_loops(const multibody::Model& model) {
 }
 
 Peer peer(const std::string& name, bool cpodes) {
-  const auto simulate = [cpodes](const StudyCase& c, double tolerance, Trajectory& out, Measurement& m,
+  const auto simulate = [cpodes](const StudyCase& c, double tolerance, Trajectory& out, SimulationRun& m,
                                  double& seconds) {
     static const Module module;
     if (!module.simulate) return module.fault;
@@ -62,7 +62,7 @@ Peer peer(const std::string& name, bool cpodes) {
   };
   return {name, cpodes, [name, simulate](const StudyCase& c, double tolerance, int repeats) {
             return measure_peer(name, c, tolerance, repeats,
-                                [&](Trajectory& out, Measurement& m, double& seconds) {
+                                [&](Trajectory& out, SimulationRun& m, double& seconds) {
                                   return simulate(c, tolerance, out, m, seconds);
                                 });
           }};

@@ -75,7 +75,7 @@ void sample(Problem& p, double t, N_Vector y, Trajectory& out) {
   out.y.push_back(state);
 }
 
-std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& out, Measurement& m,
+std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& out, SimulationRun& m,
                   double& seconds) {
   const multibody::Model model(c.mechanism);
   Problem problem(model, derivatives_of(c));
@@ -124,7 +124,7 @@ std::string cvode(const StudyCase& c, int method, double tolerance, Trajectory& 
   return {};
 }
 
-std::string ida(const StudyCase& c, double tolerance, Trajectory& out, Measurement& m, double& seconds) {
+std::string ida(const StudyCase& c, double tolerance, Trajectory& out, SimulationRun& m, double& seconds) {
   const multibody::Model model(c.mechanism);
   Problem problem(model, multibody::Formulation::kRr);
   Vector y0;
@@ -174,7 +174,7 @@ std::string ida(const StudyCase& c, double tolerance, Trajectory& out, Measureme
 Peer cvode_peer(const std::string& name, int method) {
   return {name, method == CV_BDF, [name, method](const StudyCase& c, double tolerance, int repeats) {
             return measure_peer(name, c, tolerance, repeats,
-                                [&](Trajectory& out, Measurement& m, double& seconds) {
+                                [&](Trajectory& out, SimulationRun& m, double& seconds) {
                                   return cvode(c, method, tolerance, out, m, seconds);
                                 });
           }};
@@ -188,7 +188,7 @@ std::vector<Peer> sundials_peers() {
           cvode_peer("SUNDIALS · CVODE BDF", CV_BDF),
           {name, true, [name](const StudyCase& c, double tolerance, int repeats) {
              return measure_peer(name, c, tolerance, repeats,
-                                 [&](Trajectory& out, Measurement& m, double& seconds) {
+                                 [&](Trajectory& out, SimulationRun& m, double& seconds) {
                                    return ida(c, tolerance, out, m, seconds);
                                  });
            }}};
