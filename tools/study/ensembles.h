@@ -76,7 +76,9 @@ std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, in
 nlohmann::json ensembles_json(const std::vector<Ensemble>& all);
 /// Share of the true mean at 0.5, 0.75, 1 and 1.5 s, and its standard error.
 std::string ensembles_table(const std::vector<Ensemble>& all);
-/// Curves of one scene and step, .png or .svg.
+/// Curves of one scene and step as an SVG element; empty where nobody has run it.
+std::string ensembles_svg(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz);
+/// The same, .png or .svg.
 convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz,
                               const std::string& file);
 
