@@ -53,7 +53,7 @@ AccuracyScene stiff_driver() {
       "stiff driver of the reference family, which integrates residuals. Integrators choose their steps; "
       "points "
       "are tolerances. Error is the largest of all coordinates and instants, in rad or m over one plus the "
-      "value, from a run at 1e-12 and beyond. Explicit integrators are held back by stability, not by "
+      "value, from a run at 10⁻¹² and beyond. Explicit integrators are held back by stability, not by "
       "accuracy: "
       "that is what stiff means.";
   s.beside_peers = "SUNDIALS and Odeint integrate our accelerations, Simbody its own.";

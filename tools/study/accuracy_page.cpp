@@ -36,40 +36,9 @@ std::string steps_of(const AccuracyPoint& p) {
   return p.h > 0 ? "steps of 1/" + number(1 / p.h) + " s" : "steps of its own choice";
 }
 
-/// "a walker who is pushed": within a sentence.
-std::string who(const SummaryRow& row) {
-  if (row.scene == "tracking") return "a walker who is pushed";
-  if (row.scene == "running") return "a runner who is pushed";
-  return "a figure that goes limp";
-}
-
-/// "a walker who is pushed costs 15 µs a frame where 1 cm is close enough, 40 µs for 1 mm: 66 or 25 of them
-/// fit into a millisecond of one core".
-std::string price_sentence(const SummaryRow& rough, const SummaryRow& fine) {
-  if (!rough.ours.survived) return who(rough) + " does not get within " + length(rough.error);
-  std::string text = who(rough) + " costs " + duration(rough.ours.us) + " a frame where " +
-                     length(rough.error) + " is close enough";
-  if (!fine.ours.survived)
-    return text + " (" + std::to_string(rough.per_millisecond()) + " of them in a millisecond of one core)";
-  return text + ", " + duration(fine.ours.us) + " for " + length(fine.error) + ": " +
-         std::to_string(rough.per_millisecond()) + " or " + std::to_string(fine.per_millisecond()) +
-         " of them fit into a millisecond of one core";
-}
-
 std::string lead(const std::vector<SummaryRow>& rows, const std::vector<CrowdCost>& crowds) {
   std::string text;
-  for (std::size_t n = 0; n + 1 < rows.size(); n += 2) {
-    std::string sentence = price_sentence(rows[n], rows[n + 1]);
-    if (n == 0)
-      sentence = "At 60 frames a second, " + sentence;
-    else
-      sentence[0] = static_cast<char>(std::toupper(sentence[0]));
-    text += "<b>" + escaped(sentence) + ".</b> ";
-  }
-  for (const CrowdCost& c : crowds)
-    if (c.name == "walkers_hit")
-      text += "<b>" + escaped(c.title) + ": " + duration(c.us.mean) + " a frame, at worst " +
-              duration(c.us.worst) + "</b> (" + number(c.solved) + " of them are solved at a time).";
+  for (const std::string& sentence : summary_sentences(rows, crowds)) text += escaped(sentence) + "<br>\n";
   return "<p class='lead'>" + text + "</p>\n";
 }
 
@@ -134,12 +103,13 @@ std::string glossary() {
        "the "
        "error where nothing strikes."},
       {"bdf1",
-       "Implicit Euler, which most engines are built on: never explodes, but half the step leaves half the "
-       "error, and limbs swing as if in honey; for comparison only."},
-      {"bdf2", "Second order from the last two steps, and blind to changes of contact; for comparison only."},
+       "Implicit Euler, the simplest scheme that does not explode: half the step leaves half the error, and "
+       "limbs "
+       "swing as if in honey; for comparison only."},
+      {"bdf2", "Second order from the last two steps, whatever touches in between; for comparison only."},
       {"momentum",
-       "bdf1 with rotations as the seed talk writes them, a balance of angular momentum instead of an "
-       "energy to minimise: cheap, but it may explode; for comparison only."},
+       "bdf1 with rotations as a balance of angular momentum, as the talk wrote them that Sinew began with, "
+       "instead of an energy to minimise, so that nothing keeps it from exploding; for comparison only."},
       {"float, double", "Numbers of 32 or 64 bits; games use float."}};
   std::string html = "<dl>\n";
   for (const auto& word : kWords) html += std::string("<dt>") + word[0] + "</dt><dd>" + word[1] + "</dd>\n";

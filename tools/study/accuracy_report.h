@@ -15,8 +15,8 @@ namespace sinew::study {
 
 /// What one character costs at 60 Hz where it happens and where so much error is allowed.
 struct SummaryRow {
-  std::string scene, title;  ///< "tracking", "A walker is pushed"
-  double error = 0;          ///< m, allowed
+  std::string scene, title, who;  ///< "tracking", "A walker is pushed", "a walker who is pushed"
+  double error = 0;               ///< m, allowed
   /// The runtime's cheapest setting within it, of steps of 1/60 s and finer; AccuracyPoint::survived is false
   /// where there is none.
   AccuracyPoint ours;
@@ -26,6 +26,9 @@ struct SummaryRow {
 };
 /// Pushed walker, pushed runner, limp figure; 1 cm and 1 mm each. Scenes that were not run are left out.
 std::vector<SummaryRow> summary_rows(const std::vector<AccuracyResult>& results);
+/// "At 60 frames a second, a walker who is pushed costs …": what they say, and what the crowd costs.
+std::vector<std::string> summary_sentences(const std::vector<SummaryRow>& rows,
+                                           const std::vector<CrowdCost>& crowds);
 bool has_peers(const std::vector<AccuracyPoint>& points);
 
 /// Errors for which scenes say what they cost.

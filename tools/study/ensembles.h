@@ -68,8 +68,9 @@ Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, doub
 
 /// Every scene at 60 and 30 Hz, by our schemes and the peers that take any step. All of ours are judged by
 /// the most accurate of them at the finest steps, a peer by itself. `quick`: 96 seeds instead of 384, finest
-/// steps of 1/1920 s instead of 1/3840 (at 1/960 bdf2 still has a tenth less energy after 0.75 s).
-std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress);
+/// steps of 1/1920 s instead of 1/3840 (at 1/960 bdf2 still has a tenth less energy after 0.75 s). `seeds`:
+/// so many instead.
+std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress, int seeds = 0);
 
 /// {"ensembles": [{"engine", "scene", "hz", "scheme", "scalar", "seeds", "lost", "t", "energy",
 /// "energy_deviation", "truth", "truth_deviation"}]}, energies in J.

@@ -46,11 +46,15 @@ std::string duration(double microseconds) {
 std::string length(double metres) {
   if (!(metres >= 0) || std::isinf(metres)) return "–";
   constexpr struct {
-    double size;
+    double size, from;
     const char* name;
-  } kUnits[] = {{1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "µm"}, {1e-9, "nm"}};
+  } kUnits[] = {{1, 0.995, "m"},
+                {1e-2, 0.995e-2, "cm"},
+                {1e-3, 0.995e-4, "mm"},
+                {1e-6, 0.995e-7, "µm"},
+                {1e-9, 0, "nm"}};
   for (const auto& unit : kUnits)
-    if (metres >= 0.9949 * unit.size || unit.size < 2e-9) {
+    if (metres >= unit.from) {
       const double in_units = metres / unit.size;
       return (in_units >= 100 ? grouped(rounded(in_units, 2)) : number(in_units)) + " " + unit.name;
     }
