@@ -71,7 +71,7 @@ AccuracyReport report_of(bool peers) {
   return report;
 }
 
-/// What a reader sees: no tags, no styles, no scripts.
+/// What a reader sees: no tags, no styles, no scripts; one space between words.
 std::string text_of(const std::string& page) {
   std::string text;
   for (std::size_t at = 0; at < page.size();) {
@@ -85,7 +85,7 @@ std::string text_of(const std::string& page) {
     at = page.find('>', at) + 1;
     text += ' ';
   }
-  return text;
+  return std::regex_replace(text, std::regex("[ \n]+"), " ");
 }
 
 TEST(Words, NumbersNeedNoExponentAndNoMoreDigitsThanTheyMean) {
