@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "sinew/skeleton/rotation.h"
+#include "study/accuracy_report.h"
 #include "study/accuracy_store.h"
 #include "study/bodies.h"
 

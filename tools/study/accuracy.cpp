@@ -285,8 +285,11 @@ bool for_comparison(const AccuracyPoint& p) {
 
 std::vector<AccuracyPoint> at_60_hz(const std::vector<AccuracyPoint>& points) {
   std::vector<AccuracyPoint> out;
+  const auto another_model = [](const AccuracyPoint& p) {
+    return p.varied == "sink depth" || p.varied == "stick speed" || p.varied == "iteration cap";
+  };
   for (const AccuracyPoint& p : points)
-    if (p.h < 1.001 * kFrame && !for_comparison(p)) out.push_back(p);
+    if (p.h < 1.001 * kFrame && !for_comparison(p) && !another_model(p)) out.push_back(p);
   return out;
 }
 

@@ -116,7 +116,8 @@ constexpr const char* kSummaryScenes[] = {"tracking", "running", "collapse"};
 constexpr const char* kDefaultScheme = "bossak";
 /// Schemes of the study, which no game can ask for.
 bool for_comparison(const AccuracyPoint& point);
-/// In steps of 1/60 s and finer, or of an integrator's own choice; none of those for comparison.
+/// In steps of 1/60 s and finer, or of an integrator's own choice; none of those for comparison, nor where
+/// contacts are others or solves are cut short.
 std::vector<AccuracyPoint> at_60_hz(const std::vector<AccuracyPoint>& points);
 /// The cheapest survivor of an engine within `bound` (metres, or degrees of &AccuracyPoint::degrees), or
 /// nullptr.

@@ -51,6 +51,7 @@ convert::Error play_once(const scene::Scene& scene, std::vector<double>& frames,
 
 constexpr double kSpacing = 2.2;   // m, between walkers
 constexpr double kSettling = 0.5;  // s
+constexpr int kPushFrames = 6;     // as long as in the scene "tracking"
 constexpr float kPush = 60;        // N·s
 
 std::unique_ptr<Population> walkers(const Asset& asset, int count, Status& status) {
@@ -81,13 +82,21 @@ convert::Error walk_once(const Asset& asset, int count, double percent_hit, doub
             steps = settling + static_cast<int>(std::lround(seconds / kFrame));
   std::mt19937 random(2);
   std::uniform_real_distribution<float> angle(0, 6.2831853f);
+  struct Pushed {
+    int character, until;
+    Vec3<float> impulse;  // N·s in every frame
+  };
+  std::vector<Pushed> pushed;
   double due = 0;
   for (int step = 0; step < steps; ++step) {
     for (due += percent_hit / 100 * count * kFrame; due >= 1; due -= 1) {
-      const float from = angle(random);
-      (void)people->push(static_cast<int>(random() % static_cast<unsigned>(count)), chest,
-                         {kPush * std::cos(from), kPush * std::sin(from), 0});
+      const float from = angle(random), each = kPush / kPushFrames;
+      pushed.push_back({static_cast<int>(random() % static_cast<unsigned>(count)),
+                        step + kPushFrames,
+                        {each * std::cos(from), each * std::sin(from), 0}});
     }
+    std::erase_if(pushed, [&](const Pushed& p) { return step >= p.until; });
+    for (const Pushed& p : pushed) (void)people->push(p.character, chest, p.impulse);
     const double us = timed([&] { status = people->step(float(kFrame)); });
     if (!status) return {status.reason};
     if (step < settling) continue;

@@ -22,8 +22,9 @@ struct CrowdCost {
 /// frame_costs().
 convert::Error measure_situation(const std::string& name, double seconds, int runs, CrowdCost& out);
 
-/// Mannequins that walk; so many of each hundred are pushed in every second, with 60 N·s at the chest, from
-/// any side. Checked in batches, and solved where muscles give way. The first half second is not counted.
+/// Mannequins that walk; so many of each hundred are pushed in every second, with 60 N·s at the chest over
+/// 0.1 s, from any side. Checked in batches, and solved where muscles give way. The first half second is not
+/// counted.
 convert::Error measure_walkers(int count, double percent_hit, double seconds, int runs, CrowdCost& out);
 
 /// 1000 walkers, without and with 5 % hit per second; the pile, the twenty who are hit at once, the corner.

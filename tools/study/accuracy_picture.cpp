@@ -202,7 +202,7 @@ std::string summary_svg(const std::vector<SummaryRow>& rows, double width) {
       const double wide = std::max(1.5, (width - left - kValue) * bar.count / most);
       if (several) canvas.text(bar.engine, left - 6, y + 13, 12, 1);
       canvas.fill(bar.engine == "Sinew" ? kOurs[0] : kSettings, left, y, wide, kBar - 3);
-      canvas.text(number(bar.count) + " per ms", left + wide + 6, y + 13, 12);
+      canvas.text(number(std::floor(bar.count)) + " per ms", left + wide + 6, y + 13, 12);
       y += kBar;
     }
     y += kGap + (bars[n].empty() ? kBar : 0);
