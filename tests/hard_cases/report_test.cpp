@@ -100,6 +100,8 @@ TEST(Words, NumbersNeedNoExponentAndNoMoreDigitsThanTheyMean) {
 TEST(Words, TimesAndLengthsHaveTheUnitThatAPersonWouldChoose) {
   EXPECT_EQ(duration(1000), "1000 µs");
   EXPECT_EQ(duration(0.284), "0.28 µs");
+  EXPECT_EQ(duration(1990), "1990 µs");
+  EXPECT_EQ(duration(2000), "2 ms");
   EXPECT_EQ(duration(12345), "12 ms");
   EXPECT_EQ(duration(-1), "–");
   for (const auto& [metres, text] :
@@ -117,7 +119,7 @@ TEST(Report, FirstScreenSaysWhatACentimetreAndAMillimetreCostAndHowManyFit) {
       "for 1 mm: 80 or 20 of them fit into a millisecond of one core");
   ASSERT_NE(first, std::string::npos) << text.substr(0, 1500);
   EXPECT_NE(
-      text.find("1000 walkers, 50 of them are pushed in every second: 2000 µs a frame, at worst 4100 µs"),
+      text.find("1000 walkers, 50 of them are pushed in every second: 2 ms a frame, at worst 4.1 ms"),
       std::string::npos);
   for (const char* word : {"Default scheme", "bdf1", "momentum"})  // a sentence each, before the diagrams
     EXPECT_LT(text.find(word), text.find("Scene by scene")) << word;

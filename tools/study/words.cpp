@@ -40,7 +40,7 @@ std::string number(double value) {
 
 std::string duration(double microseconds) {
   if (!(microseconds >= 0) || std::isinf(microseconds)) return "–";
-  return microseconds < 9995 ? number(microseconds) + " µs" : number(microseconds / 1000) + " ms";
+  return microseconds < 1995 ? number(microseconds) + " µs" : number(microseconds / 1000) + " ms";
 }
 
 std::string length(double metres) {
