@@ -118,9 +118,8 @@ TEST(Report, FirstScreenSaysWhatACentimetreAndAMillimetreCostAndHowManyFit) {
       "a walker who is pushed costs 13 µs a frame where 1 cm is close enough, 50 µs "
       "for 1 mm: 80 or 20 of them fit into a millisecond of one core");
   ASSERT_NE(first, std::string::npos) << text.substr(0, 1500);
-  EXPECT_NE(
-      text.find("1000 walkers, 50 of them are pushed in every second: 2 ms a frame, at worst 4.1 ms"),
-      std::string::npos);
+  EXPECT_NE(text.find("1000 walkers, 50 of them are pushed in every second: 2 ms a frame, at worst 4.1 ms"),
+            std::string::npos);
   for (const char* word : {"Default scheme", "bdf1", "momentum"})  // a sentence each, before the diagrams
     EXPECT_LT(text.find(word), text.find("Scene by scene")) << word;
   EXPECT_LT(first, text.find("Default scheme"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "scene/play.h"
@@ -65,7 +66,8 @@ std::unique_ptr<Population> walkers(const Asset& asset, int count, Status& statu
   const int columns = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
   for (int n = 0; people && n < count; ++n) {
     Transform<float> place;
-    place.translation = Vec3<double>(-kSpacing * (n / columns), kSpacing * (n % columns), 0).cast<float>();
+    const std::div_t at = std::div(n, columns);
+    place.translation = Vec3<double>(-kSpacing * at.quot, kSpacing * at.rem, 0).cast<float>();
     status = people->play(n, {&walk, phase(random), 1, place});
     if (!status) return nullptr;
   }
