@@ -102,7 +102,7 @@ at_length() {
   SINEW_RANDOM_TREES=2000 long random_trees
   SINEW_SOAK_SECONDS=120 long soak
   echo "accuracy study …" >&2
-  build/sinew study accuracy --quick -o build/study >build/accuracy.log || {
+  build/sinew study accuracy --quick -o build/study >build/accuracy.log || [ $? = 3 ] || {  # 3: busy, no presets
     tail -n 30 build/accuracy.log >&2
     echo "tests: the accuracy study failed (whole log: build/accuracy.log)" >&2
     exit 1

@@ -10,10 +10,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
-#include "fixtures/known_failure.h"
 #include "sinew/skeleton/rotation.h"
+#include "study/accuracy_report.h"
 #include "study/accuracy_store.h"
 #include "study/bodies.h"
 
@@ -62,10 +61,25 @@ TEST(AccuracyStudy, TheFrontHoldsWhatNothingBeats) {
 TEST(AccuracyStudy, PriceIsTheCheapestWithinTheErrorPerEngine) {
   const std::vector<AccuracyPoint> points{point(9, 1e-4), point(5, 1e-3), point(7, 1e-3),
                                           point(1, 1e-5, "Peer")};
-  EXPECT_EQ(price_of(points, "Sinew", 2e-3), 5);
-  EXPECT_EQ(price_of(points, "Sinew", 5e-4), 9);
-  EXPECT_LT(price_of(points, "Sinew", 1e-6), 0);
-  EXPECT_EQ(price_of(points, "Peer", 2e-3), 1);
+  EXPECT_EQ(cheapest(points, "Sinew", 2e-3), &points[1]);
+  EXPECT_EQ(cheapest(points, "Sinew", 5e-4), &points[0]);
+  EXPECT_EQ(cheapest(points, "Sinew", 1e-6), nullptr);
+  EXPECT_EQ(cheapest(points, "Peer", 2e-3), &points[3]);
+}
+
+TEST(AccuracyStudy, WhatAGameCanHaveIsTheDefaultSchemeInStepsOfAFrameAndFiner) {
+  std::vector<AccuracyPoint> points;
+  for (const auto& [option, h] :
+       {std::pair("bossak float", 1.0 / 30), std::pair("bossak float", 1.0 / 60),
+        std::pair("bossak double", 1.0 / 120), std::pair("bdf1 float", 1.0 / 60),
+        std::pair("momentum double", 1.0 / 60), std::pair("DASSL on residuals", 0.0)})
+    points.push_back(point(1, 1, "Sinew", h)), points.back().option = option;
+  points.push_back(point(1, 1, "Peer", 1.0 / 60));
+  points.back().option = "bdf1 float";
+  std::vector<std::string> left;
+  for (const AccuracyPoint& p : at_60_hz(points)) left.push_back(p.label());
+  EXPECT_EQ(left, (std::vector<std::string>{"Sinew bossak float", "Sinew bossak double",
+                                            "Sinew DASSL on residuals", "Peer bdf1 float"}));
 }
 
 TEST(AccuracyStudy, TellsWhichPeersAreAheadOfOurs) {
@@ -103,91 +117,6 @@ TEST(AccuracyStudy, SchemesHaveTheirOrderAndOursIsExactForATumblingBody) {
       EXPECT_NEAR(slope.found, order, 0.2) << scene << " " << slope.option;
     }
   }
-}
-
-TEST(AccuracyStudy, ReportIsOnePageWithItsDataAndNothingToLoad) {
-  AccuracyResult result;
-  result.scene = accuracy_scenes()[0];
-  result.points = {point(1, 1e-3), point(10, 1e-5)};
-  for (AccuracyPoint& p : result.points) p.varied = "step", p.option = "</script>";
-  const std::string page = accuracy_html({result}, {});
-  for (const char* hole : {"@DATA@", "@UPLOT_JS@", "@UPLOT_CSS@", "<script src", "<link"})
-    EXPECT_EQ(page.find(hole), std::string::npos) << hole;
-  EXPECT_NE(page.find(result.scene.title), std::string::npos);
-  std::size_t ends = 0;
-  for (std::size_t at = 0; (at = page.find("</script>", at)) != std::string::npos; ++at) ++ends;
-  EXPECT_EQ(ends, 3u) << "data ended a script early";
-  const std::string csv = accuracy_csv({result});
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
-  for (const char* ending : {"png", "svg"}) {
-    const std::string file = testing::TempDir() + "accuracy." + ending;
-    EXPECT_FALSE(draw_accuracy(result, file));
-    EXPECT_GT(std::filesystem::file_size(file), 5000u);
-  }
-  EXPECT_TRUE(run_accuracy({true, "no such scene"}, {}).empty());
-}
-
-/// A scene's result with something in every part of the page.
-AccuracyResult full_result() {
-  AccuracyResult result;
-  result.scene = accuracy_scenes()[0];
-  result.scene.drive = [](Engine&, double, double) {};  // has angles
-  for (const double us : {1.0, 10.0, 100.0}) {
-    result.points.push_back(point(us, 1e-2 / us));
-    result.points.push_back(point(3 * us, 2e-2 / us, "Peer"));
-  }
-  for (AccuracyPoint& p : result.points)
-    p.varied = "step", p.option = p.engine == "Peer" ? "RK4" : "bossak float";
-  result.slopes = {{"Sinew", "bdf2 double", 1.98, 2}};
-  for (const double truth : {1e-6, 1e-5, 1e-4, 1e-3}) result.estimates.push_back({0, 1.3 * truth, truth});
-  result.uncertainty = 1e-6;
-  return result;
-}
-
-/// What headless Chromium makes of a page: its document after all scripts, and what the browser said of
-/// itself.
-struct Browsed {
-  std::string document, log;
-};
-
-Browsed browse(const std::string& file, const std::string& size) {
-  const std::string profile = file + ".profile", log = file + ".log";
-  const std::string command =
-      "timeout 100 chromium --headless --no-sandbox --disable-gpu"
-      " --disable-dev-shm-usage --no-first-run --user-data-dir=" +
-      profile + " --window-size=" + size + " --virtual-time-budget=3000 --dump-dom file://" + file + " 2>" +
-      log;
-  Browsed result;
-  FILE* browser = popen(command.c_str(), "r");
-  char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, browser)) > 0;) result.document.append(buffer, n);
-  pclose(browser);
-  std::ifstream said(log);
-  result.log.assign(std::istreambuf_iterator<char>(said), {});
-  std::filesystem::remove_all(profile);
-  std::filesystem::remove(log);
-  return result;
-}
-
-TEST(AccuracyStudy, ReportDrawsAllItsChartsInABrowserWithoutErrors) {
-  const std::string file = testing::TempDir() + "accuracy_" + std::to_string(getpid()) + ".html";
-  std::ofstream(file) << "<html><body><script>document.body.append('it runs')</script></body></html>";
-  if (browse(file, "1200,900").document.find("it runs</body>") == std::string::npos)
-    GTEST_SKIP() << "no Chromium here that opens a page of one line";
-  const std::string svg =
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><path d='M0 0L9 9'/></svg>";
-  std::ofstream(file) << accuracy_html({full_result(), full_result()}, {},
-                                       {{"A map", "How to read it.", svg}});
-  for (const char* size : {"1200,900", "380,800"}) {  // a desk and a phone
-    const Browsed page = browse(file, size);
-    const std::string head = page.document.substr(0, 300) + "\n" + page.log;
-    EXPECT_NE(head.find("data-errors=\"0\""), std::string::npos) << head;
-    EXPECT_NE(head.find("data-charts=\"4\""), std::string::npos) << head;  // two per scene
-    EXPECT_NE(head.find("data-drawn=\"4\""), std::string::npos) << head;
-    EXPECT_NE(page.document.find("bdf2 double 1.98 (theory 2)"), std::string::npos);
-    EXPECT_NE(page.document.find("<img alt=\"A map\""), std::string::npos);
-  }
-  std::filesystem::remove(file);
 }
 
 TEST(AccuracyStudy, GoesOnWhereItWasStoppedAndForgetsWhatAnotherBuildMade) {

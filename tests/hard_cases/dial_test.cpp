@@ -1,13 +1,16 @@
 // The accuracy dial keeps its word on scenes that it was not made from, and refuses nonsense.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "fixtures/known_failure.h"
+#include "fixtures/paths.h"
 #include "scene/presets.h"
 #include "sinew/optimizer/presets.h"
 #include "study/accuracy_dial.h"
@@ -121,6 +124,22 @@ TEST(Dial, KeepsThePartsOfAStepAsShortAtOtherFrameRates) {
   }
 }
 
+/// Without the white space that clang-format moves.
+std::string dense(std::string text) {
+  std::erase_if(text, [](unsigned char c) { return std::isspace(c); });
+  return text;
+}
+
+TEST(Dial, HeaderForHostsIsWrittenFromTheDataFile) {
+  const auto read = [](const std::string& file) {
+    std::ifstream in(source_dir() + "/" + file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string header = read("runtime/sinew/optimizer/presets.h");
+  const std::string made = dial_header(nlohmann::json::parse(read("assets/accuracy_presets.json")));
+  EXPECT_EQ(dense(header), dense(made)) << made;
+}
+
 DialPoint dial_point(double us, double error) {
   DialPoint p;
   p.option = sinew_options()[0];
@@ -137,6 +156,21 @@ TEST(Dial, PresetsAreTheCheapestOnTheFrontWithinTheirError) {
   EXPECT_EQ(presets["crowd"]["us"], 1);
   EXPECT_EQ(presets["game"]["us"], 2);
   EXPECT_EQ(presets["cinematic"]["us"], 4);  // none is within 1 cm: the most accurate
+  EXPECT_FALSE(presets["crowd"].contains("same_as"));
+}
+
+TEST(Dial, APresetThatIsNoSettingOfItsOwnIsAnotherNameOfTheStricterOne) {
+  const nlohmann::json dial = dial_json(dial_front({dial_point(1, 0.05), dial_point(4, 1e-4)}), "", "");
+  const nlohmann::json& presets = dial["presets"];
+  EXPECT_EQ(presets["crowd"]["same_as"], "game");
+  EXPECT_EQ(presets["crowd"]["us"], presets["game"]["us"]) << "readers need not know";
+  EXPECT_FALSE(presets["game"].contains("same_as"));
+  const std::string header = dial_header(dial);
+  const std::size_t game = header.find("AccuracyPreset kGamePreset{"),
+                    crowd = header.find("AccuracyPreset kCrowdPreset = kGamePreset;");
+  EXPECT_LT(game, crowd);
+  EXPECT_NE(crowd, std::string::npos) << header;
+  EXPECT_NE(header.find("another name of kGamePreset"), std::string::npos);
 }
 
 }  // namespace

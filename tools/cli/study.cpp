@@ -15,6 +15,7 @@
 #include "study/scenes/situation.h"
 #include "study/study.h"
 #include "study/talk/talk.h"
+#include "study/words.h"
 
 namespace sinew::cli {
 namespace {
@@ -30,17 +31,18 @@ void print_accuracy(const study::AccuracyResult& result) {
   std::printf("%s\n", result.scene.title.c_str());
   for (const study::Slope& s : result.slopes) {
     std::printf("  order of %s %s: ", s.engine.c_str(), s.option.c_str());
-    if (s.found == 0) std::printf("none, all errors are below %.0e m", study::kExact);
+    if (s.found == 0) std::printf("none, all errors are below %s", study::length(study::kExact).c_str());
     if (s.found != 0) std::printf("%.2f", s.found);
     if (s.expected > 0) std::printf(" (theory %.0f)", s.expected);
     std::puts("");
   }
   for (const study::AccuracyPoint& p : result.points)
     if (p.pareto) {
-      std::printf("  front: %8.2f us, %9.2e m  %s", p.us, p.error, p.label().c_str());
+      std::printf("  front: %s, %s off: %s", study::duration(p.us).c_str(), study::length(p.error).c_str(),
+                  p.label().c_str());
       if (p.h > 0) std::printf(" 1/%.0f s", 1 / p.h);
-      std::printf(", tolerance %.0e, substeps %d, cap %d\n", p.accuracy.tolerance, p.accuracy.substeps,
-                  p.accuracy.max_iterations);
+      std::printf(", tolerance %s, substeps %d, cap %d\n", study::length(p.accuracy.tolerance).c_str(),
+                  p.accuracy.substeps, p.accuracy.max_iterations);
     }
 }
 
@@ -101,18 +103,6 @@ convert::Error StabilityCommand::run() const {
   return {};
 }
 
-/// The dial's data, as the scene loader and the runtime take it.
-convert::Error AccuracyCommand::write_presets(nlohmann::json& dial) const {
-  const auto front = study::dial_front(study::measure_dial(quick, progress_line("presets")));
-  char date[32];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  dial = study::dial_json(front, study::machine(), date);
-  if (convert::Error error = write_atomically(directory + "/accuracy_presets.json", dial.dump(1) + "\n"))
-    return error;
-  return write_atomically(directory + "/presets.h", study::dial_header(dial));
-}
-
 convert::Error AccuracyCommand::run_ensembles() const {
   const std::vector<study::Ensemble> all = study::run_ensembles(quick, progress_line("ensembles"));
   const nlohmann::json json = study::ensembles_json(all);
@@ -131,34 +121,73 @@ convert::Error AccuracyCommand::run_ensembles() const {
   return {};
 }
 
-convert::Error AccuracyCommand::run() const {
-  if (convert::Error error = make_directory(directory)) return error;
-  if (ensembles) return run_ensembles();
-  const auto results =
-      study::run_accuracy({quick, only, directory + "/accuracy_points.jsonl"}, progress_line("accuracy"));
-  if (results.empty()) return {"there is no accuracy scene '" + only + "'"};
+/// What is measured when no scene is asked for: presets, crowds, falls, maps.
+convert::Error AccuracyCommand::run_all(study::AccuracyReport& report, study::MachineCheck& machine) const {
+  const auto front = study::dial_front(study::measure_dial(quick, progress_line("presets")));
+  machine.run();
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  report.dial = study::dial_json(front, study::machine(), date);
+  report.crowds = study::measure_crowds(quick, progress_line("crowds"));
+  machine.run();
+  constexpr int kFalls = 32;  // for a quick look: their means are certain to a twentieth or so
+  report.falls = study::run_ensembles(quick, progress_line("falls"), quick ? kFalls : 0);
+  if (convert::Error error = draw_maps(directory, quick)) return error;
+  report.pictures = drawn_maps(directory);
+  return {};
+}
+
+convert::Error AccuracyCommand::write(const study::AccuracyReport& report) const {
   const std::string base = directory + "/accuracy";
-  nlohmann::json dial;
-  std::vector<study::ReportPicture> maps;
-  if (only.empty()) {
-    if (convert::Error error = write_presets(dial)) return error;
-    if (convert::Error error = draw_maps(directory, quick)) return error;
-    maps = drawn_maps(directory);
-  }
-  if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(results))) return error;
-  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(results, dial, maps)))
+  if (convert::Error error = write_atomically(base + ".csv", study::accuracy_csv(report.results)))
     return error;
-  for (const study::AccuracyResult& result : results)
+  if (convert::Error error = write_atomically(base + ".html", study::accuracy_html(report))) return error;
+  for (const study::AccuracyResult& result : report.results)
     for (const char* ending : {".svg", ".png"})
       if (convert::Error error = study::draw_accuracy(result, base + "_" + result.scene.name + ending))
         return error;
   if (json_output) {
-    std::puts(study::accuracy_json(results, dial).dump().c_str());
+    std::puts(study::accuracy_json(report).dump().c_str());
     return {};
   }
-  for (const study::AccuracyResult& result : results) print_accuracy(result);
+  for (const study::AccuracyResult& result : report.results) print_accuracy(result);
+  std::puts("");
+  for (const std::string& sentence :
+       study::summary_sentences(study::summary_rows(report.results), report.crowds))
+    std::puts(sentence.c_str());
   std::printf("%s.html\n", base.c_str());
   return {};
+}
+
+convert::Error AccuracyCommand::run() {
+  if (convert::Error error = make_directory(directory)) return error;
+  if (ensembles) return run_ensembles();
+  const std::string store = directory + "/accuracy_points.jsonl";
+  study::MachineCheck machine;
+  machine.run();
+  study::AccuracyReport report;
+  report.results = study::run_accuracy({quick, only, store}, progress_line("accuracy"));
+  if (report.results.empty()) return {"there is no accuracy scene '" + only + "'"};
+  machine.run();
+  if (only.empty())
+    if (convert::Error error = run_all(report, machine)) return error;
+  report.busy = machine.reason();
+  if (convert::Error error = write(report)) return error;
+  if (machine.busy()) {
+    std::error_code ignored;
+    std::filesystem::remove(store, ignored);  // its times are no better
+  }
+  if (!only.empty()) {
+    if (machine.busy())
+      std::fprintf(stderr, "sinew: times are not to be relied on: %s\n", report.busy.c_str());
+    return {};
+  }
+  const convert::Error error = study::store_presets(
+      report.dial, directory, machine,
+      [](const std::string& path, const std::string& text) { return write_atomically(path, text); });
+  if (error && machine.busy()) exit_code = kBusy;
+  return error;
 }
 
 convert::Error ScenesCommand::run() const {

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "convert/convert.h"
+#include "study/accuracy_clock.h"
+#include "study/accuracy_report.h"
 
 namespace sinew::cli {
 
@@ -17,12 +19,16 @@ struct StabilityCommand {
 struct AccuracyCommand {
   std::string directory = "out/study", only;
   bool quick = false, json_output = false, ensembles = false;
+  int exit_code = 1;  ///< of an error; kBusy where all is written but presets
 
-  convert::Error run() const;
+  static constexpr int kBusy = 3;
+
+  convert::Error run();
 
  private:
   convert::Error run_ensembles() const;
-  convert::Error write_presets(nlohmann::json& dial) const;
+  convert::Error run_all(study::AccuracyReport& report, study::MachineCheck& machine) const;
+  convert::Error write(const study::AccuracyReport& report) const;
 };
 
 struct ScenesCommand {

@@ -106,7 +106,7 @@ int main(int argc, char** argv) try {
     error = effects.run();
   if (!error) return 0;
   std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
-  return 1;
+  return cost->parsed() ? accuracy.exit_code : 1;
 } catch (const std::exception& unexpected) {
   std::fprintf(stderr, "sinew: %s\n", unexpected.what());
   return 1;

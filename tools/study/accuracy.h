@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "convert/convert.h"
 #include "study/engine.h"
 
 namespace sinew::study {
@@ -15,6 +14,7 @@ namespace sinew::study {
 /// differ.
 struct AccuracyScene {
   std::string name, title, reading;  ///< `reading`: what the diagram says to whoever looks at it
+  std::string beside_peers;          ///< the same, of the peers: for builds that have them
   std::string to_catch_up;           ///< what it would take us where a peer is ahead
   double seconds = 1;                ///< of the trajectory that is compared
   EngineScene scene;
@@ -44,11 +44,13 @@ struct AccuracyPoint {
   double degrees = 0;   ///< largest rms of all joint angles from that run
   double momentum = 0;  ///< relative change of the angular momentum, where the scene keeps it
   double energy = 0;    ///< change over the kinetic energy of the start or of a metre's fall; undriven scenes
-  double us = 0;        ///< median, per simulated 1/60 s
-  double us_low = 0, us_high = 0;  ///< quartiles
-  double instructions = -1;        ///< per simulated 1/60 s, by callgrind; negative: not counted
-  double passes = 0;               ///< mean per solved step
-  bool pareto = false;             ///< no point is both faster and more accurate
+  /// Processor time per simulated 1/60 s: mean of the scene's frames, median of repeated runs.
+  double us = 0;
+  double us_low = 0, us_high = 0;     ///< quartiles of the runs
+  double us_p99 = -1, us_worst = -1;  ///< over the scene's frames, see frame_costs(); negative: not measured
+  double instructions = -1;           ///< per simulated 1/60 s, by callgrind; negative: not counted
+  double passes = 0;                  ///< mean per solved step
+  bool pareto = false;                ///< no point is both faster and more accurate
   std::string label() const { return engine + " " + option; }
 };
 
@@ -93,9 +95,10 @@ std::vector<AccuracyResult> run_accuracy(const AccuracyOptions& options,
 std::vector<EstimatedFrame> estimated_frames(const AccuracyScene& scene, const EngineOption& with, double h,
                                              const Accuracy& accuracy = {});
 
-/// Instructions per simulated 1/60 s at the default accuracy, counted by callgrind in a program of its own:
-/// the figure that repeats. Negative where it cannot be counted.
-double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h);
+/// Instructions per simulated 1/60 s at such a tolerance and number of substeps, counted by callgrind in a
+/// program of its own: the figure that repeats. Negative where it cannot be counted.
+double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h,
+                       const Accuracy& accuracy = {});
 /// Whether valgrind and the program are there.
 bool can_count_instructions();
 
@@ -105,31 +108,27 @@ double displacement(const Skeleton& skeleton, const std::vector<Transform<double
 /// Least squares slope of log error over log h.
 double order_of(const std::vector<AccuracyPoint>& points);
 void mark_pareto(std::vector<AccuracyPoint>& points);
-/// Least time (µs per 1/60 s) among points of an engine within `bound` (metres, or degrees of
-/// &AccuracyPoint::degrees), or a negative number.
-double price_of(const std::vector<AccuracyPoint>& points, const std::string& engine, double bound,
-                double AccuracyPoint::*error = &AccuracyPoint::error);
+/// What the first screen of the report is about: errors (m) and scenes.
+constexpr double kSummaryErrors[] = {1e-2, 1e-3};
+constexpr const char* kSummaryScenes[] = {"tracking", "running", "collapse"};
+
+/// The runtime's only scheme, as options are called that step by it.
+constexpr const char* kDefaultScheme = "bossak";
+/// Schemes of the study, which no game can ask for.
+bool for_comparison(const AccuracyPoint& point);
+/// In steps of 1/60 s and finer, or of an integrator's own choice; none of those for comparison, nor where
+/// contacts are others or solves are cut short.
+std::vector<AccuracyPoint> at_60_hz(const std::vector<AccuracyPoint>& points);
+/// The cheapest survivor of an engine within `bound` (metres, or degrees of &AccuracyPoint::degrees), or
+/// nullptr.
+const AccuracyPoint* cheapest(const std::vector<AccuracyPoint>& points, const std::string& engine,
+                              double bound, double AccuracyPoint::*error = &AccuracyPoint::error);
 
 /// Peers' points that are no dearer and no further off than our scheme in float at 1/60 s: each peer's
 /// cheapest. The first is our own; empty where it was not measured.
 std::vector<AccuracyPoint> ahead_of_ours(const std::vector<AccuracyPoint>& points);
 
-/// Processor and compiler, for whoever compares.
-std::string machine();
 nlohmann::json point_json(const AccuracyPoint& point);
 AccuracyPoint point_from(const nlohmann::json& json);
-std::string accuracy_csv(const std::vector<AccuracyResult>& results);
-/// `dial`: see dial_json; may be null.
-nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const nlohmann::json& dial);
-
-/// A drawn picture that the page shows: heading, help to read it, SVG.
-struct ReportPicture {
-  std::string title, reading, svg;
-};
-/// One self-contained page.
-std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial,
-                          const std::vector<ReportPicture>& pictures = {});
-/// One scene's work-precision diagram in a light theme, .png or .svg.
-convert::Error draw_accuracy(const AccuracyResult& result, const std::string& file);
 
 }  // namespace sinew::study

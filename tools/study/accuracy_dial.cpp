@@ -1,18 +1,20 @@
 #include "study/accuracy_dial.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
+#include <fmt/format.h>
 
-#include "scene/presets.h"
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
 #include "study/accuracy_trip.h"
+#include "study/words.h"
 
 namespace sinew::study {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;  // s
 
-/// A preset is the cheapest setting within its error (m).
+/// A preset is the cheapest setting within its error (m); the strictest stand last.
 struct Rule {
   const char* name;
   double error;
@@ -45,11 +47,12 @@ std::vector<DialPoint> candidates(bool quick) {
   return out;
 }
 
-double median_us(const AccuracyScene& scene, const DialPoint& p, int runs) {
-  std::vector<double> times;
-  for (int n = 0; n < runs; ++n) times.push_back(travel(scene, p.option, kFrame, p.accuracy, false).seconds);
-  std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
-  return 1e6 * times[runs / 2] * kFrame / scene.seconds;
+/// µs of frames.
+FrameCosts timed(const AccuracyScene& scene, const DialPoint& p, int runs) {
+  std::vector<std::vector<double>> times;
+  for (int n = 0; n < runs; ++n) times.push_back(travel(scene, p.option, kFrame, p.accuracy, false).frames);
+  const FrameCosts costs = frame_costs(times);
+  return {1e6 * costs.mean, 1e6 * costs.p99, 1e6 * costs.worst};
 }
 
 nlohmann::json as_json(const DialPoint& p) {
@@ -59,7 +62,29 @@ nlohmann::json as_json(const DialPoint& p) {
           {"error_m", p.error},
           {"error_deg", p.degrees},
           {"us", p.us},
-          {"us_limp", p.us_limp}};
+          {"us_p99", p.us_p99},
+          {"us_worst", p.us_worst},
+          {"us_limp", p.us_limp},
+          {"us_limp_p99", p.us_limp_p99},
+          {"us_limp_worst", p.us_limp_worst}};
+}
+
+/// The cheapest while limp is the cheapest when it matters; where none is that accurate, the most accurate.
+const DialPoint* chosen(const std::vector<DialPoint>& front, double error) {
+  const DialPoint* best = nullptr;
+  for (const DialPoint& p : front) {
+    const bool within = p.error <= error, was = best && best->error <= error;
+    if (!best || (within && (!was || p.us_limp < best->us_limp)) ||
+        (!within && !was && p.error < best->error))
+      best = &p;
+  }
+  return best;
+}
+
+/// "crowd" → "kCrowdPreset"
+std::string constant(std::string name) {
+  name[0] = static_cast<char>(std::toupper(name[0]));
+  return "k" + name + "Preset";
 }
 
 }  // namespace
@@ -82,8 +107,14 @@ std::vector<DialPoint> measure_dial(bool quick, const std::function<void(int, in
       const double error = trip.survived ? apart(scene, trip.track, truth) : INFINITY;
       p.error = std::isfinite(error) ? std::max(p.error, error) : INFINITY;
       if (scene.drive) p.degrees = std::max(p.degrees, degrees_apart(scene, trip.track, truth));
-      if (scene.name == "tracking") p.us = median_us(scene, p, runs);
-      if (scene.name == "collapse") p.us_limp = median_us(scene, p, std::max(3, runs / 3));
+      if (scene.name == "tracking") {
+        const FrameCosts costs = timed(scene, p, runs);
+        p.us = costs.mean, p.us_p99 = costs.p99, p.us_worst = costs.worst;
+      }
+      if (scene.name == "collapse") {
+        const FrameCosts costs = timed(scene, p, std::max(3, runs / 3));
+        p.us_limp = costs.mean, p.us_limp_p99 = costs.p99, p.us_limp_worst = costs.worst;
+      }
       if (progress) progress(++done, total);
     }
   }
@@ -109,20 +140,14 @@ nlohmann::json dial_json(const std::vector<DialPoint>& front, const std::string&
                          const std::string& date) {
   nlohmann::json points = nlohmann::json::array(), presets = nlohmann::json::object();
   for (const DialPoint& p : front) points.push_back(as_json(p));
-  for (const Rule& rule : kRules) {
-    // The cheapest while limp is the cheapest when it matters; where none is that accurate, the most
-    // accurate.
-    const DialPoint* best = nullptr;
-    for (const DialPoint& p : front) {
-      const bool within = p.error <= rule.error, was = best && best->error <= rule.error;
-      if (!best || (within && (!was || p.us_limp < best->us_limp)) ||
-          (!within && !was && p.error < best->error))
-        best = &p;
-    }
-    if (!best) continue;
+  for (std::size_t n = 0; n < std::size(kRules) && !front.empty(); ++n) {
+    const Rule& rule = kRules[n];
+    const DialPoint* best = chosen(front, rule.error);
     presets[rule.name] = as_json(*best);
     presets[rule.name]["wanted_m"] = rule.error;
     presets[rule.name]["for"] = rule.meant_for;
+    if (n + 1 < std::size(kRules) && chosen(front, kRules[n + 1].error) == best)
+      presets[rule.name]["same_as"] = kRules[n + 1].name;
   }
   return {{"made_by", "sinew study accuracy"}, {"date", date},    {"machine", machine},
           {"scenes", dial_scenes()},           {"front", points}, {"presets", presets}};
@@ -141,20 +166,39 @@ std::string dial_header(const nlohmann::json& dial) {
       "  Accuracy accuracy;      ///< substeps are those of a step of 1/60 s\n"
       "  double error;           ///< m, the largest measured: rms of all mass from a converged run\n"
       "};\n\n";
-  for (const auto& [name, p] : dial["presets"].items()) {
-    char line[400];
-    std::snprintf(line, sizeof line,
-                  "/// For %s. Within %.2g m of a converged run; %.0f µs per 1/60 s\n"
-                  "/// while pushed, %.0f µs while collapsing.\n"
-                  "inline constexpr AccuracyPreset k%c%sPreset{\n"
-                  "    \"%s\", %s, {.tolerance = %g, .substeps = %d}, %.2g};\n",
-                  p["for"].get<std::string>().c_str(), p["error_m"].get<double>(), p["us"].get<double>(),
-                  p["us_limp"].get<double>(), std::toupper(name[0]), name.c_str() + 1, name.c_str(),
-                  p["precision"] == "double" ? "true" : "false", p["tolerance"].get<double>(),
-                  p["substeps"].get<int>(), p["error_m"].get<double>());
-    text += line;
+  for (std::size_t n = std::size(kRules); n-- > 0;) {  // who is the same as another stands after it
+    const std::string name = kRules[n].name;
+    if (!dial["presets"].contains(name)) continue;
+    const nlohmann::json& p = dial["presets"][name];
+    const std::string meant_for = p["for"];
+    if (p.contains("same_as")) {
+      const std::string other = constant(p["same_as"]);
+      text += fmt::format(
+          "/// For {}. No cheaper setting was measured: another name of {}.\n"
+          "inline constexpr AccuracyPreset {} = {};\n",
+          meant_for, other, constant(name), other);
+      continue;
+    }
+    text += fmt::format(
+        "/// For {}. Within {} of a converged run; {:.0f} µs per 1/60 s\n"
+        "/// while pushed, {:.0f} µs while collapsing.\n"
+        "inline constexpr AccuracyPreset {}{{\n"
+        "    \"{}\", {}, {{.tolerance = {:g}, .substeps = {}}}, {:.2g}}};\n",
+        meant_for, length(p["error_m"]), p["us"].get<double>(), p["us_limp"].get<double>(), constant(name),
+        name, p["precision"] == "double", p["tolerance"].get<double>(), p["substeps"].get<int>(),
+        p["error_m"].get<double>());
   }
   return text + "\n}  // namespace sinew\n";
+}
+
+convert::Error store_presets(
+    const nlohmann::json& dial, const std::string& directory, const MachineCheck& machine,
+    const std::function<convert::Error(const std::string&, const std::string&)>& write) {
+  if (machine.busy())
+    return {"no presets are written, since the machine was busy: " + machine.reason() +
+            "; run the study again when nothing else runs"};
+  if (convert::Error error = write(directory + "/accuracy_presets.json", dial.dump(1) + "\n")) return error;
+  return write(directory + "/presets.h", dial_header(dial));
 }
 
 }  // namespace sinew::study

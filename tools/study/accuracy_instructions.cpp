@@ -44,9 +44,10 @@ bool can_count_instructions() {
 #endif
 }
 
-double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h) {
-  char step[32];
-  std::snprintf(step, sizeof step, "%.17g", h);
+double instructions_of(const AccuracyScene& scene, const EngineOption& with, double h,
+                       const Accuracy& accuracy) {
+  char step[96];
+  std::snprintf(step, sizeof step, "%.17g %.17g %d", h, accuracy.tolerance, accuracy.substeps);
   static const ReadyMannequin ready;
   const std::string command =
       "SINEW_MANNEQUIN='" + ready.path() +

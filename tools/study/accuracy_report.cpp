@@ -1,20 +1,41 @@
-// The accuracy study as CSV, JSON and one page to read.
+// The accuracy study as CSV and JSON.
+#include "study/accuracy_report.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-
-#include "study/accuracy.h"
-#include "study/web.h"
+#include <thread>
 
 namespace sinew::study {
 namespace {
 
-constexpr double kAngles[] = {5, 2, 1, 0.5, 0.2};                   // degrees
-constexpr double kPrices[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5};  // m
+nlohmann::json summary_json(const std::vector<SummaryRow>& rows) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const SummaryRow& row : rows) {
+    nlohmann::json peers = nlohmann::json::array();
+    for (const AccuracyPoint& p : row.peers) peers.push_back(point_json(p));
+    out.push_back({{"scene", row.scene},
+                   {"title", row.title},
+                   {"error_m", row.error},
+                   {"sinew", row.ours.survived ? point_json(row.ours) : nlohmann::json()},
+                   {"per_millisecond", row.per_millisecond()},
+                   {"peers", peers}});
+  }
+  return out;
+}
 
-void replace(std::string& text, const std::string& what, const std::string& with) {
-  text.replace(text.find(what), what.size(), with);
+nlohmann::json crowds_json(const std::vector<CrowdCost>& crowds) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const CrowdCost& c : crowds)
+    out.push_back({{"name", c.name},
+                   {"title", c.title},
+                   {"characters", c.characters},
+                   {"solved", c.solved},
+                   {"us", c.us.mean},
+                   {"us_p99", c.us.p99},
+                   {"us_worst", c.us.worst}});
+  return out;
 }
 
 }  // namespace
@@ -46,7 +67,8 @@ std::string machine() {
       name = line.substr(line.find(':') + 2);
       break;
     }
-  return name + ", one core; GCC " __VERSION__ "; medians of repeated runs, quartiles on hover.";
+  return name + ", " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) +
+         " virtual cores, of which one is used; GCC " __VERSION__;
 }
 
 std::string accuracy_csv(const std::vector<AccuracyResult>& results) {
@@ -55,17 +77,18 @@ std::string accuracy_csv(const std::vector<AccuracyResult>& results) {
       "error_m,error_deg,"
       "energy,momentum,us_per_"
       "frame,"
-      "us_q1,us_q3,instructions,passes,pareto\n";
+      "us_q1,us_q3,us_p99,us_worst,instructions,passes,pareto\n";
   char line[400];
   for (const AccuracyResult& result : results)
     for (const AccuracyPoint& p : result.points) {
-      std::snprintf(
-          line, sizeof line,
-          "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%.3g,%.3g,%d,%.6g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g,%.9g,%.3f,%d\n",
-          result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
-          p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations, p.accuracy.sink_depth,
-          p.accuracy.stick_speed, p.survived, p.error, p.degrees, p.energy, p.momentum, p.us, p.us_low,
-          p.us_high, p.instructions, p.passes, p.pareto);
+      std::snprintf(line, sizeof line,
+                    "%s,%s,%s,%s,%.9g,%.3g,%d,%d,%.3g,%.3g,%d,%.6g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%."
+                    "9g,%.3f,%d\n",
+                    result.scene.name.c_str(), p.engine.c_str(), p.option.c_str(), p.varied.c_str(), p.h,
+                    p.accuracy.tolerance, p.accuracy.substeps, p.accuracy.max_iterations,
+                    p.accuracy.sink_depth, p.accuracy.stick_speed, p.survived, p.error, p.degrees, p.energy,
+                    p.momentum, p.us, p.us_low, p.us_high, p.us_p99, p.us_worst, p.instructions, p.passes,
+                    p.pareto);
       csv += line;
     }
   return csv;
@@ -91,6 +114,8 @@ nlohmann::json point_json(const AccuracyPoint& p) {
           {"us", p.us},
           {"us_low", p.us_low},
           {"us_high", p.us_high},
+          {"us_p99", p.us_p99},
+          {"us_worst", p.us_worst},
           {"instructions", p.instructions},
           {"passes", p.passes},
           {"pareto", p.pareto}};
@@ -118,14 +143,16 @@ AccuracyPoint point_from(const nlohmann::json& json) {
   p.us = json.at("us");
   p.us_low = json.at("us_low");
   p.us_high = json.at("us_high");
+  p.us_p99 = json.at("us_p99");
+  p.us_worst = json.at("us_worst");
   p.instructions = json.at("instructions");
   p.passes = json.at("passes");
   return p;
 }
 
-nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const nlohmann::json& dial) {
+nlohmann::json accuracy_json(const AccuracyReport& report) {
   nlohmann::json scenes = nlohmann::json::array();
-  for (const AccuracyResult& result : results) {
+  for (const AccuracyResult& result : report.results) {
     nlohmann::json points = nlohmann::json::array(), slopes = points, prices = points, angles = points,
                    estimates = points, ahead = points;
     for (const AccuracyPoint& p : ahead_of_ours(result.points)) ahead.push_back(point_json(p));
@@ -133,10 +160,13 @@ nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const n
     for (const Slope& s : result.slopes)
       slopes.push_back(
           {{"engine", s.engine}, {"option", s.option}, {"found", s.found}, {"expected", s.expected}});
+    const std::vector<AccuracyPoint> offered = at_60_hz(result.points);
     const auto price = [&](double bound, double AccuracyPoint::*error) {
       nlohmann::json row = {{"error", bound}};
-      for (const AccuracyPoint& p : result.points)
-        row[p.engine] = price_of(result.points, p.engine, bound, error);
+      for (const AccuracyPoint& p : offered) {
+        const AccuracyPoint* best = cheapest(offered, p.engine, bound, error);
+        row[p.engine] = best ? best->us : -1;
+      }
       return row;
     };
     for (const double error : kPrices) prices.push_back(price(error, &AccuracyPoint::error));
@@ -157,21 +187,13 @@ nlohmann::json accuracy_json(const std::vector<AccuracyResult>& results, const n
                       {"angles", angles},
                       {"estimates", estimates}});
   }
-  return {{"machine", machine()}, {"scenes", scenes}, {"dial", dial}};
-}
-
-std::string accuracy_html(const std::vector<AccuracyResult>& results, const nlohmann::json& dial,
-                          const std::vector<ReportPicture>& pictures) {
-  nlohmann::json study = accuracy_json(results, dial);
-  study["pictures"] = nlohmann::json::array();
-  for (const ReportPicture& p : pictures)
-    study["pictures"].push_back({{"title", p.title}, {"reading", p.reading}, {"svg", p.svg}});
-  std::string page = web::kReport, data = study.dump();
-  for (std::size_t at; (at = data.find("</")) != std::string::npos;) data.replace(at, 2, "<\\/");
-  replace(page, "@UPLOT_CSS@", web::kChartStyle);
-  replace(page, "@UPLOT_JS@", web::kChartScript);
-  replace(page, "@DATA@", data);
-  return page;
+  return {{"machine", machine()},
+          {"busy", report.busy},
+          {"summary", summary_json(summary_rows(report.results))},
+          {"crowds", crowds_json(report.crowds)},
+          {"falls", ensembles_json(report.falls).at("ensembles")},
+          {"scenes", scenes},
+          {"dial", report.dial}};
 }
 
 }  // namespace sinew::study

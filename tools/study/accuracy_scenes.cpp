@@ -55,7 +55,7 @@ AccuracyScene ragdoll_drop() {
   s.reading =
       "37 degrees of freedom, compared until 0.3 s after the feet touch: later, chaos would be compared, not "
       "solvers. A foot that hangs on nothing is stopped within a tenth of a millisecond and flies off: steps "
-      "of a game do not see that, so lines level out.";
+      "of a game do not see that, so lines level out. Falls are better judged as a crowd (below).";
   s.to_catch_up =
       "softer contacts, or friction within the impact itself. Ours let a figure sink by half a millimetre; "
       "who spreads an impact over 20 ms has something that steps resolve.";
@@ -144,8 +144,10 @@ AccuracyScene tracking(const char* name, const char* clip_name, const std::vecto
   s.name = name;
   s.title = std::string("Muscles follow a ") + clip_name + " and are pushed";
   s.reading =
-      "The mannequin moves on its clip; it is pushed for 0.1 s, harder than muscles hold. Ours hands joints "
-      "over to the solver only where a muscle is too weak; MuJoCo tracks with servos of the same strength.";
+      "The mannequin moves on its clip; it is pushed for 0.1 s, harder than muscles hold. Joints are handed "
+      "over to the solver only where a muscle is too weak.";
+  s.beside_peers =
+      "The others track with motors of the same strength, and solve for all joints in every step.";
   s.to_catch_up = "fewer joints handed over, or cheaper ones: the rest is played.";
   const Asset* asset = mannequin();
   const int clip = asset ? asset->find_clip(clip_name) : -1;

@@ -1,14 +1,15 @@
 #include "study/accuracy_trip.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "study/accuracy_clock.h"
 #include "study/bodies.h"
 
 namespace sinew::study {
 namespace {
 
+constexpr double kFrame = 1.0 / 60;     // s
 constexpr double kSample = 1.0 / 30;    // s, between compared poses; every step of the sweep divides it
 constexpr double kFinest = 1.0 / 7680;  // s, of converged runs
 constexpr double kAtRest = 6;           // s after which a scene that settles has settled
@@ -49,6 +50,29 @@ std::vector<std::vector<Transform<double>>> halfway(const std::vector<std::vecto
 
 }  // namespace
 
+FrameCosts frame_costs(const std::vector<std::vector<double>>& runs) {
+  constexpr double kShare = 0.99;
+  FrameCosts costs;
+  std::size_t count = runs.empty() ? 0 : runs[0].size();
+  for (const std::vector<double>& run : runs) count = std::min(count, run.size());
+  if (count == 0) return costs;
+  std::vector<double> frames, of_one;
+  for (std::size_t n = 0; n < count; ++n) {
+    of_one.clear();
+    for (const std::vector<double>& run : runs) of_one.push_back(run[n]);
+    std::nth_element(of_one.begin(), of_one.begin() + of_one.size() / 2, of_one.end());
+    frames.push_back(of_one[of_one.size() / 2]);
+    costs.mean += frames.back() / double(count);
+  }
+  std::sort(frames.begin(), frames.end());
+  const double at = kShare * double(count - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, count - 1);
+  costs.p99 = frames[below] + (at - double(below)) * (frames[above] - frames[below]);
+  costs.worst = frames.back();
+  return costs;
+}
+
 Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Accuracy& accuracy,
             bool observe) {
   Trip trip;
@@ -56,7 +80,9 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
   trip.refusal = engine->refusal();
   if (!trip.refusal.empty()) return trip;
   const int steps = static_cast<int>(std::lround(s.seconds / h)),
-            every = std::max(1, static_cast<int>(std::lround(kSample / h)));
+            every = std::max(1, static_cast<int>(std::lround(kSample / h))),
+            per_frame = std::max(1, static_cast<int>(std::lround(kFrame / h)));
+  trip.frames.assign((steps + per_frame - 1) / per_frame, 0);
   const double start = engine->energy();
   double kinetic = 0, fall = 0;  // J: of the start, and of a metre's fall where that is at rest
   for (const Figure& f : s.scene.figures) {
@@ -67,9 +93,9 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
   const bool keeps_spin = !s.scene.ground && s.scene.gravity.isZero();
   for (int n = 0; n < steps; ++n) {
     if (s.drive) s.drive(*engine, n * h, h);
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = processor_seconds();
     const bool alive = engine->step();
-    trip.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    trip.frames[n / per_frame] += std::max(0.0, processor_seconds() - begin - clock_cost());
     if (!alive) return trip;
     if (!observe) continue;
     if (keeps_spin && engine->angular_momentum(spin)) {
@@ -85,7 +111,7 @@ Trip travel(const AccuracyScene& s, const EngineOption& with, double h, const Ac
     trip.track.push_back(std::move(poses));
   }
   trip.energy = (engine->energy() - start) / std::max(kinetic, fall);
-  trip.seconds /= engine->copies();
+  for (double& frame : trip.frames) trip.seconds += frame /= engine->copies();
   trip.passes = engine->passes();
   trip.survived = true;
   return trip;

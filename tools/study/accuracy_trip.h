@@ -11,13 +11,22 @@ using Track = std::vector<std::vector<std::vector<Transform<double>>>>;
 struct Trip {
   bool survived = false;
   std::string refusal;
-  Track track;         ///< where asked for
-  double seconds = 0;  ///< spent in steps
-  double energy = 0;   ///< change over the kinetic energy of the start, or over that of a metre's fall
+  Track track;                 ///< where asked for
+  double seconds = 0;          ///< of processor time, spent in steps
+  std::vector<double> frames;  ///< s, of these: by frames of 1/60 s, or by steps where those are longer
+  double energy = 0;  ///< change over the kinetic energy of the start, or over that of a metre's fall
   double momentum =
       0;  ///< largest change of the angular momentum, of scenes that keep it and engines that tell it
   double passes = 0;
 };
+
+/// What frames cost, in the unit of the times.
+struct FrameCosts {
+  double mean = 0, p99 = 0, worst = 0;  ///< over frames; the 99th percentile between its two neighbours
+};
+/// Of repeated runs of the same work, [run][frame]: of every frame the median over runs, which is the work's,
+/// not that of what disturbed one of them.
+FrameCosts frame_costs(const std::vector<std::vector<double>>& runs);
 
 Trip travel(const AccuracyScene& scene, const EngineOption& with, double h, const Accuracy& accuracy,
             bool observe);

@@ -1,4 +1,4 @@
-// Added cost against instances, by cairo.
+// Added cost against instances.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ struct Plot {
   }
 };
 
-void draw_frame(const Canvas& canvas, const Plot& plot, const char* title) {
+void draw_frame(Canvas& canvas, const Plot& plot, const char* title) {
   canvas.text(title, plot.left, kTop - 12, 14, 0, true);
   for (int decade = static_cast<int>(plot.low); decade <= plot.high; ++decade) {
     const double y = plot.y(std::pow(10, decade));
@@ -36,21 +36,13 @@ void draw_frame(const Canvas& canvas, const Plot& plot, const char* title) {
   canvas.text("instances", plot.left + kPlotWide / 2, kTop + kPlotHigh + 36, 12, 0.5);
 }
 
-void draw_line(const Canvas& canvas, const Plot& plot, const EffectCost& cost,
-               const std::array<double, 4>& values, const Colour& colour, double label_y) {
-  canvas.set(colour);
-  cairo_set_line_width(canvas.pen(), 1.8);
-  cairo_new_path(canvas.pen());  // text leaves a point behind
-  double last = 0;
-  for (std::size_t i = 1; i < kInstances.size(); ++i) {
-    last = plot.y(values[i] - values[0]);
-    cairo_line_to(canvas.pen(), plot.x(kInstances[i]), last);
-  }
-  cairo_stroke(canvas.pen());
-  cairo_move_to(canvas.pen(), plot.x(64) + 3, last);
-  cairo_line_to(canvas.pen(), plot.x(64) + 14, label_y - 4);
-  cairo_set_line_width(canvas.pen(), 0.8);
-  cairo_stroke(canvas.pen());
+void draw_line(Canvas& canvas, const Plot& plot, const EffectCost& cost, const std::array<double, 4>& values,
+               const Colour& colour, double label_y) {
+  std::vector<Spot> through;
+  for (std::size_t i = 1; i < kInstances.size(); ++i)
+    through.push_back({plot.x(kInstances[i]), plot.y(values[i] - values[0])});
+  canvas.line(colour, 1.8, through);
+  canvas.line(colour, 0.8, {{plot.x(64) + 3, through.back().y}, {plot.x(64) + 14, label_y - 4}});
   canvas.text(cost.effect, plot.x(64) + 17, label_y, 11);
 }
 

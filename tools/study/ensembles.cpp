@@ -188,9 +188,9 @@ Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, doub
   return out;
 }
 
-std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress) {
+std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress, int seeds) {
   const double finest = quick ? 1920 : 3840;
-  const int seeds = quick ? 96 : 384;
+  if (seeds == 0) seeds = quick ? 96 : 384;
   std::vector<EngineOption> ours, peers;
   for (const EngineOption& option : sinew_options())
     if (!option.option.starts_with("momentum")) ours.push_back(option);  // no energy, and it explodes

@@ -68,15 +68,18 @@ Ensemble run_ensemble(const EnsembleScene& scene, const EngineOption& with, doub
 
 /// Every scene at 60 and 30 Hz, by our schemes and the peers that take any step. All of ours are judged by
 /// the most accurate of them at the finest steps, a peer by itself. `quick`: 96 seeds instead of 384, finest
-/// steps of 1/1920 s instead of 1/3840 (at 1/960 bdf2 still has a tenth less energy after 0.75 s).
-std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress);
+/// steps of 1/1920 s instead of 1/3840 (at 1/960 bdf2 still has a tenth less energy after 0.75 s). `seeds`:
+/// so many instead.
+std::vector<Ensemble> run_ensembles(bool quick, const std::function<void(int, int)>& progress, int seeds = 0);
 
 /// {"ensembles": [{"engine", "scene", "hz", "scheme", "scalar", "seeds", "lost", "t", "energy",
 /// "energy_deviation", "truth", "truth_deviation"}]}, energies in J.
 nlohmann::json ensembles_json(const std::vector<Ensemble>& all);
 /// Share of the true mean at 0.5, 0.75, 1 and 1.5 s, and its standard error.
 std::string ensembles_table(const std::vector<Ensemble>& all);
-/// Curves of one scene and step, .png or .svg.
+/// Curves of one scene and step as an SVG element; empty where nobody has run it.
+std::string ensembles_svg(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz);
+/// The same, .png or .svg.
 convert::Error draw_ensembles(const std::vector<Ensemble>& all, const EnsembleScene& scene, double hz,
                               const std::string& file);
 

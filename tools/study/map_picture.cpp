@@ -1,4 +1,4 @@
-// Failure maps as pictures, by cairo.
+// Failure maps as pictures.
 #include <cmath>
 #include <cstdio>
 
@@ -31,7 +31,7 @@ std::string column_name(double value) {
   return text;
 }
 
-void draw_panel(const Canvas& canvas, const FailureMap& map, std::size_t engine, double x, double y) {
+void draw_panel(Canvas& canvas, const FailureMap& map, std::size_t engine, double x, double y) {
   canvas.text(map.engines[engine].label(), x + kPanelLeft, y + 17, 13, 0, true);
   for (std::size_t s = 0; s < map.steps.size(); ++s) {
     const double top = y + kPanelTop + kCellHigh * double(s);

@@ -3,8 +3,7 @@
 
 namespace sinew::study::web {
 
-extern const char* const kReport;  ///< report.html with @UPLOT_CSS@, @UPLOT_JS@ and @DATA@ to fill in
-extern const char* const kChartScript;
-extern const char* const kChartStyle;
+/// report.html with @MACHINE@, @FIRST@, @WORDS@ and @BODY@ to fill in.
+extern const char* const kReport;
 
 }  // namespace sinew::study::web
