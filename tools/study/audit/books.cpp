@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kKept = 9;       ///< instants: four on either side of the one that is judged
 constexpr std::size_t kMiddle = 4;
-constexpr std::size_t kRiseWithin = 8;  ///< steps
+constexpr std::size_t kRiseWithin = 12;  ///< steps: an impact spoils four on either side
 constexpr double kWellSeen = 1e-3;      ///< of the largest kinetic energy: what hard cases ask for
 constexpr double kSeenAnyway = 1e-6;    ///< J
 constexpr double kFollowed = 2.5;       ///< rad per step
@@ -109,6 +109,7 @@ std::vector<Transform<double>> Books::history(std::size_t body) const {
 }
 
 Estimate Books::arriving(int member, int body, const Vector3d& point) const {
+  if (!begun()) return {Vector3d::Zero(), std::numeric_limits<double>::infinity()};
   const std::size_t index = first_[static_cast<std::size_t>(member)] + static_cast<std::size_t>(body);
   std::vector<double> when = times();
   std::vector<Transform<double>> poses = history(index);
@@ -178,12 +179,15 @@ void Books::enter(const Bounds& energy, const Instant& at) {
   if (!based_) base_ = energy.high - at.work, based_ = true;
   const double low = energy.low - at.work - at.unsure, high = energy.high - at.work - at.unsure;
   balance_.gain = std::max(balance_.gain, low - base_);
-  for (const double before : highs_) balance_.rise = std::max(balance_.rise, low - before);
-  highs_.push_back(high);
-  if (highs_.size() > kRiseWithin) highs_.pop_front();
   ++balance_.instants;
   const double unsure = 0.5 * (energy.high - energy.low);
-  if (unsure > kWellSeen * balance_.kinetic_most + kSeenAnyway) return;
+  const bool seen = unsure <= kWellSeen * balance_.kinetic_most + kSeenAnyway;
+  // From an instant that was seen: within impacts nothing tells how much there was at most.
+  for (const double before : highs_)
+    if (seen) balance_.rise = std::max(balance_.rise, low - before);
+  highs_.push_back(seen ? high : std::numeric_limits<double>::infinity());
+  if (highs_.size() > kRiseWithin) highs_.pop_front();
+  if (!seen) return;
   ++balance_.seen;
   balance_.unsure = std::max(balance_.unsure, unsure);
 }

@@ -33,7 +33,8 @@ Momentum momentum_of(const Body& body, const Transform<double>& pose, const Velo
 struct Balance {
   double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
   double gain = 0;  ///< most by which the total must have stood above its start plus the work put in
-  double rise = 0;  ///< most by which it must have risen, beyond work, between instants up to eight steps apart
+  double rise = 0;  ///< most by which it must have risen, beyond work, between instants that are seen, up to
+                    ///< twelve steps apart
   double unsure = 0;      ///< most that the books cannot tell at an instant between impacts: see `seen`
   double work = 0;        ///< put in
   int instants = 0;       ///< judged
@@ -56,6 +57,8 @@ class Books {
   void record(double h, const std::vector<Transform<double>>& poses, double work, double unsure = 0);
 
   const Balance& balance() const { return balance_; }
+  /// Whether anybody's poses are known: there is a start, or a record since forget().
+  bool begun() const { return !instants_.empty(); }
   /// J, over the last step, or at the start.
   double kinetic() const { return kinetic_; }
   const std::vector<Member>& members() const { return members_; }

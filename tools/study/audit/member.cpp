@@ -140,16 +140,18 @@ std::vector<Solid> placed(const Member& member, Poses poses, std::vector<int>* b
   return all;
 }
 
-Gap joint_gap(const Member& member, Poses poses) {
+Gap joint_gap(const Member& member, Poses poses, double precision) {
   Gap widest;
   for (std::size_t b = 0; b < member.bodies.size(); ++b) {
     const Body& body = member.bodies[b];
     if (body.parent < 0) continue;
-    const Eigen::Isometry3d socket = isometry(poses[static_cast<std::size_t>(body.parent)]) *
-                                     isometry(body.rest);
+    const Transform<double>& parent = poses[static_cast<std::size_t>(body.parent)];
+    const Eigen::Isometry3d socket = isometry(parent) * isometry(body.rest);
     const Eigen::Isometry3d from_rest = socket.inverse() * isometry(poses[b]);
-    widest.distance = std::max(widest.distance, apart(body, from_rest.translation()));
-    widest.angle = std::max(widest.angle, across(body, Eigen::Quaterniond(from_rest.linear())));
+    const double rounding =
+        precision * (parent.translation.norm() + poses[b].translation.norm() + body.rest.translation.norm());
+    widest.distance = std::max(widest.distance, apart(body, from_rest.translation()) - rounding);
+    widest.angle = std::max(widest.angle, across(body, Eigen::Quaterniond(from_rest.linear())) - 2 * precision);
   }
   return widest;
 }

@@ -40,12 +40,12 @@ using Poses = std::span<const Transform<double>>;  ///< [body of a member] body 
 std::vector<Solid> placed(const Member& member, Poses poses, std::vector<int>* bodies = nullptr);
 
 /// How far joints stand open: where the two halves of one are apart, and by how much the axes that they share
-/// point apart.
+/// point apart; beyond what poses explain that are rounded to `precision` of their size.
 struct Gap {
   double distance = 0;  ///< m
   double angle = 0;     ///< rad
 };
-Gap joint_gap(const Member& member, Poses poses);
+Gap joint_gap(const Member& member, Poses poses, double precision = 0);
 
 Eigen::Vector3d center_of_mass(const Member& member, Poses poses);
 
