@@ -1,4 +1,5 @@
-// Books on motions whose energies are known: they find no gain where there is none, and the gain that there is.
+// Books on motions whose energies are known: they find no gain where there is none, and the gain that there
+// is.
 #include "study/audit/books.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +56,9 @@ TEST(Books, OfAnEulerTopThatFlipsKeepItsEnergyAndMomentum) {
   const std::vector<Transform<double>> poses = euler_top(moments, omega, h, steps);
   Books books(Vector3d::Zero(), 1e-16);
   const Member top = one_body(1, moments);
-  const auto start = [&](double t) { return std::vector<Transform<double>>{{turn(omega * t), Vector3d::Zero()}}; };
+  const auto start = [&](double t) {
+    return std::vector<Transform<double>>{{turn(omega * t), Vector3d::Zero()}};
+  };
   books.add(top, start(-1e-5), start(0), start(1e-5), 1e-5);
   const Vector3d momentum = moments.cwiseProduct(omega);
   double off = 0;
@@ -115,17 +118,18 @@ TEST(Books, FindTheEnergyOfASpringThatGrows) {
   // and swings by 5·growth J with the damping that grows it.
   const Balance b = spring_books(0.02).balance();
   EXPECT_NEAR(b.gain, 50 * (std::exp(0.04 * (2 - 4.0 / 120)) - 1), 0.11);
-  EXPECT_GE(b.rise, 50 * 0.04 * 8 / 120) << "eight steps' share at least";
+  EXPECT_GE(b.rise, 50 * 0.04 * 8 / 120) << "of twelve steps' share";
 }
 
 TEST(Books, OfABouncingBallFindNoGainWhateverPartOfAStepItStrikesIn) {
   for (const double restitution : {1.0, 0.7, 0.3, 0.0})
     for (const double height : {1.0, 0.93, 0.87}) {
-      const Books books = books_of(one_body(2, Vector3d::Ones()), bouncing(height, {restitution}), 1.0 / 60, 180,
-                                   kGravity);
+      const Books books =
+          books_of(one_body(2, Vector3d::Ones()), bouncing(height, {restitution}), 1.0 / 60, 180, kGravity);
       EXPECT_LE(books.balance().gain, 1e-9) << restitution << " from " << height;
       // In the end it bounces several times in a step, which poses do not show.
-      EXPECT_LE(books.balance().rise, 1e-3 * books.balance().kinetic_most) << restitution << " from " << height;
+      EXPECT_LE(books.balance().rise, 1e-3 * books.balance().kinetic_most)
+          << restitution << " from " << height;
     }
 }
 
@@ -138,7 +142,9 @@ TEST(Books, FindWhatABounceAddedToTheJoule) {
 
 TEST(Books, CountWorkAgainstTheEnergyThatItLeaves) {
   // 4 N on 2 kg for a second.
-  const Path pulled = [](double t) { return Transform<double>{Eigen::Quaterniond::Identity(), {t * t, 0, 0}}; };
+  const Path pulled = [](double t) {
+    return Transform<double>{Eigen::Quaterniond::Identity(), {t * t, 0, 0}};
+  };
   const Books with = books_of(one_body(2, Vector3d::Ones()), pulled, 0.01, 100, Vector3d::Zero(),
                               [](double from, double to) { return 4 * (to * to - from * from); });
   EXPECT_LE(with.balance().gain, 1e-9);

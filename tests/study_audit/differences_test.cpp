@@ -20,7 +20,8 @@ TEST(Differences, WeightsAreExactOnPolynomialsAtUnevenTimes) {
       bend += weights.second[i] * std::pow(times[i], power);
     }
     EXPECT_NEAR(slope, power ? power * std::pow(0.04, power - 1) : 0, 1e-11) << "power " << power;
-    EXPECT_NEAR(bend, power > 1 ? power * (power - 1) * std::pow(0.04, power - 2) : 0, 1e-9) << "power " << power;
+    EXPECT_NEAR(bend, power > 1 ? power * (power - 1) * std::pow(0.04, power - 2) : 0, 1e-9)
+        << "power " << power;
   }
 }
 
@@ -47,7 +48,8 @@ TEST(Differences, AreOfSixthAndEighthOrder) {
     double before = 0;
     for (const double h : {0.16, 0.08, 0.04}) {
       const double off = (middle_velocity(swinging(3), h, points).linear.value -
-                          3 * Vector3d(std::cos(0.9), -std::sin(0.9), 0)).norm();
+                          3 * Vector3d(std::cos(0.9), -std::sin(0.9), 0))
+                             .norm();
       if (before > 0) {
         EXPECT_NEAR(std::log2(before / off), points - 1, 0.2) << "h = " << h;
       }
@@ -63,8 +65,10 @@ TEST(Differences, AreWithinTheErrorThatTheySayAndSayLittleWhereMotionIsSmooth) {
       const double s = std::sin(0.3 * rate), c = std::cos(0.3 * rate);
       EXPECT_LE((v.linear.value - rate * Vector3d(c, -s, 0)).norm(), v.linear.error);
       EXPECT_LE((v.angular.value - Vector3d(0, rate * c, 0)).norm(), v.angular.error);
-      // Twice the sixth order's correction, (hω)⁴/30 of the fourth's error; (hω)⁵/90 by the second derivative.
-      EXPECT_LE(v.linear.error, 2.5 * rate * std::pow(h * rate, 4) / 30 + 1e-10) << "h = " << h << ", " << rate;
+      // Twice the sixth order's correction, (hω)⁴/30 of the fourth's error; (hω)⁵/90 by the second
+      // derivative.
+      EXPECT_LE(v.linear.error, 2.5 * rate * std::pow(h * rate, 4) / 30 + 1e-10)
+          << "h = " << h << ", " << rate;
     }
 }
 
@@ -107,7 +111,8 @@ TEST(Differences, VelocityOnArrivalIsWithinItsError) {
   const double t = times.back(), a = std::sin(4 * t), rate = 4 * std::cos(4 * t);
   const Vector3d arm(0, 0, 0.5);
   // Of the centre, and of the arm that turns about y by a.
-  const Vector3d exact = Vector3d(rate, -4 * std::sin(4 * t), 0) + 0.5 * rate * Vector3d(std::cos(a), 0, -std::sin(a));
+  const Vector3d exact =
+      Vector3d(rate, -4 * std::sin(4 * t), 0) + 0.5 * rate * Vector3d(std::cos(a), 0, -std::sin(a));
   const Estimate found = arriving_velocity(arm, poses, times);
   EXPECT_LE((found.value - exact).norm(), found.error);
   EXPECT_LE(found.error, 1e-2);

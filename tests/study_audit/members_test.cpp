@@ -1,8 +1,7 @@
 // Shapes, joints and depths where geometry gives the answer.
-#include "study/audit/member.h"
-
 #include <gtest/gtest.h>
 
+#include "study/audit/member.h"
 #include "study_audit/motions.h"
 
 namespace sinew::audit {
@@ -85,7 +84,8 @@ Gap gap_of(JointType type, const Vector3d& turned, const Vector3d& moved) {
 
 TEST(Joints, StandOpenByWhatTheyCannotDo) {
   const Vector3d still = Vector3d::Zero();
-  for (const JointType type : {JointType::kFixed, JointType::kRevolute, JointType::kUniversal, JointType::kBall})
+  for (const JointType type :
+       {JointType::kFixed, JointType::kRevolute, JointType::kUniversal, JointType::kBall})
     EXPECT_NEAR(gap_of(type, still, {3e-3, 4e-3, 0}).distance, 5e-3, 1e-12);
   EXPECT_NEAR(gap_of(JointType::kPrismatic, still, {3e-3, 0.7, 0}).distance, 3e-3, 1e-12);
   EXPECT_NEAR(gap_of(JointType::kPlanar, still, {0.5, 2e-3, 0.7}).distance, 2e-3, 1e-12);

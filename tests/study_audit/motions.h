@@ -16,7 +16,8 @@ using Path = std::function<Transform<double>(double)>;
 
 inline Eigen::Quaterniond turn(const Eigen::Vector3d& by) {
   const double angle = by.norm();
-  return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, by / angle)) : Eigen::Quaterniond::Identity();
+  return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, by / angle))
+                   : Eigen::Quaterniond::Identity();
 }
 
 inline Member one_body(double mass, const Eigen::Vector3d& moments) {
@@ -56,8 +57,8 @@ inline Path symmetric_top(double a, double c, const Eigen::Vector3d& omega) {
 }
 
 /// Torque-free rotation of any body, by Runge and Kutta's method in steps of 10 µs, at every h seconds.
-inline std::vector<Transform<double>> euler_top(const Eigen::Vector3d& moments, Eigen::Vector3d omega, double h,
-                                                int steps) {
+inline std::vector<Transform<double>> euler_top(const Eigen::Vector3d& moments, Eigen::Vector3d omega,
+                                                double h, int steps) {
   constexpr double kFine = 1e-5;
   const auto rate = [&](const Eigen::Vector3d& w) -> Eigen::Vector3d {
     return moments.cwiseProduct(w).cross(w).cwiseQuotient(moments);
@@ -91,7 +92,8 @@ inline std::vector<Transform<double>> euler_top(const Eigen::Vector3d& moments, 
   return poses;
 }
 
-/// Angle of a pendulum of length l (m) from rest at `start` rad, by Runge and Kutta's method in steps of 10 µs.
+/// Angle of a pendulum of length l (m) from rest at `start` rad, by Runge and Kutta's method in steps of 10
+/// µs.
 inline std::vector<double> pendulum(double l, double start, double h, int steps) {
   constexpr double kFine = 1e-5, kG = 9.81;
   const auto pull = [&](double a) { return -kG / l * std::sin(a); };

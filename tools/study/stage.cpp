@@ -28,9 +28,9 @@ std::vector<Transform<double>> poses_after(const Skeleton& skeleton, const std::
   for (int i = 0; i < skeleton.body_count; ++i) {
     const JointJet<T>& jet = start[static_cast<std::size_t>(i)];
     const Quat<double> turn = rotation_exp<double>(later * jet.omega.template cast<double>());
-    const Transform<double> local{jet.rotation.template cast<double>() * turn,
-                                  jet.translation.template cast<double>() +
-                                      later * jet.velocity.template cast<double>()};
+    const Transform<double> local{
+        jet.rotation.template cast<double>() * turn,
+        jet.translation.template cast<double>() + later * jet.velocity.template cast<double>()};
     const int parent = skeleton.joints[static_cast<std::size_t>(i)].parent;
     poses.push_back(parent < 0 ? local : poses[static_cast<std::size_t>(parent)] * local);
   }

@@ -20,16 +20,16 @@ struct Measurement {
   int steps = 0;
   bool finite = true;
   double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
-  double energy_gain = 0;  ///< least by which the total ever stood above start plus work (audit::Balance)
-  double worst_rise = 0;   ///< least by which it rose beyond work within twelve steps
-  double unsure = 0;       ///< most that the books cannot tell where they see well
+  double energy_gain = 0;      ///< least by which the total ever stood above start plus work (audit::Balance)
+  double worst_rise = 0;       ///< least by which it rose beyond work within twelve steps
+  double unsure = 0;           ///< most that the books cannot tell where they see well
   int instants = 0, seen = 0;  ///< judged by the books, and of these seen to 1e-3 of the kinetic energy
   bool blind = false;          ///< something turned too fast for its poses to show
   double work = 0;             ///< put in by pushes, muscles and driven roots
   double joint_gap = 0;        ///< between the two halves of any joint
   double joint_angle = 0;      ///< rad, that a joint turned about what it is no hinge for
   double penetration = 0;      ///< deepest that two shapes lay in each other
-  int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
+  int unconverged = 0;         ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
   int restarts = 0;  ///< see CharacterReport
   long passes = 0, chords = 0, factorisations = 0;
@@ -101,6 +101,7 @@ class Stage {
   Vec3<double> center_of_mass(int character);
   double kinetic() const { return books_.kinetic(); }  ///< J, over the last step
   const audit::Books& books() const { return books_; }
+  const audit::Surroundings& surroundings() const { return around_; }
   /// m, deepest that shapes lie in each other now: all, or one character (or prop: after the characters) in
   /// anything else.
   double depth() const;

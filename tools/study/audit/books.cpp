@@ -9,12 +9,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kKept = 9;       ///< instants: four on either side of the one that is judged
+constexpr std::size_t kKept = 9;  ///< instants: four on either side of the one that is judged
 constexpr std::size_t kMiddle = 4;
 constexpr std::size_t kRiseWithin = 12;  ///< steps: an impact spoils four on either side
-constexpr double kWellSeen = 1e-3;      ///< of the largest kinetic energy: what hard cases ask for
-constexpr double kSeenAnyway = 1e-6;    ///< J
-constexpr double kFollowed = 2.5;       ///< rad per step
+constexpr double kWellSeen = 1e-3;       ///< of the largest kinetic energy: what hard cases ask for
+constexpr double kSeenAnyway = 1e-6;     ///< J
+constexpr double kFollowed = 2.5;        ///< rad per step
 
 Bounds squares(double size, double error) {
   const double low = std::max(0.0, size - error), high = size + error;

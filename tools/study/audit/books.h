@@ -3,8 +3,9 @@
 //
 // Between impacts velocities are central differences of order 6 and 8, believed where differences of growing
 // order converge. Near an impact they do not; there nothing is claimed but what the two steps that meet at an
-// instant have in common. So `gain` and `rise` are the least by which the energy must have risen: a motion that
-// keeps its energy has none, whatever its impacts, and what an impact adds is found as soon as it is over.
+// instant have in common. So `gain` and `rise` are the least by which the energy must have risen: a motion
+// that keeps its energy has none, whatever its impacts, and what an impact adds is found as soon as it is
+// over.
 #pragma once
 
 #include <deque>
@@ -35,11 +36,11 @@ struct Balance {
   double gain = 0;  ///< most by which the total must have stood above its start plus the work put in
   double rise = 0;  ///< most by which it must have risen, beyond work, between instants that are seen, up to
                     ///< twelve steps apart
-  double unsure = 0;      ///< most that the books cannot tell at an instant between impacts: see `seen`
-  double work = 0;        ///< put in
-  int instants = 0;       ///< judged
-  int seen = 0;           ///< of these, so well that the total is known to 1e-3 of the largest kinetic energy
-  bool blind = false;     ///< something turned by more than 2.5 rad in a step: its spin is not known
+  double unsure = 0;   ///< most that the books cannot tell at an instant between impacts: see `seen`
+  double work = 0;     ///< put in
+  int instants = 0;    ///< judged
+  int seen = 0;        ///< of these, so well that the total is known to 1e-3 of the largest kinetic energy
+  bool blind = false;  ///< something turned by more than 2.5 rad in a step: its spin is not known
 };
 
 class Books {
@@ -91,8 +92,8 @@ class Books {
   std::deque<Instant> instants_;
   std::vector<Transform<double>> before_start_;  ///< of all members; empty once the start is out of sight
   double before_start_span_ = 0;                 ///< s
-  std::deque<double> highs_;  ///< upper bounds of the last instants, less the work
-  double base_ = 0;           ///< J, most that the start may have had
+  std::deque<double> highs_;                     ///< upper bounds of the last instants, less the work
+  double base_ = 0;                              ///< J, most that the start may have had
   bool based_ = false;
   double kinetic_ = 0;
   double fastest_ = 0;  ///< rad/s, of any body at the start

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFurthest = 2.5;     ///< rad: logarithms of rotations are smooth up to π
-constexpr double kConverges = 0.15;   ///< of one order's correction by the next; of sin(ωt) about 0.2·(hω)²
-constexpr double kCaution = 2;        ///< of what errors are taken for
-constexpr double kJumpCaution = 1.25; ///< of half a jump
+constexpr double kFurthest = 2.5;    ///< rad: logarithms of rotations are smooth up to π
+constexpr double kConverges = 0.15;  ///< of one order's correction by the next; of sin(ωt) about 0.2·(hω)²
+constexpr double kCaution = 2;       ///< of what errors are taken for
+constexpr double kJumpCaution = 1.25;  ///< of half a jump
 
 Vector3d turned(const Transform<double>& from, const Transform<double>& to) {
   const Eigen::AngleAxisd turn(from.rotation.conjugate() * to.rotation);
@@ -24,7 +24,8 @@ Vector3d turned(const Transform<double>& from, const Transform<double>& to) {
 class Sequence {
  public:
   template <class At>
-  Sequence(const Stencils& s, int aside, double rounding, At at) : aside_(aside), step_((s.steps[index(0)] + s.steps[index(1)]) / 2) {
+  Sequence(const Stencils& s, int aside, double rounding, At at)
+      : aside_(aside), step_((s.steps[index(0)] + s.steps[index(1)]) / 2) {
     for (int k = 1; k <= aside; ++k) {
       const Weights& w = s.weights[static_cast<std::size_t>(k - 1)];
       Vector3d first = Vector3d::Zero(), second = first;
@@ -102,8 +103,8 @@ Weights::Weights(std::span<const double> times, double at) {
 Stencils::Stencils(std::span<const double> times, int at)
     : node(at), aside(std::min({at, static_cast<int>(times.size()) - 1 - at, kMostAside})) {
   for (int k = 1; k <= aside; ++k)
-    weights[static_cast<std::size_t>(k - 1)] =
-        Weights(times.subspan(static_cast<std::size_t>(at - k), static_cast<std::size_t>(2 * k + 1)), times[at]);
+    weights[static_cast<std::size_t>(k - 1)] = Weights(
+        times.subspan(static_cast<std::size_t>(at - k), static_cast<std::size_t>(2 * k + 1)), times[at]);
   for (int k = 1 - aside; k <= aside; ++k)
     steps[static_cast<std::size_t>(k + kMostAside - 1)] = times[at + k] - times[at + k - 1];
 }
@@ -120,7 +121,9 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
   int followed = 0;  // instants on both sides to which the rotation can be followed
   std::array<Vector3d, 2 * Stencils::kMostAside + 1> turns;
   turns.fill(Vector3d::Zero());
-  const auto turn = [&](int k) -> Vector3d& { return turns[static_cast<std::size_t>(k + Stencils::kMostAside)]; };
+  const auto turn = [&](int k) -> Vector3d& {
+    return turns[static_cast<std::size_t>(k + Stencils::kMostAside)];
+  };
   for (int k = 1; k <= s.aside; ++k) {
     bool follows = true;
     for (const int side : {-1, 1}) {

@@ -8,8 +8,8 @@
 
 namespace sinew::audit {
 
-/// Weights of values at `times` in the first and the second derivative at `at` of the polynomial through them;
-/// times may be spaced as they like. Source: Fornberg, "Generation of finite difference formulas on
+/// Weights of values at `times` in the first and the second derivative at `at` of the polynomial through
+/// them; times may be spaced as they like. Source: Fornberg, "Generation of finite difference formulas on
 /// arbitrarily spaced grids", 1988. At most 9 points.
 struct Weights {
   std::array<double, 9> first{}, second{};
@@ -22,10 +22,10 @@ struct Weights {
 struct Stencils {
   static constexpr int kMostAside = 4;
 
-  int node = 0;    ///< index of the instant
-  int aside = 0;   ///< instants on either side of it
+  int node = 0;                                ///< index of the instant
+  int aside = 0;                               ///< instants on either side of it
   std::array<double, 2 * kMostAside> steps{};  ///< s, one after the other; the node is in their middle
-  std::array<Weights, kMostAside> weights;  ///< [instants on either side that count − 1]
+  std::array<Weights, kMostAside> weights;     ///< [instants on either side that count − 1]
 
   Stencils(std::span<const double> times, int node);
 };
@@ -43,11 +43,11 @@ struct Velocity {
 
 /// Velocity of a body at an instant from its poses (body → world) around it. Differences are believed where
 /// both those of the positions' first and of their second derivatives converge, each order's correction below
-/// 0.15 of the one before: the eighth order then, with twice the sixth's correction as its error. A jump within
-/// reach makes them diverge, wherever in a step it lies; then only the steps beside the instant count, and
-/// the error is half of what the mean velocities of neighbouring ones differ by. `precision`: what coordinates and
-/// rotations are rounded to, of their size. A body that turns by more than 2.5 rad between two poses cannot be
-/// followed: infinite error.
+/// 0.15 of the one before: the eighth order then, with twice the sixth's correction as its error. A jump
+/// within reach makes them diverge, wherever in a step it lies; then only the steps beside the instant count,
+/// and the error is half of what the mean velocities of neighbouring ones differ by. `precision`: what
+/// coordinates and rotations are rounded to, of their size. A body that turns by more than 2.5 rad between
+/// two poses cannot be followed: infinite error.
 Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses, const Stencils& stencils,
                      double precision);
 

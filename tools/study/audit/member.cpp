@@ -151,7 +151,8 @@ Gap joint_gap(const Member& member, Poses poses, double precision) {
     const double rounding =
         precision * (parent.translation.norm() + poses[b].translation.norm() + body.rest.translation.norm());
     widest.distance = std::max(widest.distance, apart(body, from_rest.translation()) - rounding);
-    widest.angle = std::max(widest.angle, across(body, Eigen::Quaterniond(from_rest.linear())) - 2 * precision);
+    widest.angle =
+        std::max(widest.angle, across(body, Eigen::Quaterniond(from_rest.linear())) - 2 * precision);
   }
   return widest;
 }

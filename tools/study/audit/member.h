@@ -10,16 +10,16 @@
 namespace sinew::audit {
 
 struct Body {
-  double mass = 0;                                       ///< kg
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();      ///< of mass, in its own axes, m
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();     ///< about it, own axes, kg·m²
-  JointType type = JointType::kFree;                     ///< of the joint that it hangs on
-  int parent = -1;                                       ///< body of the same member; -1: the world
-  Transform<double> rest;                                ///< → parent, where the joint is at zero
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< as Joint::axis
-  Eigen::Vector3d axis2 = Eigen::Vector3d::UnitX();      ///< as Joint::axis2
-  int first_dof = 0;                                     ///< of the member
-  std::vector<Solid> solids;                             ///< in its own axes
+  double mass = 0;                                    ///< kg
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of mass, in its own axes, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about it, own axes, kg·m²
+  JointType type = JointType::kFree;                  ///< of the joint that it hangs on
+  int parent = -1;                                    ///< body of the same member; -1: the world
+  Transform<double> rest;                             ///< → parent, where the joint is at zero
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();    ///< as Joint::axis
+  Eigen::Vector3d axis2 = Eigen::Vector3d::UnitX();   ///< as Joint::axis2
+  int first_dof = 0;                                  ///< of the member
+  std::vector<Solid> solids;                          ///< in its own axes
 };
 
 /// A character or a loose thing.

@@ -111,8 +111,7 @@ struct Moves {
 }  // namespace
 
 void joint_way(const Body& body, const Transform<double>& parent_before, const Transform<double>& before,
-               const Transform<double>& parent_after, const Transform<double>& after,
-               std::span<double> way) {
+               const Transform<double>& parent_after, const Transform<double>& after, std::span<double> way) {
   const Transform<double> from = relative(parent_before, before), to = relative(parent_after, after);
   const Quaterniond unrest = body.rest.rotation.conjugate();
   const Vector3d shift = to.translation - from.translation;
@@ -120,8 +119,8 @@ void joint_way(const Body& body, const Transform<double>& parent_before, const T
     for (int k = 0; k < 3; ++k) way[at + static_cast<std::size_t>(k)] = v[k];
   };
   const auto turned = [&] {
-    return std::remainder(
-        twist(unrest * to.rotation, body.axis) - twist(unrest * from.rotation, body.axis), 2 * kPi);
+    return std::remainder(twist(unrest * to.rotation, body.axis) - twist(unrest * from.rotation, body.axis),
+                          2 * kPi);
   };
   switch (body.type) {
     case JointType::kFixed:

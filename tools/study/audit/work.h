@@ -17,8 +17,8 @@ double work_of_torques(const Member& member, Poses before, Poses after, std::spa
 
 struct PointImpulse {
   int body = 0;
-  Eigen::Vector3d point, impulse;                      ///< world; m, N·s
-  Eigen::Vector3d speed = Eigen::Vector3d::Zero();     ///< m/s, of the point before it
+  Eigen::Vector3d point, impulse;                   ///< world; m, N·s
+  Eigen::Vector3d speed = Eigen::Vector3d::Zero();  ///< m/s, of the point before it
 };
 
 /// J. Impulses on one member at the same instant, J·v + ½ J·M⁻¹·J, its joints free but for the root's where

@@ -89,8 +89,8 @@ double Judge::kinetic(int frame, int member) const {
   for (std::size_t b = 0; b < after.size(); ++b) {
     const audit::Body& body = members_[member].bodies[b];
     const audit::Velocity v = audit::chord(body, before[b], after[b], step(), 0);
-    sum += 0.5 * (body.mass * v.linear.value.squaredNorm() +
-                  v.angular.value.dot(body.inertia * v.angular.value));
+    sum += 0.5 *
+           (body.mass * v.linear.value.squaredNorm() + v.angular.value.dot(body.inertia * v.angular.value));
   }
   return sum;
 }
