@@ -12,11 +12,13 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Plays the mannequin's walk with its muscles scaled by `strength`.
-template <class T>
+/// Plays the mannequin's walk with its muscles scaled by `percent`.
+template <class T, int percent>
 Verdict walk_cycle(const Trial& t) {
-  Stage<T> stage(t.scene);
-  scene::Player<T> clip(t.scene.characters[0]);
+  scene::Scene scene = t.scene;
+  scene.characters[0].strength = {{0, percent / 100.0}};
+  Stage<T> stage(scene);
+  scene::Player<T> clip(scene.characters[0]);
   std::vector<JointJet<T>> jets = clip.start(stage.character(0).local());
   double off = 0;
   int playing = 0;
@@ -245,6 +247,42 @@ Verdict ragdoll_and_back_each_second(const Trial& t) {
   return v;
 }
 
+/// A standing figure becomes a ragdoll, root and all, falls, and gets its strength and its driven root back,
+/// again and again.
+template <class T>
+Verdict ragdoll_and_back(const Trial& t) {
+  constexpr double kCycle = 5, kLimp = 1.5;  // s
+  Stage<T> stage(t.scene);
+  const double mass = stage.character(0).skeleton().total_mass();
+  int returned = 0, fallen = 0, cycles = 0;
+  double kick = 0, lowest = 1;
+  bool was_limp = false;
+  Vec3<double> before = Vec3<double>::Zero();
+  stage.run(t.lasting(600, 15), t.h, [&](double time) {
+    const bool limp = std::fmod(time, kCycle) < kLimp;
+    const Vec3<double> now = stage.books().momentum(0).linear / mass;
+    // What the first limp frame changed, beyond gravity's part.
+    if (limp && !was_limp && time > 0) before = now;
+    if (limp && was_limp && std::fmod(time, kCycle) < 1.5 * t.h && time > kCycle)
+      kick = std::max(kick, (now - before - Vec3<double>(0, 0, -9.81 * t.h)).norm());
+    if (limp && !was_limp && time > 1) ++cycles, returned += stage.character(0).on_animation();
+    lowest = std::min(lowest, stage.center_of_mass(0).z());
+    if (!limp && was_limp) fallen += lowest < 0.5, lowest = 1;
+    if (limp != was_limp) {
+      stage.character(0).set_root_drive(limp ? RootDrive::kFree : RootDrive::kAssisted);
+      stage.character(0).set_strength(T(limp ? 0 : 1));
+    }
+    was_limp = limp;
+  });
+  Verdict v(stage.measured());
+  v.sound();
+  v.at_least("times fallen", fallen, cycles);
+  v.require(returned == cycles, "back on the animation in " + std::to_string(returned) + " of " +
+                                    std::to_string(cycles) + " cycles");
+  v.at_most("speed (m/s) that the first limp frame gives", kick, 0.05);  // 5 % of what it walks at
+  return v;
+}
+
 template <class T>
 Verdict ragdoll_hit_in_the_same_frame(const Trial& t) {
   Stage<T> stage(t.scene);
@@ -278,8 +316,37 @@ std::vector<HardCase> muscle_cases() {
        "seed talk, animation",
        "pose = clip to 1e-5; 95 % of the frames are playback",
        {1.0 / 60},
-       walk_cycle<float>,
-       walk_cycle<double>},
+       walk_cycle<float, 100>,
+       walk_cycle<double, 100>,
+       "",
+       "walk_cycle"},
+      {"walk_cycle_at_150_percent",
+       "45",
+       "seed talk, animation",
+       "pose = clip to 1e-5; 95 % of the frames are playback",
+       {1.0 / 60},
+       walk_cycle<float, 150>,
+       walk_cycle<double, 150>,
+       "",
+       "walk_cycle"},
+      {"walk_cycle_at_200_percent",
+       "45",
+       "seed talk, animation",
+       "pose = clip to 1e-5; 95 % of the frames are playback",
+       {1.0 / 60},
+       walk_cycle<float, 200>,
+       walk_cycle<double, 200>,
+       "",
+       "walk_cycle"},
+      {"walk_cycle_at_300_percent",
+       "45",
+       "seed talk, animation",
+       "pose = clip to 1e-5; 95 % of the frames are playback",
+       {1.0 / 60},
+       walk_cycle<float, 300>,
+       walk_cycle<double, 300>,
+       "",
+       "walk_cycle"},
       {"ramp_through_limit",
        "46",
        "seed talk; research 1.6",
@@ -336,6 +403,15 @@ std::vector<HardCase> muscle_cases() {
        {1.0 / 60},
        ragdoll_and_back_each_second<float>,
        ragdoll_and_back_each_second<double>},
+      {"ragdoll_and_back",
+       "53",
+       "shock2quest PR #304",
+       "with a free root: falls, is back every time; no kick in the first frame",
+       {1.0 / 60},
+       ragdoll_and_back<float>,
+       ragdoll_and_back<double>,
+       "",
+       "ragdoll_and_back_each_second"},
       {"ragdoll_hit_in_the_same_frame",
        "53b",
        "PhysX#366",

@@ -28,7 +28,7 @@ class Verdict {
   }
   void at_most(const char* what, double value, double bound);
   void at_least(const char* what, double value, double bound);
-  /// Not refused, finite, joints closed, at most 0.1 % of the steps unconverged.
+  /// Not refused, finite, joints closed (by the recorded poses), at most 0.1 % of the steps unconverged.
   void sound();
   /// The catalogue's conditions G: sound, and no energy without work (1e-3 of the largest kinetic energy
   /// met). Only where nothing is driven: the work of muscles and driven bodies is booked to first order in h.
@@ -77,6 +77,7 @@ std::vector<HardCase> pile_cases();
 std::vector<HardCase> muscle_cases();
 std::vector<HardCase> actuation_cases();
 std::vector<HardCase> input_cases();
+std::vector<HardCase> general_cases();
 
 /// Why a case is known to fail today, or nullptr. The one list: known_failures.cpp.
 const char* known_failure(const std::string& case_name);

@@ -15,6 +15,8 @@ namespace sinew::study {
 namespace {
 
 constexpr int kCharacters = 20;
+constexpr double kApart = 0.9;  // m: arm's length, so that whoever falls falls onto somebody
+constexpr int kLookEvery = 20;  // frames
 
 /// What happens to one character in one frame: mostly nothing.
 template <class T>
@@ -35,11 +37,24 @@ void disturb(Character<T> c, std::vector<JointJet<T>>& jets, int index, std::mt1
     c.set_root_drive(event == 10 ? RootDrive::kFree : RootDrive::kAssisted);
   } else if (event < 13) {
     const int column = index % 5, row = index / 5;
-    jets[0].translation = Vec3<T>(T(4 * column + uniform(-1, 1)), T(4 * row + uniform(-1, 1)), T(1.42));
+    jets[0].translation =
+        Vec3<T>(T(kApart * column + uniform(-0.2, 0.2)), T(kApart * row + uniform(-0.2, 0.2)), T(1.42));
     c.set_root_drive(RootDrive::kKinematic);
     c.set_target(jets);
     c.reset();
   }
+}
+
+/// Whether any two characters touch, by their poses.
+template <class T>
+bool any_touch(World<T>& world, const audit::Member& body) {
+  std::vector<std::vector<Transform<double>>> poses(kCharacters);
+  for (int i = 0; i < kCharacters; ++i)
+    for (std::size_t b = 0; b < body.bodies.size(); ++b)
+      poses[i].push_back(world.character(i).model()[b].template cast<double>());
+  const std::vector<audit::Member> members(kCharacters, body);
+  const std::vector<audit::Poses> at(poses.begin(), poses.end());
+  return audit::deepest_between(members, at) > 0;
 }
 
 }  // namespace
@@ -50,11 +65,12 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
   World<T> world((WorldSettings()));
   (void)world.template declare<ContinuousDetection>();
   const Skeleton body = humanoid();
+  const audit::Member member = audit::member_of(body);
   std::vector<std::vector<JointJet<T>>> jets(kCharacters, rest_jets<T>(body));
   for (int i = 0; i < kCharacters; ++i) {
     Status status;
     const int row = i / 5;
-    jets[i][0].translation += Vec3<T>(T(4 * (i % 5)), T(4 * row), T(0));
+    jets[i][0].translation += Vec3<T>(T(kApart * (i % 5)), T(kApart * row), T(0));
     world.add_character(body, {}, status);
     world.character(i).set_target(jets[i]);
     world.character(i).reset();
@@ -83,6 +99,7 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
       m.penetration = std::max(m.penetration, r.penetration);
     }
     report.not_finite += !finite;
+    if (frame % kLookEvery == 0) ++report.looked, report.touching += any_touch(world, member);
     m.finite = m.finite && finite;
     if (frame == static_cast<int>(1 / h)) heap_start = static_cast<long>(mallinfo2().uordblks);
   }

@@ -1,4 +1,5 @@
-// Endurance: twenty characters that are pushed, teleported, weakened and woken, for as long as you like.
+// Endurance: twenty characters in a crowd, who are pushed against each other, teleported, weakened and woken,
+// for as long as you like.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@ struct SoakReport {
   int not_finite = 0;                 ///< frames in which any joint was NaN or infinite
   long heap_growth = 0;               ///< bytes in use at the end over those after the first second
   double median_us = 0, p999_us = 0;  ///< of a frame
+  int looked = 0, touching = 0;       ///< frames looked at, and those in which characters touched each other
   Measurement measured;               ///< counts of passes and unconverged steps
 };
 

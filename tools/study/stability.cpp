@@ -26,7 +26,7 @@ double per_step(double sum, const Measurement& m) {
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
   for (const auto& part : {rotation_cases(), mass_cases(), loop_cases(), contact_cases(), pile_cases(),
-                           muscle_cases(), actuation_cases(), input_cases()})
+                           muscle_cases(), actuation_cases(), input_cases(), general_cases()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }
@@ -69,7 +69,8 @@ std::vector<StabilityResult> run_stability(const StabilityOptions& options,
 }
 
 std::string stability_table_head() {
-  return "case                          row    h       type    result  gain J    rise J    gap m    deep mm  "
+  return "case                          row    h       type    result  gain J    rise J    seen  gap m    "
+         "deep mm  "
          "passes mean/p99/max  factors  unconverged  us/step\n";
 }
 
@@ -79,12 +80,12 @@ std::string stability_table(const StabilityResult& result) {
   for (const StabilityRow& row : result.rows) {
     const Measurement& m = row.measured;
     std::snprintf(line, sizeof line,
-                  "%-29s %-6s %-7s %-7s %-7s %-9.2g %-9.2g %-8.1g %-8.3f %6.2f /%3d /%3d      %7.2f  "
+                  "%-29s %-6s %-7s %-7s %-7s %-9.2g %-9.2g %-5.2f %-8.1g %-8.3f %6.2f /%3d /%3d      %7.2f  "
                   "%5d of %-7d %8.2f\n",
                   result.hard_case.name, result.hard_case.row, step_name(row.h).c_str(),
                   row.in_float ? "float" : "double", row.passed ? "pass" : "FAIL", m.energy_gain,
-                  m.worst_rise, m.joint_gap, 1e3 * m.penetration, m.mean_passes(), m.passes_percentile(0.99),
-                  m.most_passes, m.mean_factorisations(), m.unconverged, m.solved,
+                  m.worst_rise, m.seen_share(), m.joint_gap, 1e3 * m.penetration, m.mean_passes(),
+                  m.passes_percentile(0.99), m.most_passes, m.mean_factorisations(), m.unconverged, m.solved,
                   per_step(m.microseconds, m));
     text += line;
   }
@@ -138,6 +139,8 @@ nlohmann::json stability_json(const std::vector<StabilityResult>& results) {
                         {"reason", row.reason},
                         {"energy_gain", m.energy_gain},
                         {"worst_rise", m.worst_rise},
+                        {"energy_seen", m.seen_share()},
+                        {"blind", m.blind},
                         {"joint_gap", m.joint_gap},
                         {"penetration", m.penetration},
                         {"passes_mean", m.mean_passes()},

@@ -3,17 +3,39 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
-#include "sinew/muscle/joint_coordinates.h"
+#include "sinew/residual/tree.h"
 #include "sinew/skeleton/rotation.h"
-#include "study/impulse_work.h"
+#include "study/audit/work.h"
 
 namespace sinew::study {
 namespace {
 
-constexpr double kBackwards = 1e-5;  ///< s: whence a start came, by its speeds
+constexpr double kMoment = 1e-4;  ///< s: whence a start came and where it goes, by its speeds
+
+/// What a world of T rounds coordinates and rotations to, of their size.
+template <class T>
+constexpr double kRounding = double(std::numeric_limits<T>::epsilon());
+
+/// Where joints are (joint → world) `later` seconds after a start, by their speeds there.
+template <class T>
+std::vector<Transform<double>> poses_after(const Skeleton& skeleton, const std::vector<JointJet<T>>& start,
+                                           double later) {
+  std::vector<Transform<double>> poses;
+  for (int i = 0; i < skeleton.body_count; ++i) {
+    const JointJet<T>& jet = start[static_cast<std::size_t>(i)];
+    const Quat<double> turn = rotation_exp<double>(later * jet.omega.template cast<double>());
+    const Transform<double> local{
+        jet.rotation.template cast<double>() * turn,
+        jet.translation.template cast<double>() + later * jet.velocity.template cast<double>()};
+    const int parent = skeleton.joints[static_cast<std::size_t>(i)].parent;
+    poses.push_back(parent < 0 ? local : poses[static_cast<std::size_t>(parent)] * local);
+  }
+  return poses;
+}
 
 }  // namespace
 
@@ -44,7 +66,12 @@ void Measurement::merge(const Measurement& o) {
   kinetic_most = std::max(kinetic_most, o.kinetic_most);
   energy_gain = std::max(energy_gain, o.energy_gain);
   worst_rise = std::max(worst_rise, o.worst_rise);
+  unsure = std::max(unsure, o.unsure);
+  instants += o.instants;
+  seen += o.seen;
+  blind = blind || o.blind;
   joint_gap = std::max(joint_gap, o.joint_gap);
+  joint_angle = std::max(joint_angle, o.joint_angle);
   penetration = std::max(penetration, o.penetration);
   unconverged += o.unconverged;
   restarts += o.restarts;
@@ -91,7 +118,10 @@ template <class T>
 Stage<T>::Stage(const WorldSettings& settings, Compared scheme)
     : settings_(settings),
       strikes_(scheme == Compared::kBossak),
-      world_(std::make_unique<World<T>>(settings)) {
+      world_(std::make_unique<World<T>>(settings)),
+      books_(settings.gravity, kRounding<T>) {
+  around_.ground = settings.ground;
+  around_.ground_height = settings.ground_height;
   for (const Status& status :
        {declare_scheme(scheme, *world_), world_->template declare<ContinuousDetection>(),
         world_->template declare<Restitution>()})
@@ -107,35 +137,34 @@ Stage<T>::Stage(const scene::Scene& scene, Compared scheme) : Stage(scene.world,
   }
   for (std::size_t c = 0; c < scene.characters.size(); ++c)
     enter(scene.characters[c].asset->skeleton, script_->play.start(static_cast<int>(c)),
-          RootDrive::kKinematic);
+          scene.characters[c].settings);
   for (const scene::SceneProp& prop : scene.props) enter(prop.settings);
+  for (const Collider& obstacle : scene.obstacles) around_.obstacles.push_back(audit::solid_of(obstacle));
 }
 
 /// Opens the books of a character that has been put into the world.
 template <class T>
-void Stage<T>::enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start, RootDrive root) {
-  const Energy e = energy_of<T>(skeleton, start, settings_.gravity);
-  kinetic_ += e.kinetic;
-  energy_ += e.kinetic + e.potential;
-  Member member{Tree<T>(skeleton), root, Tree<double>(skeleton), {}, {}, kBackwards};
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    const JointJet<T>& jet = start[i];
-    const Quat<double> back = rotation_exp<double>(-kBackwards * jet.omega.template cast<double>());
-    const Vec3<double> way = kBackwards * jet.velocity.template cast<double>();
-    const Transform<double> ago{jet.rotation.template cast<double>() * back,
-                                jet.translation.template cast<double>() - way};
-    const int parent = skeleton.joints[i].parent;
-    member.earlier.push_back(parent < 0 ? ago : member.earlier[static_cast<std::size_t>(parent)] * ago);
-  }
-  members_.push_back(std::make_unique<Member>(std::move(member)));
+void Stage<T>::enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start,
+                     const CharacterSettings& as) {
+  audit::Member member = audit::member_of(skeleton);
+  member.touches_ground = as.ground_contact;
+  member.touches_itself = as.self_collision;
+  books_.add(member, poses_after(skeleton, start, -kMoment), poses_after(skeleton, start, 0),
+             poses_after(skeleton, start, kMoment), kMoment);
+  roots_.push_back(as.root);
+  balance();
 }
 
 template <class T>
 void Stage<T>::enter(const PropSettings& prop) {
-  const double kinetic = 0.5 * prop.mass * prop.velocity.squaredNorm();
-  kinetic_ += kinetic;
-  energy_ += kinetic - prop.mass * settings_.gravity.dot(prop.pose.translation);
-  fresh_ = fresh_ || prop.angular_velocity.norm() > 0;  // its spin is booked when the first report comes
+  const auto after = [&](double later) {
+    const Quat<double> turn = rotation_exp<double>(later * prop.angular_velocity);
+    return std::vector<Transform<double>>{
+        {turn * prop.pose.rotation, prop.pose.translation + later * prop.velocity}};
+  };
+  books_.add(audit::loose_solid(prop.shape, prop.size, prop.mass), after(-kMoment), after(0), after(kMoment),
+             kMoment);
+  balance();
 }
 
 template <class T>
@@ -151,7 +180,7 @@ int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,
   status = world_->character(index).set_target(start);
   if (!status) m_.refused = status.reason;
   world_->character(index).reset();
-  enter(skeleton, start, settings.root);
+  enter(skeleton, start, settings);
   return index;
 }
 
@@ -170,6 +199,7 @@ int Stage<T>::add_prop(const PropSettings& prop) {
 template <class T>
 void Stage<T>::add_obstacle(const Collider& obstacle) {
   if (const Status status = world_->add_obstacle(obstacle); !status) m_.refused = status.reason;
+  around_.obstacles.push_back(audit::solid_of(obstacle));
 }
 
 template <class T>
@@ -180,116 +210,156 @@ void Stage<T>::push(const scene::Impulse& push, double h) {
     m_.refused = status.reason;
     return;
   }
-  const Transform<double> model = character(c).model()[joint].template cast<double>();
-  const Member& member = *members_[static_cast<std::size_t>(c)];
+  const int body = body_of(c, joint);
+  const Transform<double> model = character(c).model()[body].template cast<double>();
   const Vec3<double> local = model.inverse() * point;
-  const Vec3<double> ago = member.earlier[static_cast<std::size_t>(joint)] * local;
-  pushes_.push_back({c, joint, local, point, impulse, (point - ago) / member.span, strikes_ && !lasts});
+  pushes_.push_back({c, body, local, point, impulse, books_.arriving(c, body, local), strikes_ && !lasts});
 }
 
-/// Whether a character's root goes where it is led in the step that is to come.
+/// The simulated joint that carries a joint.
 template <class T>
-bool Stage<T>::root_is_led(int c) const {
+int Stage<T>::body_of(int c, int joint) const {
+  const Skeleton& skeleton = world_->character(c).skeleton();
+  while (joint >= skeleton.body_count) joint = skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  return joint;
+}
+
+/// Whether a character's root goes where it is driven in the step that is to come.
+template <class T>
+bool Stage<T>::root_is_driven(int c) const {
   const auto index = static_cast<std::size_t>(c);
-  if (!script_) return members_[index]->root == RootDrive::kKinematic;
+  if (!script_) return roots_[index] == RootDrive::kKinematic;
   return scene::value_at(script_->scene.characters[index].root, script_->time, RootDrive::kKinematic) ==
          RootDrive::kKinematic;
 }
 
-/// Of the impulses on a character that act at once.
+/// Of the impulses on a character that act at once, and how far that may be off.
 template <class T>
-double Stage<T>::work_of_strikes(int c) const {
-  const Member& member = *members_[static_cast<std::size_t>(c)];
-  std::vector<PointImpulse> impulses;
+double Stage<T>::work_of_strikes(int c, double& unsure) const {
+  std::vector<audit::PointImpulse> impulses;
   for (const Push& p : pushes_)
     if (p.character == c && p.strikes) {
-      int body = p.joint;
-      while (body >= member.exact.bodies) body = world_->character(c).skeleton().joints[body].parent;
-      impulses.push_back({body, p.before, p.impulse, p.speed});
+      impulses.push_back({p.joint, p.before, p.impulse, p.speed.value});
+      unsure += p.impulse.norm() * p.speed.error;
     }
   if (impulses.empty()) return 0;
-  std::vector<Transform<double>> local;
-  for (int i = 0; i < member.exact.bodies; ++i) local.push_back(member.local[i].template cast<double>());
-  return work_of_impulses(member.exact, local, root_is_led(c), impulses);
+  return audit::work_of_impulses(books_.members()[static_cast<std::size_t>(c)], poses_of(c),
+                                 root_is_driven(c), impulses);
 }
 
-/// Where everybody is before a step of h seconds.
+/// Everybody's bodies where the world says that they are: characters, then props.
 template <class T>
-void Stage<T>::remember_poses(double h) {
-  for (std::size_t c = 0; c < members_.size(); ++c) {
-    Member& member = *members_[c];
-    const auto local = character(static_cast<int>(c)).local();
-    member.local.assign(local.begin(), local.end());
-    member.earlier.clear();
-    for (const Transform<T>& model : character(static_cast<int>(c)).model())
-      member.earlier.push_back(model.template cast<double>());
-    member.span = h;
+std::vector<Transform<double>> Stage<T>::poses() const {
+  std::vector<Transform<double>> all;
+  for (int c = 0; c < world_->character_count(); ++c) {
+    const Character<T> one = world_->character(c);
+    for (int i = 0; i < one.skeleton().body_count; ++i)
+      all.push_back(one.model()[static_cast<std::size_t>(i)].template cast<double>());
   }
+  for (int p = 0; p < world_->prop_count(); ++p) all.push_back(world_->prop_pose(p).template cast<double>());
+  return all;
 }
 
 /// A load is a constant force over the step, so its work is force times the way of the point that it is fixed
-/// to. What strikes has done its work before the step.
+/// to.
 template <class T>
-double Stage<T>::work_of_pushes(double h) {
+double Stage<T>::work_of_loads(double h) const {
   double work = 0;
-  for (std::size_t c = 0; c < members_.size(); ++c) work += work_of_strikes(static_cast<int>(c));
   for (const Push& p : pushes_) {
     if (p.strikes) continue;
-    const Transform<double> model = character(p.character).model()[p.joint].template cast<double>();
+    const Transform<double> model =
+        world_->character(p.character).model()[static_cast<std::size_t>(p.joint)].template cast<double>();
     work += (p.impulse / h).dot(model * p.local - p.before);
   }
-  pushes_.clear();
   return work;
 }
 
 /// Muscles and driven roots: torque at the end of the step times the way made. Where it is negative (a muscle
-/// that brakes) the energy must go down by as much.
+/// that brakes) the energy must go down by as much. `after`: where everybody is now.
 template <class T>
-double Stage<T>::work_of_muscles() {
+double Stage<T>::work_of_muscles(const std::vector<Transform<double>>& after) const {
   double work = 0;
-  for (std::size_t c = 0; c < members_.size(); ++c) {
-    const Member& member = *members_[c];
-    const Character<T> now = character(static_cast<int>(c));
-    for (int i = 0; i < member.tree.bodies; ++i) {
-      const int first = member.tree.first_dof[i], count = member.tree.dof_count(i);
-      if (count == 0) continue;
-      const auto moved = joint_offset<T>(member.tree, i, member.local[i], now.local()[i]).value;
-      for (int k = 0; k < count; ++k) work += double(now.torque()[first + k]) * double(moved[k]);
-    }
+  std::size_t first = 0;
+  for (int c = 0; c < world_->character_count(); ++c) {
+    const audit::Member& member = books_.members()[static_cast<std::size_t>(c)];
+    const auto torque = world_->character(c).torque();
+    const std::vector<double> torques(torque.begin(), torque.begin() + member.dofs);
+    work += audit::work_of_torques(member, poses_of(c),
+                                   audit::Poses(after).subspan(first, member.bodies.size()), torques);
+    first += member.bodies.size();
   }
   return work;
 }
 
 template <class T>
-void Stage<T>::measure_gaps(int index) {
-  const Member& member = *members_[index];
-  const auto model = character(index).model();
-  for (int i = 0; i < member.tree.bodies; ++i) {
-    if (!model[i].translation.allFinite() || !model[i].rotation.coeffs().allFinite()) m_.finite = false;
-    const int parent = member.tree.parent[i];
-    const JointType type = member.tree.type[i];
-    if (parent < 0 || type == JointType::kFree || type == JointType::kPlanar || type == JointType::kPrismatic)
-      continue;
-    const Vec3<T> socket = model[parent] * member.tree.rest[i].translation;
-    m_.joint_gap = std::max(m_.joint_gap, double((model[i].translation - socket).norm()));
+double Stage<T>::depth() const {
+  const std::vector<audit::Member>& members = books_.members();
+  std::vector<audit::Poses> poses;
+  double deepest = 0;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    poses.push_back(poses_of(static_cast<int>(m)));
+    deepest = std::max(deepest, audit::depth_in(around_, members[m], poses.back()));
   }
-}
-
-/// Elastic energy, in runtimes that report it.
-template <class Report>
-double elastic_of(const Report& report) {
-  if constexpr (requires { report.elastic_energy; })
-    return report.elastic_energy;
-  else
-    return 0;
+  return settings_.body_contact ? std::max(deepest, audit::deepest_between(members, poses)) : deepest;
 }
 
 template <class T>
-void Stage<T>::book(const CharacterReport& r) {
-  kinetic_ += r.kinetic_energy;
-  energy_ += r.kinetic_energy + r.potential_energy + elastic_of(r);
-  m_.finite = m_.finite && std::isfinite(r.kinetic_energy) && std::isfinite(r.potential_energy);
-  m_.penetration = std::max(m_.penetration, r.penetration);
+double Stage<T>::depth(int member) const {
+  const std::vector<audit::Member>& members = books_.members();
+  const audit::Member& one = members[static_cast<std::size_t>(member)];
+  double deepest = audit::depth_in(around_, one, poses_of(member));
+  for (std::size_t m = 0; m < members.size(); ++m)
+    if (static_cast<int>(m) != member)
+      deepest = std::max(
+          deepest, audit::depth_between(one, poses_of(member), members[m], poses_of(static_cast<int>(m))));
+  return deepest;
+}
+
+template <class T>
+double Stage<T>::loop_gap(int loop) const {
+  const auto place = [&](const Anchor& anchor) {
+    if (anchor.kind == AnchorKind::kCharacter)
+      return poses_of(anchor.index)[static_cast<std::size_t>(anchor.joint)] * anchor.frame;
+    if (anchor.kind == AnchorKind::kProp)
+      return poses_of(world_->character_count() + anchor.index)[0] * anchor.frame;
+    return anchor.frame;
+  };
+  const LoopSettings& l = script_->scene.loops[static_cast<std::size_t>(loop)];
+  return (place(l.a).translation - place(l.b).translation).norm();
+}
+
+/// Joints and depths now.
+template <class T>
+void Stage<T>::look() {
+  for (std::size_t m = 0; m < books_.members().size(); ++m) {
+    const audit::Poses poses = poses_of(static_cast<int>(m));
+    for (const Transform<double>& pose : poses)
+      if (!pose.translation.allFinite() || !pose.rotation.coeffs().allFinite()) m_.finite = false;
+    const audit::Gap gap = audit::joint_gap(books_.members()[m], poses, kRounding<T>);
+    m_.joint_gap = std::max(m_.joint_gap, gap.distance);
+    m_.joint_angle = std::max(m_.joint_angle, gap.angle);
+  }
+  m_.penetration = std::max(m_.penetration, depth());
+}
+
+/// What the books show so far.
+template <class T>
+void Stage<T>::balance() {
+  const audit::Balance& b = books_.balance();
+  m_.kinetic_start = b.kinetic_start;
+  m_.kinetic_end = b.kinetic_end;
+  m_.kinetic_most = b.kinetic_most;
+  m_.energy_gain = b.gain;
+  m_.worst_rise = b.rise;
+  m_.unsure = b.unsure;
+  m_.instants = b.instants;
+  m_.seen = b.seen;
+  m_.blind = b.blind;
+  m_.work = b.work;
+}
+
+template <class T>
+void Stage<T>::count(const CharacterReport& r) {
   if (r.unknown_dofs > 0 && (r.contacts > 0 || !in_contact_only_)) m_.count(r);
 }
 
@@ -319,8 +389,9 @@ template <class T>
 bool Stage<T>::step(double h) {
   if (!m_.refused.empty()) return false;
   if (script_ && !follow_script(h)) return false;
-  remember_poses(h);
-  if (m_.steps == 0) base_ = energy_, m_.kinetic_start = m_.kinetic_most = kinetic_;
+  const bool known = books_.begun();
+  double work = 0, unsure = 0;
+  for (int c = 0; known && c < world_->character_count(); ++c) work += work_of_strikes(c, unsure);
   const auto begin = std::chrono::steady_clock::now();
   const Status status = world_->step(T(h));
   m_.microseconds +=
@@ -330,27 +401,14 @@ bool Stage<T>::step(double h) {
     return false;
   }
   ++m_.steps;
-  const double before = energy_;
-  energy_ = kinetic_ = 0;
-  for (int c = 0; c < world_->character_count(); ++c) {
-    measure_gaps(c);
-    book(character(c).report());
-  }
-  for (int p = 0; p < world_->prop_count(); ++p) {
-    if (!world_->prop_pose(p).translation.allFinite()) m_.finite = false;
-    book(world_->prop_report(p));
-  }
-  const double work = work_of_pushes(h) + work_of_muscles();
-  m_.kinetic_end = kinetic_;
-  m_.kinetic_most = std::max(m_.kinetic_most, kinetic_);
-  if (fresh_) {
-    fresh_ = false;
-    base_ = energy_ - m_.work;
-    return true;
-  }
-  m_.work += work;
-  m_.worst_rise = std::max(m_.worst_rise, energy_ - before - work);
-  m_.energy_gain = std::max(m_.energy_gain, energy_ - base_ - m_.work);
+  const std::vector<Transform<double>> now = poses();
+  if (known) work += work_of_loads(h) + work_of_muscles(now);
+  pushes_.clear();
+  books_.record(h, now, work, unsure);
+  look();
+  balance();
+  for (int c = 0; c < world_->character_count(); ++c) count(character(c).report());
+  for (int p = 0; p < world_->prop_count(); ++p) count(world_->prop_report(p));
   return true;
 }
 

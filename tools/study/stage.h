@@ -1,4 +1,5 @@
-// A world under observation: steps it and keeps the books on energy, joints, contacts and solver.
+// A world under observation: steps it and counts what its solver did. Energies, work, joints and depths come
+// from the recorded poses (audit/), not from what the world reports of itself.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 #include "scene/play.h"
 #include "sinew/character/world.h"
-#include "sinew/residual/tree.h"
+#include "study/audit/books.h"
 #include "study/schemes/schemes.h"
 
 namespace sinew::study {
@@ -19,12 +20,16 @@ struct Measurement {
   int steps = 0;
   bool finite = true;
   double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
-  double energy_gain = 0;  ///< most that the total ever stood above start plus work put in
-  double worst_rise = 0;   ///< largest rise in one step beyond the work of that step
-  double work = 0;         ///< put in by pushes, muscles and driven roots
-  double joint_gap = 0;    ///< between the two halves of any joint
-  double penetration = 0;  ///< deepest contact
-  int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
+  double energy_gain = 0;      ///< least by which the total ever stood above start plus work (audit::Balance)
+  double worst_rise = 0;       ///< least by which it rose beyond work within twelve steps
+  double unsure = 0;           ///< most that the books cannot tell where they see well
+  int instants = 0, seen = 0;  ///< judged by the books, and of these seen to 1e-3 of the kinetic energy
+  bool blind = false;          ///< something turned too fast for its poses to show
+  double work = 0;             ///< put in by pushes, muscles and driven roots
+  double joint_gap = 0;        ///< between the two halves of any joint
+  double joint_angle = 0;      ///< rad, that a joint turned about what it is no hinge for
+  double penetration = 0;      ///< deepest that two shapes lay in each other
+  int unconverged = 0;         ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
   int restarts = 0;  ///< see CharacterReport
   long passes = 0, chords = 0, factorisations = 0;
@@ -36,6 +41,7 @@ struct Measurement {
   double mean_passes() const { return solved ? double(passes) / solved : 0; }
   double mean_iterations() const { return solved ? double(passes + chords) / solved : 0; }
   double mean_factorisations() const { return solved ? double(factorisations) / solved : 0; }
+  double seen_share() const { return instants ? double(seen) / instants : 0; }
   double unconverged_share() const { return solved ? double(unconverged) / solved : 0; }
   int passes_percentile(double share) const;
   /// Counts one solved step of a character or prop.
@@ -66,7 +72,7 @@ class Stage {
     push({character, joint, point, h * force, true}, h);
   }
   /// The state has been set from outside (teleport, reset): the books start afresh at the next step.
-  void forget() { fresh_ = true; }
+  void forget() { books_.forget(); }
 
   /// Counts passes, factorisations and unconverged steps only where something touches.
   void count_in_contact_only() { in_contact_only_ = true; }
@@ -93,22 +99,22 @@ class Stage {
   const Measurement& measured() const { return m_; }
   const WorldSettings& settings() const { return settings_; }
   Vec3<double> center_of_mass(int character);
-  double kinetic() const { return kinetic_; }  ///< J, after the last step
+  double kinetic() const { return books_.kinetic(); }  ///< J, over the last step
+  const audit::Books& books() const { return books_; }
+  const audit::Surroundings& surroundings() const { return around_; }
+  /// m, deepest that shapes lie in each other now: all, or one character (or prop: after the characters) in
+  /// anything else.
+  double depth() const;
+  double depth(int member) const;
+  /// m, how far the ends of a loop of the scene are apart now.
+  double loop_gap(int loop) const;
 
  private:
-  struct Member {
-    Tree<T> tree;
-    RootDrive root;                   ///< without a scene's timeline
-    Tree<double> exact;               ///< for the work of impulses
-    std::vector<Transform<T>> local;  ///< before the step
-    /// [joint] joint → world, a step of `span` seconds before that; at the start by the speeds there.
-    std::vector<Transform<double>> earlier;
-    double span = 0;
-  };
   struct Push {
     int character, joint;
-    Vec3<double> local, before, impulse, speed;  ///< the point's, before it
-    bool strikes;                                ///< acts at once; else over the step
+    Vec3<double> local, before, impulse;  ///< the point in its joint's axes and in the world, before the step
+    audit::Estimate speed;                ///< its, before it
+    bool strikes;                         ///< acts at once; else over the step
   };
   struct Script {
     Script(const scene::Scene& of, World<T>& world) : scene(of), play(scene, world) {}
@@ -117,29 +123,32 @@ class Stage {
     double time = 0;  ///< s
   };
 
-  void enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start, RootDrive root);
+  void enter(const Skeleton& skeleton, const std::vector<JointJet<T>>& start, const CharacterSettings& as);
   void enter(const PropSettings& prop);
   bool follow_script(double h);
 
   void push(const scene::Impulse& push, double h);
-  double work_of_pushes(double h);
-  double work_of_strikes(int character) const;
-  bool root_is_led(int character) const;
-  void remember_poses(double h);
-  double work_of_muscles();
-  void measure_gaps(int index);
-  void book(const CharacterReport& report);
+  double work_of_loads(double h) const;
+  double work_of_strikes(int character, double& unsure) const;
+  double work_of_muscles(const std::vector<Transform<double>>& poses) const;
+  bool root_is_driven(int character) const;
+  int body_of(int character, int joint) const;
+  std::vector<Transform<double>> poses() const;
+  audit::Poses poses_of(int member) const { return books_.poses(member); }
+  void look();
+  void balance();
+  void count(const CharacterReport& report);
 
   WorldSettings settings_;
   bool strikes_;  ///< impulses act at once, as they do in the runtime's own scheme
   std::unique_ptr<World<T>> world_;
   std::unique_ptr<Script> script_;
-  std::vector<std::unique_ptr<Member>> members_;
+  std::vector<RootDrive> roots_;  ///< [character] without a scene's timeline
   std::vector<Push> pushes_;
+  audit::Books books_;
+  audit::Surroundings around_;
   Measurement m_;
-  double base_ = 0;  ///< energy at the start
-  double energy_ = 0, kinetic_ = 0;
-  bool fresh_ = false, in_contact_only_ = false;
+  bool in_contact_only_ = false;
 };
 
 /// Kinetic and potential energy (J) of a skeleton in the state of `jets`.

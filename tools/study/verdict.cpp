@@ -25,6 +25,7 @@ void Verdict::sound() {
   require(measured_.refused.empty(), "refused: " + measured_.refused);
   require(measured_.finite, "NaN or infinity");
   at_most("joint gap (m)", measured_.joint_gap, 1e-5);  // float's rounding some 10 m from the origin
+  at_most("turn of a joint about what it is no hinge for (rad)", measured_.joint_angle, 1e-5);
   at_most("share of unconverged steps", measured_.unconverged_share(), 1e-3);
 }
 

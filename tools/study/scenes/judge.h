@@ -1,27 +1,14 @@
 // A judge of recorded scenes. It knows shapes, masses and poses, nothing of how they came about: its geometry
-// is its own and shares no code with the runtime.
+// is the studies' own (audit/) and shares no code with the runtime.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <vector>
 
 #include "scene/recording.h"
+#include "study/audit/member.h"
 
 namespace sinew::study {
-
-/// A ball, capsule (segment along its own z) or box where it stands in the world.
-struct Solid {
-  Shape shape = Shape::kSphere;
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< m: half extents of a box; z: half a capsule's segment
-  double radius = 0;                               ///< m; 0 of boxes
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-};
-
-/// m, by how much two solids lie in each other; negative: at least so far apart. Exact but for a capsule
-/// whose segment goes through a box (the depth of its deepest point) and boxes that are apart.
-double overlap(const Solid& a, const Solid& b);
-/// m, below a floor at `height`.
-double below(const Solid& solid, double height);
 
 class Judge {
  public:
@@ -57,22 +44,11 @@ class Judge {
   double step() const { return 1 / recording_.frame_rate; }
 
  private:
-  struct Body {
-    double mass = 0;
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< in its own axes, m
-    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-    int parent = -1;                                   ///< body of the same member that its joint hangs on
-    Eigen::Vector3d socket = Eigen::Vector3d::Zero();  ///< in the parent's axes, m
-    std::vector<Solid> solids;                         ///< in its own axes
-  };
-  using Member = std::vector<Body>;
-
-  Eigen::Isometry3d pose(int frame, int member, int body) const;
-  std::vector<Solid> placed(int frame, int member) const;
+  std::vector<Transform<double>> poses(int frame, int member) const;
 
   const scene::Recording& recording_;
-  std::vector<Member> members_;
-  std::vector<Solid> obstacles_;
+  std::vector<audit::Member> members_;
+  audit::Surroundings around_;
 };
 
 /// m, furthest that any joint or prop of a member of one recording is from where it is in another.
