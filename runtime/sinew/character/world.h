@@ -9,7 +9,7 @@
 //     draw(world.character(hero).model());                // joint → world transforms
 //
 // Undisturbed characters cost a residual pass; the pose is then the clip's, bit for bit. Where the residual
-// exceeds a muscle's limit, those degrees of freedom are solved together with contacts and friction.
+// exceeds a muscle's limit, those joints are solved together with contacts and friction.
 #pragma once
 
 #include <cstddef>
