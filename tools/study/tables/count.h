@@ -22,10 +22,6 @@ bool can_count();
 /// callgrind, fifty times slower than by themselves.
 std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs);
 
-/// Runs the jobs that a file lists, one `counted` call each: the main function of the program under
-/// callgrind.
-int run_counted_jobs(const std::string& directory, const std::string& list);
-
 /// One line of the list, and back.
 std::string line_of(const CountJob& job);
 CountJob job_of(const std::string& line);

@@ -25,10 +25,10 @@ const std::vector<Pairing> kOpenRows = {{"DTR", "DE"},        {"DSR", "DE"},
                                         {"RR-JF", "DASSL"},   {"RR-JF", "DASSL-strict"}};
 /// "Rz2": loops closed once per accepted step (index 2), as the paper has it; "Rz": in every evaluation.
 const std::vector<Pairing> kClosedRows = {
-    {"DSR-Rz", "DE"},        {"DSR-Rz", "ode15s"},     {"DSR-Rz-JF", "ode15s"},  {"RR-Rz-JN", "ode15sR"},
-    {"RR-Rz-JF", "ode15sR"}, {"RR-Rz-JN", "DASSL"},    {"RR-Rz-JF", "DASSL"},    {"RR-Rz-JF", "DASSL-strict"},
-    {"DSR-Rz2", "DE"},       {"DSR-Rz2-JF", "ode15s"}, {"RR-Rz2-JN", "ode15sR"}, {"RR-Rz2-JF", "ode15sR"},
-    {"RR-Rz2-JF", "DASSL"}};
+    {"DSR-Rz", "DE"},         {"DSR-Rz", "ode15s"},  {"DSR-Rz-JF", "ode15s"},  {"RR-Rz-JN", "ode15sR"},
+    {"RR-Rz-JF", "ode15sR"},  {"RR-Rz-JN", "DASSL"}, {"RR-Rz-JF", "DASSL"},    {"RR-Rz-JF", "DASSL-strict"},
+    {"DSR-Rz2", "DE"},        {"DSR-Rz2", "ode15s"}, {"DSR-Rz2-JF", "ode15s"}, {"RR-Rz2-JN", "ode15sR"},
+    {"RR-Rz2-JF", "ode15sR"}, {"RR-Rz2-JF", "DASSL"}};
 
 const std::vector<std::string> kOpenEvaluations = {"DTR", "DSR", "RR"},
                                kClosedEvaluations = {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2"};
@@ -112,7 +112,7 @@ class Study {
     const auto& only = options_.only;
     if (!only.empty())
       always = std::find(only.begin(), only.end(), name) != only.end();
-    else if (!options_.quick || options_.mechanisms != "")
+    else if (!options_.quick || !options_.mechanisms.empty())
       always = true;
     return always && std::filesystem::exists(directory_ + "/" + name + ".json");
   }
