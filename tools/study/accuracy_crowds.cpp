@@ -68,7 +68,7 @@ std::unique_ptr<Population> walkers(const Asset& asset, int count, Status& statu
     Transform<float> place;
     const std::div_t at = std::div(n, columns);
     place.translation = Vec3<double>(-kSpacing * at.quot, kSpacing * at.rem, 0).cast<float>();
-    status = people->play(n, {&walk, phase(random), 1, place});
+    status = people->play(n, {&walk, phase(random), place});
     if (!status) return nullptr;
   }
   return people;
@@ -111,8 +111,11 @@ convert::Error walk_once(const Asset& asset, int count, double percent_hit, doub
 }  // namespace
 
 convert::Error measure_situation(const std::string& name, double seconds, int runs, CrowdCost& out) {
+  const std::vector<Situation> all = situations();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Situation& s) { return name == s.name; });
+  if (found == all.end()) return {"there is no situation '" + name + "'"};
   scene::Scene scene;
-  if (convert::Error error = scene::load_scene(situation_file(name), scene)) return error;
+  if (convert::Error error = scene::load_scene(situation_file(*found), scene)) return error;
   scene.duration = std::min(scene.duration, seconds);
   out.name = name;
   out.title = scene.title;
