@@ -26,7 +26,8 @@ Error TablesCommand::run() const {
   std::filesystem::create_directories(directory, failed);
   if (failed) return {directory + ": cannot be made: " + failed.message()};
   study::TablesResult result;
-  if (std::string why = study::run_tables({mechanisms, tolerance, quick, {}}, progress_line("tables"), result);
+  if (std::string why =
+          study::run_tables({mechanisms, tolerance, quick, {}}, progress_line("tables"), result);
       !why.empty())
     return {why};
   const nlohmann::json summary = study::tables_json(result);

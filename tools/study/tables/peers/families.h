@@ -15,7 +15,7 @@ std::vector<Peer> odeint_peers();    ///< the same
 /// CPU time but the integration; fills error and the quickest time.
 template <class Simulate>
 SimulationRun measure_peer(const std::string& name, const StudyCase& c, double tolerance, int repeats,
-                         Simulate simulate) {
+                           Simulate simulate) {
   SimulationRun m;
   m.mechanism = c.name;
   m.method = name;
