@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
+constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
 constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
 
 /// Whether no force from outside acts on it but gravity, contacts and couplings.
@@ -435,6 +436,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     if (!(force > T(0) || led)) continue;
     std::array<T, 2> elastic{};
     if (stays_where_it_sticks(c)) elastic = elastic_share(c, settings_.stick);
+    if (elastic[0] * elastic[0] + elastic[1] * elastic[1] > T(kSlides)) elastic = {};
     for (T& e : elastic) e = rounded_off<kHalfOfDigits<T>>(e);
     lagged_.push_back({c.id, force, c.stiffness, c.offset, c.smooth_force,
                        rounded_off<kHalfOfDigits<T>>(c.lasting_force), c.lasting_last, elastic});

@@ -561,7 +561,7 @@ void moves_at_walking_pace(const Scene& scene, bool, Findings& found) {
 
 void slope(const Scene& scene, bool, Findings& found) {
   at_rates(scene, kRates, 1, 5e-3, found, [&](const Played&, const Judge& judge) {
-    const int from = judge.frame_at(8), end = judge.frames() - 1;
+    const int from = judge.frame_at(12), end = judge.frames() - 1;
     for (int m = 0; m < judge.members(); ++m)
       found.at_most("creeps in six seconds (m)",
                     (judge.center_of_mass(end, m) - judge.center_of_mass(from, m)).norm(), 1e-3);
