@@ -261,10 +261,10 @@ Verdict ragdoll_and_back(const Trial& t) {
   stage.run(t.lasting(600, 15), t.h, [&](double time) {
     const bool limp = std::fmod(time, kCycle) < kLimp;
     const Vec3<double> now = stage.books().momentum(0).linear / mass;
-    // What the first limp frame changed, beyond gravity's part.
+    // What the first limp frame changed, beyond what gravity can; its feet may still bear it.
     if (limp && !was_limp && time > 0) before = now;
     if (limp && was_limp && std::fmod(time, kCycle) < 1.5 * t.h && time > kCycle)
-      kick = std::max(kick, (now - before - Vec3<double>(0, 0, -9.81 * t.h)).norm());
+      kick = std::max(kick, (now - before).norm() - 9.81 * t.h);
     if (limp && !was_limp && time > 1) ++cycles, returned += stage.character(0).on_animation();
     lowest = std::min(lowest, stage.center_of_mass(0).z());
     if (!limp && was_limp) fallen += lowest < 0.5, lowest = 1;

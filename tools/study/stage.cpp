@@ -69,7 +69,7 @@ void Measurement::merge(const Measurement& o) {
   unsure = std::max(unsure, o.unsure);
   instants += o.instants;
   seen += o.seen;
-  blind = blind || o.blind;
+  blind += o.blind;
   joint_gap = std::max(joint_gap, o.joint_gap);
   joint_angle = std::max(joint_angle, o.joint_angle);
   penetration = std::max(penetration, o.penetration);

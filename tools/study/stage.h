@@ -24,12 +24,12 @@ struct Measurement {
   double worst_rise = 0;       ///< least by which it rose beyond work within twelve steps
   double unsure = 0;           ///< most that the books cannot tell where they see well
   int instants = 0, seen = 0;  ///< judged by the books, and of these seen to 1e-3 of the kinetic energy
-  bool blind = false;          ///< something turned too fast for its poses to show
-  double work = 0;             ///< put in by pushes, muscles and driven roots
-  double joint_gap = 0;        ///< between the two halves of any joint
-  double joint_angle = 0;      ///< rad, that a joint turned about what it is no hinge for
-  double penetration = 0;      ///< deepest that two shapes lay in each other
-  int unconverged = 0;         ///< steps of characters and props that moved in a solve, see `solved`
+  int blind = 0;           ///< of the instants, those at which something turned too fast for poses to show
+  double work = 0;         ///< put in by pushes, muscles and driven roots
+  double joint_gap = 0;    ///< between the two halves of any joint
+  double joint_angle = 0;  ///< rad, that a joint turned about what it is no hinge for
+  double penetration = 0;  ///< deepest that two shapes lay in each other
+  int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
   int restarts = 0;  ///< see CharacterReport
   long passes = 0, chords = 0, factorisations = 0;

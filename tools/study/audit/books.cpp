@@ -14,7 +14,7 @@ constexpr std::size_t kMiddle = 4;
 constexpr std::size_t kRiseWithin = 12;  ///< steps: an impact spoils four on either side
 constexpr double kWellSeen = 1e-3;       ///< of the largest kinetic energy: what hard cases ask for
 constexpr double kSeenAnyway = 1e-6;     ///< J
-constexpr double kFollowed = 2.5;        ///< rad per step
+constexpr double kJudged = 1.5;          ///< rad per step: poses that turn faster show no motion
 
 Bounds squares(double size, double error) {
   const double low = std::max(0.0, size - error), high = size + error;
@@ -81,14 +81,13 @@ void Books::record(double h, const std::vector<Transform<double>>& poses, double
   next.work = balance_.work += work;
   next.unsure = (instants_.empty() ? 0 : instants_.back().unsure) + unsure;
   next.poses = poses;
-  balance_.blind = balance_.blind || fastest_ * h > kFollowed;
   instants_.push_back(std::move(next));
   if (instants_.size() > kKept) {
     instants_.pop_front();
     before_start_.clear();
   }
   if (instants_.size() > 1) look_at_step();
-  if (instants_.size() == kKept) judge_instant();
+  if (instants_.size() == kKept) judge_instant(fastest_ * h);
 }
 
 Poses Books::poses(int member) const {
@@ -149,11 +148,12 @@ void Books::look_at_step() {
   balance_.kinetic_most = std::max(balance_.kinetic_most, kinetic_);
 }
 
-void Books::judge_instant() {
+void Books::judge_instant(double turn_at_start) {
   const Instant& now = instants_[kMiddle];
   const Stencils stencils(times(), kMiddle);
   Bounds energy;
   double kinetic = 0;
+  bool followed = turn_at_start < 2 * kJudged;
   momentum_ = {};
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Velocity v = velocity_at(bodies_[b], history(b), stencils, precision_);
@@ -163,7 +163,7 @@ void Books::judge_instant() {
     energy.low += one.low + height - rounding;
     energy.high += one.high + height + rounding;
     kinetic += one.low;
-    balance_.blind = balance_.blind || !std::isfinite(v.angular.error);
+    followed = followed && v.turn < kJudged;
     const Momentum m = momentum_of(bodies_[b], now.poses[b], v);
     momentum_.linear += m.linear;
     momentum_.angular += m.angular;
@@ -171,7 +171,13 @@ void Books::judge_instant() {
     momentum_.angular_error += m.angular_error;
   }
   balance_.kinetic_most = std::max(balance_.kinetic_most, kinetic);
-  enter(energy, now);
+  ++balance_.instants;
+  if (followed) {
+    enter(energy, now);
+  } else {
+    ++balance_.blind;
+    highs_.clear();
+  }
 }
 
 /// What stands in the books at an instant.
@@ -179,7 +185,6 @@ void Books::enter(const Bounds& energy, const Instant& at) {
   if (!based_) base_ = energy.high - at.work, based_ = true;
   const double low = energy.low - at.work - at.unsure, high = energy.high - at.work - at.unsure;
   balance_.gain = std::max(balance_.gain, low - base_);
-  ++balance_.instants;
   const double unsure = 0.5 * (energy.high - energy.low);
   const bool seen = unsure <= kWellSeen * balance_.kinetic_most + kSeenAnyway;
   // From an instant that was seen: within impacts nothing tells how much there was at most.

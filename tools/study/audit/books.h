@@ -36,11 +36,12 @@ struct Balance {
   double gain = 0;  ///< most by which the total must have stood above its start plus the work put in
   double rise = 0;  ///< most by which it must have risen, beyond work, between instants that are seen, up to
                     ///< twelve steps apart
-  double unsure = 0;   ///< most that the books cannot tell at an instant between impacts: see `seen`
-  double work = 0;     ///< put in
-  int instants = 0;    ///< judged
-  int seen = 0;        ///< of these, so well that the total is known to 1e-3 of the largest kinetic energy
-  bool blind = false;  ///< something turned by more than 2.5 rad in a step: its spin is not known
+  double unsure = 0;  ///< most that the books cannot tell at an instant between impacts: see `seen`
+  double work = 0;    ///< put in
+  int instants = 0;   ///< judged
+  int seen = 0;       ///< of these, so well that the total is known to 1e-3 of the largest kinetic energy
+  int blind =
+      0;  ///< of the instants, those at which something turned by more than 1.5 rad in a step: not judged
 };
 
 class Books {
@@ -79,7 +80,7 @@ class Books {
     std::vector<Transform<double>> poses;   ///< of all members
   };
   void look_at_step();
-  void judge_instant();
+  void judge_instant(double turn_at_start);
   void enter(const Bounds& energy, const Instant& at);
   std::vector<double> times() const;
   std::vector<Transform<double>> history(std::size_t body) const;

@@ -11,8 +11,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFurthest = 2.5;    ///< rad: logarithms of rotations are smooth up to π
+constexpr double kUneven = 10;       ///< times a step
 constexpr double kConverges = 0.15;  ///< of one order's correction by the next; of sin(ωt) about 0.2·(hω)²
-constexpr double kCaution = 2;       ///< of what errors are taken for
+constexpr double kCaution = 4;       ///< of what errors are taken for: jumps that hide in what swings
 constexpr double kJumpCaution = 1.25;  ///< of half a jump
 
 Vector3d turned(const Transform<double>& from, const Transform<double>& to) {
@@ -107,6 +108,11 @@ Stencils::Stencils(std::span<const double> times, int at)
         times.subspan(static_cast<std::size_t>(at - k), static_cast<std::size_t>(2 * k + 1)), times[at]);
   for (int k = 1 - aside; k <= aside; ++k)
     steps[static_cast<std::size_t>(k + kMostAside - 1)] = times[at + k] - times[at + k - 1];
+  for (int k = 1; k <= aside; ++k) {
+    const auto first = steps.begin() + (kMostAside - k), last = steps.begin() + (kMostAside + k);
+    if (*std::max_element(first, last) > kUneven * *std::min_element(first, last)) break;
+    even = k;
+  }
 }
 
 Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses, const Stencils& s,
@@ -115,7 +121,7 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
   const Vector3d center = here * body.center;
   const double size = center.cwiseAbs().maxCoeff() + body.center.norm();
   Velocity v;
-  v.linear = Sequence(s, s.aside, precision * size, [&](int k) -> Vector3d {
+  v.linear = Sequence(s, std::max(s.even, std::min(s.aside, 1)), precision * size, [&](int k) -> Vector3d {
                return poses[s.node + k] * body.center - center;
              }).best();
   int followed = 0;  // instants on both sides to which the rotation can be followed
@@ -124,7 +130,7 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
   const auto turn = [&](int k) -> Vector3d& {
     return turns[static_cast<std::size_t>(k + Stencils::kMostAside)];
   };
-  for (int k = 1; k <= s.aside; ++k) {
+  for (int k = 1; k <= std::max(s.even, std::min(s.aside, 1)); ++k) {
     bool follows = true;
     for (const int side : {-1, 1}) {
       turn(side * k) = turned(here, poses[s.node + side * k]);
@@ -135,6 +141,7 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
     if (!follows) break;
     followed = k;
   }
+  if (s.aside > 0) v.turn = std::max(turn(-1).norm(), turn(1).norm());
   if (followed == 0)
     v.angular.error = std::numeric_limits<double>::infinity();
   else

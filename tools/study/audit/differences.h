@@ -25,7 +25,8 @@ struct Stencils {
   int node = 0;                                ///< index of the instant
   int aside = 0;                               ///< instants on either side of it
   std::array<double, 2 * kMostAside> steps{};  ///< s, one after the other; the node is in their middle
-  std::array<Weights, kMostAside> weights;     ///< [instants on either side that count − 1]
+  int even = 0;  ///< of these, those to which no step is ten times as long as another: others tell nothing
+  std::array<Weights, kMostAside> weights;  ///< [instants on either side that count − 1]
 
   Stencils(std::span<const double> times, int node);
 };
@@ -39,11 +40,12 @@ struct Estimate {
 struct Velocity {
   Estimate linear;   ///< of the centre of mass, world, m/s
   Estimate angular;  ///< rad/s, in the body's own axes
+  double turn = 0;   ///< rad, the larger of the two steps' that meet at the instant
 };
 
 /// Velocity of a body at an instant from its poses (body → world) around it. Differences are believed where
 /// both those of the positions' first and of their second derivatives converge, each order's correction below
-/// 0.15 of the one before: the eighth order then, with twice the sixth's correction as its error. A jump
+/// 0.15 of the one before: the eighth order then, with four times the sixth's correction as its error. A jump
 /// within reach makes them diverge, wherever in a step it lies; then only the steps beside the instant count,
 /// and the error is half of what the mean velocities of neighbouring ones differ by. `precision`: what
 /// coordinates and rotations are rounded to, of their size. A body that turns by more than 2.5 rad between

@@ -148,8 +148,10 @@ Gap joint_gap(const Member& member, Poses poses, double precision) {
     const Transform<double>& parent = poses[static_cast<std::size_t>(body.parent)];
     const Eigen::Isometry3d socket = isometry(parent) * isometry(body.rest);
     const Eigen::Isometry3d from_rest = socket.inverse() * isometry(poses[b]);
-    const double rounding =
-        precision * (parent.translation.norm() + poses[b].translation.norm() + body.rest.translation.norm());
+    // A slide that has gone far shows the rounding of the axis that it goes along.
+    const double rounding = 2 * precision *
+                            (parent.translation.norm() + poses[b].translation.norm() +
+                             body.rest.translation.norm() + from_rest.translation().norm());
     widest.distance = std::max(widest.distance, apart(body, from_rest.translation()) - rounding);
     widest.angle =
         std::max(widest.angle, across(body, Eigen::Quaterniond(from_rest.linear())) - 2 * precision);
