@@ -70,7 +70,7 @@ template <class S>
   for (int i = 0; i < 3; ++i) sigma[i] = scale * b.q[i];
   const S square = dot(sigma, sigma), quarter = S(0.25);
   rodrigues_map(sigma, square, S(1), b.omega, rate);
-  for (int i = 0; i < 3; ++i) rate[i] = quarter * rate[i];
+  for (S& r : rate) r = quarter * r;
   // d/dt(Bᵀω) = Bᵀα − 2(σ·σ')ω + 2σ'×ω + 2σ'(σ·ω) + 2σ(σ'·ω)
   S turned[3];
   cross(rate, b.omega, turned);
