@@ -86,7 +86,6 @@ sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
   stage "sanitizers: build" build build-asan "building with sanitizers"
-  export SINEW_RANDOM_TREES=200  # whose energies are looked for in poses, which takes ten times as long here
   stage "sanitizers: tests" run build-asan
   [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
 }
