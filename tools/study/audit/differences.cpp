@@ -32,7 +32,7 @@ class Sequence {
       Vector3d first = Vector3d::Zero(), second = first;
       double squares = 0;
       for (int i = -k; i <= k; ++i) {
-        const auto index = static_cast<std::size_t>(i + k);
+        const int index = i + k;
         squares += w.first[index] * w.first[index];
         if (i == 0) continue;
         first += w.first[index] * at(i);
@@ -127,9 +127,7 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
   int followed = 0;  // instants on both sides to which the rotation can be followed
   std::array<Vector3d, 2 * Stencils::kMostAside + 1> turns;
   turns.fill(Vector3d::Zero());
-  const auto turn = [&](int k) -> Vector3d& {
-    return turns[static_cast<std::size_t>(k + Stencils::kMostAside)];
-  };
+  const auto turn = [&](int k) -> Vector3d& { return turns[k + Stencils::kMostAside]; };
   for (int k = 1; k <= std::max(s.even, std::min(s.aside, 1)); ++k) {
     bool follows = true;
     for (const int side : {-1, 1}) {

@@ -164,8 +164,7 @@ double work_of_torques(const Member& member, Poses before, Poses after, std::spa
     std::array<double, 6> way{};
     joint_way(body, body.parent < 0 ? world : before[parent], before[b],
               body.parent < 0 ? world : after[parent], after[b], way);
-    for (int k = 0; k < dof_count(body.type); ++k)
-      work += torques[static_cast<std::size_t>(body.first_dof + k)] * way[static_cast<std::size_t>(k)];
+    for (int k = 0; k < dof_count(body.type); ++k) work += torques[body.first_dof + k] * way[k];
   }
   return work;
 }
