@@ -43,7 +43,7 @@ TEST(Books, OfASymmetricTopKeepItsEnergyAndMomentum) {
   EXPECT_LE(books.balance().gain, 1e-8);
   EXPECT_LE(books.balance().rise, 1e-5 * energy);
   EXPECT_EQ(books.balance().seen, books.balance().instants);
-  const Momentum m = books.momentum_between_impacts();
+  const Momentum& m = books.momentum_between_impacts();
   EXPECT_LE((m.angular - Vector3d(0.9, 0, 0.8)).norm(), m.angular_error + 1e-12);
   EXPECT_LE(m.angular_error, 1e-5);
 }

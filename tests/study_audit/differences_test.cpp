@@ -30,7 +30,8 @@ Velocity middle_velocity(const Path& path, double h, int points = 9) {
   std::vector<Transform<double>> poses;
   std::vector<double> times;
   for (int n = 0; n < points; ++n) {
-    times.push_back((n - points / 2) * h);
+    const int from_middle = n - points / 2;
+    times.push_back(from_middle * h);
     poses.push_back(path(0.3 + times.back()));
   }
   return velocity_at(one_body(1, Vector3d::Ones()).bodies[0], poses, Stencils(times, points / 2), 1e-16);

@@ -49,8 +49,8 @@ TEST(Solids, InertiasAreThoseOfTheirVolume) {
     int inside = 0;
     Solid point;
     for (int n = 0; n < 50 * 50 * 50; ++n) {
-      point.pose.translation() =
-          (Vector3d(n % 50, n / 50 % 50, n / 2500) / 49.0 - Vector3d::Constant(0.5)) * 1.2;
+      const int row = n / 50 % 50, layer = n / 2500;
+      point.pose.translation() = (Vector3d(n % 50, row, layer) / 49.0 - Vector3d::Constant(0.5)) * 1.2;
       if (overlap(point, s) < 0) continue;
       const Vector3d p = point.pose.translation();
       sum += p.squaredNorm() * Eigen::Matrix3d::Identity() - p * p.transpose();
@@ -136,7 +136,8 @@ TEST(Depths, BetweenManyAreThoseOfPairs) {
   std::vector<std::vector<Transform<double>>> at(balls.size());
   std::vector<Poses> poses;
   for (std::size_t n = 0; n < balls.size(); ++n) {
-    at[n] = {{Eigen::Quaterniond::Identity(), {std::fmod(7.3 * double(n), 5), 1.1 * double(n / 6), 0}}};
+    const auto row = n / 6;
+    at[n] = {{Eigen::Quaterniond::Identity(), {std::fmod(7.3 * double(n), 5), 1.1 * double(row), 0}}};
     poses.emplace_back(at[n]);
   }
   double deepest = 0;

@@ -115,7 +115,7 @@ inline std::vector<double> pendulum(double l, double start, double h, int steps)
 
 /// Height of a ball that falls from `height` and comes back with the given share of its speed, bounce after
 /// bounce (the last share for all that follow). At most 20 bounces.
-inline Path bouncing(double height, std::vector<double> restitution) {
+inline Path bouncing(double height, const std::vector<double>& restitution) {
   return [=](double t) {
     constexpr double kG = 9.81;
     double speed = std::sqrt(2 * kG * height), z = height - kG * t * t / 2, at = speed / kG;
