@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
+constexpr int kTightenRounds = 6;
 constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
 constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
 
@@ -300,6 +301,11 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     first_guess(*s, h);
     write_pushes(*s, T(1));
   }
+  for (Coupling<T>* c : couplings_)
+    for (Stencil<T>& e : c->stencils) {
+      e.shift.setZero();
+      e.shortened = T(0);
+    }
   if (!settings_.plan->scheme) drop_played();
   find_contacts(h);
 }
@@ -338,9 +344,19 @@ SolveReport IslandStepper<T>::solve() {
   }
   Accuracy accuracy = world_->accuracy;
   accuracy.max_iterations = std::min(accuracy.max_iterations, std::max(passes_left_, kLeastPasses));
-  const SolveReport report = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
+  SolveReport report = solver_.solve(settings_, accuracy, problems_, contacts_, couplings_);
+  for (int round = 0; round < kTightenRounds && report.converged && tighten_loops(); ++round)
+    report.add(solver_.solve(settings_, accuracy, problems_, contacts_, couplings_));
   passes_left_ -= report.outer_passes;
   return report;
+}
+
+/// Whether a loop is too far apart.
+template <class T>
+bool IslandStepper<T>::tighten_loops() {
+  bool any = false;
+  for (Coupling<T>* c : couplings_) any = settings_.plan->couplings->tighten(*c) || any;
+  return any;
 }
 
 /// Solves one part of the step without moving anything: the result stays in the problems.

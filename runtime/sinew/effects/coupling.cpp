@@ -13,6 +13,13 @@ namespace {
 constexpr double kSlack = 10;   ///< a loop that bore nothing: open by more, it began so
 constexpr double kYields = 10;  ///< to a led root
 constexpr double kTorn = 200;
+constexpr double kTightened = 0.5;  ///< of what is tight: so far a multiplier closes
+
+/// Whether a multiplier pulls it besides its spring.
+template <class T>
+bool is_pulled(const Stencil<T>& e) {
+  return e.shortened != T(0) || !e.shift.isZero(T(0));
+}
 
 template <class T>
 Mat3<T> deformation(const Coupling<T>& c, const Tetrahedron<T>& e) {
@@ -95,12 +102,15 @@ void set_material(double young, double poisson, Tetrahedron<double>& out) {
 
 template <class T>
 double measure_elements(Coupling<T>& c) {
-  double energy = 0;
+  double energy = 0, multipliers = 0;
   for (CouplingNode<T>& node : c.nodes) node.gradient.setZero();
   for (const Stencil<T>& e : c.stencils) {
     const Vec3<T> pull = stencil_pull(c, e);
     if (pull.isZero(T(0))) continue;
-    energy += double(pull.squaredNorm() / (2 * e.stiffness));
+    const double all = double(pull.squaredNorm() / (2 * e.stiffness));
+    const double stored = is_pulled(e) ? double(T(0.5) * e.stiffness * apart(c, e).squaredNorm()) : all;
+    energy += stored;
+    multipliers += all - stored;
     for (int i = 0; i < e.count; ++i) c.nodes[e.node[i]].gradient += e.weight[i] * pull;
   }
   for (const Tetrahedron<T>& e : c.tetrahedra) {
@@ -109,16 +119,16 @@ double measure_elements(Coupling<T>& c) {
     for (int i = 0; i < 4; ++i) c.nodes[e.node[i]].gradient += e.volume * (stress * e.slope[i]);
   }
   c.energy = energy;
-  return energy;
+  return energy + multipliers;
 }
 
 template <class T>
 Mat3<T> stencil_curvature(const Coupling<T>& c, const Stencil<T>& e) {
   if (e.length <= T(0)) return e.stiffness * Mat3<T>::Identity();
   const Vec3<T> s = reach(c, e) - e.offset;
-  const T size = s.norm();
-  if (size <= T(0) || (e.only_pulls && size <= e.length)) return Mat3<T>::Zero();
-  const T across = std::max(T(1) - e.length / size, T(0));  // a compressed spring would buckle: cut off
+  const T size = s.norm(), length = e.length - e.shortened;
+  if (size <= T(0) || (e.only_pulls && size <= length)) return Mat3<T>::Zero();
+  const T across = std::max(T(1) - length / size, T(0));  // a compressed spring would buckle: cut off
   const Vec3<T> along = s / size;
   return e.stiffness * (across * Mat3<T>::Identity() + (T(1) - across) * (along * along.transpose()));
 }
@@ -193,6 +203,25 @@ void lead_out(T h, Coupling<T>& c) {
     e.offset *= left > closes ? T(1) - closes / left : T(0);
   }
   c.led = c.led || c.closes();
+}
+
+template <class T>
+bool tighten(Coupling<T>& c) {
+  bool any = false;
+  if (c.strained) return any;  // a led root pulls with any force
+  for (Stencil<T>& e : c.stencils) {
+    if (!(e.tight > T(0)) || e.yields || !e.offset.isZero(T(0))) continue;
+    const Vec3<T> by = apart(c, e);
+    const T size = by.norm();
+    if (!(size > e.tight)) continue;
+    any = true;
+    const T more = size - T(kTightened) * e.tight;
+    if (e.length > T(0))
+      e.shortened += reach(c, e).norm() > e.length ? more : -more;
+    else
+      e.shift += more / size * by;
+  }
+  return any;
 }
 
 SINEW_COUPLING_INSTANCES(template, float)

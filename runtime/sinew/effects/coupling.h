@@ -54,7 +54,7 @@ struct CouplingNode {
   Vec3<T> gradient = Vec3<T>::Zero();  ///< of the energy by the point, N
 };
 
-/// ½ k (|Σ wᵢ xᵢ − offset| − length)².
+/// ½ k (|Σ wᵢ xᵢ − offset + shift| − length + shortened)².
 template <class T>
 struct Stencil {
   int count = 2;
@@ -64,6 +64,9 @@ struct Stencil {
   T length = T(0);                          ///< m
   T sinks = T(0);                           ///< m, that a weight pulls a loop apart: see lead_out()
   bool only_pulls = false;                  ///< no energy while shorter than `length`
+  T tight = T(0);                           ///< m, further apart is no loop for long: see tighten(); 0: a spring
+  Vec3<T> shift = Vec3<T>::Zero();          ///< m, of a closed point: its multiplier by the stiffness
+  T shortened = T(0);                       ///< m, the same of a rod or rope
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
@@ -122,14 +125,23 @@ Vec3<T> reach(const Coupling<T>& c, const Stencil<T>& e) {
 /// Gradient of a stencil's energy by Σ wᵢ xᵢ, N, at the nodes' present points.
 template <class T>
 Vec3<T> stencil_pull(const Coupling<T>& c, const Stencil<T>& e) {
-  const Vec3<T> s = reach(c, e) - e.offset;
-  const T size = s.norm(), stretch = size - e.length;
+  const Vec3<T> s = reach(c, e) - e.offset + e.shift;
+  const T size = s.norm(), stretch = size - (e.length - e.shortened);
   if (size <= T(0) || (e.only_pulls && stretch <= T(0))) return Vec3<T>::Zero();
   return (e.stiffness * stretch / size) * s;
 }
 
-/// Energy (J) of all elements at the nodes' present points, kept in `energy` too; every node's gradient is
-/// overwritten.
+/// m, by which a rigid stencil is apart at the nodes' present points: what it stores is ½ k of the square.
+template <class T>
+Vec3<T> apart(const Coupling<T>& c, const Stencil<T>& e) {
+  const Vec3<T> s = reach(c, e) - e.offset;
+  const T size = s.norm();
+  if (size <= e.length && (e.only_pulls || size <= T(0))) return Vec3<T>::Zero();
+  return ((size - e.length) / size) * s;
+}
+
+/// Energy (J) of all elements at the nodes' present points, with that of multipliers, which is no store; what
+/// is stored is kept in `energy`. Every node's gradient is overwritten.
 template <class T>
 double measure_elements(Coupling<T>& coupling);
 
@@ -159,10 +171,17 @@ Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
 template <class T>
 void lead_out(T h, Coupling<T>& coupling);
 
+/// Method of multipliers (Hestenes 1969): where a solve left a loop further apart than is `tight`, it is pulled
+/// by what that is too much as well, in the same step and by no more than closes it so far. False: all are
+/// tight. A spring of a hundredth of the stretch would do the same at a hundredth of the digits.
+template <class T>
+bool tighten(Coupling<T>& coupling);
+
 #define SINEW_COUPLING_INSTANCES(prefix, T)                                                         \
   prefix double measure_elements<T>(Coupling<T>&);                                                  \
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
+  prefix bool tighten<T>(Coupling<T>&);                                                              \
   prefix void lead_out<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)

@@ -7,6 +7,7 @@ namespace sinew {
 namespace {
 
 constexpr double kSink = 1e-4;  ///< m of a human
+constexpr double kTight = 5e-4;  ///< m of a human
 constexpr double kArm =
     0.2;  ///< m of a human, of the points that hold an axis: a weight at 1 m turns it by 1 mrad
 
@@ -51,6 +52,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
     if (settings.kind == LoopKind::kDistance || settings.kind == LoopKind::kRope)
       e.length = T(settings.length);
     e.only_pulls = settings.kind == LoopKind::kRope;
+    if (!(settings.stiffness > 0)) e.tight = T(kTight * unit);
     e.node[0] = static_cast<int>(loop.nodes.size());
     e.node[1] = e.node[0] + 1;
     for (const Place* place : {&a, &b}) {

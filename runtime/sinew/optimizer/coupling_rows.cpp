@@ -263,7 +263,7 @@ std::unique_ptr<CouplingModel<T>> make_rows() {
 }
 
 template <class T>
-constexpr CouplingTerm<T> kCouplings{make_rows<T>, measure<T>, add_wrenches<T>, lead_out<T>};
+constexpr CouplingTerm<T> kCouplings{make_rows<T>, measure<T>, add_wrenches<T>, lead_out<T>, tighten<T>};
 
 }  // namespace
 

@@ -50,6 +50,7 @@ struct CouplingTerm {
   void (*add_wrenches)(const Coupling<T>& coupling, std::span<TreeProblem<T>* const> trees);
   /// See lead_out.
   void (*lead_out)(T h, Coupling<T>& coupling);
+  bool (*tighten)(Coupling<T>& coupling);
 };
 
 /// Declared by whoever ties something: World::add_loop, add_particles.
