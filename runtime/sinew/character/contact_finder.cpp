@@ -570,6 +570,24 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   return contacts_;
 }
 
+namespace {
+
+/// Half the thickness of an obstacle, m: of a box that stands on the floor, which goes on below it (see
+/// go_on_below), only across.
+double half_thickness_of(const Collider& obstacle, double floor, double unit) {
+  if (obstacle.shape != Shape::kBox) return obstacle.size.x();
+  const Vec3<double> down = obstacle.local.rotation.conjugate() * Vec3<double>(0, 0, -1);
+  Eigen::Index axis = 0;
+  Vec3<double> size = obstacle.size;
+  const bool faces_down = down.cwiseAbs().maxCoeff(&axis) > kFacesDown;
+  const Vec3<double> face = std::copysign(size[axis], down[axis]) * Vec3<double>::Unit(axis);
+  if (faces_down && (obstacle.local * face).z() < floor + kOnFloor * unit)
+    size[axis] = std::numeric_limits<double>::infinity();
+  return size.minCoeff();
+}
+
+}  // namespace
+
 template <class T>
 bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleRoom<T>& room) {
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
@@ -599,8 +617,7 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       Transform<double> pose = obstacle.local;
       pose.translation -= origin;
       room.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
-      const bool box = obstacle.shape == Shape::kBox;
-      const T thin = T(box ? obstacle.size.minCoeff() : obstacle.size.x());
+      const T thin = T(half_thickness_of(obstacle, around.floor, double(s.tree.scale.length)));
       meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle}, std::min(pressed, thin / 2));
     });
   const auto movers = [&] {

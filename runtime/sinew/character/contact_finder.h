@@ -89,6 +89,7 @@ struct Surroundings {
   const NeighbourGrid* grid = nullptr;  ///< of the obstacles' bounding spheres
   std::span<const HostObstacle> hosts;
   std::span<const BodyPair> apart;
+  double floor = -std::numeric_limits<double>::infinity();  ///< m, its height in the world
 };
 
 template <class T>

@@ -121,7 +121,11 @@ struct World<T>::Impl {
   void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
   MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all()}; }
-  Surroundings surroundings() const { return {obstacles, &obstacle_grid, hosts, couplings.apart()}; }
+  Surroundings surroundings() const {
+    Surroundings around{obstacles, &obstacle_grid, hosts, couplings.apart()};
+    if (settings.ground) around.floor = settings.ground_height;
+    return around;
+  }
 
   // Of loops and particle bodies: world_ties.cpp
   Status find(const Anchor& anchor, Place& out) const;

@@ -64,9 +64,9 @@ struct Stencil {
   T length = T(0);                          ///< m
   T sinks = T(0);                           ///< m, that a weight pulls a loop apart: see lead_out()
   bool only_pulls = false;                  ///< no energy while shorter than `length`
-  T tight = T(0);                           ///< m, further apart is no loop for long: see tighten(); 0: a spring
-  Vec3<T> shift = Vec3<T>::Zero();          ///< m, of a closed point: its multiplier by the stiffness
-  T shortened = T(0);                       ///< m, the same of a rod or rope
+  T tight = T(0);                   ///< m, further apart is no loop for long: see tighten(); 0: a spring
+  Vec3<T> shift = Vec3<T>::Zero();  ///< m, of a closed point: its multiplier by the stiffness
+  T shortened = T(0);               ///< m, the same of a rod or rope
   /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
@@ -171,9 +171,9 @@ Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
 template <class T>
 void lead_out(T h, Coupling<T>& coupling);
 
-/// Method of multipliers (Hestenes 1969): where a solve left a loop further apart than is `tight`, it is pulled
-/// by what that is too much as well, in the same step and by no more than closes it so far. False: all are
-/// tight. A spring of a hundredth of the stretch would do the same at a hundredth of the digits.
+/// Method of multipliers (Hestenes 1969): where a solve left a loop further apart than is `tight`, it is
+/// pulled by what that is too much as well, in the same step and by no more than closes it so far. False: all
+/// are tight. A spring of a hundredth of the stretch would do the same at a hundredth of the digits.
 template <class T>
 bool tighten(Coupling<T>& coupling);
 
@@ -181,7 +181,7 @@ bool tighten(Coupling<T>& coupling);
   prefix double measure_elements<T>(Coupling<T>&);                                                  \
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
-  prefix bool tighten<T>(Coupling<T>&);                                                              \
+  prefix bool tighten<T>(Coupling<T>&);                                                             \
   prefix void lead_out<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)

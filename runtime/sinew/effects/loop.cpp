@@ -6,7 +6,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kSink = 1e-4;  ///< m of a human
+constexpr double kSink = 1e-4;   ///< m of a human
 constexpr double kTight = 5e-4;  ///< m of a human
 constexpr double kArm =
     0.2;  ///< m of a human, of the points that hold an axis: a weight at 1 m turns it by 1 mrad
