@@ -64,11 +64,12 @@ bool ContactFinder<T>::led_through(int n, const Collider& obstacle) const {
   return false;
 }
 
-/// The same of two trees whose roots are led, the one into the other.
+/// The same of two trees whose roots are led, the one into the other: figures, or one and a platform.
 template <class T>
 bool ContactFinder<T>::led_through(int n, int m) const {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
-  if (!s.leads_limbs() || !t.leads_limbs()) return false;
+  if (!s.root_is_kinematic() || !t.root_is_kinematic()) return false;
+  if (!s.leads_limbs() && !t.leads_limbs()) return false;
   const T pressed = T(kPressedByClips) * std::min(s.tree.scale.length, t.tree.scale.length);
   for (std::size_t c = 0; c < s.colliders.size(); ++c)
     for (std::size_t o = 0; o < t.colliders.size(); ++o) {
