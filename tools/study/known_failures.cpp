@@ -28,14 +28,19 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "s, "
      "0.5 wanted: a float's digits do not reach along 81 bars"},
     {"tumbling_box",
-     "one of 40 throws at 1/30 s rises by 1.08 mJ in float (0.96 in double), 1 wanted, as it comes to rest: "
-     "what "
-     "contacts store, up to 0.1 J where they are 3.8 mm deep, is in no pose",
+     "one of 40 throws at 1/30 s rises by 1.08 mJ in float (0.96 in double), 1 wanted: what contacts have "
+     "stored and "
+     "give back, by the runtime's own figures, which is in no pose",
+     true},
+    {"figure_on_stairs", "one of 12 falls at 1/60 s rises by 1.24 mJ in double, 1 wanted: as tumbling_box",
      true},
     {"contact_stiffness_sweep",
      "in float 2.09 times as many passes and chords at one stiffness as at another, 2 wanted", true},
     {"rope_with_heavy_tip", "in float at 1/30 s one step of 300 (0.33 %) unconverged, 0.1 % wanted", true},
-    {"figures_in_a_pile", "one of ten still moves at 0.2 m/s after 15 s, 0.05 wanted, and keeps others awake",
+    {"figures_in_a_pile",
+     "of ten whose joints do not rub a hand still swings at 0.2 m/s after 15 s, 0.05 wanted, 4 % slower each "
+     "second, "
+     "and keeps the others awake",
      true},
     {"sixteen_piles_of_figures", "as figures_in_a_pile", true},
     {"moving_platform",
@@ -45,6 +50,10 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"limp_fall_bdf1",
      "bdf1, which is there to be compared with: at 1/15 s the way of a step needs 19 J more than there is, "
      "of 1200"},
+    {"limp_fall_bdf2",
+     "bdf2, which is there to be compared with: at 1/30 s the way of a step needs 14 J more than there is, "
+     "of 1760",
+     true},
     {"random_trees",
      "seven to ten trees in a hundred leap: a solve that does not converge is taken where it ended, though "
      "its way needs up to "
