@@ -2,14 +2,20 @@
 // which page to change with it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "fixtures/paths.h"
+#include "scene/scene.h"
+#include "sinew/effects/coupling.h"
+#include "sinew/optimizer/newton_constants.h"
 #include "sinew/optimizer/presets.h"
+#include "sinew/residual/composite_pass.h"
 #include "study/study.h"
 
 namespace sinew {
@@ -29,6 +35,7 @@ struct Quoted {
 };
 
 const Accuracy kDefault;
+const scene::Scene kScene;
 
 const Quoted kQuotes[] = {
     {"runtime/sinew/optimizer/README.md", R"(by the sink depth \(([\d.]+) mm\))", 1e3 * kDefault.sink_depth},
@@ -43,6 +50,22 @@ const Quoted kQuotes[] = {
     {"runtime/sinew/optimizer/README.md", R"(down to 1/([\d]+) s\.)", 1 / kDefault.shortest_part},
     {"runtime/sinew/optimizer/README.md", R"(does not converge in ([\d]+) passes)",
      double(kDefault.max_iterations)},
+    {"runtime/sinew/optimizer/README.md", R"(`Accuracy::shortest_part` \(1/([\d]+) s)",
+     1 / kDefault.shortest_part},
+    {"runtime/sinew/optimizer/README.md", R"(A loop that begins open closes at ([\d.]+) m/s)", kClosingSpeed},
+    {"runtime/sinew/optimizer/README.md", R"(A floor of ([\de.-]+) of the subtree's inertia)", kInertiaFloor},
+    {"runtime/sinew/optimizer/README.md", R"(centre plus ([\d.]+) m per radian)", kRotationArm},
+    {"runtime/sinew/optimizer/README.md", R"(curvature of a row has changed by more than ([\d.]+) of itself)",
+     kSameCurvature},
+    {"runtime/sinew/optimizer/README.md", R"(is taken while each is at most ([\d.]+)\s)", kChordRate},
+    {"runtime/sinew/optimizer/README.md", R"(in contact with a ratio of ([\d.]+) at least)",
+     kLeastRateInContact},
+    {"runtime/sinew/optimizer/README.md", R"(contacts bear more than ([\d.]+) times what they did)",
+     kMisleading},
+    {"runtime/sinew/optimizer/README.md", R"(`kLeft`: ([\d]+) per metre)", kLeft},
+    {"tools/scene/README.md", R"(title of the video; s \(([\d.]+)\))", kScene.duration},
+    {"tools/scene/README.md", R"(steps per second \(([\d.]+)\))", kScene.frame_rate},
+    {"tools/scene/README.md", R"(`start` s, `blend` s \(([\d.]+)\))", scene::ClipUse().blend},
     {"tools/scene/README.md", R"(`contact_damping` \(([\d.]+); 1 is critical\))", kDefault.contact_damping},
 };
 
@@ -81,16 +104,58 @@ TEST(Documents, PresetsOfTheHeaderAreThoseOfTheDataFile) {
   }
 }
 
-TEST(Documents, TheStudysPageCountsItsCasesAsTheyAre) {
+TEST(Documents, NameTheCheapestSettingThatWasMeasured) {
+  const nlohmann::json front = nlohmann::json::parse(text_of("assets/accuracy_presets.json"))["front"];
+  double cheapest = 1e9;
+  for (const nlohmann::json& setting : front) cheapest = std::min(cheapest, setting["us"].get<double>());
   const std::string text = text_of("tools/study/README.md");
-  const std::regex words(R"((\d+) of the (\d+) cases of the stability catalogue pass)");
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(text, found, words));
-  int known = 0, all = 0;
-  for (const study::HardCase& c : study::hard_cases())
-    ++all, known += study::known_failure(c.name) != nullptr;
-  EXPECT_EQ(std::stoi(found[2]), all);
-  EXPECT_EQ(std::stoi(found[1]), all - known) << "known_failures.cpp lists " << known;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex(R"(below the cheapest \((\d+) µs)")));
+  EXPECT_EQ(std::stoi(found[1]), std::lround(cheapest));
+}
+
+/// Cases in all, and those that fail or exceed what steps may cost.
+struct Cases {
+  int all = 0, fail = 0, fail_at_length = 0, exceed = 0, exceed_at_length = 0;
+
+  Cases() {
+    using study::known_failure, study::known_excess;
+    for (const study::HardCase& c : study::hard_cases()) {
+      ++all;
+      fail += known_failure(c.name) != nullptr;
+      fail_at_length += known_failure(c.name, false) != nullptr;
+      exceed += known_excess(c.name) != nullptr;
+      exceed_at_length += known_excess(c.name, false) != nullptr;
+    }
+  }
+};
+
+TEST(Documents, CountHardCasesAsTheyAre) {
+  const Cases cases;
+  struct Counted {
+    const char* file;
+    const char* words;
+    int value;
+  };
+  const char* const study = "tools/study/README.md";
+  for (const Counted& counted : std::initializer_list<Counted>{
+           {study, R"((\d+) of the \d+ cases of the stability catalogue pass)", cases.all - cases.fail},
+           {study, R"(\d+ of the (\d+) cases of the stability catalogue pass)", cases.all},
+           {study, R"((\d+) at full length)", cases.all - cases.fail_at_length},
+           {study, R"(take more in (\d+) cases)", cases.exceed},
+           {study, R"(in (\d+) of the long ones)", cases.exceed_at_length},
+           {"README.md", R"((\d+) of the \d+ hard cases)", cases.fail},
+           {"README.md", R"(\d+ of the (\d+) hard cases)", cases.all},
+           {"README.md", R"(`stability` \((\d+) hard cases)", cases.all},
+           {"tools/README.md", R"(\| (\d+) hard cases)", cases.all},
+           {"runtime/sinew/optimizer/README.md", R"((\d+) of the \d+ hard cases)", cases.fail},
+           {"runtime/sinew/optimizer/README.md", R"(\d+ of the (\d+) hard cases)", cases.all}}) {
+    const std::string text = text_of(counted.file);
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(text, found, std::regex(counted.words)))
+        << counted.file << ": " << counted.words;
+    EXPECT_EQ(std::stoi(found[1]), counted.value) << counted.file << ": " << found[0];
+  }
 }
 
 }  // namespace

@@ -347,6 +347,10 @@ Verdict random_trees(const Trial& t) {
   Verdict v(r.measured);
   v.require(r.faults.empty(),
             r.faults.empty() ? "" : std::to_string(r.faults.size()) + " trees, first " + r.faults[0]);
+  v.require(r.leaps.empty(), r.leaps.empty()
+                                 ? ""
+                                 : std::to_string(r.leaps.size()) + " of " + std::to_string(r.count) +
+                                       " trees leap, first " + r.leaps[0]);
   return v;
 }
 

@@ -1,6 +1,7 @@
 // Rows 45–48, 52–54 and figures: muscles, their limits, and the way between animation and physics.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "sinew/skeleton/rotation.h"
@@ -12,11 +13,17 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Plays the mannequin's walk with its muscles scaled by `percent`.
-template <class T, int percent>
-Verdict walk_cycle(const Trial& t) {
+/// How a walk goes with muscles of some strength.
+struct Walked {
+  Measurement measured;
+  double off = 0;     ///< rad, furthest that a joint is off the clip
+  double played = 0;  ///< share of the frames that are playback
+};
+
+template <class T>
+Walked walk(const Trial& t, double strength) {
   scene::Scene scene = t.scene;
-  scene.characters[0].strength = {{0, percent / 100.0}};
+  scene.characters[0].strength = {{0, strength}};
   Stage<T> stage(scene);
   scene::Player<T> clip(scene.characters[0]);
   std::vector<JointJet<T>> jets = clip.start(stage.character(0).local());
@@ -30,10 +37,26 @@ Verdict walk_cycle(const Trial& t) {
     }
     jets = clip.at(time + t.h, stage.character(0).local());
   });
-  Verdict v(stage.measured());
+  return {stage.measured(), off, double(playing) / (stage.measured().steps - 1)};
+}
+
+/// Plays the mannequin's walk with its muscles scaled by `percent`.
+template <class T, int percent>
+Verdict walk_cycle(const Trial& t) {
+  const Walked walked = walk<T>(t, percent / 100.0);
+  Verdict v(walked.measured);
   v.require(v.measured().refused.empty() && v.measured().finite, "refused or not finite");
-  v.at_most("joint off the clip (rad)", off, 1e-5);
-  v.at_least("share of frames that are playback", double(playing) / (v.measured().steps - 1), 0.95);
+  v.at_most("joint off the clip (rad)", walked.off, 1e-5);
+  v.at_least("share of frames that are playback", walked.played, 0.95);
+  for (const double strength : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0}) {
+    if (percent != 100 || t.quick || sizeof(T) == sizeof(float)) break;
+    const Walked weaker = walk<T>(t, strength);
+    char text[100];
+    std::snprintf(text, sizeof text,
+                  "at strength %.1f %.0f %% of the frames are playback, joints up to %.1f deg off", strength,
+                  100 * weaker.played, weaker.off * 180 / kPi);
+    v.note(text);
+  }
   return v;
 }
 

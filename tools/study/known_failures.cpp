@@ -1,5 +1,5 @@
-// The one list of cases that fail today. The study prints them as failed, the test asserts that they still
-// fail: whoever mends one must take it out here.
+// The one list of cases that fail today, and of those whose steps cost more than they may. The study prints
+// them, the test asserts that they still do: whoever mends one must take it out here.
 #include <algorithm>
 #include <initializer_list>
 
@@ -11,6 +11,7 @@ namespace {
 struct KnownFailure {
   const char* name;
   const char* why;
+  bool at_length = false;  ///< passes in quick trials
 };
 
 constexpr std::initializer_list<KnownFailure> kKnownFailures = {
@@ -26,13 +27,37 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "N = 40 in float: 0.8 % of the steps at 1/60 s unconverged, 0.1 % wanted, closures of 0.61 mm at 1/240 "
      "s, "
      "0.5 wanted: a float's digits do not reach along 81 bars"},
-    {"bounce_half",
-     "at 1/30 s a rise of 6 mJ of 9.8 J, 1 mJ wanted, when bounces follow each other within two steps: poses "
-     "do "
-     "not show them; books of an exact bouncing ball find up to 4 mJ there as well"},
     {"tumbling_box",
-     "a rise of 1.1 mJ, 1 mJ wanted, between impacts that follow each other within a few steps; not known "
-     "whether it is there or is what poses do not show (see bounce_half)"},
+     "one of 40 throws at 1/30 s rises by 1.08 mJ in float (0.96 in double), 1 wanted: what contacts have "
+     "stored and "
+     "give back, by the runtime's own figures, which is in no pose",
+     true},
+    {"figure_on_stairs", "one of 12 falls at 1/60 s rises by 1.24 mJ in double, 1 wanted: as tumbling_box",
+     true},
+    {"contact_stiffness_sweep",
+     "in float 2.09 times as many passes and chords at one stiffness as at another, 2 wanted", true},
+    {"rope_with_heavy_tip", "in float at 1/30 s one step of 300 (0.33 %) unconverged, 0.1 % wanted", true},
+    {"figures_in_a_pile",
+     "of ten whose joints do not rub a hand still swings at 0.2 m/s after 15 s, 0.05 wanted, 4 % slower each "
+     "second, "
+     "and keeps the others awake",
+     true},
+    {"sixteen_piles_of_figures", "as figures_in_a_pile", true},
+    {"moving_platform",
+     "sent up at 3 m/s it leaves 2.45 % too fast, 2 wanted: 0.45 g h, whatever h, for the step in which it "
+     "is sent "
+     "begins with the acceleration that it had while the platform bore it"},
+    {"limp_fall_bdf1",
+     "bdf1, which is there to be compared with: at 1/15 s the way of a step needs 19 J more than there is, "
+     "of 1200"},
+    {"limp_fall_bdf2",
+     "bdf2, which is there to be compared with: at 1/30 s the way of a step needs 14 J more than there is, "
+     "of 1760",
+     true},
+    {"random_trees",
+     "seven to ten trees in a hundred leap: a solve that does not converge is taken where it ended, though "
+     "its way needs up to "
+     "thousands of times the energy that there is; the ledger then slows what has already been moved"},
     {"crowd_of_200",
      "close together, in a world with room for 100 degrees of freedom: 0.7 (float) and 1.3 % (double) of the "
      "steps unconverged, 0.1 wanted; nobody falls through the floor and it is reported"},
@@ -58,12 +83,41 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "spectral radius of 0.92 than with 0.8"},
 };
 
+constexpr std::initializer_list<KnownFailure> kKnownExcesses = {
+    {"rope_with_heavy_tip", "p99 of 17 to 23 at 1/60 s, 92 at 1/30: a light rope's stiff directions"},
+    {"n_four_bar", "N = 40 in float: p99 of 112, 129 at most: a float's digits do not reach along 81 bars"},
+    {"bullet", "11 in the step in which it strikes, of 15 in a run"},
+    {"limp_fall_bdf1", "73 at most; p99 within 8"},
+    {"limp_fall_bdf2", "47 at most; p99 within 8"},
+    {"adjacent_limb_overlap", "42 at most; p99 5", true},
+    {"colliding_figures", "98 in the step in which two meet at 1/30 s, 36 at 1/60; p99 3 at length"},
+    {"figure_on_stairs", "55 at most; p99 within 6", true},
+    {"figures_in_a_pile", "29 at most; p99 4", true},
+    {"sixteen_piles_of_figures", "29 at most; p99 4", true},
+    {"crowd_of_200",
+     "p99 of 78, 172 at most: where not all that touch are solved together, solves do not converge"},
+    {"ragdoll_hit_in_the_same_frame", "23 in the step of the hit, of 30 that are solved"},
+    {"piston", "p99 of 18, 34 at most: a body that is squeezed has no place to go to"},
+    {"soak_hour", "51 at most, p99 within 9: people fall over each other"},
+    {"random_trees", "p99 of 112, 161 at most: see why they leap"},
+    {"momentum_scheme", "p99 of 9 to 11, 25 at most; it is there to be compared with"},
+};
+
+const char* why(std::initializer_list<KnownFailure> list, const std::string& name, bool quick) {
+  const auto known = std::find_if(list.begin(), list.end(), [&](const KnownFailure& k) {
+    return name == k.name && !(quick && k.at_length);
+  });
+  return known == list.end() ? nullptr : known->why;
+}
+
 }  // namespace
 
-const char* known_failure(const std::string& name) {
-  const auto known = std::find_if(kKnownFailures.begin(), kKnownFailures.end(),
-                                  [&](const KnownFailure& k) { return name == k.name; });
-  return known == kKnownFailures.end() ? nullptr : known->why;
+const char* known_failure(const std::string& name, bool quick) {
+  return why(kKnownFailures, name, quick);
+}
+
+const char* known_excess(const std::string& name, bool quick) {
+  return why(kKnownExcesses, name, quick);
 }
 
 }  // namespace sinew::study

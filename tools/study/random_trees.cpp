@@ -1,6 +1,7 @@
 #include "study/random_trees.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -108,25 +109,33 @@ double noise_of(const Energy& start) {
   return 1e-6 + 4 * double(std::numeric_limits<T>::epsilon()) * std::abs(start.kinetic + start.potential);
 }
 
-}  // namespace
-
+/// The tree of a seed, thrown.
 template <class T>
-std::string fault_of_tree(std::uint64_t seed, Measurement& measured) {
+Measurement throw_tree(std::uint64_t seed, double& h, double& noise) {
   const Skeleton tree = random_tree(seed);
   Dice dice(~seed);
   WorldSettings settings;
-  const double h = 1 / dice.uniform(30, 240);
+  h = 1 / dice.uniform(30, 240);
   Stage<T> stage(settings);
   std::vector<JointJet<T>> jets = rest_jets<T>(tree);
   randomise_speeds(tree, jets, dice.uniform(0, 5), static_cast<unsigned>(seed));
   // Nothing begins in the floor: leading it out would be work.
   jets[0].translation.z() += T(1 + std::max(0.0, -lowest_point<T>(tree, jets)));
   stage.add(tree, limp(), jets);
-  const double noise = noise_of<T>(energy_of<T>(tree, jets, settings.gravity));
+  noise = noise_of<T>(energy_of<T>(tree, jets, settings.gravity));
   for (int n = 0; n < kSteps && stage.step(h); ++n) {
   }
-  const Measurement& m = stage.measured();
+  return stage.measured();
+}
+
+}  // namespace
+
+template <class T>
+TreeFaults faults_of_tree(std::uint64_t seed, Measurement& measured) {
+  double h = 0, noise = 0;
+  const Measurement m = throw_tree<T>(seed, h, noise);
   measured.merge(m);
+  const std::string step = " at h = 1/" + std::to_string(std::lround(1 / h)) + " s";
   char what[160] = "";
   if (!m.refused.empty())
     std::snprintf(what, sizeof what, "refused: %s", m.refused.c_str());
@@ -134,46 +143,47 @@ std::string fault_of_tree(std::uint64_t seed, Measurement& measured) {
     std::snprintf(what, sizeof what, "NaN or infinity");
   else if (m.joint_gap > 1e-4)  // float's rounding at the end of a chain that has fallen 15 m
     std::snprintf(what, sizeof what, "joint gap %.2g m", m.joint_gap);
-  else if (m.energy_gain > kMostGain * m.kinetic_most + noise)
-    std::snprintf(what, sizeof what, "gains %.3g J of %.3g J at h = 1/%.0f s", m.energy_gain, m.kinetic_most,
-                  1 / h);
+  if (*what) return {what, {}};
+  if (m.leap > kMostGain * m.kinetic_most + noise) {
+    std::snprintf(what, sizeof what, "leaps: a step's way needs %.3g J more than there is, %.3g J kinetic%s",
+                  m.leap, m.kinetic_most, step.c_str());
+    return {{}, what};
+  }
+  if (m.energy_gain > kMostGain * m.kinetic_most + noise)
+    std::snprintf(what, sizeof what, "gains %.3g J of %.3g J%s", m.energy_gain, m.kinetic_most, step.c_str());
   else if (m.worst_rise > kMostRise * m.kinetic_most + noise)
-    std::snprintf(what, sizeof what, "gains %.3g J of %.3g J in a step of 1/%.0f s", m.worst_rise,
-                  m.kinetic_most, 1 / h);
-  return what;
+    std::snprintf(what, sizeof what, "gains %.3g J of %.3g J in a step%s", m.worst_rise, m.kinetic_most,
+                  step.c_str());
+  return {what, {}};
 }
 
 template <class T>
 RandomTreesReport run_random_trees(std::uint64_t first, int count, int threads) {
-  struct Fault {
-    std::uint64_t seed;
-    std::string what;
-  };
   std::vector<Measurement> measured(static_cast<std::size_t>(threads));
-  std::vector<std::vector<Fault>> faults(static_cast<std::size_t>(threads));
+  std::vector<TreeFaults> faults(static_cast<std::size_t>(count));
+  std::atomic<int> next = 0;
   std::vector<std::thread> pool;
   for (int worker = 0; worker < threads; ++worker)
     pool.emplace_back([&, worker] {
-      for (std::uint64_t seed = first + std::uint64_t(worker); seed < first + std::uint64_t(count);
-           seed += std::uint64_t(threads))
-        if (std::string what = fault_of_tree<T>(seed, measured[worker]); !what.empty())
-          faults[worker].push_back({seed, what});
+      for (int n = next++; n < count; n = next++)
+        faults[static_cast<std::size_t>(n)] = faults_of_tree<T>(first + static_cast<std::uint64_t>(n),
+                                                                measured[static_cast<std::size_t>(worker)]);
     });
   for (std::thread& thread : pool) thread.join();
   RandomTreesReport report;
   report.count = count;
-  std::vector<Fault> all;
-  for (int worker = 0; worker < threads; ++worker) {
-    report.measured.merge(measured[worker]);
-    all.insert(all.end(), faults[worker].begin(), faults[worker].end());
+  for (const Measurement& m : measured) report.measured.merge(m);
+  for (int n = 0; n < count; ++n) {
+    const TreeFaults& f = faults[static_cast<std::size_t>(n)];
+    const std::string seed = "seed " + std::to_string(first + static_cast<std::uint64_t>(n)) + ": ";
+    if (!f.fault.empty()) report.faults.push_back(seed + f.fault);
+    if (!f.leap.empty()) report.leaps.push_back(seed + f.leap);
   }
-  std::sort(all.begin(), all.end(), [](const Fault& a, const Fault& b) { return a.seed < b.seed; });
-  for (const Fault& f : all) report.faults.push_back("seed " + std::to_string(f.seed) + ": " + f.what);
   return report;
 }
 
-template std::string fault_of_tree<float>(std::uint64_t, Measurement&);
-template std::string fault_of_tree<double>(std::uint64_t, Measurement&);
+template TreeFaults faults_of_tree<float>(std::uint64_t, Measurement&);
+template TreeFaults faults_of_tree<double>(std::uint64_t, Measurement&);
 template RandomTreesReport run_random_trees<float>(std::uint64_t, int, int);
 template RandomTreesReport run_random_trees<double>(std::uint64_t, int, int);
 

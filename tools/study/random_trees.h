@@ -12,14 +12,20 @@ namespace sinew::study {
 
 Skeleton random_tree(std::uint64_t seed);
 
+/// What went wrong with a tree, in words, or empty.
+struct TreeFaults {
+  std::string fault;  ///< NaN, open joints, energy without work
+  std::string leap;   ///< a step's way needs more energy than there is; energies are not judged then
+};
+
 /// Steps the tree of a seed 100 times with a step (1/240 … 1/30 s) and a throw that the seed also decides.
-/// Empty, or what went wrong: NaN, open joints, energy without work.
 template <class T>
-std::string fault_of_tree(std::uint64_t seed, Measurement& measured);
+TreeFaults faults_of_tree(std::uint64_t seed, Measurement& measured);
 
 struct RandomTreesReport {
   int count = 0;
   std::vector<std::string> faults;  ///< "seed N: what", in the order of seeds
+  std::vector<std::string> leaps;   ///< as faults
   Measurement measured;
 };
 

@@ -1,7 +1,6 @@
 #include "study/stage.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -9,11 +8,13 @@
 #include "sinew/effects/restitution.h"
 #include "sinew/residual/tree.h"
 #include "sinew/skeleton/rotation.h"
+#include "study/accuracy_clock.h"
 #include "study/audit/work.h"
 
 namespace sinew::study {
 namespace {
 
+constexpr int kWarmUp = 3;        ///< steps in which caches fill
 constexpr double kMoment = 1e-4;  ///< s: whence a start came and where it goes, by its speeds
 
 /// What a world of T rounds coordinates and rotations to, of their size.
@@ -46,6 +47,14 @@ int Measurement::passes_percentile(double share) const {
   return 0;
 }
 
+double Measurement::slowest_over_median() const {
+  if (solved_us.empty()) return 0;
+  std::vector<float> times = solved_us;
+  const auto middle = times.begin() + std::ssize(times) / 2;
+  std::nth_element(times.begin(), middle, times.end());
+  return double(*std::max_element(middle, times.end())) / double(*middle);
+}
+
 void Measurement::count(const CharacterReport& r) {
   ++solved;
   unconverged += !r.converged;
@@ -66,6 +75,7 @@ void Measurement::merge(const Measurement& o) {
   kinetic_most = std::max(kinetic_most, o.kinetic_most);
   energy_gain = std::max(energy_gain, o.energy_gain);
   worst_rise = std::max(worst_rise, o.worst_rise);
+  leap = std::max(leap, o.leap);
   unsure = std::max(unsure, o.unsure);
   instants += o.instants;
   seen += o.seen;
@@ -83,6 +93,7 @@ void Measurement::merge(const Measurement& o) {
   most_factorisations = std::max(most_factorisations, o.most_factorisations);
   for (std::size_t i = 0; i < pass_histogram.size(); ++i) pass_histogram[i] += o.pass_histogram[i];
   microseconds += o.microseconds;
+  solved_us.insert(solved_us.end(), o.solved_us.begin(), o.solved_us.end());
   if (refused.empty()) refused = o.refused;
 }
 
@@ -351,6 +362,7 @@ void Stage<T>::balance() {
   m_.kinetic_most = b.kinetic_most;
   m_.energy_gain = b.gain;
   m_.worst_rise = b.rise;
+  m_.leap = b.leap;
   m_.unsure = b.unsure;
   m_.instants = b.instants;
   m_.seen = b.seen;
@@ -392,10 +404,10 @@ bool Stage<T>::step(double h) {
   const bool known = books_.begun();
   double work = 0, unsure = 0;
   for (int c = 0; known && c < world_->character_count(); ++c) work += work_of_strikes(c, unsure);
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = processor_seconds();
   const Status status = world_->step(T(h));
-  m_.microseconds +=
-      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  const double microseconds = 1e6 * (processor_seconds() - begin);
+  m_.microseconds += microseconds;
   if (!status) {
     m_.refused = status.reason;
     return false;
@@ -407,8 +419,10 @@ bool Stage<T>::step(double h) {
   books_.record(h, now, work, unsure);
   look();
   balance();
+  const int solved = m_.solved;
   for (int c = 0; c < world_->character_count(); ++c) count(character(c).report());
   for (int p = 0; p < world_->prop_count(); ++p) count(world_->prop_report(p));
+  if (m_.solved > solved && m_.steps > kWarmUp) m_.solved_us.push_back(static_cast<float>(microseconds));
   return true;
 }
 

@@ -22,6 +22,7 @@ struct Measurement {
   double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
   double energy_gain = 0;      ///< least by which the total ever stood above start plus work (audit::Balance)
   double worst_rise = 0;       ///< least by which it rose beyond work within twelve steps
+  double leap = 0;             ///< most by which a step's way must have needed more than there was
   double unsure = 0;           ///< most that the books cannot tell where they see well
   int instants = 0, seen = 0;  ///< judged by the books, and of these seen to 1e-3 of the kinetic energy
   int blind = 0;           ///< of the instants, those at which something turned too fast for poses to show
@@ -35,8 +36,9 @@ struct Measurement {
   long passes = 0, chords = 0, factorisations = 0;
   int most_passes = 0, most_factorisations = 0;  ///< of one solve: a step in parts on purpose is so many
   std::array<int, 256> pass_histogram{};         ///< solved steps by passes of a solve (the last: or more)
-  double microseconds = 0;                       ///< of all steps together
-  std::string refused;                           ///< reason of the step that the world refused, or empty
+  double microseconds = 0;                       ///< processor time of all steps together
+  std::vector<float> solved_us;  ///< of each step in which something was solved, but for the first three
+  std::string refused;           ///< reason of the step that the world refused, or empty
 
   double mean_passes() const { return solved ? double(passes) / solved : 0; }
   double mean_iterations() const { return solved ? double(passes + chords) / solved : 0; }
@@ -44,6 +46,8 @@ struct Measurement {
   double seen_share() const { return instants ? double(seen) / instants : 0; }
   double unconverged_share() const { return solved ? double(unconverged) / solved : 0; }
   int passes_percentile(double share) const;
+  /// The slowest of the steps in which something was solved, over their median; 0: there are none.
+  double slowest_over_median() const;
   /// Counts one solved step of a character or prop.
   void count(const CharacterReport& report);
   void merge(const Measurement& other);  ///< sums of counts, worst of the rest

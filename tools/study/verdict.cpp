@@ -21,6 +21,14 @@ void Verdict::at_least(const char* what, double value, double bound) {
   require(value >= bound, compared(what, value, "at least", bound));
 }
 
+std::string excess_of(const Measurement& m) {
+  constexpr int kUsual = 8, kMost = 16;
+  if (const int usual = m.passes_percentile(0.99); usual > kUsual)
+    return compared("99th percentile of passes", usual, "at most", kUsual);
+  if (m.most_passes > kMost) return compared("passes of a solve", m.most_passes, "at most", kMost);
+  return {};
+}
+
 void Verdict::sound() {
   require(measured_.refused.empty(), "refused: " + measured_.refused);
   require(measured_.finite, "NaN or infinity");
@@ -31,7 +39,9 @@ void Verdict::sound() {
 
 void Verdict::general() {
   sound();
-  at_most("energy without work (J)", measured_.energy_gain, 1e-3 * measured_.kinetic_most + 1e-6);
+  const double most = 1e-3 * measured_.kinetic_most + 1e-6;
+  at_most("energy without work (J)", measured_.energy_gain, most);
+  at_most("energy that a step's way needs beyond what there is (J)", measured_.leap, most);
 }
 
 }  // namespace sinew::study

@@ -6,6 +6,10 @@
 // instant have in common. So `gain` and `rise` are the least by which the energy must have risen: a motion
 // that keeps its energy has none, whatever its impacts, and what an impact adds is found as soon as it is
 // over.
+//
+// One step's poses show more: the mean of a kinetic energy over a step is no less than that of the chord, and
+// what a way below the chord saves in height it needs in speed. So a body that is put elsewhere, its velocity
+// what it was, is found too: `leap`.
 #pragma once
 
 #include <deque>
@@ -27,15 +31,21 @@ struct Bounds {
 
 /// Of bodies from their velocities, and in gravity (m/s², world).
 Bounds kinetic_energy(const Body& body, const Velocity& velocity);
+/// J, least mean over a step of h seconds of a body's energy, kinetic and in gravity, between two poses:
+/// whatever way it took. Of a body that falls freely (g h)²/6 per kg less than it has.
+double least_energy(const Body& body, const Transform<double>& before, const Transform<double>& after,
+                    double h, const Eigen::Vector3d& gravity, double precision);
 double potential_energy(const Body& body, const Transform<double>& pose, const Eigen::Vector3d& gravity);
 Momentum momentum_of(const Body& body, const Transform<double>& pose, const Velocity& velocity);
 
 /// What the books show. Energies in J.
 struct Balance {
-  double kinetic_start = 0, kinetic_end = 0, kinetic_most = 0;
-  double gain = 0;  ///< most by which the total must have stood above its start plus the work put in
+  double kinetic_start = 0, kinetic_end = 0;
+  double kinetic_most = 0;  ///< without what a step leaps by
+  double gain = 0;          ///< most by which the total must have stood above its start plus the work put in
   double rise = 0;  ///< most by which it must have risen, beyond work, between instants that are seen, up to
                     ///< twelve steps apart
+  double leap = 0;  ///< most by which the way of one step must have needed more than there was
   double unsure = 0;  ///< most that the books cannot tell at an instant between impacts: see `seen`
   double work = 0;    ///< put in
   int instants = 0;   ///< judged
@@ -80,6 +90,8 @@ class Books {
     std::vector<Transform<double>> poses;   ///< of all members
   };
   void look_at_step();
+  double leap_of_step() const;
+  double hidden(const Body& body, const Velocity& velocity, double h) const;
   void judge_instant(double turn_at_start);
   void enter(const Bounds& energy, const Instant& at);
   std::vector<double> times() const;

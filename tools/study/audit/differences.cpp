@@ -43,14 +43,24 @@ class Sequence {
       noise_ = rounding * std::sqrt(squares);
     }
     const auto mean = [&](int k) -> Vector3d { return (at(k) - at(k - 1)) / s.steps[index(k)]; };
-    for (int k = std::max(1 - aside, -1); k <= std::min(aside - 1, 1); ++k)
-      jump_ = std::max(jump_, 0.5 * (mean(k + 1) - mean(k)).norm());
+    for (int k = 1 - aside; k < aside; ++k) {
+      const double half = 0.5 * (mean(k + 1) - mean(k)).norm();
+      if (std::abs(k) <= 1) jump_ = std::max(jump_, half);
+      widest_ = std::max(widest_, half);
+    }
   }
 
   Estimate best() const {
-    for (int k = aside_; k >= 3; --k)
-      if (converges(k)) return {velocity_[k], kCaution * correction(k - 1) + noise_};
-    return {velocity_[1], kJumpCaution * jump_ + noise_};
+    const int k = converged();
+    if (k == 0) return {velocity_[1], kJumpCaution * jump_ + noise_, kJumpCaution * widest_ + noise_};
+    const double error = kCaution * correction(k - 1) + noise_;
+    return {velocity_[k], error, error};
+  }
+  /// Points on either side of the highest order up to which differences converge; 0: none.
+  int converged() const {
+    int k = aside_;
+    while (k >= 3 && !converges(k)) --k;
+    return k >= 3 ? k : 0;
   }
 
  private:
@@ -70,7 +80,8 @@ class Sequence {
   }
 
   int aside_;
-  double step_, noise_ = 0, jump_ = 0;
+  double step_, noise_ = 0;
+  double jump_ = 0, widest_ = 0;             ///< half of one beside the node, and of any
   std::array<Vector3d, 5> velocity_, bend_;  ///< [points on either side]
 };
 
@@ -121,9 +132,9 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
   const Vector3d center = here * body.center;
   const double size = center.cwiseAbs().maxCoeff() + body.center.norm();
   Velocity v;
-  v.linear = Sequence(s, std::max(s.even, std::min(s.aside, 1)), precision * size, [&](int k) -> Vector3d {
-               return poses[s.node + k] * body.center - center;
-             }).best();
+  const Sequence places(s, std::max(s.even, std::min(s.aside, 1)), precision * size,
+                        [&](int k) -> Vector3d { return poses[s.node + k] * body.center - center; });
+  v.linear = places.best();
   int followed = 0;  // instants on both sides to which the rotation can be followed
   std::array<Vector3d, 2 * Stencils::kMostAside + 1> turns;
   turns.fill(Vector3d::Zero());
@@ -140,10 +151,13 @@ Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses,
     followed = k;
   }
   if (s.aside > 0) v.turn = std::max(turn(-1).norm(), turn(1).norm());
-  if (followed == 0)
-    v.angular.error = std::numeric_limits<double>::infinity();
-  else
-    v.angular = Sequence(s, followed, precision, turn).best();
+  if (followed == 0) {
+    v.angular.error = v.angular.longer = std::numeric_limits<double>::infinity();
+    return v;
+  }
+  const Sequence turnings(s, followed, precision, turn);
+  v.angular = turnings.best();
+  v.smooth = places.converged() > 0 && turnings.converged() > 0;
   return v;
 }
 
@@ -152,10 +166,10 @@ Velocity chord(const Body& body, const Transform<double>& before, const Transfor
   Velocity v;
   const Vector3d to = after * body.center;
   v.linear.value = (to - before * body.center) / h;
-  v.linear.error = 2 * precision * (to.cwiseAbs().maxCoeff() + body.center.norm()) / h;
+  v.linear.error = v.linear.longer = 2 * precision * (to.cwiseAbs().maxCoeff() + body.center.norm()) / h;
   const Vector3d turn = turned(before, after);
   v.angular.value = turn / h;
-  v.angular.error = turn.squaredNorm() / 12 * v.angular.value.norm() + 2 * precision / h;
+  v.angular.error = v.angular.longer = turn.squaredNorm() / 12 * v.angular.value.norm() + 2 * precision / h;
   return v;
 }
 
@@ -171,7 +185,7 @@ Estimate arriving_velocity(const Vector3d& point, std::span<const Transform<doub
     Vector3d value = Vector3d::Zero();
     for (std::size_t k = 0; k < n; ++k) value += weights[k] * (poses[count - n + k] * point - here);
     const double error = n == 2 ? value.norm() : (value - lower).norm();
-    if (error < best.error) best = {value, error};
+    if (error < best.error) best = {value, error, error};
     lower = value;
   }
   return best;

@@ -35,21 +35,26 @@ struct Stencils {
 struct Estimate {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   double error = 0;  ///< length; infinite where nothing is known
+  /// By how much it may be longer: more than `error` where an impact is within four steps, for steps beside
+  /// one may hide others.
+  double longer = 0;
 };
 
 struct Velocity {
-  Estimate linear;   ///< of the centre of mass, world, m/s
-  Estimate angular;  ///< rad/s, in the body's own axes
-  double turn = 0;   ///< rad, the larger of the two steps' that meet at the instant
+  Estimate linear;      ///< of the centre of mass, world, m/s
+  Estimate angular;     ///< rad/s, in the body's own axes
+  bool smooth = false;  ///< differences of both converge: no impact is near
+  double turn = 0;      ///< rad, the larger of the two steps' that meet at the instant
 };
 
 /// Velocity of a body at an instant from its poses (body → world) around it. Differences are believed where
 /// both those of the positions' first and of their second derivatives converge, each order's correction below
 /// 0.15 of the one before: the eighth order then, with four times the sixth's correction as its error. A jump
 /// within reach makes them diverge, wherever in a step it lies; then only the steps beside the instant count,
-/// and the error is half of what the mean velocities of neighbouring ones differ by. `precision`: what
-/// coordinates and rotations are rounded to, of their size. A body that turns by more than 2.5 rad between
-/// two poses cannot be followed: infinite error.
+/// and the error is half of what the mean velocities of neighbouring ones differ by; how much longer it may
+/// be, half of the most that any two neighbours within four steps differ by. `precision`: what coordinates
+/// and rotations are rounded to, of their size. A body that turns by more than 2.5 rad between two poses
+/// cannot be followed: infinite error.
 Velocity velocity_at(const Body& body, std::span<const Transform<double>> poses, const Stencils& stencils,
                      double precision);
 
