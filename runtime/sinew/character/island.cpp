@@ -411,7 +411,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   if (passes_left_ <= 0) splits_left = 0;
   total_.add(solved);
   const bool may_restart = closed && !settings_.plan->scheme;
-  if (may_restart && (solved.converged || splits_left == 0) && excess() > 0) {
+  if (may_restart && (solved.converged || splits_left == 0) && excess(solved.converged) > 0) {
     take_back_landing();
     solved = solve_from_start();
     total_.add(solved);
@@ -429,7 +429,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   });
   if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
     budget_ = ledger_.open(states_, world_->gravity);
-  hold_lost(!solved.converged && closed && excess() > standing());
+  hold_lost(!solved.converged && closed && excess(false) > standing());
   for (std::size_t n = 0; n < states_.size(); ++n) settle_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
   stop_lost();

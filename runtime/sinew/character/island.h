@@ -72,7 +72,8 @@ class IslandStepper {
   void choose_lagged(std::span<const LaggedForce<T>> lagged);
   bool passive() const;
   double pose_energy() const;
-  double excess() const;
+  double way_energy() const;
+  double excess(bool converged) const;
   double standing() const;
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);

@@ -1,4 +1,5 @@
 // The ladder of IslandStepper, from where a part of a step is not split any further.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,25 @@
 namespace sinew {
 namespace {
 
-constexpr int kPassing = 30;  ///< steps after a tree was held
+constexpr int kPassing = 30;          ///< steps after a tree was held
+constexpr double kSlackOfWay = 0.02;  ///< of the kinetic energy of a way: what schemes swing by
+
+/// J, that goes at least with the way from where the tree was to the present poses in h seconds: whatever is
+/// between, the mean kinetic energy is no less than the chord's. `place`: of the history, from the common
+/// origin.
+template <class T>
+double least_kinetic(const CharacterState<T>& s, const Vec3<T>& place, double h) {
+  double sum = 0;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Vec3<T> way = s.problem.kinematics.center[i] - s.history.center[i] - place;
+    const Mat3<T> turn = s.history.rotation[i].transpose() * s.problem.kinematics.rotation[i];
+    const double cosine = std::clamp((double(turn.trace()) - 1) / 2, -1.0, 1.0), angle = std::acos(cosine);
+    const double most_mobile = s.tree.inertia[i].template cast<double>().inverse().norm();
+    sum += double(s.tree.mass[i]) * double(way.squaredNorm());
+    if (std::isfinite(most_mobile)) sum += angle * angle / most_mobile;
+  }
+  return sum / (2 * h * h);
+}
 
 }  // namespace
 
@@ -49,12 +68,33 @@ double IslandStepper<T>::pose_energy() const {
   return sum;
 }
 
-/// J that the present poses store beyond what the trees had and what rounding makes of it: only energy from
-/// nowhere could reach them where it is above 0.
+/// J that the way to the present poses needs, at least: its kinetic energy, and what gravity stores halfway
+/// (less what a way below the chord would save, m g² h²/24).
 template <class T>
-double IslandStepper<T>::excess() const {
-  const double had = budget_, stored = pose_energy();
-  return stored - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(stored));
+double IslandStepper<T>::way_energy() const {
+  const double h = double(settings_.h);
+  double sum = 0;
+  for (const CharacterState<T>* s : states_) {
+    const Vec3<T> place = (s->history.place - settings_.common_origin).template cast<T>();
+    sum += (1 - kSlackOfWay) * least_kinetic(*s, place, h) -
+           s->total_mass * world_->gravity.squaredNorm() * h * h / 24;
+    for (int i = 0; i < s->tree.bodies; ++i) {
+      const Vec3<T> middle = T(0.5) * (s->history.center[i] + place + s->problem.kinematics.center[i]);
+      sum += gravity_energy<double>(s->tree.mass[i], world_->gravity,
+                                    settings_.common_origin + middle.template cast<double>());
+    }
+  }
+  return sum;
+}
+
+/// J that the present poses store beyond what the trees had and what rounding makes of it: only energy from
+/// nowhere could reach them where it is above 0. Where a solve has not `converged`, the way there may need
+/// more than they: a body leaps, and is as slow as before.
+template <class T>
+double IslandStepper<T>::excess(bool converged) const {
+  const double had = budget_;
+  const double needed = converged ? pose_energy() : std::max(pose_energy(), way_energy());
+  return needed - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(needed));
 }
 
 /// J that what stands still stores in its contacts: no more than a solve that failed may leave.
@@ -149,7 +189,8 @@ void IslandStepper<T>::hold_lost(bool no_pose) {
 #define SINEW_LADDER_INSTANCES(T)                                          \
   template bool IslandStepper<T>::passive() const;                         \
   template double IslandStepper<T>::pose_energy() const;                   \
-  template double IslandStepper<T>::excess() const;                        \
+  template double IslandStepper<T>::way_energy() const;                    \
+  template double IslandStepper<T>::excess(bool) const;                    \
   template double IslandStepper<T>::standing() const;                      \
   template SolveReport IslandStepper<T>::solve_from_start();               \
   template void IslandStepper<T>::hold(CharacterState<T>&);                \
