@@ -123,7 +123,7 @@ std::string reference_options() {
   "fit_distance_cm": 10,
   // What coarse curves and their rounding may each change accelerations by, root mean square: rad/s² of joints that
   // turn, m/s² of those that shift. Muscles feel accelerations, not millimetres: 0.1 m/s² are a hundredth of the
-  // weight. Or a hundredth of the curve's own acceleration, where that is more.
+  // weight. Or a fiftieth of the curve's own acceleration, where that is more.
   "fit_angular_acceleration": 0.5,
   "fit_linear_acceleration": 0.1,
   // Degree of the curves: 5 for motion capture, 3 for clean authored keys.

@@ -22,7 +22,7 @@ struct FitOptions {
   double skin_distance = 0.1;  ///< m of that point from its joint
   /// What curves may change accelerations by, root mean square, by coarse knots and by rounding each:
   /// rad/s² of rotations and m/s² of translations, or a share of the curve's own where that is more.
-  double angular_acceleration = 0.5, linear_acceleration = 0.1, acceleration_share = 0.01;
+  double angular_acceleration = 0.5, linear_acceleration = 0.1, acceleration_share = 0.02;
   int degree = 5;  ///< 5 for motion capture: smooth accelerations from noisy keys; 3 for clean keys
 };
 

@@ -18,6 +18,7 @@ constexpr double kCoarsest = 0.5;  ///< s between knots: a slower movement than 
 /// s between knots of the curves whose accelerations are to be kept: of motion capture with noise, quintic
 /// curves with a knot every fifteenth of a second have the most accurate ones.
 constexpr double kReference = 1 / 14.9;
+constexpr int kRegister = 8;    ///< tracks that AVX2 samples together
 constexpr int kHalfOctave = 2;  ///< steps of packing_step() that divide it by √2
 
 /// Numbers of spans from coarsest to one per sample, by twos: tracks whose knots agree are sampled together,
@@ -253,9 +254,35 @@ void CurveSearch::coarsen() {
   }
 }
 
+/// Sampling takes rotations of like knots by registers: less than one of them is not worth knots of its own.
+void CurveSearch::merge_small_levels() {
+  const int levels = static_cast<int>(spans_.size());
+  std::vector<int> turning(std::size_t(levels), 0);
+  for (const Channel& channel : channels_) turning[channel.level] += channel.track.rotation() ? 1 : 0;
+  for (int level = 0; level < levels; ++level) {
+    const auto finer = std::find_if(turning.begin() + level + 1, turning.end(), [](int n) { return n > 0; });
+    if (turning[level] >= kRegister || finer == turning.end()) continue;
+    const int to = static_cast<int>(finer - turning.begin());
+    for (Channel& channel : channels_) {
+      if (channel.level != level) continue;
+      const Channel before = channel;
+      const double error = chain_.largest();
+      channel.level = to;
+      fit(channel);
+      if (chain_.largest() <= std::max(error, budget_.error)) {
+        turning[to] += channel.track.rotation() ? 1 : 0;
+        continue;
+      }
+      channel = before;
+      play(channel);
+    }
+  }
+}
+
 void CurveSearch::run() {
   refine_all();
   coarsen();
+  merge_small_levels();
 }
 
 }  // namespace sinew::convert

@@ -20,12 +20,12 @@ struct CurveBudget {
   /// What coarse knots and what rounding may each change accelerations by, root mean square, against the
   /// least-squares curve of fifteen knots a second: rad/s² of rotations, m/s² of translations; or the share
   /// of the curve's own, where that is more.
-  double angular = 0.5, linear = 0.1, share = 0.01;
+  double angular = 0.5, linear = 0.1, share = 0.02;
   int degree = 5;
 };
 
 /// Curves for all joints, refined where the chain's error comes from until it is within the budget, then
-/// coarsened one by one where the budget allows it.
+/// coarsened one by one where the budget allows it. Few tracks on knots of their own join the next finer.
 class CurveSearch {
  public:
   /// One curve on its way.
@@ -71,6 +71,7 @@ class CurveSearch {
   bool refine(int joint, std::vector<std::uint8_t>& touched);
   void refine_all();
   void coarsen();
+  void merge_small_levels();
   bool try_change(Channel& channel, int level, int step);
 
   CurveBudget budget_;
