@@ -51,6 +51,7 @@ CurveSearch::CurveSearch(const std::vector<std::vector<Transform<double>>>& samp
       loops_(loops),
       chain_(samples, parents, budget.skin_distance),
       spans_(ladder(loops ? chain_.frames() : chain_.frames() - 1, duration)),
+      allowed_(spans_.size(), 1),
       channels_of_(samples.front().size()),
       local_(samples.front().size()) {
   for (std::size_t j = 0; j < local_.size(); ++j) {
@@ -170,9 +171,9 @@ double CurveSearch::gain(const Channel& channel, int joint, int frame, Move& mov
   track.play_unrounded(frame, smooth);
   track.play(frame, rounded);
   double best = 0;
-  if (channel.level + 1 < static_cast<int>(spans_.size())) {
+  if (const int finer = next_level(channel.level); finer >= 0) {
     const double bits_per_control = track.bits() / track.controls();
-    best = apart(truth, smooth) / ((spans_[channel.level + 1] - spans_[channel.level]) * bits_per_control);
+    best = apart(truth, smooth) / ((spans_[finer] - spans_[channel.level]) * bits_per_control);
     move = Move::kMoreKnots;
   }
   if (step_of(channel) + kHalfOctave <= track.finest_step()) {
@@ -204,7 +205,7 @@ bool CurveSearch::refine(int joint, std::vector<std::uint8_t>& touched) {
   }
   if (!best) return false;
   if (best_move == Move::kMoreKnots)
-    ++best->level;
+    best->level = next_level(best->level);
   else
     best->step = step_of(*best) + kHalfOctave;
   touched[best->track.joint()] = 1;
@@ -239,14 +240,16 @@ bool CurveSearch::try_change(Channel& channel, int level, int step) {
   return false;
 }
 
-void CurveSearch::coarsen() {
+/// `knots`: those too, not the rounding alone.
+void CurveSearch::coarsen(bool knots) {
   std::vector<int> order(channels_.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return channels_[a].track.bits() > channels_[b].track.bits(); });
   for (const int index : order) {
     Channel& channel = channels_[index];
-    while (channel.level > channel.coarsest && try_change(channel, channel.level - 1, channel.step)) {
+    while (knots && channel.level > channel.coarsest &&
+           try_change(channel, channel.level - 1, channel.step)) {
     }
     while (step_of(channel) >= kHalfOctave &&
            try_change(channel, channel.level, step_of(channel) - kHalfOctave)) {
@@ -254,35 +257,44 @@ void CurveSearch::coarsen() {
   }
 }
 
-/// Sampling takes rotations of like knots by registers: less than one of them is not worth knots of its own.
+int CurveSearch::turning(int level) const {
+  return static_cast<int>(std::count_if(channels_.begin(), channels_.end(), [&](const Channel& channel) {
+    return channel.level == level && channel.track.rotation();
+  }));
+}
+
+/// The next finer level that tracks may have, or −1.
+int CurveSearch::next_level(int level) const {
+  for (std::size_t finer = level + 1; finer < spans_.size(); ++finer)
+    if (allowed_[finer]) return static_cast<int>(finer);
+  return -1;
+}
+
+/// Sampling takes rotations of like knots by registers, and weighs the knots of each level anew: tracks move
+/// to the next finer level where that saves a register, or where they do not fill one.
 void CurveSearch::merge_small_levels() {
-  const int levels = static_cast<int>(spans_.size());
-  std::vector<int> turning(std::size_t(levels), 0);
-  for (const Channel& channel : channels_) turning[channel.level] += channel.track.rotation() ? 1 : 0;
-  for (int level = 0; level < levels; ++level) {
-    const auto finer = std::find_if(turning.begin() + level + 1, turning.end(), [](int n) { return n > 0; });
-    if (turning[level] >= kRegister || finer == turning.end()) continue;
-    const int to = static_cast<int>(finer - turning.begin());
+  const auto registers = [](int tracks) { return (tracks + kRegister - 1) / kRegister; };
+  for (std::size_t l = 0; l < spans_.size(); ++l) allowed_[l] = turning(static_cast<int>(l)) > 0;
+  for (std::size_t l = 0; l < spans_.size(); ++l) {
+    const int level = static_cast<int>(l), finer = next_level(level), here = turning(level);
+    if (finer < 0) break;
+    const int there = turning(finer);
+    if (here >= kRegister && registers(here) + registers(there) == registers(here + there)) continue;
+    allowed_[l] = 0;
     for (Channel& channel : channels_) {
       if (channel.level != level) continue;
-      const Channel before = channel;
-      const double error = chain_.largest();
-      channel.level = to;
+      channel.level = finer;
       fit(channel);
-      if (chain_.largest() <= std::max(error, budget_.error)) {
-        turning[to] += channel.track.rotation() ? 1 : 0;
-        continue;
-      }
-      channel = before;
-      play(channel);
     }
   }
 }
 
 void CurveSearch::run() {
   refine_all();
-  coarsen();
+  coarsen(true);
   merge_small_levels();
+  refine_all();
+  coarsen(false);
 }
 
 }  // namespace sinew::convert

@@ -70,7 +70,9 @@ class CurveSearch {
   double gain(const Channel& channel, int joint, int frame, Move& move) const;
   bool refine(int joint, std::vector<std::uint8_t>& touched);
   void refine_all();
-  void coarsen();
+  void coarsen(bool knots);
+  int turning(int level) const;
+  int next_level(int level) const;
   void merge_small_levels();
   bool try_change(Channel& channel, int level, int step);
 
@@ -78,7 +80,8 @@ class CurveSearch {
   double duration_ = 0;
   bool loops_ = false;
   ChainError chain_;
-  std::vector<int> spans_;  ///< [level]
+  std::vector<int> spans_;             ///< [level]
+  std::vector<std::uint8_t> allowed_;  ///< [level] whether tracks may have it
   std::map<int, std::unique_ptr<KnotGrid>> grids_;
   std::vector<Channel> channels_;
   std::vector<std::vector<int>> channels_of_;  ///< [joint]
