@@ -18,7 +18,9 @@ constexpr double kCoarsest = 0.5;  ///< s between knots: a slower movement than 
 /// s between knots of the curves whose accelerations are to be kept: of motion capture with noise, quintic
 /// curves with a knot every fifteenth of a second have the most accurate ones.
 constexpr double kReference = 1 / 14.9;
-constexpr int kRegister = 8;    ///< tracks that AVX2 samples together
+constexpr int kRegister = 8;  ///< tracks that AVX2 samples together
+constexpr int kFewest =
+    12;  ///< tracks that are worth weights of their own: those take two thirds of a register
 constexpr int kHalfOctave = 2;  ///< steps of packing_step() that divide it by √2
 
 /// Numbers of spans from coarsest to one per sample, by twos: tracks whose knots agree are sampled together,
@@ -271,7 +273,7 @@ int CurveSearch::next_level(int level) const {
 }
 
 /// Sampling takes rotations of like knots by registers, and weighs the knots of each level anew: tracks move
-/// to the next finer level where that saves a register, or where they do not fill one.
+/// to the next finer level where that saves a register, or where they are few.
 void CurveSearch::merge_small_levels() {
   const auto registers = [](int tracks) { return (tracks + kRegister - 1) / kRegister; };
   for (std::size_t l = 0; l < spans_.size(); ++l) allowed_[l] = turning(static_cast<int>(l)) > 0;
@@ -279,7 +281,7 @@ void CurveSearch::merge_small_levels() {
     const int level = static_cast<int>(l), finer = next_level(level), here = turning(level);
     if (finer < 0) break;
     const int there = turning(finer);
-    if (here >= kRegister && registers(here) + registers(there) == registers(here + there)) continue;
+    if (here >= kFewest && registers(here) + registers(there) == registers(here + there)) continue;
     allowed_[l] = 0;
     for (Channel& channel : channels_) {
       if (channel.level != level) continue;
