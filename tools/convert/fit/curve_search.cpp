@@ -221,7 +221,7 @@ void CurveSearch::refine_all() {
     std::vector<std::pair<double, int>> worst;
     for (int j = 0; j < chain_.joints(); ++j) {
       const double error = chain_.error(j, chain_.worst_frame(j));
-      if (error > budget_.error) worst.push_back({-error, j});
+      if (error > budget_.error) worst.emplace_back(-error, j);
     }
     std::sort(worst.begin(), worst.end());
     std::vector<std::uint8_t> touched(channels_of_.size(), 0);

@@ -125,7 +125,7 @@ std::vector<Eigen::Vector4f> FittedTrack::smooth_controls(const KnotGrid& grid) 
     Eigen::Vector4d control(fitted(i, 0), fitted(i, 1), fitted(i, 2), 1);
     if (packing_.components == 4) control[3] = fitted(i, 3);
     if (rotation_) control = (reference_ * Quat<double>(control)).coeffs();
-    out.push_back(control.cast<float>());
+    out.emplace_back(control.cast<float>());
   }
   return out;
 }
