@@ -189,10 +189,11 @@ std::string report_text(const nlohmann::json& r) {
   list("ride_along_joints", "ride along:");
   if (r.contains("clips"))
     for (const auto& c : r["clips"]) {
-      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, error along the chain max %.3f mm, rms %.3f mm",
+      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm",
                     c.value("name", "").c_str(), c.value("duration_s", 0.0),
-                    c.value("loops", false) ? " loop" : "     ", c.value("max_error_mm", 0.0),
-                    c.value("rms_error_mm", 0.0));
+                    c.value("loops", false) ? " loop" : "     ",
+                    c.contains("bytes_per_joint_second") ? "error along the chain" : "error at each joint",
+                    c.value("max_error_mm", 0.0), c.value("rms_error_mm", 0.0));
       text += line;
       if (c.contains("bytes_per_joint_second")) {
         std::snprintf(line, sizeof line, "; per joint and second %.1f bytes, %.1f in memory",
