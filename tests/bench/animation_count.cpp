@@ -1,7 +1,10 @@
 // Calls one animation job so many times, for callgrind to count: the difference between two runs is the
-// calls' own. 67 joints, float.
+// calls' own. 67 joints, float; or a clip of an asset.
 //
-//     animation_count sample|blend|inertialize|begin CALLS
+//     animation_count sample|seek|blend|inertialize|begin CALLS
+//     animation_count sample|seek CALLS ASSET.sinew CLIP
+//
+// `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -11,25 +14,44 @@
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/io/asset.h"
+
+namespace {
+
+using namespace sinew;
+
+/// The clip that is asked for; without joints if there is no such clip.
+Clip clip_of(int argc, char** argv) {
+  if (argc != 5) return fixtures::random_clip({});
+  Asset asset;
+  if (!load_asset(argv[3], asset)) return {};
+  const int index = asset.find_clip(argv[4]);
+  return index < 0 ? Clip() : asset.clips[std::size_t(index)];
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  using namespace sinew;
-  const std::string job = argc == 3 ? argv[1] : "";
-  const int calls = argc == 3 ? std::atoi(argv[2]) : 0;
-  const Clip clip = fixtures::random_clip({});
-  constexpr int kJoints = 67, kShifting = 1;
-  std::vector<JointJet<float>> a(kJoints), b(kJoints), out(kJoints);
+  const bool asked = argc == 3 || argc == 5;
+  const std::string job = asked ? argv[1] : "";
+  const int calls = asked ? std::atoi(argv[2]) : 0;
+  const Clip clip = clip_of(argc, argv);
+  const int joints = clip.joint_count;
+  constexpr int kShifting = 1;
+  std::vector<JointJet<float>> a(joints), b(joints), out(joints);
   (void)SamplingJob<float>{&clip, 1, a}.Run();
   (void)SamplingJob<float>{&clip, 3, b}.Run();
-  std::vector<float> numbers(inertial_numbers(kJoints, kShifting));
-  InertialState<float> state{numbers, kJoints, kShifting};
+  std::vector<float> numbers(inertial_numbers(joints, kShifting));
+  InertialState<float> state{numbers, joints, kShifting};
   (void)begin_inertial<float>(a, b, 1, state);
   state.elapsed = 0.3f;
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
-  bool ok = calls > 0;
+  bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")
       ok = SamplingJob<float>{&clip, 0.01 * i, out}.Run().ok();
+    else if (job == "seek")
+      ok = SamplingJob<float>{&clip, clip.duration * double(i * 7919 % 10007) / 10007, out}.Run().ok();
     else if (job == "blend")
       ok = BlendingJob<float>{layers, {}, out}.Run().ok();
     else if (job == "inertialize")
@@ -40,6 +62,6 @@ int main(int argc, char** argv) {
       ok = false;
   }
   if (ok) return 0;
-  std::fputs("usage: animation_count sample|blend|inertialize|begin CALLS\n", stderr);
+  std::fputs("usage: animation_count sample|seek|blend|inertialize|begin CALLS [ASSET.sinew CLIP]\n", stderr);
   return 2;
 }

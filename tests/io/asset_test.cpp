@@ -2,17 +2,51 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <random>
 
 #include "fixtures/humanoid.h"
+#include "fixtures/paths.h"
+#include "sinew/animation/clip_packing.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew {
 namespace {
 
-/// The fixture humanoid with a moving clip, a skinned triangle and a material.
+/// Turns and shifts of a few joints as whole numbers, which files hold packed.
+Clip packed_clip(const Skeleton& skeleton) {
+  Clip clip;
+  clip.name = "sway";
+  clip.duration = 2;
+  clip.joint_count = static_cast<int>(skeleton.joints.size());
+  for (const Joint& j : skeleton.joints) clip.constants.push_back(j.rest.cast<float>());
+  clip.constants[2].rotation = Quat<float>(0.6f, 0.8f, 0, 0);
+  clip.constants[5].translation.x() += 0.25f;
+  std::mt19937 random(7);
+  for (const bool rotation : {true, false}) {
+    Clip::Group& group = clip.groups.emplace_back();
+    group.rotation = rotation;
+    group.degree = 5;
+    group.knot_interval = 0.125f;
+    group.control_count = 21;
+    group.tracks = {{1}, {6}, {0}};
+    group.packings = {{40, 3, {3, -100, 20, 77}}, {36, 3, {0, 0, 0, 127}}, {44, 4, {}}};
+    if (!rotation) group.packings[2].components = 3;
+    std::int32_t numbers[3][4] = {{0, 300, -50, 0}, {1, 2, 3, 0}, {0, 0, 0, 1 << 11}};
+    for (int knot = 0; knot < group.control_count; ++knot)
+      for (std::size_t k = 0; k < 3; ++k) {
+        float control[4];
+        for (int c = 0; c < 3; ++c) numbers[k][c] += static_cast<int>(random() % 15) - 7;
+        unpack_control(group.packings[k], rotation, numbers[k], control);
+        group.controls.insert(group.controls.end(), control, control + (rotation ? 4 : 3));
+      }
+  }
+  return clip;
+}
+
+/// The fixture humanoid with two moving clips, a skinned triangle and a material.
 Asset sample_asset() {
   Asset asset;
   asset.skeleton = fixtures::humanoid();
@@ -34,6 +68,7 @@ Asset sample_asset() {
   clip.groups.push_back(group);
   clip.contacts.push_back({4, 0.1f, 0.5f});
   asset.clips.push_back(clip);
+  asset.clips.push_back(packed_clip(asset.skeleton));
   Mesh mesh;
   mesh.name = "triangle";
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -62,6 +97,54 @@ TEST(Asset, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.skeleton.muscles[0].group, "arms");
   EXPECT_EQ(back.skeleton.muscles[0].torque_plus, 25);
   EXPECT_TRUE(back.skeleton.joints[std::size_t(back.skeleton.muscles[0].joint)].ellipsoidal_limit);
+}
+
+void expect_same_motion(const Clip& a, const Clip& b) {
+  EXPECT_EQ(a.constants, b.constants);
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  for (std::size_t g = 0; g < a.groups.size(); ++g) {
+    EXPECT_EQ(a.groups[g].controls, b.groups[g].controls);
+    EXPECT_EQ(a.groups[g].knot_interval, b.groups[g].knot_interval);
+    ASSERT_EQ(a.groups[g].tracks.size(), b.groups[g].tracks.size());
+    for (std::size_t k = 0; k < a.groups[g].tracks.size(); ++k)
+      EXPECT_EQ(a.groups[g].tracks[k].joint, b.groups[g].tracks[k].joint);
+  }
+}
+
+TEST(Asset, ClipsArePlayedAsTheyWereWritten) {
+  const Asset asset = sample_asset();
+  Asset back;
+  ASSERT_TRUE(read_asset(write_asset(asset), back).ok());
+  ASSERT_EQ(back.clips.size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) expect_same_motion(asset.clips[c], back.clips[c]);
+  EXPECT_TRUE(back.clips[0].groups[0].packings.empty());
+  EXPECT_EQ(back.clips[1].groups[1].packings.size(), 3u);
+}
+
+TEST(Asset, PackedClipsTakeAFractionOfTheirControls) {
+  const Asset asset = sample_asset();
+  Clip plain = asset.clips[1];
+  for (Clip::Group& group : plain.groups) group.packings.clear();
+  EXPECT_LT(2 * file_bytes(asset.clips[1], asset.skeleton), file_bytes(plain, asset.skeleton));
+  // A control that is no whole number any more: the file holds it as it is.
+  Asset changed = asset;
+  float& control = changed.clips[1].groups[0].controls[5];
+  control = std::nextafter(control, 2.f);
+  Asset back;
+  ASSERT_TRUE(read_asset(write_asset(changed), back).ok());
+  expect_same_motion(changed.clips[1], back.clips[1]);
+}
+
+/// version_1.sinew: sample_asset() with its first clip only, by the writer before clips were packed.
+TEST(Asset, FilesOfTheFirstVersionAreStillRead) {
+  Asset back;
+  const Status status = load_asset((source_dir() + "/tests/io/version_1.sinew").c_str(), back);
+  ASSERT_TRUE(status.ok()) << status.reason;
+  ASSERT_EQ(back.clips.size(), 1u);
+  const Asset asset = sample_asset();
+  expect_same_motion(asset.clips[0], back.clips[0]);
+  EXPECT_EQ(back.clips[0].contacts.size(), 1u);
+  EXPECT_EQ(back.skeleton.joints.size(), asset.skeleton.joints.size());
 }
 
 TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {

@@ -26,28 +26,63 @@ Error describe(const std::string& path, const Status& status, const Skeleton& sk
   return in_file(path, status.reason + where);
 }
 
+FitOptions fit_options(const Options& options) {
+  FitOptions fit;
+  fit.max_error_mm = options.fit_error_mm;
+  fit.skin_distance = options.fit_distance_cm / 100;
+  fit.angular_acceleration = options.fit_angular;
+  fit.linear_acceleration = options.fit_linear;
+  fit.degree = options.fit_degree;
+  return fit;
+}
+
+nlohmann::json describe(const Clip& clip, const Skeleton& skeleton, double keys_per_s,
+                        const FitReport& fitted) {
+  std::size_t controls = 0;
+  for (const Clip::Group& group : clip.groups) controls += group.controls.size() * sizeof(float);
+  const double joint_seconds = clip.joint_count * std::max(1e-3, double(clip.duration));
+  return {{"name", clip.name},
+          {"duration_s", clip.duration},
+          {"loops", clip.loops},
+          {"keys_per_s", keys_per_s},
+          {"max_error_mm", fitted.max_mm},
+          {"rms_error_mm", fitted.rms_mm},
+          {"bytes_per_joint_second", double(file_bytes(clip, skeleton)) / joint_seconds},
+          {"memory_per_joint_second", double(controls) / joint_seconds}};
+}
+
 /// Rig joints in skeleton order.
 void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Options& options, Asset& asset,
-               nlohmann::json& report) {
+               std::vector<Clip>& references, nlohmann::json& report) {
   report["clips"] = nlohmann::json::array();
+  FitInput input;
+  for (const Joint& joint : asset.skeleton.joints) {
+    input.parents.push_back(joint.parent);
+    input.rest.push_back(joint.rest.cast<float>());
+  }
   for (const Rig::Motion& motion : rig.motions) {
-    FitInput input{motion.name, motion.loops, motion.sample_rate, {}};
+    input.name = motion.name;
+    input.loops = motion.loops;
+    input.sample_rate = motion.sample_rate;
+    input.samples.clear();
     for (const auto& frame : motion.samples) {
       std::vector<Transform<double>> ordered(frame.size());
       for (std::size_t j = 0; j < frame.size(); ++j) ordered[joint_of_rig[j]] = frame[j];
       input.samples.push_back(std::move(ordered));
     }
-    FitOptions fit;
-    fit.max_error_mm = options.fit_error_mm;
-    fit.degree = options.fit_degree;
     FitReport fitted;
-    asset.clips.push_back(fit_clip(input, fit, fitted));
-    report["clips"].push_back({{"name", motion.name},
-                               {"duration_s", asset.clips.back().duration},
-                               {"loops", asset.clips.back().loops},
-                               {"keys_per_s", motion.sample_rate},
-                               {"max_error_mm", fitted.max_mm},
-                               {"rms_error_mm", fitted.rms_mm}});
+    asset.clips.push_back(fit_clip(input, fit_options(options), fitted));
+    references.push_back(std::move(fitted.reference));
+    report["clips"].push_back(describe(asset.clips.back(), asset.skeleton, motion.sample_rate, fitted));
+  }
+}
+
+/// What the fit's knots and rounding change of the torques that clips ask for.
+void report_torque_errors(const Asset& asset, const std::vector<Clip>& references, nlohmann::json& report) {
+  for (std::size_t i = 0; i < asset.clips.size(); ++i) {
+    const TorqueError error = torque_error(asset.clips[i], references[i], asset.skeleton);
+    report["clips"][i]["largest_torque_error"] = error.largest;
+    report["clips"][i]["rms_torque_error"] = error.rms;
   }
 }
 
@@ -68,9 +103,11 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     asset.skeleton.name = scenes[0].name;
     if (Error error = override_masses(options, true, asset.skeleton))
       return in_file(inputs[0], error.message);
-    fit_clips(rig, joint_of_rig, options, asset, report);
+    std::vector<Clip> references;
+    fit_clips(rig, joint_of_rig, options, asset, references, report);
     if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
     strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
+    report_torque_errors(asset, references, report);
     asset.meshes = std::move(rig.meshes);
     for (Mesh& mesh : asset.meshes)
       for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
@@ -152,11 +189,21 @@ std::string report_text(const nlohmann::json& r) {
   list("ride_along_joints", "ride along:");
   if (r.contains("clips"))
     for (const auto& c : r["clips"]) {
-      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, curve error max %.3f mm, rms %.3f mm\n",
+      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm",
                     c.value("name", "").c_str(), c.value("duration_s", 0.0),
-                    c.value("loops", false) ? " loop" : "     ", c.value("max_error_mm", 0.0),
-                    c.value("rms_error_mm", 0.0));
+                    c.value("loops", false) ? " loop" : "     ",
+                    c.contains("bytes_per_joint_second") ? "error along the chain" : "error at each joint",
+                    c.value("max_error_mm", 0.0), c.value("rms_error_mm", 0.0));
       text += line;
+      if (c.contains("bytes_per_joint_second")) {
+        std::snprintf(line, sizeof line, "; per joint and second %.1f bytes, %.1f in memory",
+                      c.value("bytes_per_joint_second", 0.0), c.value("memory_per_joint_second", 0.0));
+        text += line;
+        std::snprintf(line, sizeof line, "; torques within %.1f %% of the limits, rms %.2f %%",
+                      100 * c.value("largest_torque_error", 0.0), 100 * c.value("rms_torque_error", 0.0));
+        text += line;
+      }
+      text += "\n";
     }
   if (r.contains("notes"))
     for (const auto& n : r["notes"]) text += "note: " + n.get<std::string>() + "\n";

@@ -250,4 +250,36 @@ void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleto
   }
 }
 
+TorqueError torque_error(const Clip& clip, const Clip& reference, const Skeleton& skeleton) {
+  Pass pass(skeleton);
+  const Tree<double>& tree = pass.tree;
+  const int frames = frames_of(clip);
+  Eigen::MatrixXd meant = Eigen::MatrixXd::Zero(tree.dofs, frames), off = meant;
+  const auto torques = [&](const Clip& of, int frame) {
+    std::vector<double> torque(tree.dofs, 0.0);
+    if (pass.run(of, frame)) project_wrenches<double>(tree, pass.kinematics, pass.force, pass.moment, torque);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(torque.data(), tree.dofs));
+  };
+  for (int f = 0; f < frames; ++f) {
+    meant.col(f) = torques(reference, f);
+    off.col(f) = torques(clip, f) - meant.col(f);
+  }
+  TorqueError error;
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < tree.bodies; ++i)
+    for (int k = 0; k < dof_count(skeleton.joints[i].type); ++k) {
+      if (skeleton.joints[i].type == JointType::kFree) continue;
+      const int d = tree.first_dof[i] + k;
+      const DofLimits& dof = skeleton.joints[i].dofs[k];
+      const double own = meant.row(d).norm() / std::sqrt(frames);
+      const double scale = std::max({std::min(dof.torque_minus, dof.torque_plus), own, 1e-9});
+      error.largest = std::max(error.largest, off.row(d).cwiseAbs().maxCoeff() / scale);
+      sum += off.row(d).squaredNorm() / (scale * scale);
+      count += frames;
+    }
+  error.rms = count > 0 ? std::sqrt(sum / count) : 0;
+  return error;
+}
+
 }  // namespace sinew::convert

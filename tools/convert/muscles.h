@@ -36,4 +36,12 @@ void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, doub
 /// is held so long, and the limits.
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report);
 
+/// How far the torques that a clip asks for are from those of a reference: over all joints and frames, 60 a
+/// second, as shares of a muscle's limit, or of its own root mean square where noise asks for more than that.
+/// Without the floor's forces: how they are shared among contact points jumps for reasons of its own.
+struct TorqueError {
+  double largest = 0, rms = 0;
+};
+TorqueError torque_error(const Clip& clip, const Clip& reference, const Skeleton& skeleton);
+
 }  // namespace sinew::convert

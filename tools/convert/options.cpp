@@ -117,8 +117,15 @@ std::string reference_options() {
   "free_base": true,
   // true refuses what would otherwise be repaired and reported (broken inertias, massless links).
   "strict": false,
-  // Largest error of the fitted curves, mm at a point 10 cm from the joint.
+  // Largest error of the fitted curves, mm in model space: the errors of all joints along the chain, at a point of
+  // the skin of each joint, so many cm from it.
   "fit_error_mm": 1,
+  "fit_distance_cm": 10,
+  // What coarse curves and their rounding may each change accelerations by, root mean square: rad/s² of joints that
+  // turn, m/s² of those that shift. Muscles feel accelerations, not millimetres: 0.1 m/s² are a hundredth of the
+  // weight. Or a fiftieth of the curve's own acceleration, where that is more.
+  "fit_angular_acceleration": 0.5,
+  "fit_linear_acceleration": 0.1,
   // Degree of the curves: 5 for motion capture, 3 for clean authored keys.
   "fit_degree": 5,
   // Names of the clips to keep; empty: all.
@@ -161,6 +168,12 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.strict = value.get<bool>();
       else if (key == "fit_error_mm")
         o.fit_error_mm = value.get<double>();
+      else if (key == "fit_distance_cm")
+        o.fit_distance_cm = value.get<double>();
+      else if (key == "fit_angular_acceleration")
+        o.fit_angular = value.get<double>();
+      else if (key == "fit_linear_acceleration")
+        o.fit_linear = value.get<double>();
       else if (key == "fit_degree")
         o.fit_degree = value.get<int>();
       else if (key == "clips")

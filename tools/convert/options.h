@@ -32,9 +32,12 @@ struct Options {
   double strength = 1;                         ///< scales all muscle limits
   double strength_margin = 1.5;                ///< muscles are at least this much stronger than the clips ask
   bool simulate_fingers = false;
-  bool free_base = true;  ///< URDF: the root link may move
-  bool strict = false;    ///< refuse instead of repairing
-  double fit_error_mm = 1;
+  bool free_base = true;        ///< URDF: the root link may move
+  bool strict = false;          ///< refuse instead of repairing
+  double fit_error_mm = 1;      ///< of a skin point, along the chain
+  double fit_distance_cm = 10;  ///< of that point from its joint
+  double fit_angular = 0.5;     ///< rad/s² that a fitted curve may change a joint's acceleration by, and
+  double fit_linear = 0.1;      ///< m/s² of a joint that shifts
   int fit_degree = 5;
   std::vector<std::string> clips;  ///< names to keep; empty: all
 

@@ -23,6 +23,8 @@ Status check_group(const Clip& clip, const Clip::Group& group, int index) {
     return Status::error(Code::kInvalidArgument, "knots end before the clip", index);
   if (group.controls.size() != components * group.tracks.size() * std::size_t(group.control_count))
     return Status::error(Code::kInvalidArgument, "number of controls does not match tracks and knots", index);
+  if (!group.packings.empty() && group.packings.size() != group.tracks.size())
+    return Status::error(Code::kInvalidArgument, "number of packings does not match tracks", index);
   for (const Clip::Track& track : group.tracks)
     if (track.joint < 0 || track.joint >= clip.joint_count)
       return Status::error(Code::kInvalidArgument, "track of a joint that does not exist", index);

@@ -38,13 +38,21 @@ struct Clip {
   struct Track {
     int joint = 0;
   };
+  /// How the controls of one track follow from whole numbers, which is what asset files hold
+  /// (clip_packing.h). Samplers do not look at it.
+  struct Packing {
+    std::uint8_t step = 0;          ///< index of what the numbers are multiples of, see packing_step()
+    std::uint8_t components = 3;    ///< of a rotation: 3 beside the reference, or 4 without it; else 3
+    std::int8_t reference[4] = {};  ///< x y z w of a rotation with 3 components; its length means nothing
+  };
   struct Group {
     bool rotation = true;     ///< quaternion tracks (4 floats) or translation tracks (3 floats)
     int degree = 3;           ///< 3 (C²) or 5 (C⁴)
     float knot_interval = 0;  ///< s
     int control_count = 0;    ///< per track; periodic clips wrap, others hold `degree` extra at the ends
     std::vector<Track> tracks;
-    std::vector<float> controls;  ///< [knot][track][component]
+    std::vector<float> controls;    ///< [knot][track][component]
+    std::vector<Packing> packings;  ///< [track], or none: files hold the controls as they are
   };
   std::string name;
   float duration = 0;  ///< s

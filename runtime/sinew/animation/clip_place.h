@@ -39,6 +39,11 @@ struct ClipPlace {
   }
 };
 
+/// Whether a place falls on the same span of both groups, at the same parameter.
+inline bool same_knots(const Clip::Group& a, const Clip::Group& b) {
+  return a.knot_interval == b.knot_interval && a.control_count == b.control_count && a.degree == b.degree;
+}
+
 /// The knot span of one group around a time: its first control and the parameter within it, 0 … 1.
 struct KnotPlace {
   int first = 0;

@@ -14,34 +14,40 @@ using kernels::SplineSpan;
 
 static_assert(sizeof(Clip::Track) == sizeof(int), "kernels read tracks as joint indices");
 
-/// Control points within reach of a place and their weights, differentiated by the chain rule.
+/// Weights of the control points within reach of a place, differentiated by the chain rule.
 template <class T>
-SplineSpan<T> span_at(const Clip& clip, const Clip::Group& group, const ClipPlace& at, std::size_t joints) {
-  const KnotPlace place(clip, group, at.time);
+SplineSpan<T> weights_at(const Clip::Group& group, const KnotPlace& place, const ClipPlace& at) {
   const BsplineBasis<T> w = BsplineBasis<T>::at(group.degree, T(place.u));
   const T scale = T(at.rate / group.knot_interval), bend = T(at.acceleration / group.knot_interval);
   SplineSpan<T> span;
   span.terms = group.degree + 1;
-  control_rows(group, place.first, span.rows);
-  for (int t = 0; t < span.terms; ++t) {
+  for (int t = 0; t <= BsplineBasis<T>::kMaxDegree; ++t) {  // all of them: a loop of known length
     span.value[t] = w.value[t];
     span.first[t] = scale * w.first[t];
     span.second[t] = scale * scale * w.second[t] + bend * w.first[t];
   }
-  span.joints = &group.tracks.data()->joint;
-  span.tracks = static_cast<int>(group.tracks.size());
-  span.joint_end = static_cast<int>(joints);
   return span;
 }
 
-/// Samples all groups at a place.
+/// Samples all groups at a place. Groups of like knots that follow each other share their weights.
 template <class T, class Out>
-void sample(const Clip& clip, const ClipPlace& place, std::span<Out> out) {
+void sample(const Clip& clip, const ClipPlace& at, std::span<Out> out) {
   const auto* still = kernels::layout(clip.constants.data());
   SINEW_DISPATCH(constants(still, static_cast<int>(out.size()), out.data()));
+  const Clip::Group* last = nullptr;
+  KnotPlace place;
+  SplineSpan<T> span;
   for (const Clip::Group& group : clip.groups) {
     if (group.tracks.empty()) continue;
-    const SplineSpan<T> span = span_at<T>(clip, group, place, out.size());
+    if (!last || !same_knots(*last, group)) {
+      place = KnotPlace(clip, group, at.time);
+      span = weights_at<T>(group, place, at);
+      last = &group;
+    }
+    span.joint_end = static_cast<int>(out.size());
+    control_rows(group, place.first, span.rows);
+    span.joints = &group.tracks.data()->joint;
+    span.tracks = static_cast<int>(group.tracks.size());
     if (group.rotation)
       SINEW_DISPATCH(rotations(span, out.data()));
     else

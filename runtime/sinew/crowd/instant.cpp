@@ -11,10 +11,6 @@ namespace {
 using crowd_kernels::Instant;
 using crowd_kernels::TrackGroup;
 
-bool same_knots(const Clip::Group& a, const Clip::Group& b) {
-  return a.knot_interval == b.knot_interval && a.control_count == b.control_count && a.degree == b.degree;
-}
-
 /// Knots and controls of one lane's groups. `alike`: the first of those that an earlier lane has of the same
 /// clip, or null.
 void add_groups(const Clip& clip, const ClipPlace& at, int lane, TrackGroup* alike, Instant& instant) {

@@ -53,4 +53,7 @@ Status load_asset(const char* path, Asset& out);
 /// File image of an asset; the same asset always gives the same bytes.
 std::vector<std::uint8_t> write_asset(const Asset& asset);
 
+/// Bytes that a clip takes of such an image, its name and all its tables included.
+std::size_t file_bytes(const Clip& clip, const Skeleton& skeleton);
+
 }  // namespace sinew

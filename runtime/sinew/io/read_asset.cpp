@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/animation/clip_packing.h"
 #include "sinew/io/asset.h"
 #include "sinew/io/schema_version.h"
 #include "sinew_generated.h"
@@ -95,25 +96,49 @@ Status unpack(const fb::Skeleton& in, Skeleton& out) {
   return validate(out);
 }
 
-Status unpack(const fb::Clip& in, int joints, Clip& out) {
+/// All of them, or the skeleton's rest where the clip says nothing else.
+Status unpack_constants(const fb::Clip& in, const Skeleton& skeleton, std::vector<Transform<float>>& out) {
+  if (in.constants()) {
+    for (const fb::TransformF* c : *in.constants()) out.push_back(unpack(*c));
+  } else {
+    for (const Joint& joint : skeleton.joints) out.push_back(joint.rest.cast<float>());
+  }
+  if (out.size() != skeleton.joints.size()) return bad("clip has another number of joints than the skeleton");
+  for (unsigned k = 0; k < size_of(in.still_rotations()); ++k) {
+    const fb::StillRotation& r = *in.still_rotations()->Get(k);
+    if (r.joint() >= out.size()) return bad("clip holds a joint that does not exist", r.joint());
+    out[r.joint()].rotation = Quat<float>(r.w(), r.x(), r.y(), r.z());
+  }
+  for (unsigned k = 0; k < size_of(in.still_translations()); ++k) {
+    const fb::StillTranslation& t = *in.still_translations()->Get(k);
+    if (t.joint() >= out.size()) return bad("clip holds a joint that does not exist", t.joint());
+    out[t.joint()].translation = {t.x(), t.y(), t.z()};
+  }
+  return {};
+}
+
+Status unpack(const fb::Group& in, Clip::Group& out) {
+  out.rotation = in.rotation();
+  out.degree = in.degree();
+  out.knot_interval = in.knot_interval();
+  out.control_count = in.control_count();
+  if (in.packed()) return unpack_group({in.packed()->data(), in.packed()->size()}, out);
+  if (!in.joints() || !in.controls()) return bad("clip has a group without controls");
+  for (const int joint : *in.joints()) out.tracks.push_back({joint});
+  out.controls = copied(in.controls());
+  return {};
+}
+
+Status unpack(const fb::Clip& in, const Skeleton& skeleton, Clip& out) {
   out.name = in.name()->str();
   out.duration = in.duration();
   out.loops = in.loops();
-  out.joint_count = static_cast<int>(in.constants()->size());
-  if (out.joint_count != joints) return bad("clip has another number of joints than the skeleton");
-  for (const fb::TransformF* c : *in.constants()) out.constants.push_back(unpack(*c));
+  out.joint_count = static_cast<int>(skeleton.joints.size());
+  if (Status status = unpack_constants(in, skeleton, out.constants); !status) return status;
   if (in.root_step()->size() != 3) return bad("root step needs three numbers");
   out.root_step = {in.root_step()->Get(0), in.root_step()->Get(1), in.root_step()->Get(2)};
-  for (unsigned g = 0; g < size_of(in.groups()); ++g) {
-    const fb::Group& group = *in.groups()->Get(g);
-    Clip::Group& made = out.groups.emplace_back();
-    made.rotation = group.rotation();
-    made.degree = group.degree();
-    made.knot_interval = group.knot_interval();
-    made.control_count = group.control_count();
-    for (const int joint : *group.joints()) made.tracks.push_back({joint});
-    made.controls = copied(group.controls());
-  }
+  for (unsigned g = 0; g < size_of(in.groups()); ++g)
+    if (Status status = unpack(*in.groups()->Get(g), out.groups.emplace_back()); !status) return status;
   for (unsigned k = 0; k < size_of(in.contacts()); ++k) {
     const fb::Contact& c = *in.contacts()->Get(k);
     out.contacts.push_back({c.joint(), c.begin(), c.end()});
@@ -171,7 +196,7 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
   if (Status status = unpack(*in.skeleton(), asset.skeleton); !status) return status;
   const int joints = static_cast<int>(asset.skeleton.joints.size());
   for (unsigned i = 0; i < size_of(in.clips()); ++i)
-    if (Status status = unpack(*in.clips()->Get(i), joints, asset.clips.emplace_back()); !status)
+    if (Status status = unpack(*in.clips()->Get(i), asset.skeleton, asset.clips.emplace_back()); !status)
       return status;
   for (unsigned i = 0; i < size_of(in.materials()); ++i) {
     const fb::Material& m = *in.materials()->Get(i);

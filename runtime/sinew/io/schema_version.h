@@ -3,7 +3,7 @@
 
 namespace sinew {
 
-inline constexpr int kSchemaMajor = 1;
-inline constexpr int kSchemaMinor = 1;  // 1: ellipsoidal limits, muscles
+inline constexpr int kSchemaMajor = 2;  // 2: packed clips
+inline constexpr int kSchemaMinor = 0;
 
 }  // namespace sinew

@@ -1,3 +1,4 @@
+#include "sinew/animation/clip_packing.h"
 #include "sinew/io/asset.h"
 #include "sinew/io/schema_version.h"
 #include "sinew_generated.h"
@@ -61,27 +62,58 @@ Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
   return fb::CreateSkeleton(b, name, skeleton.body_count, joints_offset, colliders_offset, muscles_offset);
 }
 
-Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip) {
-  std::vector<fb::TransformF> constants;
-  for (const Transform<float>& c : clip.constants) constants.push_back(pack(c));
-  std::vector<Offset<fb::Group>> groups;
-  for (const Clip::Group& group : clip.groups) {
-    std::vector<int> joints;
-    for (const Clip::Track& track : group.tracks) joints.push_back(track.joint);
-    const auto joints_offset = b.CreateVector(joints);
-    const auto controls = b.CreateVector(group.controls);
-    groups.push_back(fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval,
-                                     group.control_count, joints_offset, controls));
+Offset<fb::Group> pack(FlatBufferBuilder& b, const Clip::Group& group) {
+  std::vector<std::uint8_t> bytes;
+  if (pack_group(group, bytes)) {
+    const auto packed = b.CreateVector(bytes);
+    return fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval, group.control_count, 0, 0,
+                           packed);
   }
+  std::vector<int> joints;
+  for (const Clip::Track& track : group.tracks) joints.push_back(track.joint);
+  const auto joints_offset = b.CreateVector(joints);
+  const auto controls = b.CreateVector(group.controls);
+  return fb::CreateGroup(b, group.rotation, group.degree, group.knot_interval, group.control_count,
+                         joints_offset, controls);
+}
+
+/// What joints without a track keep, where it is not their rest.
+void pack_constants(const Clip& clip, const Skeleton& skeleton, std::vector<fb::StillRotation>& rotations,
+                    std::vector<fb::StillTranslation>& translations) {
+  for (std::size_t j = 0; j < clip.constants.size(); ++j) {
+    const Transform<float>& x = clip.constants[j];
+    const Transform<float> rest = skeleton.joints[j].rest.cast<float>();
+    const auto joint = static_cast<std::uint16_t>(j);
+    if (x.rotation != rest.rotation)
+      rotations.emplace_back(joint, x.rotation.x(), x.rotation.y(), x.rotation.z(), x.rotation.w());
+    if (x.translation != rest.translation)
+      translations.emplace_back(joint, x.translation.x(), x.translation.y(), x.translation.z());
+  }
+}
+
+Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip, const Skeleton& skeleton) {
+  const bool few_joints = skeleton.joints.size() == clip.constants.size() && clip.constants.size() <= 0xffff;
+  std::vector<fb::TransformF> constants;
+  std::vector<fb::StillRotation> rotations;
+  std::vector<fb::StillTranslation> translations;
+  if (few_joints)
+    pack_constants(clip, skeleton, rotations, translations);
+  else
+    for (const Transform<float>& c : clip.constants) constants.push_back(pack(c));
+  std::vector<Offset<fb::Group>> groups;
+  for (const Clip::Group& group : clip.groups) groups.push_back(pack(b, group));
   std::vector<fb::Contact> contacts;
   for (const ContactWindow& c : clip.contacts) contacts.emplace_back(c.joint, c.begin, c.end);
   const auto name = b.CreateString(clip.name);
-  const auto constants_offset = b.CreateVectorOfStructs(constants);
+  const auto constants_offset =
+      few_joints ? Offset<flatbuffers::Vector<const fb::TransformF*>>() : b.CreateVectorOfStructs(constants);
+  const auto rotations_offset = b.CreateVectorOfStructs(rotations);
+  const auto translations_offset = b.CreateVectorOfStructs(translations);
   const auto groups_offset = b.CreateVector(groups);
   const auto contacts_offset = b.CreateVectorOfStructs(contacts);
   const auto step = b.CreateVector(clip.root_step.data(), 3);
   return fb::CreateClip(b, name, clip.duration, clip.loops, constants_offset, groups_offset, contacts_offset,
-                        step);
+                        step, rotations_offset, translations_offset);
 }
 
 Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
@@ -101,7 +133,7 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
   b.ForceDefaults(true);
   const auto skeleton = pack(b, asset.skeleton);
   std::vector<Offset<fb::Clip>> clips;
-  for (const Clip& clip : asset.clips) clips.push_back(pack(b, clip));
+  for (const Clip& clip : asset.clips) clips.push_back(pack(b, clip, asset.skeleton));
   std::vector<Offset<fb::Mesh>> meshes;
   for (const Mesh& mesh : asset.meshes) meshes.push_back(pack(b, mesh));
   std::vector<Offset<fb::Material>> materials;
@@ -122,6 +154,13 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
                            materials_offset, bind_offset, report),
            fb::AssetIdentifier());
   return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
+}
+
+std::size_t file_bytes(const Clip& clip, const Skeleton& skeleton) {
+  FlatBufferBuilder b;
+  b.ForceDefaults(true);
+  pack(b, clip, skeleton);
+  return b.GetSize();
 }
 
 }  // namespace sinew

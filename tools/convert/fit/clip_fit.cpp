@@ -1,185 +1,128 @@
 #include "convert/fit/clip_fit.h"
 
-#include <Eigen/Sparse>
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <memory>
-#include <tuple>
+#include <utility>
 
-#include "sinew/animation/bspline.h"
-#include "sinew/skeleton/rotation.h"
+#include "convert/fit/chain_error.h"
+#include "convert/fit/curve_search.h"
+#include "sinew/animation/sampling_job.h"
 
 namespace sinew::convert {
 namespace {
 
-constexpr double kVirtualVertex = 0.1;  ///< m from the joint: what an angle error is worth in millimetres
-constexpr double kSmoothing = 1e-9;     ///< settles the controls that no sample determines
+using Samples = std::vector<std::vector<Transform<double>>>;
 
-/// Basis matrix of one knot spacing, factorised once for all joints.
-class KnotGrid {
- public:
-  KnotGrid(int frames, int stride, int degree, bool loops) {
-    const int intervals = std::max(1, frames - 1);
-    spans_ = std::max(1, (intervals + stride - 1) / stride);
-    if (loops) spans_ = std::max(spans_, degree + 1);
-    controls_ = loops ? spans_ : spans_ + degree;
-    const int rows = loops ? intervals : frames;  // the last frame of a loop is its first
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int f = 0; f < rows; ++f) {
-      const double knots = double(f) / intervals * spans_;
-      const int span = std::min(static_cast<int>(knots), spans_ - 1);
-      const auto w = BsplineBasis<double>::at(degree, knots - span).value;
-      for (int j = 0; j <= degree; ++j) entries.emplace_back(f, (span + j) % controls_, w[j]);
-    }
-    basis_.resize(rows, controls_);
-    basis_.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SparseMatrix<double> normal = basis_.transpose() * basis_;
-    std::vector<Eigen::Triplet<double>> third;
-    const int differences = loops ? controls_ : controls_ - 3;
-    for (int i = 0; i < differences; ++i) {
-      constexpr double stencil[4] = {-1, 3, -3, 1};
-      for (int a = 0; a < 4; ++a) third.emplace_back(i, (i + a) % controls_, stencil[a]);
-    }
-    Eigen::SparseMatrix<double> roughness(differences, controls_);
-    roughness.setFromTriplets(third.begin(), third.end());
-    normal += kSmoothing * Eigen::SparseMatrix<double>(roughness.transpose() * roughness);
-    solver_.compute(normal);
-  }
-
-  Eigen::MatrixXd fit(const Eigen::MatrixXd& samples) const {
-    return solver_.solve(basis_.transpose() * samples.topRows(basis_.rows()));
-  }
-  Eigen::MatrixXd evaluate(const Eigen::MatrixXd& controls) const { return basis_ * controls; }
-  int controls() const { return controls_; }
-  int spans() const { return spans_; }
-
- private:
-  int spans_ = 0, controls_ = 0;
-  Eigen::SparseMatrix<double> basis_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-};
-
-/// Sign-aligned quaternions of one joint, [frame][x y z w].
-Eigen::MatrixXd rotation_samples(const FitInput& input, int joint) {
-  Eigen::MatrixXd samples(input.samples.size(), 4);
-  for (std::size_t f = 0; f < input.samples.size(); ++f) {
-    Eigen::Vector4d q = input.samples[f][joint].rotation.coeffs();
-    if (f > 0 && q.dot(samples.row(f - 1).transpose()) < 0) q = -q;
-    samples.row(f) = q.transpose();
-  }
+/// What curves have to follow: of a loop all but the last sample, which is the first again, and of its root
+/// not what it travels.
+Samples to_follow(Samples samples, bool loops, const Vec3<double>& step) {
+  const double last = static_cast<double>(samples.size() - 1);
+  if (loops) samples.pop_back();
+  for (std::size_t f = 0; f < samples.size(); ++f) samples[f][0].translation -= double(f) / last * step;
   return samples;
 }
 
-double angle_between(const Eigen::Vector4d& a, const Eigen::Vector4d& b) {
-  const double cosine = std::min(1.0, std::abs(a.normalized().dot(b.normalized())));
-  return 2 * std::acos(cosine);
+CurveBudget budget_of(const FitOptions& options) {
+  CurveBudget budget;
+  budget.error = options.max_error_mm / 1000;
+  budget.skin_distance = options.skin_distance;
+  budget.angular = options.angular_acceleration;
+  budget.linear = options.linear_acceleration;
+  budget.share = options.acceleration_share;
+  budget.degree = options.degree;
+  return budget;
 }
 
-struct Fitted {
-  bool moves = false;
-  int stride = 1;
-  Eigen::MatrixXd controls;
-  double max_mm = 0, sum_mm2 = 0;
-  int count = 0;
-};
+/// Tracks of like knots make a group; what rounding has left no motion is a constant.
+void add_groups(const CurveSearch& search, int degree, Clip& clip) {
+  clip.constants = search.constants();
+  std::map<std::pair<int, bool>, std::vector<const FittedTrack*>> groups;
+  for (const CurveSearch::Channel& channel : search.channels()) {
+    const FittedTrack& track = channel.track;
+    if (track.moves()) {
+      groups[{track.controls(), track.rotation()}].push_back(&track);
+      continue;
+    }
+    Transform<double> still = clip.constants[track.joint()].cast<double>();
+    track.play(0, still);
+    clip.constants[track.joint()] = still.cast<float>();
+  }
+  for (const auto& [key, tracks] : groups) {
+    Clip::Group& group = clip.groups.emplace_back();
+    group.rotation = key.second;
+    group.degree = degree;
+    group.control_count = tracks.front()->controls();
+    group.knot_interval =
+        clip.duration / static_cast<float>(clip.loops ? group.control_count : group.control_count - degree);
+    for (const FittedTrack* track : tracks) {
+      group.tracks.push_back({track->joint()});
+      group.packings.push_back(track->packing());
+    }
+    for (int c = 0; c < group.control_count; ++c)
+      for (const FittedTrack* track : tracks) track->append_control(c, group.controls);
+  }
+}
+
+/// As FitReport::reference.
+Clip reference_of(CurveSearch& search, const Clip& clip) {
+  Clip reference = clip;
+  reference.groups.clear();
+  for (const CurveSearch::Channel& channel : search.channels()) {
+    const KnotGrid& grid = search.reference_grid(channel);
+    Clip::Group& group = reference.groups.emplace_back();
+    group.rotation = channel.track.rotation();
+    group.degree = grid.degree();
+    group.control_count = grid.controls();
+    group.knot_interval = clip.duration / static_cast<float>(grid.spans());
+    group.tracks = {{channel.track.joint()}};
+    for (const Eigen::Vector4f& control : channel.track.smooth_controls(grid))
+      group.controls.insert(group.controls.end(), control.data(), control.data() + (group.rotation ? 4 : 3));
+  }
+  return reference;
+}
+
+/// The clip as samplers play it, against the samples.
+void measure(const Clip& clip, const FitInput& input, double skin_distance, FitReport& report) {
+  Samples samples = input.samples;
+  if (clip.loops) samples.pop_back();
+  ChainError chain(samples, input.parents, skin_distance);
+  std::vector<JointMotion> played(clip.constants.size(), JointMotion(samples.size()));
+  std::vector<Transform<double>> pose(clip.constants.size());
+  const double last = static_cast<double>(input.samples.size() - 1);
+  for (std::size_t f = 0; f < samples.size(); ++f) {
+    (void)SamplingJob<double>{&clip, double(f) / last * clip.duration, {}, pose}.Run();
+    for (std::size_t j = 0; j < pose.size(); ++j) played[j][f] = pose[j];
+  }
+  for (std::size_t j = 0; j < played.size(); ++j) chain.set(static_cast<int>(j), std::move(played[j]));
+  chain.update();
+  for (int j = 0; j < chain.joints(); ++j)
+    report.joints[j] = {1000 * chain.error(j, chain.worst_frame(j)), 1000 * chain.rms(j)};
+  report.max_mm = 1000 * chain.largest();
+  report.rms_mm = 1000 * chain.rms();
+}
 
 }  // namespace
 
 Clip fit_clip(const FitInput& input, const FitOptions& options, FitReport& report) {
   const int frames = static_cast<int>(input.samples.size());
-  const int joints = static_cast<int>(input.samples.front().size());
   Clip clip;
   clip.name = input.name;
-  clip.joint_count = joints;
+  clip.joint_count = static_cast<int>(input.samples.front().size());
   clip.duration = static_cast<float>((frames - 1) / input.sample_rate);
   clip.loops = input.loops && frames > 6;
-  for (int j = 0; j < joints; ++j) clip.constants.push_back(input.samples[0][j].cast<float>());
   report = {};
-  report.joints.resize(joints);
+  report.joints.resize(input.samples.front().size());
+  for (const Transform<double>& x : input.samples.front()) clip.constants.push_back(x.cast<float>());
   if (frames < 2) return clip;
 
   Vec3<double> step = Vec3<double>::Zero();
   if (clip.loops) step = input.samples.back()[0].translation - input.samples.front()[0].translation;
   clip.root_step = step.cast<float>();
-
-  std::map<int, std::unique_ptr<KnotGrid>> grids;
-  const auto grid = [&](int stride) -> const KnotGrid& {
-    auto& made = grids[stride];
-    if (!made) made = std::make_unique<KnotGrid>(frames, stride, options.degree, clip.loops);
-    return *made;
-  };
-  const auto fit = [&](const Eigen::MatrixXd& samples, auto error_mm) {
-    Fitted best;
-    for (int stride = options.coarsest; stride >= 1; --stride) {
-      const KnotGrid& knots = grid(stride);
-      best = {true, stride, knots.fit(samples)};
-      const Eigen::MatrixXd fitted = knots.evaluate(best.controls);
-      for (int f = 0; f < fitted.rows(); ++f) {
-        const double mm = error_mm(fitted.row(f), samples.row(f));
-        best.max_mm = std::max(best.max_mm, mm);
-        best.sum_mm2 += mm * mm;
-        ++best.count;
-      }
-      if (best.max_mm <= options.max_error_mm) break;
-    }
-    return best;
-  };
-
-  struct Key {
-    bool rotation;
-    int stride;
-    bool operator<(const Key& o) const { return std::tie(rotation, stride) < std::tie(o.rotation, o.stride); }
-  };
-  std::map<Key, std::vector<std::pair<int, Eigen::MatrixXd>>> groups;
-  double sum = 0;
-  int count = 0;
-  for (int j = 0; j < joints; ++j) {
-    const Eigen::MatrixXd turned = rotation_samples(input, j);
-    Eigen::MatrixXd shifted(frames, 3);
-    for (int f = 0; f < frames; ++f) {
-      shifted.row(f) = input.samples[f][j].translation.transpose();
-      if (j == 0) shifted.row(f) -= (double(f) / (frames - 1) * step).transpose();
-    }
-    double turns = 0, shifts = 0;
-    for (int f = 1; f < frames; ++f) {
-      turns = std::max(turns, angle_between(turned.row(f).transpose(), turned.row(0).transpose()));
-      shifts = std::max(shifts, (shifted.row(f) - shifted.row(0)).norm());
-    }
-    FitReport::Joint& r = report.joints[j];
-    const auto add = [&](bool rotation, const Fitted& fitted) {
-      groups[{rotation, fitted.stride}].push_back({j, fitted.controls});
-      r.max_mm = std::max(r.max_mm, fitted.max_mm);
-      r.rms_mm = std::max(r.rms_mm, std::sqrt(fitted.sum_mm2 / std::max(1, fitted.count)));
-      sum += fitted.sum_mm2;
-      count += fitted.count;
-    };
-    if (turns > 1e-6)
-      add(true, fit(turned, [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
-            return 1000 * kVirtualVertex * angle_between(a.transpose(), b.transpose());
-          }));
-    if (1000 * shifts > options.still_mm || (j == 0 && shifts > 1e-6))
-      add(false, fit(shifted, [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
-            return 1000 * (a - b).norm();
-          }));
-    report.max_mm = std::max(report.max_mm, r.max_mm);
-  }
-  report.rms_mm = count > 0 ? std::sqrt(sum / count) : 0;
-
-  for (const auto& [key, tracks] : groups) {
-    const KnotGrid& knots = grid(key.stride);
-    Clip::Group group;
-    group.rotation = key.rotation;
-    group.degree = options.degree;
-    group.knot_interval = clip.duration / static_cast<float>(knots.spans());
-    group.control_count = knots.controls();
-    for (const auto& [joint, controls] : tracks) group.tracks.push_back({joint});
-    for (int c = 0; c < knots.controls(); ++c)
-      for (const auto& [joint, controls] : tracks)
-        for (int a = 0; a < controls.cols(); ++a)
-          group.controls.push_back(static_cast<float>(controls(c, a)));
-    clip.groups.push_back(std::move(group));
-  }
+  CurveSearch search(to_follow(input.samples, clip.loops, step), input.parents, input.rest, clip.duration,
+                     clip.loops, budget_of(options));
+  search.run();
+  add_groups(search, options.degree, clip);
+  measure(clip, input, options.skin_distance, report);
+  report.reference = reference_of(search, clip);
   return clip;
 }
 
