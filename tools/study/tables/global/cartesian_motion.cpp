@@ -6,7 +6,6 @@
 namespace sinew::study {
 
 using multibody::ConstVector;
-using multibody::kGround;
 using multibody::Vector;
 
 namespace {
