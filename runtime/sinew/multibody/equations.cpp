@@ -39,7 +39,10 @@ Equations::Equations(const Model& model, Formulation formulation, Tangent tangen
       force_(n_),
       reduced_(n_),
       mass_(Matrix::Zero(n_, n_)),
-      tree_factor_(model) {}
+      tree_factor_(model) {
+  parts_.derivatives = formulation != Formulation::kRr;
+  parts_.of_forces = tangent == Tangent::kAnalytic;
+}
 
 std::string Equations::start(Vector& y) {
   const Mechanism& mechanism = model_->mechanism();
@@ -157,9 +160,9 @@ bool Equations::analytic_tangent(double t, const Vector& y) {
   Matrix k = Matrix::Zero(n_, n_), d = Matrix::Zero(n_, n_);
   add_force_tangent(*model_, t, q_, qd_, motion_, k, d);
   inertia_is_mass_ = true;
-  rz_.reduce(k, stiffness_);
-  if (closure_ == Closure::kInSteps && !rz_.trivial()) reduce_rows(k, stiffness_to_all_);
-  rz_.reduce(d, damping_);
+  rz_.reduce(k, parts_.stiffness);
+  if (closure_ == Closure::kInSteps && !rz_.trivial()) reduce_rows(k, parts_.stiffness_to_all);
+  rz_.reduce(d, parts_.damping);
   return true;
 }
 
@@ -171,10 +174,10 @@ void Equations::move_position(int k, double by, Vector& y) const {
 
 bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, double c, bool reusable) {
   const int nf = rz_.freedom();
-  stiffness_.resize(nf, nf);
-  damping_.resize(nf, nf);
-  inertia_ = Matrix::Zero(nf, nf);
-  if (formulation_ != Formulation::kRr) inertia_.setIdentity();
+  parts_.stiffness.resize(nf, nf);
+  parts_.damping.resize(nf, nf);
+  parts_.inertia = Matrix::Zero(nf, nf);
+  if (formulation_ != Formulation::kRr) parts_.inertia.setIdentity();
   inertia_is_mass_ = formulation_ == Formulation::kRr && reusable;
   Vector base(nf), moved(nf), state = y, rate = yp, qdd(n_);
   const auto evaluate = [&](Vector& out) {
@@ -190,14 +193,14 @@ bool Equations::numeric_tangent(double t, const Vector& y, const Vector& yp, dou
     const double dq = root * std::max(1.0, std::abs(y[k])), dv = root * std::max(1.0, std::abs(y[n_ + k]));
     move_position(k, dq, state);
     if (!evaluate(moved)) return false;
-    stiffness_.col(j) = (moved - base) / dq;
+    parts_.stiffness.col(j) = (moved - base) / dq;
     state.head(n_) = y.head(n_);
     state[n_ + k] += dv;
     // Codes that evaluate the tangent for one c only take velocity and acceleration together; the others get
     // the mass by itself, when they factorise.
     if (formulation_ == Formulation::kRr && !reusable) rate[n_ + k] += c * dv;
     if (!evaluate(moved)) return false;
-    damping_.col(j) = (moved - base) / dv;
+    parts_.damping.col(j) = (moved - base) / dv;
     state[n_ + k] = y[n_ + k];
     rate[n_ + k] = yp[n_ + k];
   }
@@ -221,15 +224,14 @@ void Equations::reduce_rows(const Matrix& a, Matrix& out) const {
 
 void Equations::renew_mass() {
   semi_recursive_.mass_matrix(motion_, mass_);
-  rz_.reduce(mass_, inertia_);
+  rz_.reduce(mass_, parts_.inertia);
 }
 
 bool Equations::factorise(double c) {
   ++counts_.factorisations;
   c_ = c;
   if (inertia_is_mass_) renew_mass();
-  // Equations 79 and 84 with the position rows eliminated: half the size.
-  iteration_ = c * inertia_ + damping_ + stiffness_ / c;
+  iteration_ = iteration_matrix(parts_, c);
   if (!iteration_.allFinite()) return false;
   by_tree_ = inertia_is_mass_ && tangent_kind_ == Tangent::kAnalytic && rz_.trivial() &&
              tree_factor_.factorise(iteration_);
@@ -239,42 +241,14 @@ bool Equations::factorise(double c) {
 }
 
 void Equations::solve(Vector& r) {
-  const int nf = rz_.freedom();
-  const std::vector<int>& independent = rz_.independent();
-  Vector first(nf), second(nf);
-  for (int i = 0; i < nf; ++i) {
-    first[i] = r[independent[i]];
-    second[i] = r[n_ + independent[i]];
-  }
-  const bool derivatives = formulation_ != Formulation::kRr;
-  const Vector acceleration = derivatives ? second : Vector(Vector::Zero(nf));
-  // The analytic tangent is that of the forces: derivatives' residuals become forces by the mass matrix.
-  if (derivatives && tangent_kind_ == Tangent::kAnalytic) second = inertia_ * second;
-  if (closure_ == Closure::kInSteps && tangent_kind_ == Tangent::kAnalytic && !rz_.trivial())
-    second -= stiffness_to_all_ * r.head(n_) / c_;  // dependent positions have residuals of their own
-  else
-    second -= stiffness_ * first / c_;
-  Vector rate = second;
-  if (by_tree_)
-    tree_factor_.solve(rate);
-  else
-    rate = factor_.solve(second);
-  if (!rz_.trivial()) {
-    // Dependent rows: q'_d follows Rz q'_i, and the independent residual has already taken its share of
-    // q''_d.
-    const Vector followed = rz_.dependent_rates() * rate;
-    const Vector shared = rz_.dependent_rates() * acceleration;
-    for (std::size_t d = 0; d < rz_.dependent().size(); ++d) {
-      const int k = rz_.dependent()[d];
-      r[k] = (r[k] + followed[d]) / c_;
-      r[n_ + k] = (r[n_ + k] - shared[d]) / c_ + followed[d];
-    }
-  }
-  for (int i = 0; i < nf; ++i) {
-    const int k = independent[i];
-    r[k] = (first[i] + rate[i]) / c_;
-    r[n_ + k] = rate[i];
-  }
+  const auto solve_rates = [this](Vector& x) {
+    if (by_tree_)
+      tree_factor_.solve(x);
+    else
+      x = factor_.solve(x).eval();
+    return x;
+  };
+  solve_newton(parts_, rz_, c_, solve_rates, r);
 }
 
 bool Equations::close(Vector& y) {

@@ -12,8 +12,8 @@
 #include "sinew/multibody/articulated.h"
 #include "sinew/multibody/semi_recursive.h"
 #include "sinew/multibody/system.h"
+#include "sinew/multibody/tangent_parts.h"
 #include "sinew/multibody/tree_factor.h"
-#include "sinew/multibody/velocity_transformation.h"
 
 namespace sinew::multibody {
 
@@ -71,6 +71,8 @@ class Equations : public System {
   const Model& model() const { return *model_; }
   const VelocityTransformation& transformation() const { return rz_; }
   const EvaluationCounts& counts() const { return counts_; }
+  /// Of the last tangent; the mass is that of the last factorisation.
+  const TangentParts& parts() const { return parts_; }
 
  private:
   bool prepare(double t, const Vector& y);
@@ -101,11 +103,10 @@ class Equations : public System {
   Matrix mass_, reduced_mass_;
   Eigen::LLT<Matrix> mass_factor_;
 
-  // Tangent parts in independent coordinates: −∂Q/∂q, −∂Q/∂q' and the mass (identity for derivatives).
-  Matrix stiffness_, damping_, inertia_, iteration_;
-  Matrix stiffness_to_all_;  ///< index 2: of the independent forces to all positions [independent×N]
-  TreeFactor tree_factor_;   ///< of open chains on residuals with the analytic tangent
-  bool by_tree_ = false;     ///< that one holds the iteration matrix, not the dense one
+  TangentParts parts_;
+  Matrix iteration_;
+  TreeFactor tree_factor_;  ///< of open chains on residuals with the analytic tangent
+  bool by_tree_ = false;    ///< that one holds the iteration matrix, not the dense one
   Eigen::PartialPivLU<Matrix> factor_;
   double c_ = 0;
   bool inertia_is_mass_ = false;  ///< and so can be renewed without evaluating the tangent

@@ -30,7 +30,7 @@ multibody::Mechanism chain_of(int links) {
   return m;
 }
 
-std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& done_one) {
+std::vector<ChainPoint> measure_chains(bool quick, bool recount, const std::function<void()>& done_one) {
   std::vector<ChainPoint> chains;
   std::vector<CountJob> jobs;
   const int repeats = quick ? 3 : 7;
@@ -47,7 +47,7 @@ std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& 
     for (const char* formulation : {"DTR", "DSR", "RR"}) jobs.push_back({name, formulation, "", 0});
     if (done_one) done_one();
   }
-  const std::vector<double> counted = count(".", jobs);
+  const std::vector<double> counted = count(".", jobs, recount);
   for (std::size_t i = 0; i < chains.size(); ++i) {
     chains[i].dtr_instructions = counted[3 * i];
     chains[i].dsr_instructions = counted[3 * i + 1];

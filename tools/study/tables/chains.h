@@ -18,8 +18,8 @@ struct ChainPoint {
 /// Rods of 0.1 m and 0.1 kg, hinges alternately about x and y.
 multibody::Mechanism chain_of(int links);
 
-/// Chains of 5 … 1000 links (5 … 200 when `quick`).
-std::vector<ChainPoint> measure_chains(bool quick, const std::function<void()>& done_one);
+/// Chains of 5 … 1000 links (5 … 200 when `quick`). `recount`: see TablesOptions.
+std::vector<ChainPoint> measure_chains(bool quick, bool recount, const std::function<void()>& done_one);
 
 /// Exponent p of cost ~ links^p over the chains of at least `from` links; 0 where nothing was counted.
 double growth_exponent(const std::vector<ChainPoint>& chains, double ChainPoint::*cost, int from);

@@ -6,7 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <future>
+#include <iterator>
+#include <map>
 #include <sstream>
 
 namespace sinew::study {
@@ -97,7 +100,45 @@ std::vector<double> count_in_turn(const std::string& directory, const std::vecto
 
 }  // namespace
 
-std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs) {
+namespace {
+
+/// Counts of earlier runs, one per line: of which program and file, the job, instructions.
+class Kept {
+ public:
+  explicit Kept(const std::string& directory) : directory_(directory) {
+    std::ifstream in(kFile);
+    for (std::string line; std::getline(in, line);)
+      if (const std::size_t cut = line.rfind('\t'); cut != std::string::npos)
+        counts_[line.substr(0, cut)] = std::strtod(line.c_str() + cut, nullptr);
+  }
+  /// 0: not known.
+  double find(const CountJob& job) const {
+    const auto found = counts_.find(key(job));
+    return found == counts_.end() ? 0 : found->second;
+  }
+  void keep(const CountJob& job, double instructions) const {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.0f", instructions);
+    std::ofstream(kFile, std::ios::app) << key(job) << '\t' << number << '\n';
+  }
+
+ private:
+  static constexpr const char* kFile = SINEW_TABLES_TWIN ".counts";
+
+  std::string key(const CountJob& job) const {
+    std::error_code none;
+    const auto built = fs::last_write_time(SINEW_TABLES_TWIN, none).time_since_epoch().count();
+    std::ifstream file(directory_ + "/" + job.mechanism + ".json");
+    const std::string content((std::istreambuf_iterator<char>(file)), {});
+    return std::to_string(built) + "\t" + std::to_string(std::hash<std::string>()(content)) + "\t" +
+           line_of(job);
+  }
+
+  std::string directory_;
+  std::map<std::string, double> counts_;
+};
+
+std::vector<double> count_in_two(const std::string& directory, const std::vector<CountJob>& jobs) {
   // Every second job in a process of its own: neighbours in the list cost about the same.
   std::vector<CountJob> half[2];
   for (std::size_t i = 0; i < jobs.size(); ++i) half[i % 2].push_back(jobs[i]);
@@ -105,6 +146,28 @@ std::vector<double> count(const std::string& directory, const std::vector<CountJ
   const std::vector<double> parts[2] = {count_in_turn(directory, half[0]), odd.get()};
   std::vector<double> counted;
   for (std::size_t i = 0; i < jobs.size(); ++i) counted.push_back(parts[i % 2][i / 2]);
+  return counted;
+}
+
+}  // namespace
+
+std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs, bool anew) {
+  if (!can_count()) return std::vector<double>(jobs.size(), 0);
+  const Kept kept(directory);
+  std::vector<double> counted;
+  std::vector<CountJob> left;
+  std::vector<std::size_t> place;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    counted.push_back(anew ? 0 : kept.find(jobs[i]));
+    if (counted.back() > 0) continue;
+    left.push_back(jobs[i]);
+    place.push_back(i);
+  }
+  const std::vector<double> fresh = count_in_two(directory, left);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    counted[place[i]] = fresh[i];
+    if (fresh[i] > 0) kept.keep(left[i], fresh[i]);
+  }
   return counted;
 }
 

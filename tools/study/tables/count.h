@@ -19,8 +19,10 @@ struct CountJob {
 bool can_count();
 
 /// Instructions of each job, in their order; 0 for one that could not be run. All run in two processes under
-/// callgrind, fifty times slower than by themselves.
-std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs);
+/// callgrind, fifty times slower than by themselves. What was counted stands beside the program that ran,
+/// until that is built anew or the mechanism's file changes: a study that was stopped goes on where it was.
+/// `anew`: is counted again all the same.
+std::vector<double> count(const std::string& directory, const std::vector<CountJob>& jobs, bool anew);
 
 /// One line of the list, and back.
 std::string line_of(const CountJob& job);

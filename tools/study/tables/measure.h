@@ -57,7 +57,8 @@ struct SimulationRun {
 /// CPU time of this thread, s.
 double cpu_seconds();
 
-/// Simulates with Sinew; `repeats` times, the quickest counts.
+/// Simulates with the runtime, or with what only the study has (walk.h); `repeats` times, the quickest
+/// counts.
 SimulationRun measure(const StudyCase& c, const std::string& formulation, const std::string& integrator,
                       double tolerance, int repeats);
 
@@ -65,8 +66,9 @@ SimulationRun measure(const StudyCase& c, const std::string& formulation, const 
 std::function<void()> simulation_of(const StudyCase& c, const std::string& formulation,
                                     const std::string& integrator, double tolerance);
 
-/// Derivatives (DTR, DSR) or residuals (RR) at states of the reference, moved by 1e-6 like an integrator's
-/// predictions; without a reference at the start. Each call of `run` evaluates all of them.
+/// Derivatives (DTR, DSR, global formulations) or residuals (RR) at states of the reference, moved by 1e-6
+/// like an integrator's predictions; without a reference at the start. Each call of `run` evaluates all of
+/// them.
 struct EvaluationWork {
   std::function<void()> run;
   int evaluations = 0;

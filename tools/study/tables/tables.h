@@ -14,6 +14,7 @@ struct TablesOptions {
   double tolerance = 1e-5;             ///< the paper's
   bool quick = false;                  ///< fewer mechanisms, repeats and tolerances
   std::vector<std::string> only = {};  ///< mechanisms; none: all that the study knows
+  bool recount = false;                ///< count again what an earlier run of the same build has counted
 };
 
 /// A mechanism of the tables.

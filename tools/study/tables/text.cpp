@@ -249,13 +249,14 @@ std::string tables_text(const TablesResult& r, const std::string& bold, const st
   std::string out;
   if (!open.empty()) {
     out += evaluations(r, "Table I. Open chains: instructions and time of one derivative or residual", open,
-                       {"DTR", "DSR", "RR"})
+                       {"DTR", "DSR", "RR", "Cartesian-penalty", "Cartesian-multipliers"})
                .text(bold, plain);
     out += simulations(r, "Table II. Open chains: simulation" + at, open).text(bold, plain);
   }
   if (!closed.empty()) {
     out += evaluations(r, "Table III. Closed chains: instructions and time of one derivative or residual",
-                       closed, {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2"})
+                       closed,
+                       {"DSR-Rz", "RR-Rz", "DSR-Rz2", "RR-Rz2", "Cartesian-penalty", "Cartesian-multipliers"})
                .text(bold, plain);
     out += simulations(r, "Table IV. Closed chains: simulation" + at, closed).text(bold, plain);
   }
