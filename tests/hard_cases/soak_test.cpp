@@ -10,7 +10,8 @@
 namespace sinew::study {
 namespace {
 
-/// Instrumented code is some ten times slower. The first who is pushed falls onto somebody in the third second.
+/// Instrumented code is some ten times slower. The first who is pushed falls onto somebody in the third
+/// second.
 #ifdef __SANITIZE_ADDRESS__
 constexpr double kUsualSeconds = 5;
 #else

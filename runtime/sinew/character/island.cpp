@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr int kReleaseRounds = 8;
+constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see excess()
 constexpr int kTightenRounds = 6;
 constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
 constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
@@ -411,7 +412,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   if (passes_left_ <= 0) splits_left = 0;
   total_.add(solved);
   const bool may_restart = closed && !settings_.plan->scheme;
-  if (may_restart && (solved.converged || splits_left == 0) && excess(solved.converged) > 0) {
+  if (may_restart && (solved.converged || splits_left == 0) &&
+      excess(solved.converged && solved.outer_passes <= kEasyPasses) > 0) {
     take_back_landing();
     solved = solve_from_start();
     total_.add(solved);

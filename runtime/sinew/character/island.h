@@ -73,7 +73,7 @@ class IslandStepper {
   bool passive() const;
   double pose_energy() const;
   double way_energy() const;
-  double excess(bool converged) const;
+  double excess(bool easy) const;
   double standing() const;
   SolveReport solve_from_start();
   void hold(CharacterState<T>& state);

@@ -88,12 +88,12 @@ double IslandStepper<T>::way_energy() const {
 }
 
 /// J that the present poses store beyond what the trees had and what rounding makes of it: only energy from
-/// nowhere could reach them where it is above 0. Where a solve has not `converged`, the way there may need
-/// more than they: a body leaps, and is as slow as before.
+/// nowhere could reach them where it is above 0. Unless a solve was `easy` the way there is asked, too, which
+/// may need more than they: a body leaps, and is as slow as before.
 template <class T>
-double IslandStepper<T>::excess(bool converged) const {
+double IslandStepper<T>::excess(bool easy) const {
   const double had = budget_;
-  const double needed = converged ? pose_energy() : std::max(pose_energy(), way_energy());
+  const double needed = easy ? pose_energy() : std::max(pose_energy(), way_energy());
   return needed - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(needed));
 }
 

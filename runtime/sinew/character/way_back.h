@@ -9,8 +9,8 @@
 namespace sinew {
 
 /// m of a human: what clips press into floor, obstacles and each other, a sole that is a little low, a hand
-/// that leans on something: as deep it may lie there, 3 cm with what the contact gives. What they press by more
-/// is kept out, twice that wholly.
+/// that leans on something: as deep it may lie there, 3 cm with what the contact gives. What they press by
+/// more is kept out, twice that wholly.
 constexpr double kPressedByClips = 0.027;
 
 /// From the common origin, at `origin_height` in the world (m); −∞ without a floor.
