@@ -13,7 +13,7 @@ namespace sinew {
 namespace {
 
 constexpr int kPassing = 30;          ///< steps after a tree was held
-constexpr double kSlackOfWay = 0.02;  ///< of the kinetic energy of a way: what schemes swing by
+constexpr double kSlackOfWay = 1e-3;  ///< of the kinetic energy of a way: what schemes swing by
 
 /// J, that goes at least with the way from where the tree was to the present poses in h seconds: whatever is
 /// between, the mean kinetic energy is no less than the chord's. `place`: of the history, from the common
