@@ -303,6 +303,21 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
   return static_cast<int>(2 * axis) + (in_box.translation[axis] < T(0) ? 1 : 0);
 }
 
+namespace {
+
+/// The face that a box stands on the floor with, a unit vector in its axes; zero where it does not.
+template <class T>
+Vec3<T> face_on_floor(const Transform<T>& pose, const Vec3<T>& size, T floor, T unit) {
+  const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
+  Eigen::Index axis = 0;
+  if (down.cwiseAbs().maxCoeff(&axis) < T(kFacesDown)) return Vec3<T>::Zero();
+  const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
+  const T height = (pose * Vec3<T>(size[axis] * face)).z() - floor;
+  return height > T(kOnFloor) * unit ? Vec3<T>(Vec3<T>::Zero()) : face;
+}
+
+}  // namespace
+
 /// A box that stands on the floor goes on below it: else what is pressed under its edge leaves by the face
 /// that it stands on, into the floor. Not for what lies under that face, with its middle `other` (about the
 /// common origin): the box stands on that, a thin plate say.
@@ -310,13 +325,9 @@ template <class T>
 void ContactFinder<T>::go_on_below(T unit, const Vec3<T>& other, Met& box) const {
   if (!world_->ground) return;
   const Transform<T> pose = pose_of(box);
-  const Vec3<T> down = pose.rotation.conjugate() * Vec3<T>(0, 0, -1);
+  const Vec3<T> face = face_on_floor<T>(pose, box.size, T(world_->ground_height - common_origin_.z()), unit);
   Eigen::Index axis = 0;
-  if (down.cwiseAbs().maxCoeff(&axis) < T(kFacesDown)) return;
-  const Vec3<T> face = std::copysign(T(1), down[axis]) * Vec3<T>::Unit(axis);
-  const T height =
-      (pose * Vec3<T>(box.size[axis] * face)).z() - T(world_->ground_height - common_origin_.z());
-  if (height > T(kOnFloor) * unit) return;
+  if (!(face.cwiseAbs().maxCoeff(&axis) > T(0))) return;
   if ((pose.inverse() * other).dot(face) > box.size[axis]) return;
   box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * unit * face);
   box.size[axis] += T(kBelowFloor) / 2 * unit;
@@ -576,13 +587,8 @@ namespace {
 /// go_on_below), only across.
 double half_thickness_of(const Collider& obstacle, double floor, double unit) {
   if (obstacle.shape != Shape::kBox) return obstacle.size.x();
-  const Vec3<double> down = obstacle.local.rotation.conjugate() * Vec3<double>(0, 0, -1);
-  Eigen::Index axis = 0;
-  Vec3<double> size = obstacle.size;
-  const bool faces_down = down.cwiseAbs().maxCoeff(&axis) > kFacesDown;
-  const Vec3<double> face = std::copysign(size[axis], down[axis]) * Vec3<double>::Unit(axis);
-  if (faces_down && (obstacle.local * face).z() < floor + kOnFloor * unit)
-    size[axis] = std::numeric_limits<double>::infinity();
+  const Vec3<double> face = face_on_floor<double>(obstacle.local, obstacle.size, floor, unit);
+  const Vec3<double> size = obstacle.size + face.cwiseAbs() * kBelowFloor * unit;
   return size.minCoeff();
 }
 

@@ -302,11 +302,6 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     first_guess(*s, h);
     write_pushes(*s, T(1));
   }
-  for (Coupling<T>* c : couplings_)
-    for (Stencil<T>& e : c->stencils) {
-      e.shift.setZero();
-      e.shortened = T(0);
-    }
   if (!settings_.plan->scheme) drop_played();
   find_contacts(h);
 }
@@ -315,6 +310,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
 template <class T>
 void IslandStepper<T>::begin_solve() {
   const T h = settings_.h;
+  loosen_loops();
   for (CharacterState<T>* s : states_)
     for (Effect<T>* effect : s->problem.effects) effect->begin_step(effect_pose(settings_, s->problem));
   if (!effects_.empty()) limit_guess(h);
@@ -350,6 +346,18 @@ SolveReport IslandStepper<T>::solve() {
     report.add(solver_.solve(settings_, accuracy, problems_, contacts_, couplings_));
   passes_left_ -= report.outer_passes;
   return report;
+}
+
+/// Forgets the multipliers of the solve before: what a trial, or an attempt that is taken back, found.
+template <class T>
+void IslandStepper<T>::loosen_loops() {
+  for (Coupling<T>* c : couplings_) {
+    if (!c->leads_out) continue;
+    for (Stencil<T>& e : c->stencils) {
+      e.shift.setZero();
+      e.shortened = T(0);
+    }
+  }
 }
 
 /// Whether a loop is too far apart.

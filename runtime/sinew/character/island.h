@@ -63,6 +63,7 @@ class IslandStepper {
   void choose_guess(T h);
   void begin_solve();
   SolveReport solve();
+  void loosen_loops();
   bool tighten_loops();
   SolveReport attempt(bool may_split);
   void begin(const WorldSettings& world, const Surroundings& surroundings, T h,

@@ -110,6 +110,7 @@ double IslandStepper<T>::standing() const {
 /// lowers it: what the result stores is no more.
 template <class T>
 SolveReport IslandStepper<T>::solve_from_start() {
+  loosen_loops();
   for (CharacterState<T>* s : states_) first_guess(*s, settings_.h, T(0));
   relax_friction(settings_.h);
   predict_euler_all(settings_.h);

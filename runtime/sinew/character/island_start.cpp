@@ -112,6 +112,7 @@ void IslandStepper<T>::find_accelerations() {
       for (Stencil<T>& e : c->stencils) std::swap(e.offset, e.led_from);
   };
   swap_led();
+  loosen_loops();
   SolveReport trial;
   trial.converged = true;
   if (!contacts_.empty() || std::any_of(states_.begin(), states_.end(), [](const auto* s) {

@@ -207,8 +207,8 @@ void lead_out(T h, Coupling<T>& c) {
 
 template <class T>
 bool tighten(Coupling<T>& c) {
+  if (!c.leads_out || c.strained) return false;  // a led root pulls with any force
   bool any = false;
-  if (c.strained) return any;  // a led root pulls with any force
   for (Stencil<T>& e : c.stencils) {
     if (!(e.tight > T(0)) || e.yields || !e.offset.isZero(T(0))) continue;
     const Vec3<T> by = apart(c, e);

@@ -691,15 +691,11 @@ const char* known_to_fail(const std::string& situation) {
   };
   static constexpr Known kKnown[] = {
       {"corner",
-       "a hand reaches 9.3 m/s, 9 to 13 when roundings change, 8 wanted (7.8 before what sticks stayed): "
-       "which "
-       "is flung is chaotic, 5 to 7 m/s with other throws at 60 Hz, 9 to 17 in steps of 1/240 s"},
+       "hands reach 9.3 m/s, 8 wanted, and which is flung is chaotic (9 to 17 in steps of 1/240 s)"},
       {"pit", "a hand reaches 15.1 m/s, 30 with all seeds, 15 wanted; in steps of 1/240 s 37, of 1/960 s 55"},
       {"crowd_pushed",
-       "one of twenty is caught by another's legs and does not come back to its place, 0.77 m off (until "
-       "roundings changed, another's limb was 88 mm deep instead); and a hand whirls at 26 m/s, which that "
-       "of "
-       "one alone does in fine steps, too (17 to 49 m/s)"},
+       "one of twenty is caught by another's legs and does not come back, 0.22 m off; and a hand whirls at "
+       "28 m/s, as one alone does in fine steps (17 to 49 m/s)"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
   };
   for (const Known& known : kKnown)
