@@ -43,10 +43,6 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "and keeps the others awake",
      true},
     {"sixteen_piles_of_figures", "as figures_in_a_pile", true},
-    {"moving_platform",
-     "sent up at 3 m/s it leaves 2.45 % too fast, 2 wanted: 0.45 g h, whatever h, for the step in which it "
-     "is sent "
-     "begins with the acceleration that it had while the platform bore it"},
     {"limp_fall_bdf1",
      "bdf1, which is there to be compared with: at 1/15 s the way of a step needs 19 J more than there is, "
      "of 1200"},

@@ -304,6 +304,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   }
   if (!settings_.plan->scheme) drop_played();
   find_contacts(h);
+  if (std::exchange(blow_, false)) drop_parted(h);
 }
 
 /// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.

@@ -90,6 +90,8 @@ class IslandStepper {
   void predict_euler_all(T h);
   void expect_to_last(T h);
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
+  T opening_speed(const Contact<T>& c) const;
+  void drop_parted(T h);
   void drop_played();
   void strike_all();
   Strike<T> strike_of(std::size_t tree) const;
@@ -177,6 +179,7 @@ class IslandStepper {
   std::vector<std::array<T, 6>> late_jumps_;      ///< [body, trees one after the other] see take_landing
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   bool landed_ = false;                                     ///< land() has changed velocities
+  bool blow_ = false;                                       ///< what it parts still carries a force
   std::vector<Landing> kept_;                               ///< [body, the same] before it did
   std::vector<Twist<T>> led_rates_;                         ///< [body]
   EndVelocities<T> ends_;

@@ -145,7 +145,8 @@ template <class T>
 void IslandStepper<T>::strike_all() {
   const auto struck = [&](const CharacterState<T>* s) { return s->is_struck(return_time()); };
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->clear();
-  if (std::none_of(states_.begin(), states_.end(), struck)) return;
+  blow_ = std::any_of(states_.begin(), states_.end(), struck);
+  if (!blow_) return;
   std::size_t body = 0;
   for (CharacterState<T>* s : states_) {
     for (auto* v : {&struck_velocity_, &struck_momentum_}) v->resize(body + s->tree.bodies, Vec3<T>::Zero());
@@ -247,6 +248,58 @@ void IslandStepper<T>::drop_played() {
     }
     constant_.assign(s.tree.dofs, T(0));
     project_wrenches<T>(s.tree, p.kinematics, p.force, p.moment, constant_);
+    drop_constant(s, static_cast<int>(n), constant_);
+  }
+}
+
+/// How fast a contact opens where the part begins, m/s.
+template <class T>
+T IslandStepper<T>::opening_speed(const Contact<T>& c) const {
+  const auto speed = [&](int tree, int body) {
+    const CharacterState<T>& s = *states_[tree];
+    const Vec3<T> arm = c.point - s.problem.kinematics.center[body];
+    return Vec3<T>(s.history.velocity[body] + angular_velocity(s.history, body).cross(arm));
+  };
+  const Vec3<T> carried = c.tree_b < 0 ? Vec3<T>(Vec3<T>::Zero()) : speed(c.tree_b, c.body_b);
+  return c.normal.dot(Vec3<T>(speed(c.tree_a, c.body_a) - carried));
+}
+
+/// Takes out of accelerations what contacts bore until a blow parted them: their force ended before the step.
+/// All of it, where gravity does not close them within the step again.
+template <class T>
+void IslandStepper<T>::drop_parted(T h) {
+  const auto struck = [&](int n) {
+    return n >= 0 && states_[n]->history.accelerates && states_[n]->is_struck(return_time());
+  };
+  bool any = false;
+  for (Contact<T>& c : contacts_) {
+    if (!(c.smooth_before > T(0)) || !(struck(c.tree_a) || struck(c.tree_b))) continue;
+    const T share = std::min(opening_speed(c) / (h * settings_.gravity.norm()), T(1));
+    if (!(share > T(0))) continue;
+    if (!any)
+      for (CharacterState<T>* s : states_) s->problem.clear_wrenches();
+    any = true;
+    const Vec3<T> bore = share * c.smooth_before * c.normal;
+    const auto act = [&](int tree, int body, const Vec3<T>& force) {
+      TreeProblem<T>& p = states_[tree]->problem;
+      p.force[body] += force;
+      p.moment[body] += c.point.cross(force);
+    };
+    act(c.tree_a, c.body_a, bore);
+    if (c.tree_b >= 0) act(c.tree_b, c.body_b, Vec3<T>(-bore));
+    c.smooth_before *= 1 - share;
+    c.grip *= 1 - share;
+    const auto left = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
+                                       [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
+    left->smooth = c.smooth_before;  // should the part be halved
+  }
+  if (!any) return;
+  begin_ends();
+  for (std::size_t n = 0; n < states_.size(); ++n) {
+    CharacterState<T>& s = *states_[n];
+    if (!s.history.accelerates || is_locked(s)) continue;
+    constant_.assign(s.tree.dofs, T(0));
+    project_wrenches<T>(s.tree, s.problem.kinematics, s.problem.force, s.problem.moment, constant_);
     drop_constant(s, static_cast<int>(n), constant_);
   }
 }
@@ -405,6 +458,8 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::strike_all();                                                       \
   template Strike<T> IslandStepper<T>::strike_of(std::size_t) const;                                  \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \
+  template T IslandStepper<T>::opening_speed(const Contact<T>&) const;                                \
+  template void IslandStepper<T>::drop_parted(T);                                                     \
   template void IslandStepper<T>::drop_played();                                                      \
   template void IslandStepper<T>::begin_ends();                                                       \
   template void IslandStepper<T>::expect_to_last(T);                                                  \
