@@ -4,6 +4,7 @@
 #include "animation/moving_pose.h"
 #include "fixtures/counting_new.h"
 #include "sinew/animation/blending_job.h"
+#include "sinew/animation/curve_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_pose_job.h"
 #include "sinew/animation/root_motion.h"
@@ -14,7 +15,10 @@ namespace {
 
 TEST(Allocation, SamplingToSkinningTakesNothingFromTheHeap) {
   constexpr int kJoints = 11;
-  const Clip clip = fixtures::random_clip({.joints = kJoints, .duration = 4, .moving = kJoints});
+  Clip clip = fixtures::random_clip({.joints = kJoints, .duration = 4, .moving = kJoints});
+  clip.curves = {{1, 1, std::vector<float>(7, 0.5f)}};
+  const std::vector<CurveSlot> slots = {{"strength", 1}, {"smile", 0}};
+  std::vector<TimeJet<float>> curves(slots.size());
   std::vector<JointJet<float>> a(kJoints), b(kJoints), pose(kJoints);
   std::vector<Transform<float>> poses(kJoints), model(kJoints);
   const std::vector<int> parents = {-1, 0, 1, 2, 3, 4, 2, 6, 0, 8, 9};
@@ -30,6 +34,9 @@ TEST(Allocation, SamplingToSkinningTakesNothingFromTheHeap) {
   for (double t = 0; t < 1; t += 0.1) {
     ok &= SamplingJob<float>{&clip, t, a, poses}.Run().ok();
     ok &= SamplingJob<float>{&clip, t + 1, b}.Run().ok();
+    ok &= CurveJob<float>{&clip, t, slots, curves}.Run().ok();
+    const CurveLayer<float> both[] = {{curves}, {curves, 0.5f}};
+    ok &= CurveBlendingJob<float>{both, slots, curves}.Run().ok();
     const BlendLayer<float> layers[] = {
         {a}, {b, {0.5f, 0, 0}, mask, BlendMode::kOverride}, {b, {0.1f, 0, 0}, {}, BlendMode::kAdditive}};
     ok &= BlendingJob<float>{layers, {}, pose}.Run().ok();

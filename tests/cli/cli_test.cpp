@@ -49,7 +49,9 @@ TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
 TEST(Command, ConvertGivesTheSameBytesInEveryProcessAndPlace) {
   const std::string elsewhere = own_directory() + "elsewhere";
   fs::create_directories(elsewhere);
-  fs::copy_file(kCharacter, elsewhere + "/mannequin.glb", fs::copy_options::overwrite_existing);
+  for (const char* name : {"mannequin.glb", "mannequin.clips.json"})
+    fs::copy_file(fs::path(kCharacter).replace_filename(name), elsewhere + "/" + name,
+                  fs::copy_options::overwrite_existing);
   const std::string first = own_directory() + "first.sinew", second = own_directory() + "second.sinew";
   ASSERT_EQ(sinew("convert " + kCharacter + " -o " + first).code, 0);
   ASSERT_EQ(sinew("convert " + elsewhere + "/mannequin.glb -o " + second).code, 0);

@@ -31,7 +31,7 @@ SourceScene full_scene() {
   mesh.material = 0;
   s.meshes.push_back(mesh);
   s.materials.push_back({"cloth", {1, 0.5f, 0.25f, 1}, {1, 2, 3}});
-  SourceClip clip{.name = "walk", .duration = 1, .key_rate = 2, .channels = {}};
+  SourceClip clip{.name = "walk", .duration = 1, .begin = 0.5, .key_rate = 2, .extras = "{}", .channels = {}};
   SourceChannel channel;
   channel.node = 1;
   channel.position_times = channel.rotation_times = channel.scale_times = {0, 0.5};
@@ -45,6 +45,7 @@ SourceScene full_scene() {
   link.mass = 3;
   link.shapes.push_back({});
   s.links.push_back(link);
+  s.extras = R"({"author": 7})";
   s.notes = {"one", "two"};
   return s;
 }

@@ -67,6 +67,13 @@ Asset sample_asset() {
   for (int k = 0; k < 7 * 2; ++k) group.controls.insert(group.controls.end(), {0.1f * float(k % 3), 0, 0, 1});
   clip.groups.push_back(group);
   clip.contacts.push_back({4, 0.1f, 0.5f});
+  asset.curve_slots = {{"strength", 1}, {"smile", 0}};
+  asset.event_names = {"blow", "step"};
+  asset.masks = {{"arms", std::vector<std::uint8_t>(std::size_t(joints), 128)}};
+  clip.curves = {{1, 0.5f, {0, 0.25f, 0.5f, 0.75f, 1}}};
+  clip.events = {{0.25f, 0.25f, event_name("step")}, {0.5f, 0.75f, event_name("blow"), true}};
+  clip.events[1].payload[15] = std::byte(200);
+  clip.markers = {{0, 0.125}, {0.5, 0.625}};
   asset.clips.push_back(clip);
   asset.clips.push_back(packed_clip(asset.skeleton));
   Mesh mesh;
@@ -97,6 +104,50 @@ TEST(Asset, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.skeleton.muscles[0].group, "arms");
   EXPECT_EQ(back.skeleton.muscles[0].torque_plus, 25);
   EXPECT_TRUE(back.skeleton.joints[std::size_t(back.skeleton.muscles[0].joint)].ellipsoidal_limit);
+}
+
+TEST(Asset, HoldsWhatClipsSayBesideTheirMotion) {
+  Asset back;
+  ASSERT_TRUE(read_asset(write_asset(sample_asset()), back).ok());
+  EXPECT_EQ(back.find_curve("smile"), 1);
+  EXPECT_EQ(back.find_curve("frown"), -1);
+  EXPECT_EQ(back.curve_slots[0].rest, 1);
+  EXPECT_EQ(back.find_mask("arms"), 0);
+  EXPECT_EQ(back.masks[0].weights[3], 128);
+  const Clip& clip = back.clips[0];
+  ASSERT_EQ(clip.curves.size(), 1u);
+  EXPECT_EQ(clip.curves[0].slot, 1);
+  EXPECT_EQ(clip.curves[0].controls, (std::vector<float>{0, 0.25f, 0.5f, 0.75f, 1}));
+  ASSERT_EQ(clip.events.size(), 2u);
+  EXPECT_EQ(clip.events[0].name, event_name("step"));
+  EXPECT_FALSE(clip.events[0].always);
+  EXPECT_EQ(clip.events[1].end, 0.75f);
+  EXPECT_TRUE(clip.events[1].always);
+  EXPECT_EQ(clip.events[1].payload[15], std::byte(200));
+  ASSERT_EQ(clip.markers.size(), 2u);
+  EXPECT_EQ(clip.markers[1].time, 0.625);
+  EXPECT_TRUE(back.clips[1].events.empty());
+}
+
+TEST(Asset, NamesOfEventsCurvesAndMasksAreChecked) {
+  const auto refused = [](const auto& spoil, int index) {
+    Asset bad = sample_asset();
+    spoil(bad);
+    const Status status = validate_names(bad);
+    EXPECT_FALSE(status.ok());
+    EXPECT_EQ(status.index, index) << status.reason;
+    Asset out;
+    EXPECT_FALSE(read_asset(write_asset(bad), out).ok());
+  };
+  EXPECT_TRUE(validate_names(sample_asset()).ok());
+  refused([](Asset& a) { a.curve_slots.push_back({"smile", 0}); }, 2);
+  refused([](Asset& a) { a.curve_slots.pop_back(); }, 0);
+  refused([](Asset& a) { a.event_names.push_back("blow"); }, 2);
+  refused([](Asset& a) { a.masks.push_back(a.masks[0]); }, 1);
+  refused([](Asset& a) { a.masks[0].weights.pop_back(); }, 0);
+  // Numbers of these two are equal (FNV-1a).
+  ASSERT_EQ(event_name("costarring"), event_name("liquid"));
+  refused([](Asset& a) { a.event_names = {"step", "blow", "costarring", "liquid"}; }, 3);
 }
 
 void expect_same_motion(const Clip& a, const Clip& b) {

@@ -23,11 +23,13 @@ namespace cli = sinew::cli;
 
 /// Inputs that several commands share.
 struct SourceOptions {
-  std::string options_file, up;
+  std::string options_file, clip_data, up;
   double unit = 0;
 
   void add(CLI::App& app) {
     app.add_option("--options", options_file, "conversion options, JSON (see sinew convert --reference)");
+    app.add_option("--clip-data", clip_data,
+                   "events, curves, markers and masks, JSON (else SOURCE.clips.json, where it is there)");
     app.add_option("--unit", unit, "metres per unit of the source")->check(CLI::PositiveNumber);
     app.add_option("--up", up, "up axis of the source")->check(CLI::IsMember({"x", "y", "z"}));
   }
@@ -35,6 +37,8 @@ struct SourceOptions {
     out = json::object();
     if (!options_file.empty())
       if (Error error = cli::read_json(options_file, out)) return error;
+    if (!clip_data.empty())
+      if (Error error = cli::read_json(clip_data, out["clip_data"])) return error;
     if (unit != 0) out["unit"] = unit;  // NaN too: refused by name
     if (!up.empty()) out["up"] = up;
     return {};
@@ -89,18 +93,77 @@ struct InfoCommand {
     const json memory = cli::memory_of(asset);
     report["memory_bytes"] = memory;
     json clips = json::array();
-    for (const sinew::Clip& c : asset.clips)
-      clips.push_back({{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}});
-    if (!report.contains("clips")) report["clips"] = clips;
-    if (json_output)
-      std::puts(report.dump().c_str());
+    for (const sinew::Clip& c : asset.clips) clips.push_back(describe(asset, c));
+    if (!report.contains("clips") || report["clips"].size() != clips.size())
+      report["clips"] = clips;
     else
-      std::printf("%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(report).c_str(),
-                  asset.skeleton.colliders.size(), asset.meshes.size(), memory_text(memory).c_str());
+      for (std::size_t k = 0; k < clips.size(); ++k) report["clips"][k].update(clips[k]);
+    report["masks"] = json::object();
+    for (const sinew::JointMask& mask : asset.masks) report["masks"][mask.name] = mask.weights;
+    if (json_output)
+      std::puts(cli::json_text(report).c_str());
+    else
+      std::printf("%s%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(listed(report)).c_str(),
+                  events_text(asset).c_str(), asset.skeleton.colliders.size(), asset.meshes.size(),
+                  memory_text(memory).c_str());
     return {};
   }
 
  private:
+  /// As conversion reports it: numbers and names instead of what they count.
+  static json listed(json report) {
+    json masks = json::array();
+    for (const auto& [name, weights] : report["masks"].items()) masks.push_back(name);
+    report["masks"] = masks;
+    for (json& clip : report["clips"])
+      for (const char* what : {"contacts", "events", "curves", "markers"}) clip[what] = clip[what].size();
+    return report;
+  }
+
+  /// What a clip says beside its motion.
+  static json describe(const Asset& asset, const sinew::Clip& c) {
+    json out = {{"name", c.name}, {"duration_s", c.duration}, {"loops", c.loops}};
+    for (const char* list : {"events", "curves", "markers", "contacts"}) out[list] = json::array();
+    for (const sinew::ClipEvent& e : c.events)
+      out["events"].push_back(
+          {{"name", name_of(asset, e)}, {"begin_s", e.begin}, {"end_s", e.end}, {"always", e.always}});
+    for (const sinew::FloatCurve& curve : c.curves)
+      out["curves"].push_back({{"name", asset.curve_slots[static_cast<std::size_t>(curve.slot)].name},
+                               {"knot_s", curve.knot_interval},
+                               {"controls", curve.controls.size()}});
+    for (const sinew::PhaseMarker& m : c.markers)
+      out["markers"].push_back({{"phase", m.phase}, {"time_s", m.time}});
+    for (const sinew::ContactWindow& w : c.contacts)
+      out["contacts"].push_back({{"joint", asset.skeleton.joints[static_cast<std::size_t>(w.joint)].name},
+                                 {"begin_s", w.begin},
+                                 {"end_s", w.end}});
+    return out;
+  }
+
+  static std::string name_of(const Asset& asset, const sinew::ClipEvent& event) {
+    for (const std::string& name : asset.event_names)
+      if (sinew::event_name(name) == event.name) return name;
+    return {};
+  }
+
+  static std::string events_text(const Asset& asset) {
+    std::string text;
+    for (const sinew::Clip& c : asset.clips) {
+      if (c.events.empty()) continue;
+      text += "events of " + c.name + ":";
+      for (const sinew::ClipEvent& e : c.events) {
+        char line[64];
+        if (e.end > e.begin)
+          std::snprintf(line, sizeof line, " %.3f to %.3f s", double(e.begin), double(e.end));
+        else
+          std::snprintf(line, sizeof line, " %.3f s", double(e.begin));
+        text += (&e == c.events.data() ? " " : ", ") + name_of(asset, e) + line;
+      }
+      text += "\n";
+    }
+    return text;
+  }
+
   static std::string memory_text(const json& bytes) {
     if (bytes.is_null()) return "";
     const auto kilobytes = [&](const char* key) {

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <new>
 
 #include "convert/body.h"
+#include "convert/clip_data.h"
+#include "convert/contact_windows.h"
 #include "convert/fit/clip_fit.h"
 #include "convert/muscles.h"
 #include "convert/options.h"
@@ -86,18 +91,82 @@ void report_torque_errors(const Asset& asset, const std::vector<Clip>& reference
   }
 }
 
+/// walk.fbx → walk.clips.json.
+std::string beside(const std::string& input) {
+  return std::filesystem::path(input).replace_extension(".clips.json").string();
+}
+
+/// What stands beside a source file, if anything does.
+Error read_beside(const std::string& input, ClipData& data, nlohmann::json& report) {
+  constexpr std::uintmax_t kLargest = 16u << 20;
+  const std::string path = beside(input);
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return {};
+  if (std::filesystem::file_size(path, none) > kLargest) return in_file(path, "larger than 16 MiB");
+  std::ifstream file(path);
+  if (!file) return in_file(path, "file cannot be opened");
+  try {
+    if (Error error = data.read(nlohmann::json::parse(file, nullptr, true, true)))
+      return in_file(path, error.message);
+  } catch (const nlohmann::json::exception& e) {
+    const std::string what = e.what();  // "[json.exception.…] parse error at line …"
+    return in_file(path, what.substr(what.find("] ") + 2));
+  }
+  report["notes"].push_back("clips also from " + std::filesystem::path(path).filename().string());
+  return {};
+}
+
+/// What a glTF says of itself under "sinew" in its extras: an object, or one as text, as some exporters write
+/// it.
+Error read_extras(const std::string& extras, const std::function<Error(const nlohmann::json&)>& read) {
+  if (extras.empty()) return {};
+  const nlohmann::json all = nlohmann::json::parse(extras, nullptr, false);
+  if (!all.is_object() || !all.contains("sinew")) return {};
+  const nlohmann::json& own = all["sinew"];
+  const nlohmann::json data =
+      own.is_string() ? nlohmann::json::parse(own.get<std::string>(), nullptr, false) : own;
+  if (data.is_discarded()) return {"extras.sinew is no JSON"};
+  if (Error error = read(data)) return {"extras.sinew: " + error.message};
+  return {};
+}
+
+/// All that is said of clips beside their motion: in the sources, in files beside them, in the options; what
+/// comes later counts.
+Error gather(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
+             const Options& options, const Rig& rig, ClipData& data, nlohmann::json& report) {
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (Error error =
+            read_extras(scenes[i].extras, [&](const nlohmann::json& json) { return data.read(json); }))
+      return in_file(inputs[i], error.message);
+  for (const Rig::Motion& motion : rig.motions)
+    if (Error error = read_extras(motion.extras, [&](const nlohmann::json& json) {
+          return data.read_clip(motion.name, json, motion.begin);
+        }))
+      return in_file(inputs[0], "animation '" + motion.name + "': " + error.message);
+  for (const std::string& input : inputs)
+    if (Error error = read_beside(input, data, report)) return error;
+  data.add(options.clip_data);
+  return {};
+}
+
 Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
                      const Options& options, Asset& out, nlohmann::json& report) {
   Asset asset;
+  ClipData data;
   if (scenes[0].format == "urdf") {
     if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
     if (Error error = build_urdf(scenes[0], options, asset.skeleton, report))
       return in_file(inputs[0], error.message);
     if (Error error = override_masses(options, false, asset.skeleton))
       return in_file(inputs[0], error.message);
+    if (Error error = gather(inputs, scenes, options, {}, data, report)) return error;
   } else {
     Rig rig;
     if (Error error = build_rig(scenes, options, rig, report)) return in_file(inputs[0], error.message);
+    if (Error error = gather(inputs, scenes, options, rig, data, report)) return error;
+    for (Rig::Motion& motion : rig.motions)
+      if (const auto entry = data.clips.find(motion.name); entry != data.clips.end())
+        motion.loops = entry->second.loops.value_or(motion.loops);
     std::vector<int> joint_of_rig;
     asset.skeleton = build_body(rig, options, joint_of_rig, report);
     asset.skeleton.name = scenes[0].name;
@@ -108,6 +177,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
     strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
     report_torque_errors(asset, references, report);
+    for (Clip& clip : asset.clips) find_contacts(asset.skeleton, rig.height, clip, report);
     asset.meshes = std::move(rig.meshes);
     for (Mesh& mesh : asset.meshes)
       for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
@@ -116,6 +186,8 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     for (std::size_t j = 0; j < rig.joints.size(); ++j)
       asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
   }
+  if (Error error = add_clip_data(data, !options.clips.empty(), asset, report))
+    return in_file(inputs[0], "clip data: " + error.message);
   override_limits(options, asset.skeleton);
   if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
   for (const Clip& clip : asset.clips)
@@ -187,6 +259,8 @@ std::string report_text(const nlohmann::json& r) {
   };
   list("control_joints", "control joints, no body:");
   list("ride_along_joints", "ride along:");
+  list("masks", "masks:");
+  list("curves", "curves:");
   if (r.contains("clips"))
     for (const auto& c : r["clips"]) {
       std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm",
@@ -203,6 +277,10 @@ std::string report_text(const nlohmann::json& r) {
                       100 * c.value("largest_torque_error", 0.0), 100 * c.value("rms_torque_error", 0.0));
         text += line;
       }
+      for (const char* what : {"contacts", "events", "curves", "markers"})
+        if (const int count = c.value(what, 0); count > 0)
+          text += std::string("; ") + std::to_string(count) + " " +
+                  (count == 1 ? std::string(what, std::strlen(what) - 1) : what);
       text += "\n";
     }
   if (r.contains("notes"))

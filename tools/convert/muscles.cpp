@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "convert/contact_windows.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/effects/support.h"
 #include "sinew/skeleton/rotation.h"
@@ -145,9 +147,8 @@ int frames_of(const Clip& clip) {
   return std::max(1, static_cast<int>(clip.duration * kRate));
 }
 
-/// Height of the floor that a clip moves on, m: where the body's lowest point is most often, to a centimetre.
-/// Some frames are in flight, and in some a collider thicker than the skin sinks in.
-double floor_of(const Clip& clip, Pass& pass) {
+/// Height of the floor that a clip moves on, m.
+double floor_under(const Clip& clip, Pass& pass) {
   std::vector<double> lowest;
   for (int f = 0; f < frames_of(clip); ++f) {
     if (!pass.run(clip, f)) continue;
@@ -157,16 +158,7 @@ double floor_of(const Clip& clip, Pass& pass) {
           low, (pass.kinematics.origin[p.body] + pass.kinematics.rotation[p.body] * p.local).z() - p.radius);
     lowest.push_back(low);
   }
-  std::sort(lowest.begin(), lowest.end());
-  std::size_t most = 0;
-  double floor = 0;
-  for (std::size_t begin = 0, end = 0; begin < lowest.size(); ++begin) {
-    while (end < lowest.size() && lowest[end] < lowest[begin] + 0.01) ++end;
-    if (end - begin <= most) continue;
-    most = end - begin;
-    floor = lowest[(begin + end) / 2];
-  }
-  return floor;
+  return floor_of(std::move(lowest));
 }
 
 /// The largest value that a series holds for `frames` running, or 0 where it never rises above.
@@ -185,7 +177,7 @@ struct Demand {
 
 Demand demand_of(const Clip& clip, Pass& pass) {
   const Tree<double>& tree = pass.tree;
-  const double floor = floor_of(clip, pass);
+  const double floor = floor_under(clip, pass);
   const SupportPoints<double> support(tree, pass.points);
   std::vector<StandingPoint<double>> room(support.points.size());
   std::vector<double> torque(tree.dofs);

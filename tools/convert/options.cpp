@@ -129,7 +129,10 @@ std::string reference_options() {
   // Degree of the curves: 5 for motion capture, 3 for clean authored keys.
   "fit_degree": 5,
   // Names of the clips to keep; empty: all.
-  "clips": []
+  "clips": [],
+  // What clips say beside their motion: events, curves, phase markers, masks, whether they loop. The same as in a
+  // file SOURCE.clips.json beside the source; tools/convert/README.md shows one.
+  "clip_data": {}
 }
 )";
 }
@@ -178,7 +181,9 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.fit_degree = value.get<int>();
       else if (key == "clips")
         o.clips = value.get<std::vector<std::string>>();
-      else
+      else if (key == "clip_data") {
+        if (Error error = o.clip_data.read(value)) return {"option 'clip_data': " + error.message};
+      } else
         return {"unknown option '" + key + "'"};
       check_numbers(value, key);
       const bool negative = value.is_number() && value.get<double>() < 0;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "convert/clip_data.h"
 #include "convert/convert.h"
 #include "convert/human.h"
 
@@ -40,6 +41,7 @@ struct Options {
   double fit_linear = 0.1;      ///< m/s² of a joint that shifts
   int fit_degree = 5;
   std::vector<std::string> clips;  ///< names to keep; empty: all
+  ClipData clip_data;
 
   /// Unknown keys and wrong types are an error that names the key.
   static Error parse(const nlohmann::json& json, Options& out);

@@ -324,6 +324,8 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
                    const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
+  motion.begin = clip.begin;
+  motion.extras = clip.extras;
   motion.sample_rate = sampling_rate(clip);
   const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
   if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
@@ -353,6 +355,7 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
         std::to_string(std::lround(1e3 * largest)) + " mm; physics follows the clip there");
   if (begins_with_reference_pose(motion)) {
     motion.samples.erase(motion.samples.begin());
+    motion.begin += 1 / motion.sample_rate;
     report["notes"].push_back("clip '" + clip.name +
                               "': its first frame is a reference pose, apart from the motion; left out");
   }

@@ -25,6 +25,8 @@ struct Rig {
     std::string name;
     double sample_rate = 30;
     bool loops = false;
+    double begin = 0;                                     ///< s in the file, of the first frame
+    std::string extras;                                   ///< see import::SourceClip
     std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
   };
   std::vector<Joint> joints;

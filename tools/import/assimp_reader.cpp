@@ -75,6 +75,9 @@ SourceScene read_with_assimp(const std::string& content, const std::string& form
   const auto texture = [files](const std::string& path) { return read_texture(*files, path); };
   SourceScene out = SceneBuilder(*scene, format, std::move(original_names), texture, limits).build();
   out.notes.insert(out.notes.end(), gltf.notes.begin(), gltf.notes.end());
+  out.extras = std::move(gltf.extras);
+  if (out.clips.size() == gltf.animation_extras.size())  // else some moved nothing
+    for (std::size_t a = 0; a < out.clips.size(); ++a) out.clips[a].extras = gltf.animation_extras[a];
   return out;
 }
 

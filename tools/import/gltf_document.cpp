@@ -158,6 +158,12 @@ void decode_uris(Json& document) {
   }
 }
 
+/// What the author of a file added to something in it, as JSON.
+std::string extras_of(const Json& owner) {
+  return owner.contains("extras") ? owner.at("extras").dump(-1, ' ', false, Json::error_handler_t::replace)
+                                  : std::string();
+}
+
 GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& limits) {
   const std::size_t begin = binary ? kHeader + kChunkHeader : 0;
   const std::size_t length = binary ? json_length(content) : content.size();
@@ -167,6 +173,7 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
   check_version(document);
   check_extensions(document);
   GltfDocument out;
+  out.extras = extras_of(document);
   if (document.contains("nodes")) {
     Json& nodes = document.at("nodes");
     check_tree(nodes, limits);
@@ -181,6 +188,7 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
       const std::string where = "animation " + std::to_string(a);
       check_animation(document, animations[a], where);
       note_curves(animations[a], where, out.notes);
+      out.animation_extras.push_back(extras_of(animations[a]));
     }
   }
   decode_uris(document);

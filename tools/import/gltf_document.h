@@ -10,9 +10,11 @@
 namespace sinew::import {
 
 struct GltfDocument {
-  std::string content;                  ///< the file again, node k named node_tag(k)
-  std::vector<std::string> node_names;  ///< as in the file, perhaps empty or repeated
-  std::vector<std::string> notes;       ///< what assimp is known to leave out, one clause each
+  std::string content;                        ///< the file again, node k named node_tag(k)
+  std::vector<std::string> node_names;        ///< as in the file, perhaps empty or repeated
+  std::string extras;                         ///< of the document, as JSON; empty where it has none
+  std::vector<std::string> animation_extras;  ///< [animation] the same
+  std::vector<std::string> notes;             ///< what assimp is known to leave out, one clause each
 };
 
 /// Name that node k goes by between here and SceneBuilder, and keeps when the file gives it none.

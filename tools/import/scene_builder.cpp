@@ -293,6 +293,7 @@ void SceneBuilder::collect_clip(const aiAnimation& in) {
   });
   if (first > 1e-6)
     out_.notes.push_back("clip '" + clip.name + "' begins at " + std::to_string(first) + " s; moved to 0");
+  clip.begin = first;
   clip.duration = last - first;
   clip.key_rate = key_rate(clip);
   out_.clips.push_back(std::move(clip));

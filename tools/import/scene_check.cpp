@@ -90,7 +90,7 @@ std::string fault_in_channel(const SourceChannel& c) {
 }
 
 std::string fault_in_clip(const SourceScene& s, const SourceClip& clip) {
-  if (!finite(clip.duration, clip.key_rate) || clip.duration < 0 || clip.key_rate < 0)
+  if (!finite(clip.duration, clip.key_rate, clip.begin) || clip.duration < 0 || clip.key_rate < 0)
     return "has no meaningful duration";
   for (const SourceChannel& c : clip.channels) {
     if (!in_range(c.node, s.nodes.size())) return "moves a node that does not exist";

@@ -109,7 +109,8 @@ const auto channel_io = [](auto& io, auto& c) {
 };
 
 const auto clip_io = [](auto& io, auto& c) {
-  return io.text(c.name) && io.pod(c.duration) && io.pod(c.key_rate) && io.list(c.channels, channel_io);
+  return io.text(c.name) && io.pod(c.duration) && io.pod(c.begin) && io.pod(c.key_rate) &&
+         io.text(c.extras) && io.list(c.channels, channel_io);
 };
 
 const auto link_io = [](auto& io, auto& l) {
@@ -127,7 +128,7 @@ template <class Io, class Scene>
 bool scene_io(Io& io, Scene& s) {
   return io.text(s.format) && io.text(s.name) && io.pod(s.meters_per_unit) && io.pod(s.up_axis) &&
          io.list(s.nodes, node_io) && io.list(s.meshes, mesh_io) && io.list(s.materials, material_io) &&
-         io.list(s.clips, clip_io) && io.list(s.links, link_io) &&
+         io.list(s.clips, clip_io) && io.list(s.links, link_io) && io.text(s.extras) &&
          io.list(s.notes, [](auto& i, auto& n) { return i.text(n); });
 }
 

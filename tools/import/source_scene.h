@@ -54,7 +54,9 @@ struct SourceChannel {
 struct SourceClip {
   std::string name;
   double duration = 0;  ///< s
+  double begin = 0;     ///< s in the file, of what is 0 here
   double key_rate = 0;  ///< 1/s, of the channel with the closest keys; 0 when no channel has two
+  std::string extras;   ///< glTF: what its author added to the animation, as JSON; else empty
   std::vector<SourceChannel> channels;
 };
 
@@ -93,6 +95,7 @@ struct SourceScene {
   std::vector<SourceMaterial> materials;
   std::vector<SourceClip> clips;
   std::vector<SourceUrdfLink> links;  ///< URDF only
+  std::string extras;                 ///< glTF: what its author added to the file, as JSON; else empty
   std::vector<std::string> notes;     ///< what the reader repaired or dropped, one clause each
 };
 

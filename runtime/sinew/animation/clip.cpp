@@ -33,6 +33,46 @@ Status check_group(const Clip& clip, const Clip::Group& group, int index) {
   return {};
 }
 
+Status check_curve(const Clip& clip, const FloatCurve& curve, int slot_before, int index) {
+  if (curve.slot <= slot_before)
+    return Status::error(Code::kInvalidArgument, "curves do not go by rising slots", index);
+  if (!std::isfinite(curve.knot_interval) || curve.knot_interval <= 0)
+    return Status::error(Code::kInvalidArgument, "knot interval of a curve is not positive", index);
+  const std::size_t beyond = clip.loops ? 0 : 3;
+  if (curve.controls.size() < beyond + 1)
+    return Status::error(Code::kInvalidArgument, "curve has too few control points", index);
+  if (double(curve.knot_interval) * double(curve.controls.size() - beyond) <
+      double(clip.duration) * (1 - 1e-4))
+    return Status::error(Code::kInvalidArgument, "curve ends before the clip", index);
+  for (const float value : curve.controls)
+    if (!std::isfinite(value)) return Status::error(Code::kNotFinite, "curve is not finite", index);
+  return {};
+}
+
+/// Curves, events and markers.
+Status check_data(const Clip& clip) {
+  int slot = -1;
+  for (std::size_t k = 0; k < clip.curves.size(); ++k) {
+    if (Status status = check_curve(clip, clip.curves[k], slot, static_cast<int>(k)); !status) return status;
+    slot = clip.curves[k].slot;
+  }
+  float begin = 0;
+  for (std::size_t k = 0; k < clip.events.size(); ++k) {
+    const ClipEvent& event = clip.events[k];
+    if (!(event.begin >= begin && event.begin <= event.end && event.end <= clip.duration))
+      return Status::error(Code::kOutOfRange, "event is not within the clip, or not in its order",
+                           static_cast<int>(k));
+    begin = event.begin;
+  }
+  if (clip.cycles < 1) return Status::error(Code::kOutOfRange, "number of cycles is not positive");
+  for (std::size_t k = 0; k < clip.markers.size(); ++k) {
+    const PhaseMarker& m = clip.markers[k];
+    if (!(m.time >= 0 && m.time <= double(clip.duration)) || !(m.phase >= 0 && m.phase <= clip.cycles))
+      return Status::error(Code::kOutOfRange, "marker is not within the clip", static_cast<int>(k));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status validate(const Clip& clip) {
@@ -52,7 +92,7 @@ Status validate(const Clip& clip) {
       return Status::error(Code::kInvalidArgument, "contact window has no joint or no length");
   for (std::size_t g = 0; g < clip.groups.size(); ++g)
     if (Status status = check_group(clip, clip.groups[g], static_cast<int>(g)); !status) return status;
-  return {};
+  return check_data(clip);
 }
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/animation/clip_event.h"
 #include "sinew/skeleton/status.h"
 #include "sinew/skeleton/transform.h"
 
@@ -22,13 +23,34 @@ struct JointJet {
   Vec3<T> acceleration = Vec3<T>::Zero();  ///< m/s²
 };
 
-/// A span of time in which a joint is meant to rest on the ground (seconds, clip time).
+/// A span of time in which a joint is meant to rest on the ground (seconds, clip time). Of a loop it may run
+/// over the seam: `end` is beyond the duration then.
 struct ContactWindow {
   int joint = 0;
   float begin = 0, end = 0;
 };
 
-/// Uniform B-spline curves for all joints of one skeleton.
+/// A phase of a cycle and the clip time at which it is reached (see PhaseMap).
+struct PhaseMarker {
+  double phase = 0;  ///< cycles
+  double time = 0;   ///< s
+};
+
+/// A number that clips may move, and what it is where they do not. The slots of one asset are the same for
+/// all its clips.
+struct CurveSlot {
+  std::string name;
+  float rest = 0;
+};
+
+/// One such number over a clip: a uniform cubic B-spline, C². Between its least and its greatest control.
+struct FloatCurve {
+  int slot = 0;                 ///< of the asset
+  float knot_interval = 0;      ///< s
+  std::vector<float> controls;  ///< one a knot where the clip loops; else 3 more
+};
+
+/// Uniform B-spline curves for all joints of one skeleton, and what else a clip says.
 ///
 /// Each animated joint has a rotation track: control points are sign-aligned quaternions in R⁴ (x, y, z, w),
 /// normalised after evaluation; and, where the joint moves relative to its parent, a translation track.
@@ -61,11 +83,15 @@ struct Clip {
   std::vector<Transform<float>> constants;  ///< [joint_count] local transforms of joints without a track
   std::vector<Group> groups;
   std::vector<ContactWindow> contacts;
+  std::vector<FloatCurve> curves;               ///< by rising slot, at most one each (CurveJob)
+  std::vector<ClipEvent> events;                ///< by rising begin (EventJob)
+  std::vector<PhaseMarker> markers;             ///< as fit_phase_map() takes them, or none
+  int cycles = 1;                               ///< that the markers count
   Vec3<float> root_step = Vec3<float>::Zero();  ///< what one loop adds to the root's translation (m), Z up
 };
 
-/// What is at fault, if anything: sizes, NaN, zero knot intervals, joints out of range. `Status::index`:
-/// group.
+/// What is at fault, if anything: sizes, NaN, zero knot intervals, joints out of range, events outside.
+/// `Status::index`: group, curve, event or marker.
 Status validate(const Clip& clip);
 
 }  // namespace sinew

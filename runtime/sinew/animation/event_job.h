@@ -1,22 +1,14 @@
-// What happens at certain times of a clip: footsteps, sounds, windows in which a blow counts.
+// Which events of a clip a frame passed.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "sinew/animation/clip_event.h"
 #include "sinew/skeleton/status.h"
 
 namespace sinew {
-
-/// Something at an instant of a clip (begin = end) or during a part of it. Times in seconds of the clip.
-struct ClipEvent {
-  float begin = 0, end = 0;                ///< 0 ≤ begin ≤ end ≤ duration
-  std::uint32_t name = 0;                  ///< the game's number or hash
-  bool always = false;                     ///< reported whatever the weight
-  std::array<std::byte, 16> payload = {};  ///< the game's
-};
 
 enum class EventKind : std::uint8_t { kInstant, kBegin, kEnd };
 

@@ -26,12 +26,6 @@ struct PhaseMap {
   ClipTime at(const TimeJet<double>& phase) const;
 };
 
-/// A phase and the clip time at which it is reached.
-struct PhaseMarker {
-  double phase = 0;  ///< cycles
-  double time = 0;   ///< s
-};
-
 /// The smoothest map through up to eight markers. Refuses what would make time stand still or run backwards:
 /// a rate below a tenth of the mean. `Status::index`: marker.
 Status fit_phase_map(std::span<const PhaseMarker> markers, double duration, int cycles, PhaseMap& out);

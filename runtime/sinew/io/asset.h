@@ -1,4 +1,4 @@
-// The runtime asset file (.sinew): one skeleton, its clips and meshes.
+// The runtime asset file (.sinew): one skeleton, its clips, masks and meshes.
 //
 // FlatBuffers (schema: sinew/io/sinew.fbs), little-endian on every machine, verified before anything is read,
 // then checked semantically (see validate(Skeleton), validate(Clip)). A broken file gives an error, never a
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/animation/joint_mask.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -39,9 +40,14 @@ struct Asset {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<Transform<float>> inverse_bind;  ///< [joint] model space at bind → joint; empty without meshes
+  std::vector<CurveSlot> curve_slots;          ///< what Clip::curves move
+  std::vector<std::string> event_names;        ///< all whose event_name() is in Clip::events
+  std::vector<JointMask> masks;                ///< [joint] each
   std::string report_json;                     ///< what the converter decided, as JSON text
 
-  int find_clip(const std::string& name) const;  ///< index, or -1
+  int find_clip(const std::string& name) const;   ///< index, or -1
+  int find_curve(const std::string& name) const;  ///< slot, or -1
+  int find_mask(const std::string& name) const;   ///< index, or -1
 };
 
 /// Reads a file image. On error `out` is left as it was. Cost: one pass over the bytes.
@@ -50,7 +56,12 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out);
 /// Maps the file and reads it; the one place in the runtime that touches the file system.
 Status load_asset(const char* path, Asset& out);
 
-/// File image of an asset; the same asset always gives the same bytes.
+/// What is at fault in what clips say beside their motion: names that repeat or share a number, events
+/// without a name, curves without a slot, masks of another size. `Status::index`: clip, slot, name or mask.
+Status validate_names(const Asset& asset);
+
+/// File image of an asset; the same asset always gives the same bytes. Events whose name validate_names()
+/// misses are left out.
 std::vector<std::uint8_t> write_asset(const Asset& asset);
 
 /// Bytes that a clip takes of such an image, its name and all its tables included.

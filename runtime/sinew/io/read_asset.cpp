@@ -3,7 +3,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "sinew/animation/clip_packing.h"
@@ -17,6 +19,7 @@ namespace {
 constexpr int kMaxDepth = 64;  ///< of nested tables; the schema needs 4
 constexpr int kMaxTables = 1'000'000;
 constexpr std::size_t kMaxJoints = 100'000;
+constexpr std::size_t kMostNames = 1024;
 
 Status bad(const char* reason, int index = -1) {
   return Status::error(Code::kBadFile, reason, index);
@@ -129,7 +132,26 @@ Status unpack(const fb::Group& in, Clip::Group& out) {
   return {};
 }
 
-Status unpack(const fb::Clip& in, const Skeleton& skeleton, Clip& out) {
+using Names = std::vector<std::string>;
+
+Status unpack_events(const fb::Clip& in, const Names& names, Clip& out) {
+  for (unsigned k = 0; k < size_of(in.events()); ++k) {
+    const fb::Event& e = *in.events()->Get(k);
+    if (e.name() >= names.size()) return bad("event has no name", static_cast<int>(k));
+    ClipEvent& event = out.events.emplace_back();
+    event.begin = e.begin();
+    event.end = e.end();
+    event.name = event_name(names[e.name()]);
+    event.always = e.always();
+    if (!e.payload()) continue;
+    if (e.payload()->size() != event.payload.size())
+      return bad("payload of an event has another size", static_cast<int>(k));
+    std::memcpy(event.payload.data(), e.payload()->data(), event.payload.size());
+  }
+  return {};
+}
+
+Status unpack(const fb::Clip& in, const Skeleton& skeleton, const Names& names, Clip& out) {
   out.name = in.name()->str();
   out.duration = in.duration();
   out.loops = in.loops();
@@ -143,7 +165,33 @@ Status unpack(const fb::Clip& in, const Skeleton& skeleton, Clip& out) {
     const fb::Contact& c = *in.contacts()->Get(k);
     out.contacts.push_back({c.joint(), c.begin(), c.end()});
   }
+  for (unsigned k = 0; k < size_of(in.curves()); ++k) {
+    const fb::Curve& c = *in.curves()->Get(k);
+    out.curves.push_back({c.slot(), c.knot_interval(), copied(c.controls())});
+  }
+  if (Status status = unpack_events(in, names, out); !status) return status;
+  for (unsigned k = 0; k < size_of(in.markers()); ++k)
+    out.markers.push_back({in.markers()->Get(k)->phase(), in.markers()->Get(k)->time()});
+  out.cycles = in.cycles();
   return validate(out);
+}
+
+/// The place of a key that comes a second time, or −1.
+template <class Key>
+int repeated(const std::vector<Key>& keys) {
+  std::vector<std::pair<Key, int>> sorted;
+  for (std::size_t k = 0; k < keys.size(); ++k) sorted.emplace_back(keys[k], static_cast<int>(k));
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end(),
+                                        [](const auto& a, const auto& b) { return a.first == b.first; });
+  return twice == sorted.end() ? -1 : (twice + 1)->second;
+}
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
 }
 
 Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& out) {
@@ -175,10 +223,54 @@ Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& ou
 
 }  // namespace
 
+namespace {
+
+template <class List>
+int find_name(const List& list, const std::string& name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+}  // namespace
+
 int Asset::find_clip(const std::string& name) const {
-  for (std::size_t i = 0; i < clips.size(); ++i)
-    if (clips[i].name == name) return static_cast<int>(i);
-  return -1;
+  return find_name(clips, name);
+}
+
+int Asset::find_curve(const std::string& name) const {
+  return find_name(curve_slots, name);
+}
+
+int Asset::find_mask(const std::string& name) const {
+  return find_name(masks, name);
+}
+
+Status validate_names(const Asset& asset) {
+  if (asset.curve_slots.size() > kMostNames || asset.event_names.size() > kMostNames ||
+      asset.masks.size() > kMostNames)
+    return bad("more than 1024 curves, events or masks");
+  std::vector<std::uint32_t> numbers;
+  for (const std::string& name : asset.event_names) numbers.push_back(event_name(name));
+  if (const int k = repeated(names_of(asset.curve_slots)); k >= 0) return bad("two curves have one name", k);
+  if (const int k = repeated(names_of(asset.masks)); k >= 0) return bad("two masks have one name", k);
+  if (const int k = repeated(numbers); k >= 0)
+    return bad("two events have one name, or names of one number", k);
+  std::sort(numbers.begin(), numbers.end());
+  for (std::size_t k = 0; k < asset.curve_slots.size(); ++k)
+    if (!std::isfinite(asset.curve_slots[k].rest)) return bad("curve rests nowhere", static_cast<int>(k));
+  for (std::size_t k = 0; k < asset.masks.size(); ++k)
+    if (asset.masks[k].weights.size() != asset.skeleton.joints.size())
+      return bad("mask has another number of joints than the skeleton", static_cast<int>(k));
+  for (std::size_t c = 0; c < asset.clips.size(); ++c) {
+    const Clip& clip = asset.clips[c];
+    if (!clip.curves.empty() && static_cast<std::size_t>(clip.curves.back().slot) >= asset.curve_slots.size())
+      return bad("clip moves a curve that does not exist", static_cast<int>(c));
+    for (const ClipEvent& event : clip.events)
+      if (!std::binary_search(numbers.begin(), numbers.end(), event.name))
+        return bad("clip has an event without a name", static_cast<int>(c));
+  }
+  return {};
 }
 
 Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
@@ -195,9 +287,19 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
   Asset asset;
   if (Status status = unpack(*in.skeleton(), asset.skeleton); !status) return status;
   const int joints = static_cast<int>(asset.skeleton.joints.size());
+  if (size_of(in.event_names()) > kMostNames) return bad("too many events");
+  for (unsigned i = 0; i < size_of(in.event_names()); ++i)
+    asset.event_names.push_back(in.event_names()->Get(i)->str());
   for (unsigned i = 0; i < size_of(in.clips()); ++i)
-    if (Status status = unpack(*in.clips()->Get(i), asset.skeleton, asset.clips.emplace_back()); !status)
+    if (Status status =
+            unpack(*in.clips()->Get(i), asset.skeleton, asset.event_names, asset.clips.emplace_back());
+        !status)
       return status;
+  for (unsigned i = 0; i < size_of(in.curve_slots()); ++i)
+    asset.curve_slots.push_back({in.curve_slots()->Get(i)->name()->str(), in.curve_slots()->Get(i)->rest()});
+  for (unsigned i = 0; i < size_of(in.masks()); ++i)
+    asset.masks.push_back({in.masks()->Get(i)->name()->str(), copied(in.masks()->Get(i)->weights())});
+  if (Status status = validate_names(asset); !status) return status;
   for (unsigned i = 0; i < size_of(in.materials()); ++i) {
     const fb::Material& m = *in.materials()->Get(i);
     Material& material = asset.materials.emplace_back();

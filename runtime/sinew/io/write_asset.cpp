@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "sinew/animation/clip_packing.h"
 #include "sinew/io/asset.h"
 #include "sinew/io/schema_version.h"
@@ -91,7 +93,39 @@ void pack_constants(const Clip& clip, const Skeleton& skeleton, std::vector<fb::
   }
 }
 
-Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip, const Skeleton& skeleton) {
+using Names = std::vector<std::string>;
+
+/// Absent where the clip has none: then it takes no bytes.
+template <class Table>
+Offset<flatbuffers::Vector<Offset<Table>>> list(FlatBufferBuilder& b,
+                                                const std::vector<Offset<Table>>& tables) {
+  return tables.empty() ? Offset<flatbuffers::Vector<Offset<Table>>>() : b.CreateVector(tables);
+}
+
+Offset<flatbuffers::Vector<Offset<fb::Curve>>> pack_curves(FlatBufferBuilder& b, const Clip& clip) {
+  std::vector<Offset<fb::Curve>> curves;
+  for (const FloatCurve& c : clip.curves)
+    curves.push_back(fb::CreateCurve(b, c.slot, c.knot_interval, b.CreateVector(c.controls)));
+  return list(b, curves);
+}
+
+Offset<flatbuffers::Vector<Offset<fb::Event>>> pack_events(FlatBufferBuilder& b, const Clip& clip,
+                                                           const Names& names) {
+  std::vector<Offset<fb::Event>> events;
+  for (const ClipEvent& e : clip.events) {
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [&](const std::string& text) { return event_name(text) == e.name; });
+    if (name == names.end()) continue;
+    Offset<flatbuffers::Vector<std::uint8_t>> payload;
+    if (e.payload != decltype(e.payload){})
+      payload = b.CreateVector(reinterpret_cast<const std::uint8_t*>(e.payload.data()), e.payload.size());
+    events.push_back(fb::CreateEvent(b, static_cast<std::uint16_t>(name - names.begin()), e.begin, e.end,
+                                     e.always, payload));
+  }
+  return list(b, events);
+}
+
+Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip, const Skeleton& skeleton, const Names& names) {
   const bool few_joints = skeleton.joints.size() == clip.constants.size() && clip.constants.size() <= 0xffff;
   std::vector<fb::TransformF> constants;
   std::vector<fb::StillRotation> rotations;
@@ -112,8 +146,16 @@ Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip, const Skeleton& sk
   const auto groups_offset = b.CreateVector(groups);
   const auto contacts_offset = b.CreateVectorOfStructs(contacts);
   const auto step = b.CreateVector(clip.root_step.data(), 3);
+  const auto curves = pack_curves(b, clip);
+  const auto events = pack_events(b, clip, names);
+  Offset<flatbuffers::Vector<const fb::Marker*>> markers;
+  if (!clip.markers.empty()) {
+    std::vector<fb::Marker> all;
+    for (const PhaseMarker& m : clip.markers) all.emplace_back(m.phase, m.time);
+    markers = b.CreateVectorOfStructs(all);
+  }
   return fb::CreateClip(b, name, clip.duration, clip.loops, constants_offset, groups_offset, contacts_offset,
-                        step, rotations_offset, translations_offset);
+                        step, rotations_offset, translations_offset, curves, events, markers, clip.cycles);
 }
 
 Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
@@ -133,7 +175,7 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
   b.ForceDefaults(true);
   const auto skeleton = pack(b, asset.skeleton);
   std::vector<Offset<fb::Clip>> clips;
-  for (const Clip& clip : asset.clips) clips.push_back(pack(b, clip, asset.skeleton));
+  for (const Clip& clip : asset.clips) clips.push_back(pack(b, clip, asset.skeleton, asset.event_names));
   std::vector<Offset<fb::Mesh>> meshes;
   for (const Mesh& mesh : asset.meshes) meshes.push_back(pack(b, mesh));
   std::vector<Offset<fb::Material>> materials;
@@ -150,8 +192,19 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
   const auto materials_offset = b.CreateVector(materials);
   const auto bind_offset = b.CreateVectorOfStructs(bind);
   const auto report = b.CreateString(asset.report_json);
+  std::vector<Offset<fb::CurveSlot>> slots;
+  for (const CurveSlot& slot : asset.curve_slots)
+    slots.push_back(fb::CreateCurveSlot(b, b.CreateString(slot.name), slot.rest));
+  std::vector<Offset<fb::Mask>> masks;
+  for (const JointMask& mask : asset.masks) {
+    const auto name = b.CreateString(mask.name);
+    masks.push_back(fb::CreateMask(b, name, b.CreateVector(mask.weights)));
+  }
+  const auto slots_offset = b.CreateVector(slots);
+  const auto names_offset = b.CreateVectorOfStrings(asset.event_names);
+  const auto masks_offset = b.CreateVector(masks);
   b.Finish(fb::CreateAsset(b, kSchemaMajor, kSchemaMinor, skeleton, clips_offset, meshes_offset,
-                           materials_offset, bind_offset, report),
+                           materials_offset, bind_offset, report, slots_offset, names_offset, masks_offset),
            fb::AssetIdentifier());
   return {b.GetBufferPointer(), b.GetBufferPointer() + b.GetSize()};
 }
@@ -159,7 +212,7 @@ std::vector<std::uint8_t> write_asset(const Asset& asset) {
 std::size_t file_bytes(const Clip& clip, const Skeleton& skeleton) {
   FlatBufferBuilder b;
   b.ForceDefaults(true);
-  pack(b, clip, skeleton);
+  pack(b, clip, skeleton, {});
   return b.GetSize();
 }
 
