@@ -60,6 +60,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   for (const auto& effect : effects_) effect->reserve(room);
   if (finder_) finder_->reserve(room, obstacles);
   lagged_.reserve(room.contacts);
+  for (auto* v : {&parted_, &shut_}) v->reserve(room.contacts);
   room_ = room.contacts;
   solver_.reserve(room);
   set_.reserve(room.trees);

@@ -91,6 +91,7 @@ class IslandStepper {
   void expect_to_last(T h);
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   T opening_speed(const Contact<T>& c) const;
+  void write_borne();
   void drop_parted(T h);
   void drop_played();
   void strike_all();
@@ -179,6 +180,7 @@ class IslandStepper {
   std::vector<std::array<T, 6>> late_jumps_;      ///< [body, trees one after the other] see take_landing
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   bool landed_ = false;                                     ///< land() has changed velocities
+  std::vector<T> parted_, shut_;                            ///< [contact] see drop_parted
   bool blow_ = false;                                       ///< what it parts still carries a force
   std::vector<Landing> kept_;                               ///< [body, the same] before it did
   std::vector<Twist<T>> led_rates_;                         ///< [body]

@@ -264,43 +264,79 @@ T IslandStepper<T>::opening_speed(const Contact<T>& c) const {
   return c.normal.dot(Vec3<T>(speed(c.tree_a, c.body_a) - carried));
 }
 
+/// The wrenches of forces that contacts bore in the step before, times `parted_`, into the problems' rooms.
+template <class T>
+void IslandStepper<T>::write_borne() {
+  for (CharacterState<T>* s : states_) s->problem.clear_wrenches();
+  const auto act = [&](int tree, int body, const Vec3<T>& at, const Vec3<T>& force) {
+    TreeProblem<T>& p = states_[tree]->problem;
+    p.force[body] += force;
+    p.moment[body] += at.cross(force);
+  };
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const Contact<T>& c = contacts_[k];
+    const Vec3<T> bore = parted_[k] * c.smooth_before * c.normal;
+    if (bore.isZero(T(0))) continue;
+    act(c.tree_a, c.body_a, c.point, bore);
+    if (c.tree_b >= 0) act(c.tree_b, c.body_b, c.point, Vec3<T>(-bore));
+  }
+}
+
 /// Takes out of accelerations what contacts bore until a blow parted them: their force ended before the step.
-/// All of it, where gravity does not close them within the step again.
+/// All of it where they stay open; less where they, bearing nothing, would close within the step again.
 template <class T>
 void IslandStepper<T>::drop_parted(T h) {
   const auto struck = [&](int n) {
     return n >= 0 && states_[n]->history.accelerates && states_[n]->is_struck(return_time());
   };
-  bool any = false;
-  for (Contact<T>& c : contacts_) {
-    if (!(c.smooth_before > T(0)) || !(struck(c.tree_a) || struck(c.tree_b))) continue;
-    const T share = std::min(opening_speed(c) / (h * settings_.gravity.norm()), T(1));
-    if (!(share > T(0))) continue;
-    if (!any)
-      for (CharacterState<T>* s : states_) s->problem.clear_wrenches();
-    any = true;
-    const Vec3<T> bore = share * c.smooth_before * c.normal;
-    const auto act = [&](int tree, int body, const Vec3<T>& force) {
-      TreeProblem<T>& p = states_[tree]->problem;
-      p.force[body] += force;
-      p.moment[body] += c.point.cross(force);
+  const auto parts = [&](const Contact<T>& c) {
+    return c.smooth_before > T(0) && (struck(c.tree_a) || struck(c.tree_b)) && opening_speed(c) > T(0);
+  };
+  parted_.clear();
+  for (const Contact<T>& c : contacts_) parted_.push_back(parts(c) ? T(1) : T(0));
+  if (std::all_of(parted_.begin(), parted_.end(), [](T x) { return x == T(0); })) return;
+  const auto each_tree = [&](const auto& act) {  // act(tree): its generalised forces are in constant_
+    write_borne();
+    for (std::size_t n = 0; n < states_.size(); ++n) {
+      CharacterState<T>& s = *states_[n];
+      if (!s.history.accelerates || is_locked(s)) continue;
+      constant_.assign(s.tree.dofs, T(0));
+      project_wrenches<T>(s.tree, s.problem.kinematics, s.problem.force, s.problem.moment, constant_);
+      act(static_cast<int>(n));
+    }
+  };
+  begin_ends();
+  shut_.assign(contacts_.size(), T(0));
+  each_tree([&](int n) {
+    const CharacterState<T>& s = *states_[n];
+    for (auto* v : {&moved_, &turned_}) v->resize(s.tree.bodies);
+    ends_.respond(n, constant_, moved_, turned_);
+    const auto along = [&](const Contact<T>& c, int body) {
+      const Vec3<T> arm = c.point - s.problem.kinematics.center[body];
+      return c.normal.dot(Vec3<T>(moved_[body] + turned_[body].cross(arm)));
     };
-    act(c.tree_a, c.body_a, bore);
-    if (c.tree_b >= 0) act(c.tree_b, c.body_b, Vec3<T>(-bore));
-    c.smooth_before *= 1 - share;
-    c.grip *= 1 - share;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+      const Contact<T>& c = contacts_[k];
+      if (parted_[k] == T(0)) continue;
+      if (c.tree_a == n) shut_[k] += along(c, c.body_a);
+      if (c.tree_b == n) shut_[k] -= along(c, c.body_b);
+    }
+  });
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    Contact<T>& c = contacts_[k];
+    if (parted_[k] == T(0)) continue;
+    const T opens = opening_speed(c), closes = h * shut_[k];
+    parted_[k] = opens < closes ? opens / closes : T(1);
+  }
+  each_tree([&](int n) { drop_constant(*states_[n], n, constant_); });
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    Contact<T>& c = contacts_[k];
+    if (parted_[k] == T(0)) continue;
+    c.smooth_before *= 1 - parted_[k];
+    c.grip *= 1 - parted_[k];
     const auto left = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
                                        [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
     left->smooth = c.smooth_before;  // should the part be halved
-  }
-  if (!any) return;
-  begin_ends();
-  for (std::size_t n = 0; n < states_.size(); ++n) {
-    CharacterState<T>& s = *states_[n];
-    if (!s.history.accelerates || is_locked(s)) continue;
-    constant_.assign(s.tree.dofs, T(0));
-    project_wrenches<T>(s.tree, s.problem.kinematics, s.problem.force, s.problem.moment, constant_);
-    drop_constant(s, static_cast<int>(n), constant_);
   }
 }
 
@@ -459,6 +495,7 @@ void IslandStepper<T>::press(T h) {
   template Strike<T> IslandStepper<T>::strike_of(std::size_t) const;                                  \
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \
   template T IslandStepper<T>::opening_speed(const Contact<T>&) const;                                \
+  template void IslandStepper<T>::write_borne();                                                      \
   template void IslandStepper<T>::drop_parted(T);                                                     \
   template void IslandStepper<T>::drop_played();                                                      \
   template void IslandStepper<T>::begin_ends();                                                       \
