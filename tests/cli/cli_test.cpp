@@ -1,6 +1,7 @@
 // The command as a user runs it: exit codes, one-line errors, whole files or none.
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/command.h"
 #include "fixtures/paths.h"
@@ -57,6 +58,20 @@ TEST(Command, ConvertGivesTheSameBytesInEveryProcessAndPlace) {
   ASSERT_EQ(sinew("convert " + elsewhere + "/mannequin.glb -o " + second).code, 0);
   EXPECT_GT(fs::file_size(first), 10000u);
   EXPECT_EQ(bytes_of(first), bytes_of(second));
+}
+
+TEST(Command, SaysItsVersionAndWhatClipsSayBesideTheirMotion) {
+  EXPECT_TRUE(std::regex_match(sinew("--version").out, std::regex("sinew \\d+\\.\\d+\\.\\d+\n")));
+  const Outcome info = sinew("info " + kCharacter);
+  EXPECT_NE(info.out.find("masks: left_arm right_arm upper_body"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("events of walk: step 0.525 s, step 1.058 s"), std::string::npos) << info.out;
+  const std::string data =
+      written("more.json", R"({"clips": {"run": {"events": [{"name": "go", "time": 0.5}]}}})");
+  const Outcome more = sinew("info " + kCharacter + " --clip-data " + data);
+  EXPECT_NE(more.out.find("events of run: go 0.500 s"), std::string::npos) << more.out;
+  const Outcome bad = sinew("info " + kCharacter + " --clip-data " + written("bad.json", "{\"clip\": 1}"));
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_NE(bad.out.find("unknown key 'clip'"), std::string::npos) << bad.out;
 }
 
 TEST(Command, NamesInAnyEncodingAreWritten) {

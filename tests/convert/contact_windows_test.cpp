@@ -104,6 +104,18 @@ TEST_F(SharedContacts, CapturedWalkTakesTurns) {
   for (std::size_t k = 1; k < steps.size(); ++k) EXPECT_NE(steps[k].joint, steps[k - 1].joint) << k;
 }
 
+TEST_F(SharedContacts, JumpsAreInTheAirTwiceAndLoopsThatBeginOnTheRightHaveMarkers) {
+  nlohmann::json report;
+  const Asset jumps = converted(root_ + "/bvh/fair_jumping.bvh", report);
+  EXPECT_EQ(windows_of(jumps, jumps.clips[0], Role::kFootL).size(), 3u);
+  EXPECT_EQ(windows_of(jumps, jumps.clips[0], Role::kFootR).size(), 3u);
+  const Asset steps = converted(root_ + "/fbx/pab_locomotions.fbx", report);
+  for (const Clip& clip : steps.clips) {
+    ASSERT_EQ(clip.markers.size(), 2u) << clip.name;
+    EXPECT_GT(clip.markers[1].time, double(clip.duration)) << clip.name;
+  }
+}
+
 TEST_F(SharedContacts, KnightsWalkInPlaceIsFound) {
   nlohmann::json report;
   const Asset asset = converted(root_ + "/gltf/kaykit_knight.glb", report);

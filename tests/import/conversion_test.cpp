@@ -115,6 +115,44 @@ TEST_F(SharedAsset, MeshAndClipsMayComeFromTwoFiles) {  // traps 15 and 16
   EXPECT_FALSE(manny.asset.meshes.empty());
 }
 
+/// kicking_leg() with a shin below, which leaves the leg along `shin` and turns with it.
+std::string leg_with_shin(const std::vector<double>& shin, const char* clip) {
+  nlohmann::json gltf = import::test::kicking_leg();
+  gltf["nodes"][1]["children"] = {2};
+  gltf["nodes"].push_back({{"name", "shin"}, {"translation", shin}});
+  nlohmann::json& animation = gltf["animations"][0];
+  animation["name"] = clip;
+  animation["channels"].push_back(animation["channels"][0]);
+  animation["channels"][1]["target"]["node"] = 2;
+  return gltf.dump();
+}
+
+TEST(SeveralFiles, ClipsOfAnotherSkeletonAreRefusedAndNeverTwistTheCharacter) {
+  const Scratch scratch;
+  const std::string first = scratch.write("first.gltf", leg_with_shin({0, -0.4, 0}, "kick")).string(),
+                    same = scratch.write("same.gltf", leg_with_shin({0, -0.5, 0.02}, "hop")).string(),
+                    other = scratch.write("other.gltf", leg_with_shin({0.4, 0, 0}, "hop")).string();
+  const Converted made = convert({first, same});
+  EXPECT_EQ(made.error, "");
+  EXPECT_EQ(made.asset.clips.size(), 2u);
+  EXPECT_THAT(convert({first, other}).error,
+              testing::HasSubstr("for another skeleton: from 'leg' to 'shin' its bone goes 90 degrees off"));
+}
+
+TEST(SeveralFiles, WhatCannotBeUsedIsAnErrorAndNotLeftOut) {
+  const Scratch scratch;
+  const std::string leg = scratch.write("leg.gltf", import::test::skinned({1, 0, 0, 0}, {0}).dump()).string();
+  const std::string robot = scratch
+                                .write("robot.urdf", R"(<robot name="r"><link name="hip"/><link name="leg"/>
+        <joint name="j" type="fixed"><parent link="hip"/><child link="leg"/></joint></robot>)")
+                                .string();
+  EXPECT_THAT(convert({leg, robot}).error, testing::HasSubstr("a URDF takes no part in other characters"));
+  nlohmann::json still = import::test::kicking_leg();
+  still.erase("animations");
+  EXPECT_THAT(convert({leg, scratch.write("still.gltf", still.dump()).string()}).error,
+              testing::HasSubstr("'still' cannot be added: it has no joints"));
+}
+
 TEST_F(SharedAsset, RigidPartsWithoutSkinMakeACharacter) {  // trap 14
   const Converted character = convert_shared({"gltf/kenney_character.glb"});
   EXPECT_GE(character.asset.skeleton.body_count, 6);

@@ -13,6 +13,7 @@
 #include "render/render.h"
 #include "scene/presets.h"
 #include "scene/run.h"
+#include "sinew/skeleton/version.h"
 
 namespace {
 
@@ -329,6 +330,7 @@ int main(int argc, char** argv) try {
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("sinew ") + sinew::version());
   ConvertCommand convert;
   auto* c = app.add_subcommand(
       "convert", "source files to a runtime asset\nExample: sinew convert hero.glb walk.fbx -o hero.sinew");

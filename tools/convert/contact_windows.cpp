@@ -134,8 +134,6 @@ void add_markers(const Skeleton& skeleton, Clip& clip) {
   int cycles = 1;
   if (!phase_markers(clip, of(Role::kFootL), of(Role::kFootR), markers, cycles)) return;
   if (!fit_phase_map(markers, double(clip.duration), cycles, map)) return;
-  for (PhaseMarker& m : markers)
-    if (m.time > double(clip.duration)) return;  // the left foot comes down last: no phase within the clip
   clip.markers = std::move(markers);
   clip.cycles = cycles;
 }
@@ -174,8 +172,12 @@ void find_contacts(const Skeleton& skeleton, double height, Clip& clip, nlohmann
       soles[i].push_back(
           {place(pose, p).z() - p.radius, (place(after, p) - place(before, p)) / (after_time - before_time)});
     }
+    const auto low = std::min_element(soles.begin(), soles.end(), [](const auto& a, const auto& b) {
+      return a.back().height < b.back().height;
+    });
+    lowest.push_back(low->back().height);  // some rigs have a root that stays on the floor, or below it
   }
-  const double floor = floor_of(lowest);
+  const double floor = floor_of(std::move(lowest));
   for (std::vector<Sole>& limb : soles) {
     std::vector<double> heights;
     for (const Sole& sole : limb) heights.push_back(sole.height);

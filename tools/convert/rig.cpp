@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -16,6 +17,9 @@ using import::SourceChannel;
 using import::SourceClip;
 using import::SourceScene;
 using Matrix = Eigen::Matrix4d;
+
+constexpr double kForeign = std::numbers::pi / 6;  ///< rad, between the directions of one bone in two files
+constexpr double kShortBone = 0.02;                ///< of the height: shorter ones say nothing
 
 template <class V>
 V interpolate(const std::vector<double>& times, const std::vector<V>& keys, double t, const V& otherwise) {
@@ -314,6 +318,32 @@ std::string fault_in_size(const Rig& rig) {
   return {};
 }
 
+/// Where bones of a file leave their joints in another direction than the rig's do, if they do by more than
+/// kForeign: joints of the same names then mean other frames, and its clips would twist the character.
+std::string foreign_skeleton(const Rig& rig, const SourceScene& from, const std::vector<int>& nodes,
+                             const Matrix& to_model) {
+  const std::vector<Matrix> world = globals(from, nullptr, 0);
+  double furthest = kForeign;
+  std::string fault;
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    const int parent = rig.joints[j].parent;
+    if (parent <= 0 || nodes[j] < 0 || nodes[static_cast<std::size_t>(parent)] < 0) continue;  // roots travel
+    const Transform<double> above = rigid(to_model * world[nodes[static_cast<std::size_t>(parent)]]);
+    const Vec3<double> theirs = above.inverse() * rigid(to_model * world[nodes[j]]).translation;
+    const Vec3<double> ours =
+        rig.joints[static_cast<std::size_t>(parent)].rest.inverse() * rig.joints[j].rest.translation;
+    if (theirs.norm() < kShortBone * rig.height || ours.norm() < kShortBone * rig.height) continue;
+    const double angle = std::acos(std::clamp(theirs.normalized().dot(ours.normalized()), -1.0, 1.0));
+    if (angle <= furthest) continue;
+    furthest = angle;
+    fault = "'" + from.name + "' has clips for another skeleton: from '" +
+            rig.joints[static_cast<std::size_t>(parent)].name + "' to '" + rig.joints[j].name +
+            "' its bone goes " + std::to_string(std::lround(angle * 180 / std::numbers::pi)) +
+            " degrees off this one's";
+  }
+  return fault;
+}
+
 double sampling_rate(const SourceClip& clip) {
   return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
 }
@@ -424,7 +454,10 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       Rig other;
       nlohmann::json ignored;
       const std::vector<int> other_nodes = joint_nodes(from);
-      if (other_nodes.empty()) continue;
+      if (other_nodes.empty() || from.format == "urdf")
+        return {"'" + from.name + "' cannot be added: " +
+                (from.format == "urdf" ? "a URDF takes no part in other characters"
+                                       : "it has no joints: no skin, and no clip that moves a node")};
       choose_unit(from, other_nodes, options, !from.meshes.empty(), other, ignored);
       to = basis(other.up, other.unit);
       std::map<std::string, int> by_name;
@@ -435,7 +468,10 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
           of_joint[j] = found->second;
           ++matched;
         }
-      if (matched == 0) return {"'" + from.name + "' shares no joint name with '" + scene.name + "'"};
+      if (2 * matched < static_cast<int>(std::min(rig.joints.size(), by_name.size())))
+        return {"'" + from.name + "' shares " + (matched == 0 ? "no" : "only " + std::to_string(matched)) +
+                " joint name" + (matched > 1 ? "s" : "") + " with '" + scene.name + "'"};
+      if (const std::string fault = foreign_skeleton(rig, from, of_joint, to); !fault.empty()) return {fault};
       report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " +
                                 std::to_string(rig.joints.size()) + " joints matched by name");
     }

@@ -67,7 +67,8 @@ Status check_data(const Clip& clip) {
   if (clip.cycles < 1) return Status::error(Code::kOutOfRange, "number of cycles is not positive");
   for (std::size_t k = 0; k < clip.markers.size(); ++k) {
     const PhaseMarker& m = clip.markers[k];
-    if (!(m.time >= 0 && m.time <= double(clip.duration)) || !(m.phase >= 0 && m.phase <= clip.cycles))
+    const double latest = (clip.loops ? 2 : 1) * double(clip.duration);  // the cycle begins within the loop
+    if (!(m.time >= 0 && m.time <= latest) || !(m.phase >= 0 && m.phase <= clip.cycles))
       return Status::error(Code::kOutOfRange, "marker is not within the clip", static_cast<int>(k));
   }
   return {};
