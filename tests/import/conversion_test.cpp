@@ -115,15 +115,17 @@ TEST_F(SharedAsset, MeshAndClipsMayComeFromTwoFiles) {  // traps 15 and 16
   EXPECT_FALSE(manny.asset.meshes.empty());
 }
 
-/// kicking_leg() with a shin below, which leaves the leg along `shin` and turns with it.
+/// kicking_leg() with a shin below, which leaves the leg along `shin`; all three joints turn.
 std::string leg_with_shin(const std::vector<double>& shin, const char* clip) {
   nlohmann::json gltf = import::test::kicking_leg();
   gltf["nodes"][1]["children"] = {2};
   gltf["nodes"].push_back({{"name", "shin"}, {"translation", shin}});
   nlohmann::json& animation = gltf["animations"][0];
   animation["name"] = clip;
-  animation["channels"].push_back(animation["channels"][0]);
-  animation["channels"][1]["target"]["node"] = 2;
+  for (const int node : {0, 2}) {
+    animation["channels"].push_back(animation["channels"][0]);
+    animation["channels"].back()["target"]["node"] = node;
+  }
   return gltf.dump();
 }
 
