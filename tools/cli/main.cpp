@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/convert_folder.h"
 #include "cli/evaluate.h"
 #include "cli/files.h"
 #include "cli/memory.h"
@@ -34,6 +35,15 @@ struct SourceOptions {
     app.add_option("--unit", unit, "metres per unit of the source")->check(CLI::PositiveNumber);
     app.add_option("--up", up, "up axis of the source")->check(CLI::IsMember({"x", "y", "z"}));
   }
+  /// The same again, for another process.
+  std::vector<std::string> arguments() const {
+    std::vector<std::string> all;
+    for (const auto& [name, value] :
+         {std::pair("--options", options_file), std::pair("--clip-data", clip_data), std::pair("--up", up)})
+      if (!value.empty()) all.insert(all.end(), {name, value});
+    if (unit != 0) all.insert(all.end(), {"--unit", CLI::detail::to_string(unit)});
+    return all;
+  }
   Error read(json& out) const {
     out = json::object();
     if (!options_file.empty())
@@ -50,13 +60,17 @@ struct ConvertCommand {
   std::vector<std::string> inputs;
   std::string output, report_file;
   SourceOptions source;
-  bool json_output = false, reference = false;
+  bool json_output = false, reference = false, each = false, dry_run = false, again = false;
+  int jobs = 1;
 
   Error run() const {
     if (reference) {
       std::fputs(sinew::convert::reference_options().c_str(), stdout);
       return {};
     }
+    const auto is_folder = [](const std::string& input) { return std::filesystem::is_directory(input); };
+    if (each || std::any_of(inputs.begin(), inputs.end(), is_folder)) return run_folder();
+    if (dry_run || again) return {"--dry-run and --again are for folders and for --each"};
     json options, report;
     Asset asset;
     for (const std::string& path : {output, report_file})
@@ -74,6 +88,19 @@ struct ConvertCommand {
     else
       std::printf("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
                   bytes.size());
+    return {};
+  }
+
+ private:
+  Error run_folder() const {
+    json options;
+    if (Error error = source.read(options)) return error;  // once, instead of once a file
+    cli::FolderConversion folder{inputs,  output, source.arguments(), jobs,
+                                 dry_run, again,  report_file,        json_output};
+    int failed = 0;
+    if (Error error = cli::convert_folder(folder, failed)) return error;
+    if (failed > 0)
+      return {std::to_string(failed) + (failed == 1 ? " file" : " files") + " could not be converted"};
     return {};
   }
 };
@@ -333,10 +360,18 @@ int main(int argc, char** argv) try {
   app.set_version_flag("--version", std::string("sinew ") + sinew::version());
   ConvertCommand convert;
   auto* c = app.add_subcommand(
-      "convert", "source files to a runtime asset\nExample: sinew convert hero.glb walk.fbx -o hero.sinew");
-  auto* inputs = c->add_option("inputs", convert.inputs,
-                               "glTF/GLB, FBX, BVH, COLLADA or URDF; mesh and clips may come from several");
-  auto* out = c->add_option("-o,--output", convert.output, "asset to write");
+      "convert",
+      "source files to a runtime asset\nExamples: sinew convert hero.glb walk.fbx -o hero.sinew\n"
+      "          sinew convert art/characters -o build/characters -j 8");
+  auto* inputs =
+      c->add_option("inputs", convert.inputs,
+                    "glTF/GLB, FBX, BVH, COLLADA or URDF; mesh and clips may come from several. Or a "
+                    "folder, all of which is converted");
+  auto* out = c->add_option("-o,--output", convert.output, "asset to write; for a folder, a directory");
+  c->add_flag("--each", convert.each, "every input is a character of its own");
+  c->add_option("-j,--jobs", convert.jobs, "folders: conversions at once (1)")->check(CLI::Range(1, 1024));
+  c->add_flag("--dry-run", convert.dry_run, "folders: say what would be converted");
+  c->add_flag("--again", convert.again, "folders: convert also what is up to date");
   c->add_option("--report", convert.report_file, "write the report as JSON");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
   c->add_flag("--reference", convert.reference, "print all conversion options with defaults and comments");

@@ -193,6 +193,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
   for (const Clip& clip : asset.clips)
     if (Status status = validate(clip); !status)
       return in_file(inputs[0], "clip '" + clip.name + "': " + status.reason);
+  report["files"] = scenes[0].files;
   report["format"] = scenes[0].format;
   report["name"] = asset.skeleton.name;
   report["joints"] = asset.skeleton.joints.size();

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "import/broker.h"
@@ -73,7 +74,11 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
     error = wide ? "UTF-16 text; save it as UTF-8" : "not a glTF, FBX, BVH, COLLADA or URDF file";
     return false;
   }
-  const auto broker = [&](const std::string& name) { return open_beside(path, name, limits.max_file_bytes); };
+  std::set<std::string> asked;
+  const auto broker = [&](const std::string& name) {
+    asked.insert(clean_text(name));
+    return open_beside(path, name, limits.max_file_bytes);
+  };
   const auto work = [&](const OpenFile& open_file) {
     check_shape(content, format, limits);
     return to_bytes(format == "urdf" ? read_urdf(content, limits)
@@ -84,6 +89,7 @@ bool read_source(const std::string& path, const ReadLimits& limits, SourceScene&
     error = one_line(fault);
     return false;
   }
+  out.files.assign(asked.begin(), asked.end());
   if (out.name.empty()) out.name = clean_text(std::filesystem::path(path).stem().string());
   return true;
 }

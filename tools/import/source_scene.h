@@ -97,6 +97,8 @@ struct SourceScene {
   std::vector<SourceUrdfLink> links;  ///< URDF only
   std::string extras;                 ///< glTF: what its author added to the file, as JSON; else empty
   std::vector<std::string> notes;     ///< what the reader repaired or dropped, one clause each
+  std::vector<std::string>
+      files;  ///< that it asked for beside itself, by the names in it; sorted, also missing ones
 };
 
 struct ReadLimits {
