@@ -126,24 +126,67 @@ TEST_F(Folder, BadCallsAreOneLine) {
   EXPECT_EQ(sinew("convert " + in_ + "/a.bvh -o " + root_ + "/x.sinew --dry-run").code, 1);
 }
 
+TEST_F(Folder, ThePageShowsEveryCharacterAndEveryRefusal) {
+  write("sub/<odd>.bvh", "no motion");
+  sinew("convert " + in_ + " -o " + out_ + " --report " + root_ + "/page.html");
+  const std::string page = bytes_of(root_ + "/page.html");
+  for (const char* still : {"out/.sinew/a.png", "out/.sinew/sub/b.png", "out/.sinew/sub/deep/c.png"}) {
+    EXPECT_NE(page.find("src=\"" + std::string(still) + "\""), std::string::npos) << still;
+    EXPECT_EQ(bytes_of(root_ + "/" + still).substr(1, 3), "PNG") << still;
+  }
+  EXPECT_NE(page.find("3 converted, 0 up to date, 2 refused"), std::string::npos);
+  EXPECT_NE(page.find("sub/bad.bvh: "), std::string::npos);
+  EXPECT_NE(page.find("sub/&lt;odd&gt;.bvh: "), std::string::npos);
+  EXPECT_EQ(page.find("<odd>"), std::string::npos);
+}
+
+/// A conversion in a group of its own, which kill() ends with all that it has started.
+pid_t started(const std::vector<const char*>& arguments) {
+  const pid_t process = fork();
+  if (process != 0) return process;
+  setpgid(0, 0);
+  const bool silent = std::freopen("/dev/null", "w", stdout) && std::freopen("/dev/null", "w", stderr);
+  std::vector<char*> all = {const_cast<char*>("sinew"), const_cast<char*>("convert")};
+  for (const char* argument : arguments) all.push_back(const_cast<char*>(argument));
+  all.push_back(nullptr);
+  if (silent) execv(SINEW_COMMAND, all.data());
+  _exit(127);
+}
+
+void end(pid_t process) {
+  kill(-process, SIGKILL);
+  kill(process, SIGKILL);
+  waitpid(process, nullptr, 0);
+}
+
+TEST_F(Folder, WatchingConvertsWhatComesAndWhatChanges) {
+  const auto comes = [&](const std::string& name, const std::string& other_than) {
+    for (int wait = 0; wait < 300; ++wait) {
+      const std::string bytes = bytes_of(out_ + "/" + name);
+      if (!bytes.empty() && bytes != other_than) return bytes;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return std::string();
+  };
+  const pid_t process = started({in_.c_str(), "-o", out_.c_str(), "--watch"});
+  const std::string first = comes("a.sinew", "");
+  EXPECT_NE(first, "");
+  write("new.bvh", bvh(40));
+  EXPECT_NE(comes("new.sinew", ""), "");
+  write("a.bvh", bvh(12));
+  EXPECT_NE(comes("a.sinew", first), "");
+  end(process);
+}
+
 TEST_F(Folder, MayBeKilledAtAnyMomentAndRunTwiceAtOnce) {
   converted();
   const auto wanted = outputs();
   fs::remove_all(out_);
   std::mt19937 random(20261126);
   for (int round = 0; round < 12; ++round) {
-    const pid_t process = fork();
-    if (process == 0) {
-      setpgid(0, 0);
-      std::freopen("/dev/null", "w", stdout);
-      std::freopen("/dev/null", "w", stderr);
-      execl(SINEW_COMMAND, "sinew", "convert", in_.c_str(), "-o", out_.c_str(), "-j", "2", nullptr);
-      _exit(127);
-    }
+    const pid_t process = started({in_.c_str(), "-o", out_.c_str(), "-j", "2"});
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 150));
-    kill(-process, SIGKILL);
-    kill(process, SIGKILL);
-    waitpid(process, nullptr, 0);
+    end(process);
     if (!fs::exists(out_)) continue;
     for (const auto& [name, bytes] : outputs()) EXPECT_EQ(bytes, wanted.at(name)) << name;
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +19,9 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <thread>
 
+#include "cli/convert_page.h"
 #include "cli/files.h"
 
 extern char** environ;
@@ -173,11 +176,9 @@ std::string whole(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Starts `sinew convert` of one source; −1 where that is not possible.
-pid_t start(const Job& job, const FolderConversion& what, const Running& to) {
-  std::vector<std::string> arguments = {"sinew",  "convert", job.source.string(),
-                                        "--json", "-o",      job.output.string()};
-  arguments.insert(arguments.end(), what.options.begin(), what.options.end());
+/// Starts this program with other arguments; −1 where that is not possible.
+pid_t start(std::vector<std::string> arguments, const Running& to) {
+  arguments.insert(arguments.begin(), "sinew");
   std::vector<char*> raw;
   for (std::string& argument : arguments) raw.push_back(argument.data());
   raw.push_back(nullptr);
@@ -194,8 +195,15 @@ pid_t start(const Job& job, const FolderConversion& what, const Running& to) {
   return code == 0 ? process : -1;
 }
 
+std::vector<std::string> conversion_of(const Job& job, const FolderConversion& what) {
+  std::vector<std::string> arguments = {"convert", job.source.string(), "--json", "-o", job.output.string()};
+  arguments.insert(arguments.end(), what.options.begin(), what.options.end());
+  return arguments;
+}
+
 /// Why a conversion failed, in one line.
 std::string reason(int status, const std::string& err) {
+  if (status == -1) return "no process could be started for it";
   if (WIFSIGNALED(status)) return "the converter was ended by signal " + std::to_string(WTERMSIG(status));
   std::string line = err.substr(0, err.find('\n'));
   if (line.rfind("sinew: ", 0) == 0) line.erase(0, 7);
@@ -214,42 +222,64 @@ void finish(Job& job, const FolderConversion& what, const std::string& program, 
     const json record = {{"key", key_of(job, what, program, files_of(job.report))}, {"report", job.report}};
     if (Error error = write_atomically(job.record.string(), json_text(record))) job.error = error.message;
   }
-  std::error_code code;
-  fs::remove(from.out, code);
-  fs::remove(from.err, code);
 }
 
-/// Runs what is left to do, `what.jobs` at a time.
-void run(std::vector<Job>& jobs, const std::vector<std::size_t>& left, const FolderConversion& what,
-         const std::string& program) {
-  const auto progress = progress_line("converting");
-  const fs::path scratch = fs::path(what.output) / ".sinew";
+/// Runs one process for each of `left`, `at_once` at a time: arguments(n) of it, and ended(n, where it wrote,
+/// status); status −1: it could not be started.
+template <class Arguments, class Ended>
+void run(const std::vector<std::size_t>& left, int at_once, const fs::path& scratch, const char* doing,
+         const Arguments& arguments, const Ended& ended) {
+  const auto progress = progress_line(doing);
   std::map<pid_t, Running> running;
   std::size_t next = 0;
   int done = 0;
+  const auto finished = [&](const Running& of, int status) {
+    ended(of, status);
+    std::error_code code;
+    fs::remove(of.out, code);
+    fs::remove(of.err, code);
+    progress(++done, static_cast<int>(left.size()));
+  };
   while (next < left.size() || !running.empty()) {
-    while (next < left.size() && running.size() < static_cast<std::size_t>(what.jobs)) {
+    while (next < left.size() && running.size() < static_cast<std::size_t>(at_once)) {
       const std::size_t n = left[next++];
       const std::string name = std::to_string(getpid()) + "." + std::to_string(n);
-      Running to{n, scratch / (name + ".out"), scratch / (name + ".err")};
-      const pid_t process = start(jobs[n], what, to);
-      if (process > 0) {
-        running[process] = std::move(to);
-      } else {
-        jobs[n].state = "failed";
-        jobs[n].error = jobs[n].source.string() + ": no process could be started";
-        ++done;
-      }
+      const Running to{n, scratch / (name + ".out"), scratch / (name + ".err")};
+      const pid_t process = start(arguments(n), to);
+      if (process > 0)
+        running[process] = to;
+      else
+        finished(to, -1);
     }
+    if (running.empty()) continue;
     int status = 0;
-    const pid_t ended = running.empty() ? -1 : waitpid(-1, &status, 0);
-    if (ended < 0 && errno == EINTR) continue;
-    const auto of = running.find(ended);
-    if (of == running.end()) continue;
-    finish(jobs[of->second.job], what, program, of->second, status);
+    const auto of = running.find(waitpid(-1, &status, 0));
+    if (of == running.end()) continue;  // interrupted
+    finished(of->second, status);
     running.erase(of);
-    progress(++done, static_cast<int>(left.size()));
   }
+}
+
+fs::path still_of(const Job& job) {
+  return fs::path(job.record).replace_extension(".png");
+}
+
+/// Pictures of what has none, or an older one.
+void make_stills(const std::vector<Job>& jobs, const FolderConversion& what) {
+  std::vector<std::size_t> left;
+  for (std::size_t n = 0; n < jobs.size(); ++n) {
+    std::error_code missing, code;
+    const auto made = fs::last_write_time(still_of(jobs[n]), missing);
+    if (jobs[n].state != "failed" && (missing || made < fs::last_write_time(jobs[n].output, code)))
+      left.push_back(n);
+  }
+  run(
+      left, what.jobs, fs::path(what.output) / ".sinew", "drawing",
+      [&](std::size_t n) {
+        return std::vector<std::string>{"render", jobs[n].output.string(),   "--size", "320x320",
+                                        "-o",     still_of(jobs[n]).string()};
+      },
+      [](const Running&, int) {});
 }
 
 /// Removes half-written files of processes that were killed: NAME.tmpPID, PID.N.out, PID.N.err.
@@ -304,47 +334,103 @@ void print(const Job& job) {
   std::printf("\n");
 }
 
-}  // namespace
+/// Why sources could not be converted, by their keys: of a program that goes on.
+using Refusals = std::map<std::string, std::string>;
 
-Error convert_folder(const FolderConversion& what, int& failed) {
-  std::vector<Job> jobs;
+bool is_refused(Job& job, const FolderConversion& what, const std::string& program, const Refusals& refused) {
+  if (refused.empty()) return false;
+  const auto found = refused.find(key_of(job, what, program, json::array()));
+  if (found == refused.end()) return false;
+  job.state = "failed";
+  job.error = found->second;
+  return true;
+}
+
+/// Converts what has to be; `jobs` say what became of each. `fresh`: how many were looked at anew.
+Error convert_once(const FolderConversion& what, const std::string& program, std::vector<Job>& jobs,
+                   std::size_t& fresh, Refusals& refused) {
+  jobs.clear();
   if (Error error = plan(what, jobs)) return error;
   if (!what.dry_run)
     if (Error error = make_directories(jobs, what.output)) return error;
-  Digest program;
-  program.add_file("/proc/self/exe");
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < jobs.size(); ++n)
-    if (!is_up_to_date(jobs[n], what, program.text())) left.push_back(n);
+    if (!is_up_to_date(jobs[n], what, program) && !is_refused(jobs[n], what, program, refused))
+      left.push_back(n);
+  fresh = left.size();
   if (what.dry_run)
     for (const std::size_t n : left) jobs[n].state = "to convert";
   else
-    run(jobs, left, what, program.text());
+    run(
+        left, what.jobs, fs::path(what.output) / ".sinew", "converting",
+        [&](std::size_t n) { return conversion_of(jobs[n], what); },
+        [&](const Running& of, int status) { finish(jobs[of.job], what, program, of, status); });
+  for (const std::size_t n : left)
+    if (jobs[n].state == "failed") refused[key_of(jobs[n], what, program, json::array())] = jobs[n].error;
+  return {};
+}
+
+json report_of(const std::vector<Job>& jobs) {
   json rows = json::array();
-  failed = 0;
-  for (const Job& job : jobs) {
-    failed += job.state == "failed";
-    rows.push_back(row_of(job));
-    if (!what.json) print(job);
-  }
+  for (const Job& job : jobs) rows.push_back(row_of(job));
   const auto count = [&](const char* state) {
     return std::count_if(jobs.begin(), jobs.end(), [&](const Job& job) { return job.state == state; });
   };
-  const json report = {{"converted", count("converted")},
-                       {"up_to_date", count("up to date")},
-                       {"to_convert", count("to convert")},
-                       {"failed", failed},
-                       {"files", rows}};
-  if (what.json)
-    std::puts(json_text(report).c_str());
-  else if (what.dry_run)
-    std::printf("%zu to convert, %zu up to date\n", left.size(), jobs.size() - left.size());
-  else
-    std::printf("%ld converted, %ld up to date, %d failed\n", static_cast<long>(count("converted")),
-                static_cast<long>(count("up to date")), failed);
-  if (what.report_file.empty()) return {};
-  return write_atomically(what.report_file,
-                          report.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  return {{"converted", count("converted")},
+          {"up_to_date", count("up to date")},
+          {"to_convert", count("to convert")},
+          {"failed", count("failed")},
+          {"files", rows}};
+}
+
+/// As a page with pictures, if that is its name's ending; else as JSON.
+Error write_report(const std::vector<Job>& jobs, const FolderConversion& what, json report) {
+  if (lower(fs::path(what.report_file).extension().string()) != ".html")
+    return write_atomically(what.report_file,
+                            report.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  make_stills(jobs, what);
+  const fs::path here = fs::absolute(what.report_file).parent_path();
+  for (std::size_t n = 0; n < jobs.size(); ++n) {
+    const fs::path still = fs::absolute(still_of(jobs[n]));
+    std::error_code code;
+    if (fs::is_regular_file(still, code))
+      report["files"][n]["still"] = still.lexically_relative(here).string();
+  }
+  return write_atomically(what.report_file, convert_page(report));
+}
+
+}  // namespace
+
+Error convert_folder(const FolderConversion& what, int& failed) {
+  if (!what.report_file.empty())
+    if (Error error = check_writable(what.report_file)) return error;
+  Digest program;
+  program.add_file("/proc/self/exe");
+  Refusals refused;
+  for (bool first = true;; first = false) {
+    std::vector<Job> jobs;
+    std::size_t fresh = 0;
+    if (Error error = convert_once(what, program.text(), jobs, fresh, refused)) return error;
+    const json report = report_of(jobs);
+    failed = report["failed"];
+    const bool news = first || fresh > 0;
+    if (news && what.json) {
+      std::puts(json_text(report).c_str());
+    } else if (news) {
+      for (const Job& job : jobs)
+        if (first || job.state != "up to date") print(job);
+      if (what.dry_run)
+        std::printf("%zu to convert, %zu up to date\n", fresh, jobs.size() - fresh);
+      else
+        std::printf("%d converted, %d up to date, %d failed\n", report["converted"].get<int>(),
+                    report["up_to_date"].get<int>(), failed);
+    }
+    if (news && !what.report_file.empty())
+      if (Error error = write_report(jobs, what, report)) return error;
+    if (!what.watch) return {};
+    std::fflush(stdout);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
 }
 
 }  // namespace sinew::cli

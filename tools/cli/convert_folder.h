@@ -15,7 +15,8 @@ struct FolderConversion {
   int jobs = 1;                      ///< processes at once
   bool dry_run = false;              ///< says what would be done
   bool again = false;                ///< also what is up to date
-  std::string report_file;           ///< JSON
+  bool watch = false;                ///< goes on, and converts what changes, until it is ended
+  std::string report_file;           ///< JSON, or a page with pictures (.html)
   bool json = false;                 ///< the report on standard output
 };
 

@@ -60,7 +60,7 @@ struct ConvertCommand {
   std::vector<std::string> inputs;
   std::string output, report_file;
   SourceOptions source;
-  bool json_output = false, reference = false, each = false, dry_run = false, again = false;
+  bool json_output = false, reference = false, each = false, dry_run = false, again = false, watch = false;
   int jobs = 1;
 
   Error run() const {
@@ -70,7 +70,7 @@ struct ConvertCommand {
     }
     const auto is_folder = [](const std::string& input) { return std::filesystem::is_directory(input); };
     if (each || std::any_of(inputs.begin(), inputs.end(), is_folder)) return run_folder();
-    if (dry_run || again) return {"--dry-run and --again are for folders and for --each"};
+    if (dry_run || again || watch) return {"--dry-run, --again and --watch are for folders and for --each"};
     json options, report;
     Asset asset;
     for (const std::string& path : {output, report_file})
@@ -95,8 +95,16 @@ struct ConvertCommand {
   Error run_folder() const {
     json options;
     if (Error error = source.read(options)) return error;  // once, instead of once a file
-    cli::FolderConversion folder{inputs,  output, source.arguments(), jobs,
-                                 dry_run, again,  report_file,        json_output};
+    cli::FolderConversion folder;
+    folder.inputs = inputs;
+    folder.output = output;
+    folder.options = source.arguments();
+    folder.jobs = jobs;
+    folder.dry_run = dry_run;
+    folder.again = again;
+    folder.watch = watch;
+    folder.report_file = report_file;
+    folder.json = json_output;
     int failed = 0;
     if (Error error = cli::convert_folder(folder, failed)) return error;
     if (failed > 0)
@@ -372,7 +380,9 @@ int main(int argc, char** argv) try {
   c->add_option("-j,--jobs", convert.jobs, "folders: conversions at once (1)")->check(CLI::Range(1, 1024));
   c->add_flag("--dry-run", convert.dry_run, "folders: say what would be converted");
   c->add_flag("--again", convert.again, "folders: convert also what is up to date");
-  c->add_option("--report", convert.report_file, "write the report as JSON");
+  c->add_flag("--watch", convert.watch, "folders: go on, and convert what changes");
+  c->add_option("--report", convert.report_file,
+                "write the report as JSON; for a folder also as a page with pictures (.html)");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
   c->add_flag("--reference", convert.reference, "print all conversion options with defaults and comments");
   convert.source.add(*c);

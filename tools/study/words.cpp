@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "import/text.h"
+
 namespace sinew::study {
 namespace {
 
@@ -66,27 +68,7 @@ std::string rate(double h) {
 }
 
 std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
+  return import::html_text(text);
 }
 
 }  // namespace sinew::study
