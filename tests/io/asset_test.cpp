@@ -142,7 +142,7 @@ TEST(Asset, NamesOfEventsCurvesAndMasksAreChecked) {
   EXPECT_TRUE(validate_names(sample_asset()).ok());
   refused([](Asset& a) { a.curve_slots.push_back({"smile", 0}); }, 2);
   refused([](Asset& a) { a.curve_slots.pop_back(); }, 0);
-  refused([](Asset& a) { a.event_names.push_back("blow"); }, 2);
+  refused([](Asset& a) { a.event_names.emplace_back("blow"); }, 2);
   refused([](Asset& a) { a.masks.push_back(a.masks[0]); }, 1);
   refused([](Asset& a) { a.masks[0].weights.pop_back(); }, 0);
   // Numbers of these two are equal (FNV-1a).

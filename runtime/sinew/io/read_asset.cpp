@@ -132,16 +132,16 @@ Status unpack(const fb::Group& in, Clip::Group& out) {
   return {};
 }
 
-using Names = std::vector<std::string>;
+using EventNames = std::vector<std::uint32_t>;  ///< as event_name() numbers them
 
-Status unpack_events(const fb::Clip& in, const Names& names, Clip& out) {
+Status unpack_events(const fb::Clip& in, const EventNames& names, Clip& out) {
   for (unsigned k = 0; k < size_of(in.events()); ++k) {
     const fb::Event& e = *in.events()->Get(k);
     if (e.name() >= names.size()) return bad("event has no name", static_cast<int>(k));
     ClipEvent& event = out.events.emplace_back();
     event.begin = e.begin();
     event.end = e.end();
-    event.name = event_name(names[e.name()]);
+    event.name = names[e.name()];
     event.always = e.always();
     if (!e.payload()) continue;
     if (e.payload()->size() != event.payload.size())
@@ -151,7 +151,7 @@ Status unpack_events(const fb::Clip& in, const Names& names, Clip& out) {
   return {};
 }
 
-Status unpack(const fb::Clip& in, const Skeleton& skeleton, const Names& names, Clip& out) {
+Status unpack(const fb::Clip& in, const Skeleton& skeleton, const EventNames& names, Clip& out) {
   out.name = in.name()->str();
   out.duration = in.duration();
   out.loops = in.loops();
@@ -174,6 +174,12 @@ Status unpack(const fb::Clip& in, const Skeleton& skeleton, const Names& names, 
     out.markers.push_back({in.markers()->Get(k)->phase(), in.markers()->Get(k)->time()});
   out.cycles = in.cycles();
   return validate(out);
+}
+
+EventNames numbers_of(const std::vector<std::string>& names) {
+  EventNames numbers;
+  for (const std::string& name : names) numbers.push_back(event_name(name));
+  return numbers;
 }
 
 /// The place of a key that comes a second time, or −1.
@@ -250,8 +256,7 @@ Status validate_names(const Asset& asset) {
   if (asset.curve_slots.size() > kMostNames || asset.event_names.size() > kMostNames ||
       asset.masks.size() > kMostNames)
     return bad("more than 1024 curves, events or masks");
-  std::vector<std::uint32_t> numbers;
-  for (const std::string& name : asset.event_names) numbers.push_back(event_name(name));
+  EventNames numbers = numbers_of(asset.event_names);
   if (const int k = repeated(names_of(asset.curve_slots)); k >= 0) return bad("two curves have one name", k);
   if (const int k = repeated(names_of(asset.masks)); k >= 0) return bad("two masks have one name", k);
   if (const int k = repeated(numbers); k >= 0)
@@ -290,9 +295,9 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
   if (size_of(in.event_names()) > kMostNames) return bad("too many events");
   for (unsigned i = 0; i < size_of(in.event_names()); ++i)
     asset.event_names.push_back(in.event_names()->Get(i)->str());
+  const EventNames names = numbers_of(asset.event_names);
   for (unsigned i = 0; i < size_of(in.clips()); ++i)
-    if (Status status =
-            unpack(*in.clips()->Get(i), asset.skeleton, asset.event_names, asset.clips.emplace_back());
+    if (Status status = unpack(*in.clips()->Get(i), asset.skeleton, names, asset.clips.emplace_back());
         !status)
       return status;
   for (unsigned i = 0; i < size_of(in.curve_slots()); ++i)
