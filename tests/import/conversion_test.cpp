@@ -155,6 +155,14 @@ TEST(SeveralFiles, WhatCannotBeUsedIsAnErrorAndNotLeftOut) {
               testing::HasSubstr("'still' cannot be added: it has no joints"));
 }
 
+TEST_F(SharedAsset, FiguresOfASizeThatNoHumanHasAreNoted) {
+  EXPECT_THAT(convert_shared({"gltf/quaternius_robot.glb"}), NotesSay("no human is 4.56 m tall"));
+  const Converted knight = convert_shared({"gltf/kaykit_knight.glb"}, {{"clips", {"Idle"}}});
+  EXPECT_THAT(knight, testing::Not(NotesSay("no human")));
+  EXPECT_THAT(convert_shared({"gltf/kaykit_knight.glb"}, {{"clips", {"Idle"}}, {"total_mass", 900}}),
+              NotesSay("no human of 2.47 m weighs 900.0 kg"));
+}
+
 TEST_F(SharedAsset, RigidPartsWithoutSkinMakeACharacter) {  // trap 14
   const Converted character = convert_shared({"gltf/kenney_character.glb"});
   EXPECT_GE(character.asset.skeleton.body_count, 6);

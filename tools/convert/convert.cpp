@@ -149,6 +149,30 @@ Error gather(const std::vector<std::string>& inputs, const std::vector<import::S
   return {};
 }
 
+/// Notes a figure of human parts that is too tall or too heavy for one: a unit or a mass is wrong, or it is a
+/// giant.
+void note_odd_size(const Skeleton& skeleton, double height, nlohmann::json& report) {
+  constexpr double kShortest = 0.4, kTallest = 2.75;  // m: newborn children, R. Wadlow
+  constexpr double kLeanest = 10, kHeaviest = 60;     // kg/m²
+  const auto has = [&](Role role) {
+    return std::any_of(skeleton.joints.begin(), skeleton.joints.end(),
+                       [&](const Joint& j) { return j.role == role; });
+  };
+  if (!has(Role::kPelvis) || !has(Role::kHead) || !(height > 0)) return;
+  char line[160];
+  const double mass = skeleton.total_mass(), index = mass / (height * height);
+  if (height < kShortest || height > kTallest) {
+    std::snprintf(line, sizeof line, "no human is %.2f m tall; if it is one, its unit is wrong (--unit)",
+                  height);
+    report["notes"].push_back(line);
+  } else if (index < kLeanest || index > kHeaviest) {
+    std::snprintf(line, sizeof line,
+                  "no human of %.2f m weighs %.1f kg; if it is one, its mass is wrong (option total_mass)",
+                  height, mass);
+    report["notes"].push_back(line);
+  }
+}
+
 Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
                      const Options& options, Asset& out, nlohmann::json& report) {
   Asset asset;
@@ -178,6 +202,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
     report_torque_errors(asset, references, report);
     for (Clip& clip : asset.clips) find_contacts(asset.skeleton, rig.height, clip, report);
+    note_odd_size(asset.skeleton, rig.height, report);
     asset.meshes = std::move(rig.meshes);
     for (Mesh& mesh : asset.meshes)
       for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
