@@ -53,6 +53,11 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"random_trees",
      "a few trees in a thousand leap, by some hundredths of their energy (seven to ten in a hundred, by any, "
      "before the way of a step was asked for its energy)"},
+    {"soak_hour",
+     "in float 0.11 % of two minutes' steps unconverged, 0.1 wanted: people who fall over each other, by "
+     "chance; "
+     "of three seeds one has more",
+     true},
     {"crowd_of_200",
      "close together, in a world with room for 100 degrees of freedom: 0.7 (float) and 1.3 % (double) of the "
      "steps unconverged, 0.1 wanted; nobody falls through the floor and it is reported"},
