@@ -95,6 +95,20 @@ TEST_F(Folder, WhatHasNotChangedIsLeftAsItIs) {
   EXPECT_EQ(converted("--unit 0.02 --again")["converted"], 3);
 }
 
+TEST_F(Folder, OptionsReachEverySourceWithAllTheirDigits) {
+  converted("--unit 0.0123456789");
+  const std::string alone = root_ + "/alone.sinew";
+  ASSERT_EQ(sinew("convert " + in_ + "/a.bvh --unit 0.0123456789 -o " + alone).code, 0);
+  EXPECT_EQ(outputs().at("a.sinew"), bytes_of(alone));
+}
+
+TEST_F(Folder, SourcesThatNameDevicesDoNotHangIt) {
+  write("device.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "/dev/zero", "byteLength": 12}],
+    "nodes": [{"name": "hip"}], "scenes": [{"nodes": [0]}], "scene": 0})");
+  converted();
+  converted();
+}
+
 TEST_F(Folder, DryRunsSayWhatTheyWouldDoAndDoNothing) {
   EXPECT_EQ(converted("--dry-run", 0)["to_convert"], 4);
   EXPECT_FALSE(fs::exists(out_));

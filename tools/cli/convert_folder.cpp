@@ -51,8 +51,9 @@ class Digest {
   }
   void add(const std::string& text) { add(text.data(), text.size()); }
   void add_file(const fs::path& path) {
+    std::error_code code;
+    if (!fs::is_regular_file(path, code)) return add("missing");  // sources may name devices
     std::ifstream file(path, std::ios::binary);
-    if (!file) return add("missing");
     char block[1 << 16];
     while (file.read(block, sizeof block) || file.gcount() > 0)
       add(block, static_cast<std::size_t>(file.gcount()));
@@ -130,7 +131,7 @@ std::string key_of(const Job& job, const FolderConversion& what, const std::stri
   }
   digest.add(job.source.filename().string());
   digest.add_file(job.source);
-  digest.add_file(fs::path(job.source).replace_extension(".clips.json"));
+  digest.add_file(convert::clip_data_beside(job.source.string()));
   for (const json& name : files) {
     digest.add(name.get<std::string>());
     digest.add_file(job.source.parent_path() / name.get<std::string>());
@@ -331,7 +332,7 @@ void print(const Job& job) {
     std::printf(": joints %d, simulated %d, %.1f kg, clips %zu", job.report.value("joints", 0),
                 job.report.value("simulated_joints", 0), job.report.value("total_mass_kg", 0.0),
                 job.report.contains("clips") ? job.report["clips"].size() : 0);
-  std::printf("\n");
+  std::printf("%s%s\n", job.error.empty() ? "" : "; its record: ", job.error.c_str());
 }
 
 /// Why sources could not be converted, by their keys: of a program that goes on.

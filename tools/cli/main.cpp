@@ -41,7 +41,7 @@ struct SourceOptions {
     for (const auto& [name, value] :
          {std::pair("--options", options_file), std::pair("--clip-data", clip_data), std::pair("--up", up)})
       if (!value.empty()) all.insert(all.end(), {name, value});
-    if (unit != 0) all.insert(all.end(), {"--unit", CLI::detail::to_string(unit)});
+    if (unit != 0) all.insert(all.end(), {"--unit", json(unit).dump()});  // all digits
     return all;
   }
   Error read(json& out) const {
@@ -378,9 +378,9 @@ int main(int argc, char** argv) try {
   auto* out = c->add_option("-o,--output", convert.output, "asset to write; for a folder, a directory");
   c->add_flag("--each", convert.each, "every input is a character of its own");
   c->add_option("-j,--jobs", convert.jobs, "folders: conversions at once (1)")->check(CLI::Range(1, 1024));
-  c->add_flag("--dry-run", convert.dry_run, "folders: say what would be converted");
+  auto* dry = c->add_flag("--dry-run", convert.dry_run, "folders: say what would be converted");
   c->add_flag("--again", convert.again, "folders: convert also what is up to date");
-  c->add_flag("--watch", convert.watch, "folders: go on, and convert what changes");
+  c->add_flag("--watch", convert.watch, "folders: go on, and convert what changes")->excludes(dry);
   c->add_option("--report", convert.report_file,
                 "write the report as JSON; for a folder also as a page with pictures (.html)");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "convert/roles.h"
+#include "sinew/animation/bspline.h"
 #include "sinew/animation/phase_map.h"
 
 namespace sinew::convert {
@@ -266,7 +267,7 @@ double within(double time, const Clip& clip, const std::string& what) {
   return std::clamp(time, 0.0, double(clip.duration));
 }
 
-/// Straight lines between keys, held beyond the first and the last; around the seam of a loop, from the last
+/// Straight lines between keys, level beyond the first and the last; around the seam of a loop, from the last
 /// to the first.
 class Polyline {
  public:
@@ -358,11 +359,10 @@ class SmoothLine {
 double at_knots(const std::vector<double>& controls, double knots, bool loops) {
   const int count = static_cast<int>(controls.size()), spans = loops ? count : count - 3;
   const int first = std::clamp(static_cast<int>(knots), 0, spans - 1);
-  const double u = knots - first, v = 1 - u;
-  const double w[] = {v * v * v / 6, (3 * u * u * u - 6 * u * u + 4) / 6, (3 * v * v * v - 6 * v * v + 4) / 6,
-                      u * u * u / 6};
+  const std::array<double, 6> w = BsplineBasis<double>::at(3, knots - first).value;
   double sum = 0;
-  for (int k = 0; k < 4; ++k) sum += w[k] * controls[static_cast<std::size_t>((first + k) % count)];
+  for (int k = 0; k < 4; ++k)
+    sum += w[static_cast<std::size_t>(k)] * controls[static_cast<std::size_t>((first + k) % count)];
   return sum;
 }
 
@@ -440,9 +440,7 @@ void add_clip(const ClipEntry& entry, Asset& asset, Clip& clip) {
     const std::string what = where + "event '" + e.name + "'";
     ClipEvent event;
     event.begin = static_cast<float>(within(e.begin, clip, what));
-    event.end = std::max(event.begin, static_cast<float>(within(e.end, clip, what)));
-    event.begin = std::min(event.begin, clip.duration);
-    event.end = std::min(event.end, clip.duration);
+    event.end = static_cast<float>(within(e.end, clip, what));
     event.name = event_name(e.name);
     event.always = e.always;
     event.payload = e.payload;

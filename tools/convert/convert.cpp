@@ -91,15 +91,10 @@ void report_torque_errors(const Asset& asset, const std::vector<Clip>& reference
   }
 }
 
-/// walk.fbx → walk.clips.json.
-std::string beside(const std::string& input) {
-  return std::filesystem::path(input).replace_extension(".clips.json").string();
-}
-
 /// What stands beside a source file, if anything does.
 Error read_beside(const std::string& input, ClipData& data, nlohmann::json& report) {
   constexpr std::uintmax_t kLargest = 16u << 20;
-  const std::string path = beside(input);
+  const std::string path = clip_data_beside(input);
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return {};
   if (std::filesystem::file_size(path, none) > kLargest) return in_file(path, "larger than 16 MiB");
@@ -261,6 +256,10 @@ Error open_any(const std::string& path, const nlohmann::json& options, Asset& ou
   if (report.is_discarded()) report = nlohmann::json::object();
   out = std::move(asset);
   return {};
+}
+
+std::string clip_data_beside(const std::string& input) {
+  return std::filesystem::path(input).replace_extension(".clips.json").string();
 }
 
 std::string report_text(const nlohmann::json& r) {

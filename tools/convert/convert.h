@@ -23,6 +23,9 @@ struct Error {
 Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& options, Asset& out,
                     nlohmann::json& report);
 
+/// Where what clips say beside their motion stands for a source: walk.fbx → walk.clips.json.
+std::string clip_data_beside(const std::string& input);
+
 /// All options with defaults and comments, as JSON with // comments (nlohmann parses it with
 /// ignore_comments).
 std::string reference_options();

@@ -14,7 +14,7 @@ namespace sinew {
 /// not at 0. Stateless, allocates nothing; cost does not depend on the time.
 ///
 /// By the chain rule c(τ(t)): rate = τ'·c', acceleration = τ'²·c'' + τ''·c'. As smooth as τ, C² at most;
-/// where a clip that does not loop begins or ends, the value is held and its rate jumps to 0.
+/// where a clip that does not loop begins or ends, the value stays and its rate jumps to 0.
 template <class T>
 struct CurveJob {
   const Clip* clip = nullptr;        ///< valid, as `validate(const Clip&)` says
