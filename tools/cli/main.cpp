@@ -8,6 +8,7 @@
 #include "cli/convert_folder.h"
 #include "cli/evaluate.h"
 #include "cli/files.h"
+#include "cli/graph.h"
 #include "cli/memory.h"
 #include "cli/study_program.h"
 #include "convert/convert.h"
@@ -449,6 +450,12 @@ int main(int argc, char** argv) try {
   r->add_option("--scheme", render.scheme, kSchemes);
   render.source.add(*r);
 
+  cli::GraphCommand graph;
+  auto* g = app.add_subcommand("graph",
+                               "graphs of clips: check, compile, dot, trace\n"
+                               "Example: sinew graph check hero.graph.json --asset hero.sinew");
+  graph.add(*g);
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
@@ -466,6 +473,8 @@ int main(int argc, char** argv) try {
     error = info.run();
   else if (e->parsed())
     error = evaluate.run();
+  else if (g->parsed())
+    error = graph.run();
   else if (s->parsed())
     error = simulate.run();
   else

@@ -59,7 +59,8 @@ struct Along {
     const BsplineBasis<T> w = BsplineBasis<T>::at(3, place - whole);
     for (int t = 0; t < 4; ++t) {
       node[t] = std::clamp(static_cast<int>(whole) + t - 1, 0, space.size[dimension] - 1);
-      weight[t] = {w.value[t], w.first[t] * rate, w.second[t] * (rate * rate) + w.first[t] * acceleration};
+      // Rounding makes the first and the last function as little as −2e-9 near their ends.
+      weight[t] = {std::max(w.value[t], T(0)), w.first[t] * rate, w.second[t] * (rate * rate) + w.first[t] * acceleration};
     }
   }
 };

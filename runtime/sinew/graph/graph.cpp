@@ -1,0 +1,284 @@
+#include "sinew/graph/graph.h"
+
+#include <algorithm>
+
+#include "sinew/animation/sampling_job.h"
+#include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_scratch.h"
+
+namespace sinew {
+namespace {
+
+Status bad(const char* reason, int node) {
+  return Status::error(Code::kInvalidArgument, reason, node);
+}
+
+constexpr int kBlendNodes = 33;  ///< of a baked blend, along each dimension
+
+/// One after the first joint whose translation a clip changes.
+int translated_by(const Clip& clip, const std::vector<Transform<float>>& rest) {
+  int most = 0;
+  for (const Clip::Group& group : clip.groups)
+    for (const Clip::Track& track : group.tracks)
+      if (!group.rotation) most = std::max(most, track.joint + 1);
+  for (std::size_t j = 0; j < clip.constants.size(); ++j)
+    if (!clip.constants[j].translation.isApprox(rest[j].translation, 1e-5f))
+      most = std::max(most, int(j) + 1);
+  return most;
+}
+
+bool begins_offset(const GraphTransition& t) {
+  return t.kind != TransitionKind::kCut;  // a crossfade that interrupts one is inertial
+}
+
+bool has_empty_state(const GraphDefinition& graph, const GraphNode& machine) {
+  return std::any_of(machine.states.begin(), machine.states.end(), [&](const GraphState& state) {
+    return state.node >= 0 && graph.nodes[std::size_t(state.node)].type == NodeType::kEmpty;
+  });
+}
+
+/// What emitting a node's tasks once takes at most, itself and all below it.
+struct Needs {
+  int registers = 1, tasks = 0, weights = 0, members = 0;
+};
+
+Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
+  Needs sum;
+  const auto add = [&](int child, int base) {
+    const Needs& c = all[std::size_t(child)];
+    sum.registers = std::max(sum.registers, base + c.registers);
+    sum.tasks += c.tasks;
+    sum.weights += c.weights;
+    sum.members += c.members;
+  };
+  const int children = static_cast<int>(node.children.size());
+  for (int k = 0; k < children; ++k)
+    add(node.children[std::size_t(k)], node.type == NodeType::kBlend              ? k
+                                       : node.type == NodeType::kLayers && k == 0 ? 0
+                                                                                  : 1);
+  sum.tasks += std::max(3, children);
+  sum.weights += std::max(1, children);
+  sum.members += node.type == NodeType::kClip;
+  return sum;
+}
+
+/// Of a frame in which every machine changes its state: what plays, and at each change what played and what
+/// follows.
+Needs most_needs(const GraphDefinition& graph) {
+  std::vector<Needs> all;
+  for (const GraphNode& node : graph.nodes) all.push_back(needs_of(node, all));
+  Needs sum = all.back();
+  ++sum.registers;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (graph.nodes[k].type != NodeType::kMachine) continue;
+    ++sum.registers;
+    sum.tasks += 2 * all[k].tasks + 2;
+    sum.weights += 2 * all[k].weights;
+    sum.members += 2 * all[k].members;
+  }
+  return sum;
+}
+
+std::size_t rounded(std::size_t bytes) {
+  return (bytes + 15) / 16 * 16;
+}
+
+template <class T>
+GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
+                      const std::vector<Graph::BoundMachine>& machines, int joints, int translated,
+                      std::size_t curves) {
+  GraphLayout at;
+  std::size_t end = rounded(sizeof(GraphHeader<T>));
+  const auto place = [&](std::size_t bytes) {
+    const std::size_t begin = end;
+    end += rounded(bytes);
+    return begin;
+  };
+  const auto count = [&](int Graph::BoundMachine::*which) {
+    return std::size_t(
+        std::count_if(machines.begin(), machines.end(), [&](const auto& m) { return m.*which >= 0; }));
+  };
+  const std::size_t offsets = count(&Graph::BoundMachine::offset),
+                    left = count(&Graph::BoundMachine::left_pose);
+  at.parameters = place(graph.parameters.size() * sizeof(GraphParameterState<T>));
+  at.groups = place(graph.groups.size() * sizeof(GraphGroupState));
+  at.clips = place(clips * sizeof(GraphClipState));
+  at.machines = place(machines.size() * sizeof(GraphMachineState<T>));
+  at.offsets = place(offsets * inertial_numbers(joints, translated) * sizeof(T));
+  at.curve_offsets = place(offsets * curves * sizeof(TimeJet<T>));
+  at.left_poses = place(left * std::size_t(joints) * sizeof(JointJet<T>));
+  at.bytes = end;
+  return at;
+}
+
+}  // namespace
+
+Status Graph::bind_clip(int index, const Asset& asset) {
+  const GraphNode& in = node(index);
+  const int found = asset.find_clip(in.clip);
+  if (found < 0) return bad("the asset has no clip of this name", index);
+  BoundClip bound{&asset.clips[std::size_t(found)], {}, index};
+  if (in.group >= 0) {
+    if (!bound.clip->loops) return bad("a clip that does not loop cannot be synchronised", index);
+    if (bound.clip->markers.empty()) return bad("a synchronised clip has no markers of its phase", index);
+    if (Status status =
+            fit_phase_map(bound.clip->markers, double(bound.clip->duration), bound.clip->cycles, bound.map);
+        !status)
+      return bad(status.reason, index);
+  }
+  translated_ = std::max(translated_, translated_by(*bound.clip, rest_));
+  slots_[std::size_t(index)] = static_cast<int>(clips_.size());
+  clips_.push_back(bound);
+  return {};
+}
+
+Status Graph::bind_layers(int index, const Asset& asset) {
+  slots_[std::size_t(index)] = static_cast<int>(layers_.size());
+  for (const GraphLayer& in : node(index).layers) {
+    BoundLayer& layer = layers_.emplace_back();
+    if (!in.mask.empty() && (layer.mask = asset.find_mask(in.mask)) < 0)
+      return bad("the asset has no mask of this name", index);
+    if (in.mode == LayerMode::kOverride) continue;
+    layer.reference = rest_;
+    if (in.reference.empty()) continue;
+    const int clip = asset.find_clip(in.reference);
+    if (clip < 0) return bad("the asset has no clip of the reference's name", index);
+    const SamplingJob<float> job{
+        &asset.clips[std::size_t(clip)], double(in.reference_time), {}, layer.reference};
+    if (Status status = job.Run(); !status) return bad(status.reason, index);
+  }
+  return {};
+}
+
+Status Graph::bind_blend(int index) {
+  const GraphNode& in = node(index);
+  slots_[std::size_t(index)] = static_cast<int>(spaces_.size());
+  const std::vector<double> points(in.points.begin(), in.points.end());
+  BlendSpace& space = spaces_.emplace_back();
+  if (in.children.size() == 1) {  // nothing to mix
+    space.clips = 1;
+    space.node_weights = {1};
+    return {};
+  }
+  const int dimensions = in.parameters[1] >= 0 ? 2 : 1;
+  if (Status status = bake_blend_space(points, dimensions, kBlendNodes, space); !status)
+    return bad(status.reason, index);
+  return {};
+}
+
+void Graph::bind_machine(int index) {
+  const GraphNode& in = node(index);
+  slots_[std::size_t(index)] = static_cast<int>(machines_.size());
+  const auto count = [&](int BoundMachine::*which) {
+    return static_cast<int>(std::count_if(machines_.begin(), machines_.end(),
+                                          [&](const BoundMachine& m) { return m.*which >= 0; }));
+  };
+  BoundMachine machine;
+  machine.node = index;
+  machine.fades = has_empty_state(definition_, in);
+  if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
+    machine.offset = count(&BoundMachine::offset);
+  if (std::any_of(in.transitions.begin(), in.transitions.end(),
+                  [](const GraphTransition& t) { return t.kind == TransitionKind::kDead; }))
+    machine.left_pose = count(&BoundMachine::left_pose);
+  machines_.push_back(machine);
+}
+
+void Graph::lay_out() {
+  registers_ = most_needs(definition_).registers;
+  layouts_[0] =
+      layout_of<float>(definition_, clips_.size(), machines_, joint_count_, translated_, curve_slots_.size());
+  layouts_[1] = layout_of<double>(definition_, clips_.size(), machines_, joint_count_, translated_,
+                                  curve_slots_.size());
+  hash_ = 14695981039346656037u;
+  const auto mix = [&](std::uint64_t v) { hash_ = (hash_ ^ v) * 1099511628211u; };
+  for (const std::uint8_t byte : write_graph(definition_)) mix(byte);
+  mix(std::uint64_t(joint_count_));
+  mix(curve_slots_.size());
+  for (const GraphLayout& at : layouts_) mix(at.bytes);
+}
+
+Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph& out) {
+  if (Status status = validate(definition); !status) return status;
+  if (asset.skeleton.joints.empty()) return bad("the asset has no joints", -1);
+  Graph graph;
+  graph.definition_ = definition;
+  graph.joint_count_ = static_cast<int>(asset.skeleton.joints.size());
+  for (const Joint& joint : asset.skeleton.joints) {
+    graph.parents_.push_back(joint.parent);
+    graph.rest_.push_back(joint.rest.cast<float>());
+  }
+  graph.masks_ = asset.masks;
+  graph.curve_slots_ = asset.curve_slots;
+  for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
+  graph.slots_.assign(definition.nodes.size(), -1);
+  for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k) {
+    Status status;
+    switch (graph.node(k).type) {
+      case NodeType::kClip:
+        status = graph.bind_clip(k, asset);
+        break;
+      case NodeType::kBlend:
+        status = graph.bind_blend(k);
+        break;
+      case NodeType::kLayers:
+        status = graph.bind_layers(k, asset);
+        break;
+      case NodeType::kMachine:
+        graph.bind_machine(k);
+        break;
+      case NodeType::kEmpty:
+      case NodeType::kPhysical:
+        break;
+    }
+    if (!status) return status;
+  }
+  graph.lay_out();
+  out = std::move(graph);
+  return {};
+}
+
+std::uint32_t Graph::event_bit(std::uint32_t name) const {
+  for (std::size_t k = 0; k < event_names_.size(); ++k)
+    if (event_names_[k] == name) return std::uint32_t(1) << k;
+  return 0;
+}
+
+template <class T>
+GraphScratch<T>::GraphScratch(const Graph& graph) {
+  const std::size_t joints = std::size_t(graph.joint_count()), slots = std::size_t(graph.curve_count()),
+                    count = std::size_t(graph.registers());
+  const Needs needs = most_needs(graph.definition());
+  jets.resize(count * joints);
+  curves.assign(count * slots, TimeJet<T>(T(0)));
+  for (std::size_t k = 0; k < count; ++k)
+    registers.push_back({{jets.data() + k * joints, joints}, {curves.data() + k * slots, slots}, {}});
+  for (const JointMask& mask : graph.masks()) mask.write(std::span<T>(masks.emplace_back(joints)));
+  for (const Transform<float>& x : graph.rest()) rest.push_back(x.template cast<T>());
+  for (int n = 0; n < static_cast<int>(graph.definition().nodes.size()); ++n) {
+    if (graph.node(n).type != NodeType::kLayers) continue;
+    for (int k = 0; k < static_cast<int>(graph.node(n).layers.size()); ++k) {
+      std::vector<JointJet<T>>& reference = references.emplace_back();
+      for (const Transform<float>& x : graph.layer(n, k).reference) {
+        reference.emplace_back();
+        reference.back().rotation = x.rotation.template cast<T>();
+        reference.back().translation = x.translation.template cast<T>();
+      }
+    }
+  }
+  rotations.resize(2 * joints);
+  spare.resize(joints);
+  tasks.resize(std::size_t(needs.tasks));
+  weights.resize(std::size_t(needs.weights));
+  members.resize(std::size_t(needs.members));
+  phase_members.resize(std::size_t(needs.members));
+  times.resize(std::size_t(needs.members));
+  before.resize(graph.clips().size());
+  changes.resize(graph.machines().size());
+  shares.resize(graph.clips().size());
+}
+
+template struct GraphScratch<float>;
+template struct GraphScratch<double>;
+
+}  // namespace sinew

@@ -1,0 +1,178 @@
+#include "sinew/graph/graph_definition.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/animation/blend_space.h"
+
+namespace sinew {
+namespace {
+
+constexpr float kLongest = 3600;  ///< s, of any duration
+
+Status bad(const char* reason, int index) {
+  return Status::error(Code::kInvalidArgument, reason, index);
+}
+
+bool within(float v, float low, float high) {
+  return v >= low && v <= high;  // false for NaN
+}
+
+class Check {
+ public:
+  explicit Check(const GraphDefinition& graph) : graph_(graph), depth_(graph.nodes.size(), 1) {}
+
+  Status parameters() const {
+    for (std::size_t k = 0; k < graph_.parameters.size(); ++k) {
+      const GraphParameter& p = graph_.parameters[k];
+      const int index = static_cast<int>(k);
+      if (!std::isfinite(p.value)) return bad("value of a parameter is not finite", index);
+      if (!within(p.half_life, 0, kLongest) || (p.half_life > 0 && p.half_life < 1e-3f))
+        return bad("half-life of a parameter is negative, absurd, or below a millisecond", index);
+      if (!within(p.buffer, 0, kLongest)) return bad("buffer of a trigger is negative or absurd", index);
+    }
+    return {};
+  }
+  Status node(int index) {
+    const GraphNode& node = graph_.nodes[std::size_t(index)];
+    for (const int child : node.children) {
+      if (child < 0 || child >= index) return bad("child does not come before its parent", index);
+      depth_[std::size_t(index)] = std::max(depth_[std::size_t(index)], depth_[std::size_t(child)] + 1);
+    }
+    if (depth_[std::size_t(index)] > GraphDefinition::kDeepest)
+      return bad("nodes are nested too deep", index);
+    switch (node.type) {
+      case NodeType::kClip:
+        return clip(node, index);
+      case NodeType::kBlend:
+        return blend(node, index);
+      case NodeType::kLayers:
+        return layers(node, index);
+      case NodeType::kMachine:
+        return machine(node, index);
+      case NodeType::kEmpty:
+      case NodeType::kPhysical:
+        return node.children.empty() ? Status{} : bad("a pose has children", index);
+    }
+    return bad("unknown type of node", index);
+  }
+
+ private:
+  bool is_float(int parameter) const {
+    return parameter >= 0 && std::size_t(parameter) < graph_.parameters.size() &&
+           graph_.parameters[std::size_t(parameter)].type == ParameterType::kFloat;
+  }
+  bool fine(const GraphValue& v) const {
+    return std::isfinite(v.constant) && (v.parameter == -1 || is_float(v.parameter));
+  }
+  bool empty(int node) const { return graph_.nodes[std::size_t(node)].type == NodeType::kEmpty; }
+
+  Status clip(const GraphNode& node, int index) const {
+    if (node.clip.empty()) return bad("clip has no name", index);
+    if (!node.children.empty()) return bad("a clip has children", index);
+    if (!fine(node.speed)) return bad("speed is not a number or a float parameter", index);
+    if (node.group < -1 || node.group >= static_cast<int>(graph_.groups.size()))
+      return bad("clip belongs to a group that does not exist", index);
+    if (node.group >= 0 && (node.speed.parameter >= 0 || !within(node.speed.constant, 0.02f, 50)))
+      return bad("speed of a synchronised clip is not a number from 0.02 to 50", index);
+    return {};
+  }
+  Status blend(const GraphNode& node, int index) const {
+    const std::size_t dimensions = node.parameters[1] >= 0 ? 2 : 1;
+    if (!is_float(node.parameters[0]) || (dimensions == 2 && !is_float(node.parameters[1])))
+      return bad("blend has no float parameter", index);
+    if (node.children.empty() || node.children.size() > std::size_t(BlendSpace::kMaxClips))
+      return bad("blend has no children, or more than 16", index);
+    if (node.points.size() != dimensions * node.children.size())
+      return bad("children of a blend and their points differ in number", index);
+    for (const float p : node.points)
+      if (!std::isfinite(p)) return bad("point of a blend is not finite", index);
+    for (const int child : node.children)
+      if (empty(child)) return bad("a blend has an empty child", index);
+    return {};
+  }
+  Status layers(const GraphNode& node, int index) const {
+    if (node.children.empty() || node.layers.size() + 1 != node.children.size())
+      return bad("layers and their nodes differ in number", index);
+    for (std::size_t k = 0; k < node.children.size(); ++k)
+      if (empty(node.children[k])) return bad("a layer is empty itself", index);
+    for (const GraphLayer& layer : node.layers) {
+      if (!fine(layer.weight)) return bad("weight of a layer is not a number or a float parameter", index);
+      if (layer.weight.parameter < 0 && !within(layer.weight.constant, 0, 1))
+        return bad("weight of a layer is not within 0 and 1", index);
+      if (!within(layer.reference_time, 0, kLongest)) return bad("time of a reference is absurd", index);
+    }
+    return {};
+  }
+  Status machine(const GraphNode& node, int index) const {
+    const int states = static_cast<int>(node.states.size());
+    if (states == 0 || states > 1000) return bad("machine has no states, or more than a thousand", index);
+    if (node.start < 0 || node.start >= states || node.states[std::size_t(node.start)].node < 0)
+      return bad("machine starts in no state that has a pose", index);
+    for (const GraphState& state : node.states)
+      if (state.node != -1 &&
+          std::find(node.children.begin(), node.children.end(), state.node) == node.children.end())
+        return bad("state plays what is no child of its machine", index);
+    for (const GraphTransition& t : node.transitions)
+      if (Status status = transition(node, t, index); !status) return status;
+    return {};
+  }
+  Status transition(const GraphNode& node, const GraphTransition& t, int index) const {
+    const int states = static_cast<int>(node.states.size());
+    if (t.to < 0 || t.to >= states || t.from < GraphTransition::kAnyState || t.from >= states)
+      return bad("transition between states that do not exist", index);
+    if (!within(t.duration, 0, kLongest) || !within(t.budget, 0, 1000) || !within(t.entry, 0, kLongest))
+      return bad("duration, budget or entry of a transition is negative or absurd", index);
+    for (const int state : t.interrupted_by)
+      if (state < 0 || state >= states) return bad("transition is interrupted by no state", index);
+    return condition(t.condition, index);
+  }
+  Status condition(const std::vector<ConditionStep>& steps, int index) const {
+    int height = 0;
+    for (const ConditionStep& step : steps) {
+      const std::size_t most = step.code == ConditionCode::kParameter ? graph_.parameters.size()
+                               : step.code == ConditionCode::kPhase   ? graph_.groups.size()
+                               : step.code == ConditionCode::kEvent   ? graph_.events.size()
+                                                                      : 1;
+      if (step.index >= most) return bad("condition asks for what does not exist", index);
+      if (!std::isfinite(step.value)) return bad("condition has a number that is not finite", index);
+      const bool two = step.code >= ConditionCode::kLess && step.code <= ConditionCode::kOr;
+      const bool one = step.code == ConditionCode::kNot;
+      if (height < (two ? 2 : one ? 1 : 0)) return bad("condition takes more than it has", index);
+      height += two ? -1 : one ? 0 : 1;
+      if (height > GraphDefinition::kDeepestCondition) return bad("condition is nested too deep", index);
+    }
+    return height == 1 || steps.empty() ? Status{} : bad("condition is not one value", index);
+  }
+
+  const GraphDefinition& graph_;
+  std::vector<int> depth_;
+};
+
+}  // namespace
+
+int GraphDefinition::find_parameter(const std::string& wanted) const {
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const GraphParameter& p) { return p.name == wanted; });
+  return found == parameters.end() ? -1 : static_cast<int>(found - parameters.begin());
+}
+
+Status validate(const GraphDefinition& graph) {
+  if (graph.nodes.empty() || graph.nodes.size() > std::size_t(GraphDefinition::kMostNodes))
+    return bad("graph has no nodes, or more than 4096", -1);
+  if (graph.parameters.size() > std::size_t(GraphDefinition::kMostParameters) || graph.groups.size() > 256 ||
+      graph.events.size() > std::size_t(GraphDefinition::kMostEvents))
+    return bad("more than 256 parameters or groups, or 32 events", -1);
+  if (graph.nodes.back().type == NodeType::kEmpty) return bad("graph has no pose", -1);
+  Check check(graph);
+  if (Status status = check.parameters(); !status) return status;
+  for (std::size_t k = 0; k < graph.nodes.size(); ++k)
+    if (Status status = check.node(static_cast<int>(k)); !status) return status;
+  std::vector<int> parents(graph.nodes.size(), 0);
+  for (const GraphNode& node : graph.nodes)
+    for (const int child : node.children)
+      if (++parents[std::size_t(child)] > 1) return bad("node has two parents", child);
+  return {};
+}
+
+}  // namespace sinew

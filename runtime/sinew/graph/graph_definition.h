@@ -1,0 +1,151 @@
+// A graph of clips as data: what a character may do, and when it goes from one thing to the next.
+//
+// This is what a graph file holds and what the compiler of JSON makes (tools/graph). To play it, bind it to
+// an asset: see graph.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sinew/skeleton/status.h"
+
+namespace sinew {
+
+enum class ParameterType : std::uint8_t {
+  kFloat,    ///< a number that the game sets; weights, speeds and blends see it filtered
+  kBool,     ///< 0 or 1, for conditions
+  kTrigger,  ///< asked for once; the transition that it lets through uses it up
+};
+
+struct GraphParameter {
+  std::string name;
+  ParameterType type = ParameterType::kFloat;
+  float value = 0;         ///< at the start
+  float half_life = 0.1f;  ///< s, of the filter that floats go through (SmoothInput); 0: as the game sets it
+  float buffer = 0.15f;    ///< s, how long a trigger waits for a transition that takes it
+};
+
+/// A weight or a speed: a number, or a float parameter.
+struct GraphValue {
+  float constant = 1;
+  int parameter = -1;
+};
+
+enum class ConditionCode : std::uint8_t {
+  kNumber,     ///< pushes `value`
+  kParameter,  ///< pushes parameter `index`, unfiltered; a trigger that waits is 1
+  kTime,       ///< pushes the seconds in the present state
+  kRemaining,  ///< pushes the seconds until the end of the state's leading clip, at its present speed
+  kPhase,      ///< pushes the phase of group `index`, 0 … 1
+  kEvent,      ///< pushes 1 where the frame before passed event `index` (GraphDefinition::events)
+  kFading,     ///< pushes 1 while a transition of this machine runs
+  kLess,       ///< these replace the two uppermost by 0 or 1
+  kLessEqual,
+  kEqual,
+  kAnd,
+  kOr,
+  kNot,  ///< the uppermost
+};
+
+/// One instruction of a condition; conditions are in postfix order.
+struct ConditionStep {
+  ConditionCode code = ConditionCode::kNumber;
+  std::uint16_t index = 0;
+  float value = 0;
+};
+
+enum class TransitionKind : std::uint8_t {
+  kInertial,   ///< the new state alone, and what was different fades away (InertializeJob)
+  kDead,       ///< as kInertial from what the old motion goes on as without a source (ExtrapolateJob)
+  kCrossfade,  ///< both states play; one that interrupts a transition is kInertial
+  kCut,        ///< at once: the pose jumps
+};
+
+enum class Interruption : std::uint8_t {
+  kAny,     ///< by every transition whose condition holds
+  kListed,  ///< only by transitions to the states in `interrupted_by`
+  kNever,
+};
+
+struct GraphTransition {
+  static constexpr int kAnyState = -1;
+  int from = kAnyState;  ///< state; kAnyState: all but `to`
+  int to = 0;
+  std::vector<ConditionStep> condition;  ///< empty: always
+  TransitionKind kind = TransitionKind::kInertial;
+  float duration = 0.25f;  ///< s
+  /// > 0: as long as the joints' muscles need, who may spend this share of what they can spare on it
+  /// (GraphPoseJob::spare_acceleration); `duration` is the longest then.
+  float budget = 0;
+  Interruption interrupt = Interruption::kAny;
+  std::vector<int> interrupted_by;
+  float entry = 0;  ///< s, where unsynchronised clips of the new state begin
+};
+
+struct GraphState {
+  std::string name;
+  int node = -1;  ///< −1: a conduit, passed through in the same frame or not entered at all
+};
+
+enum class NodeType : std::uint8_t {
+  kClip,
+  kBlend,     ///< children with a point each, by one or two parameters
+  kLayers,    ///< children[0], and layers upon it
+  kMachine,   ///< states
+  kEmpty,     ///< no pose: a state of a machine that is a layer, which then fades out
+  kPhysical,  ///< the pose that the physical character has
+};
+
+enum class LayerMode : std::uint8_t { kOverride, kAdditive, kMeshAdditive };
+
+struct GraphLayer {
+  std::string mask;   ///< of the asset; empty: all joints
+  GraphValue weight;  ///< 0 … 1; a parameter goes through a soft step, which keeps it there
+  LayerMode mode = LayerMode::kOverride;
+  std::string reference;     ///< additive: the clip whose pose is no difference; empty: rest
+  float reference_time = 0;  ///< s
+};
+
+struct GraphNode {
+  NodeType type = NodeType::kClip;
+  std::string name;           ///< where it stands: "main/move/walk"
+  std::vector<int> children;  ///< before their parents in GraphDefinition::nodes
+
+  std::string clip;         ///< kClip
+  GraphValue speed;         ///< kClip
+  int group = -1;           ///< kClip: plays by this group's phase
+  bool root_motion = true;  ///< kClip: what the root does on the ground moves the character
+
+  int parameters[2] = {-1, -1};  ///< kBlend; the second only in two dimensions
+  std::vector<float> points;     ///< kBlend: [child][dimension]
+
+  std::vector<GraphLayer> layers;  ///< kLayers: of children[1], children[2], …
+
+  std::vector<GraphState> states;            ///< kMachine
+  std::vector<GraphTransition> transitions;  ///< kMachine: the first that may be taken is
+  int start = 0;                             ///< kMachine: state
+};
+
+struct GraphDefinition {
+  static constexpr int kMostNodes = 4096;
+  static constexpr int kMostParameters = 256;
+  static constexpr int kMostEvents = 32;
+  static constexpr int kDeepest = 24;           ///< levels of nodes
+  static constexpr int kDeepestCondition = 16;  ///< numbers on the stack
+  static constexpr int kMostConduits = 8;       ///< one after another
+
+  std::string name;
+  std::vector<GraphParameter> parameters;
+  std::vector<std::string> groups;  ///< of clips that step together
+  std::vector<std::string> events;  ///< that conditions ask for
+  std::vector<GraphNode> nodes;     ///< the last one is the root
+
+  int find_parameter(const std::string& wanted) const;  ///< index, or −1
+};
+
+/// What is at fault, if anything, so that playing it needs no further checks: indices, order of nodes,
+/// numbers, depth, stacks of conditions. `Status::index`: node, or parameter.
+Status validate(const GraphDefinition& graph);
+
+}  // namespace sinew

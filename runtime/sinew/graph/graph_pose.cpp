@@ -1,0 +1,379 @@
+#include "sinew/graph/graph_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/animation/blending_job.h"
+#include "sinew/animation/crossfade.h"
+#include "sinew/animation/curve_job.h"
+#include "sinew/animation/mesh_additive_job.h"
+#include "sinew/animation/quintic_offset.h"
+#include "sinew/animation/root_motion.h"
+#include "sinew/animation/sampling_job.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kSlowing = 7, kLoss = 120;  ///< 1/s, of what a left pose does (ExtrapolateJob)
+
+/// A root's motion over the ground, in heading axes, and the rest of it.
+template <class T>
+TravelVelocity<T> take_travel(JointJet<T>& root, Vec3<T>& place, T& heading) {
+  const RootMotion<T> motion = split_root(root);
+  const JointJet<T>& travel = motion.travel;
+  const Quat<T> back = travel.rotation.conjugate();
+  const Vec3<T> v = back * travel.velocity, a = back * travel.acceleration;
+  const T turn = travel.omega.z();
+  place = travel.translation;
+  heading = 2 * std::atan2(travel.rotation.z(), travel.rotation.w());
+  root = motion.body;
+  return {{v.x(), v.y(), turn}, {a.x() + turn * v.y(), a.y() - turn * v.x(), travel.alpha.z()}};
+}
+
+/// Of a loop: what it does on the whole, at a uniform speed. The sway of its cycle is the body's, or it would
+/// turn the character each time that a cycle is cut short.
+template <class T>
+TravelVelocity<T> take_uniform(const Clip& clip, const ClipTime& time, JointJet<T>& root) {
+  const Vec3<double> v(double(clip.root_step.x()) / double(clip.duration),
+                       double(clip.root_step.y()) / double(clip.duration), 0);
+  root.translation = (root.translation.template cast<double>() - time.value * v).template cast<T>();
+  root.velocity -= (time.rate * v).template cast<T>();
+  root.acceleration -= (time.acceleration * v).template cast<T>();
+  return {{T(time.rate * v.x()), T(time.rate * v.y()), T(0)},
+          {T(time.acceleration * v.x()), T(time.acceleration * v.y()), T(0)}};
+}
+
+/// Is the heading of this root defined, that is: is it not upside down?
+template <class T>
+bool has_heading(const JointJet<T>& root) {
+  const Quat<T>& q = root.rotation;
+  return q.z() * q.z() + q.w() * q.w() > T(1e-4);
+}
+
+template <class T>
+class Pose {
+ public:
+  using Register = typename GraphScratch<T>::Register;
+
+  explicit Pose(const GraphPoseJob<T>& job)
+      : job_(job), graph_(*job.graph), block_(graph_, job.state), s_(*job.scratch) {}
+
+  Status run() {
+    for (int k = 0; k < s_.task_count; ++k) {
+      const GraphTask& task = s_.tasks[std::size_t(k)];
+      const std::size_t joints = task.whole ? std::size_t(graph_.joint_count()) : job_.jets.size();
+      if (Status status = carry_out(task, joints); !status) return status;
+    }
+    travel();
+    return {};
+  }
+
+ private:
+  Register& at(int k) { return s_.registers[std::size_t(k)]; }
+  std::span<JointJet<T>> jets(int k, std::size_t joints) { return at(k).jets.first(joints); }
+  const TimeJet<T>& weight(int k) const { return s_.weights[std::size_t(k)]; }
+
+  Status carry_out(const GraphTask& task, std::size_t joints) {
+    switch (task.kind) {
+      case GraphTask::Kind::kSample:
+        return sample(task, joints);
+      case GraphTask::Kind::kPhysical:
+        return physical(task, joints);
+      case GraphTask::Kind::kBlend:
+        return blend(task, joints);
+      case GraphTask::Kind::kCrossfade:
+        return fade(task.out, weight(task.weights), joints);
+      case GraphTask::Kind::kLayer:
+        return layer(task, joints);
+      case GraphTask::Kind::kKeep:
+        copy(task.out, task.from, joints);
+        return {};
+      case GraphTask::Kind::kBeginOffset:
+        return begin_offset(task);
+      case GraphTask::Kind::kOffset:
+        return offset(task, joints);
+      case GraphTask::Kind::kLeave:
+        leave(task);
+        return {};
+      case GraphTask::Kind::kLeft:
+        return left(task, joints);
+    }
+    return {};
+  }
+  void copy(int from, int to, std::size_t joints) {
+    std::copy_n(at(from).jets.begin(), joints, at(to).jets.begin());
+    std::copy(at(from).curves.begin(), at(from).curves.end(), at(to).curves.begin());
+    at(to).travel = at(from).travel;
+  }
+
+  Status sample(const GraphTask& task, std::size_t joints) {
+    const Graph::BoundClip& clip = graph_.clips()[std::size_t(task.index)];
+    Register& out = at(task.out);
+    if (Status status = SamplingJob<T>{clip.clip, task.time, jets(task.out, joints)}.Run(); !status)
+      return status;
+    out.travel = {};
+    const bool moves = graph_.node(clip.node).root_motion;
+    Vec3<T> place;
+    T heading;
+    if (clip.clip->loops) {
+      const TravelVelocity<T> uniform = take_uniform(*clip.clip, task.time, out.jets[0]);
+      if (moves) out.travel = uniform;
+    } else if (moves && has_heading(out.jets[0])) {
+      out.travel = take_travel(out.jets[0], place, heading);
+    }
+    return CurveJob<T>{clip.clip, task.time, graph_.curve_slots(), out.curves}.Run();
+  }
+  Status physical(const GraphTask& task, std::size_t joints) {
+    Register& out = at(task.out);
+    std::copy_n(job_.physical.begin(), joints, out.jets.begin());
+    Vec3<T> place;
+    T heading;
+    if (has_heading(out.jets[0])) {
+      out.travel = take_travel(out.jets[0], place, heading);
+      block_.header().place[0] = double(place.x());
+      block_.header().place[1] = double(place.y());
+      block_.header().heading = double(heading);
+    }
+    for (std::size_t k = 0; k < out.curves.size(); ++k)
+      out.curves[k] = TimeJet<T>(T(graph_.curve_slots()[k].rest));
+    return {};
+  }
+
+  /// V = Σw·V, V' = Σ(w·V' + w'·V): `into` begins as nothing.
+  static void add(const TravelVelocity<T>& v, const TimeJet<T>& w, TravelVelocity<T>& into) {
+    for (int k = 0; k < 3; ++k) {
+      into.velocity[k] += w.value * v.velocity[k];
+      into.change[k] += w.value * v.change[k] + w.rate * v.velocity[k];
+    }
+  }
+  Status blend(const GraphTask& task, std::size_t joints) {
+    BlendLayer<T> layers[BlendSpace::kMaxClips];
+    CurveLayer<T> curves[BlendSpace::kMaxClips];
+    TravelVelocity<T> sum;
+    for (int k = 0; k < task.count; ++k) {
+      const TimeJet<T>& w = weight(task.weights + k);
+      layers[k] = {jets(task.out + k, joints), w};
+      curves[k] = {at(task.out + k).curves, w};
+      add(at(task.out + k).travel, w, sum);
+    }
+    const std::size_t count = task.count;
+    at(task.out).travel = sum;
+    if (Status status = CurveBlendingJob<T>{{curves, count}, graph_.curve_slots(), at(task.out).curves}.Run();
+        !status)
+      return status;
+    return BlendingJob<T>{{layers, count}, s_.rest, jets(task.out, joints)}.Run();
+  }
+  /// From register k to the next one.
+  Status fade(int k, const TimeJet<T>& w, std::size_t joints) {
+    const TimeJet<T> rest = TimeJet<T>(T(1)) - w;
+    TravelVelocity<T> sum;
+    add(at(k).travel, rest, sum);
+    add(at(k + 1).travel, w, sum);
+    at(k).travel = sum;
+    for (std::size_t c = 0; c < at(k).curves.size(); ++c)
+      at(k).curves[c] = rest * at(k).curves[c] + w * at(k + 1).curves[c];
+    EaseWeight<T> ease;
+    static_cast<TimeJet<T>&>(ease) = w;
+    crossfade<T>(jets(k, joints), jets(k + 1, joints), ease, jets(k, joints), s_.rest);
+    return {};
+  }
+
+  Status layer(const GraphTask& task, std::size_t joints) {
+    const GraphLayer& in = graph_.node(task.index).layers[std::size_t(task.layer)];
+    const Graph::BoundLayer& bound = graph_.layer(task.index, task.layer);
+    const TimeJet<T>& w = weight(task.weights);
+    const std::span<const T> mask =
+        bound.mask < 0 ? std::span<const T>() : std::span<const T>(s_.masks[std::size_t(bound.mask)]);
+    const std::span<JointJet<T>> below = jets(task.out, joints), upper = jets(task.out + 1, joints);
+    if (in.mode == LayerMode::kOverride) {
+      const TimeJet<T> root = (mask.empty() ? T(1) : mask[0]) * w;
+      TravelVelocity<T> sum;
+      add(at(task.out).travel, TimeJet<T>(T(1)) - root, sum);
+      add(at(task.out + 1).travel, root, sum);
+      at(task.out).travel = sum;
+      const CurveLayer<T> curves[] = {{at(task.out).curves},
+                                      {at(task.out + 1).curves, w, {}, BlendMode::kOverride}};
+      if (Status status = CurveBlendingJob<T>{curves, graph_.curve_slots(), at(task.out).curves}.Run();
+          !status)
+        return status;
+    }
+    const std::vector<JointJet<T>>& reference =
+        s_.references[std::size_t(graph_.slot(task.index) + task.layer)];
+    if (in.mode == LayerMode::kMeshAdditive) return add_in_model(below, upper, reference, w, mask);
+    if (in.mode == LayerMode::kAdditive) {
+      for (std::size_t j = 0; j < joints; ++j) {
+        upper[j].rotation = reference[j].rotation.conjugate() * upper[j].rotation;
+        upper[j].translation -= reference[j].translation;
+      }
+    }
+    const BlendMode mode = in.mode == LayerMode::kAdditive ? BlendMode::kAdditive : BlendMode::kOverride;
+    const BlendLayer<T> layers[] = {{below}, {upper, w, mask, mode}};
+    return BlendingJob<T>{layers, s_.rest, below}.Run();
+  }
+  Status add_in_model(std::span<JointJet<T>> below, std::span<JointJet<T>> upper,
+                      const std::vector<JointJet<T>>& reference, const TimeJet<T>& w,
+                      std::span<const T> mask) {
+    const std::size_t n = below.size();
+    const std::span<const int> parents(graph_.parents().data(), n);
+    const std::span<Quat<TimeJet<T>>> scratch(s_.rotations.data(), 2 * n);
+    subtract_in_model<T>(parents, {reference.data(), n}, upper, scratch, upper);
+    return MeshAdditiveJob<T>{parents, below, upper, w, mask.empty() ? mask : mask.first(n), scratch}.Run();
+  }
+
+  Status begin_offset(const GraphTask& task) {
+    GraphMachineState<T>& m = block_.machine(task.index);
+    const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
+    const GraphTransition& t = graph_.node(bound.node).transitions[std::size_t(m.transition)];
+    InertialState<T> state = block_.offset(bound.offset, T(0), m.duration);
+    const Register &before = at(task.from), &after = at(task.out);
+    if (Status status = begin_inertial<T>(before.jets, after.jets, m.duration, state); !status) return status;
+    for (std::size_t c = 0; c < before.curves.size(); ++c)
+      block_.curve_offsets(bound.offset)[c] = before.curves[c] - after.curves[c];
+    for (int k = 0; k < 3; ++k) {
+      m.travel.velocity[k] = before.travel.velocity[k] - after.travel.velocity[k];
+      m.travel.change[k] = before.travel.change[k] - after.travel.change[k];
+    }
+    if (t.budget > 0 && job_.spare_acceleration.size() >= std::size_t(graph_.joint_count()))
+      shorten(state, t, m);
+    return {};
+  }
+  /// As long as the muscles need.
+  void shorten(const InertialState<T>& state, const GraphTransition& t, GraphMachineState<T>& m) {
+    const std::span<T> spare = s_.spare;
+    for (std::size_t j = 0; j < spare.size(); ++j)
+      spare[j] = std::max(T(1e-3), T(t.budget) * job_.spare_acceleration[j]);
+    m.duration = std::min(m.duration, inertial_duration<T>(state, spare, T(kLeastFade), m.duration));
+  }
+  Status offset(const GraphTask& task, std::size_t joints) {
+    const GraphMachineState<T>& m = block_.machine(task.index);
+    const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
+    // A change overwrites the machine's times before what it did before is made.
+    const T elapsed = task.whole ? T(task.time.value) : m.elapsed,
+            duration = task.whole ? T(task.time.rate) : m.duration;
+    const InertialState<T> state = block_.offset(bound.offset, elapsed, duration);
+    if (!state.running()) return {};
+    const QuinticOffset<T> left = QuinticOffset<T>::at(elapsed, duration);
+    Register& out = at(task.out);
+    for (std::size_t c = 0; c < out.curves.size(); ++c)
+      out.curves[c] += left(block_.curve_offsets(bound.offset)[c]);
+    for (int k = 0; k < 3; ++k) {
+      const TimeJet<T> x = left(TimeJet<T>(m.travel.velocity[k], m.travel.change[k], T(0)));
+      out.travel.velocity[k] += x.value;
+      out.travel.change[k] += x.rate;
+    }
+    return InertializeJob<T>{jets(task.out, joints), &state, {}, jets(task.out, joints)}.Run();
+  }
+
+  void leave(const GraphTask& task) {
+    const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
+    const Register& from = at(task.from);
+    std::copy(from.jets.begin(), from.jets.end(), block_.left_pose(bound.left_pose).begin());
+    std::copy(from.curves.begin(), from.curves.end(), block_.curve_offsets(bound.offset).begin());
+    block_.machine(task.index).travel = from.travel;
+  }
+  Status left(const GraphTask& task, std::size_t joints) {
+    const GraphMachineState<T>& m = block_.machine(task.index);
+    const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
+    const T elapsed = T(task.time.value), duration = T(task.time.rate);
+    const int to = task.out + 1;  // the new motion goes there, the old one takes its place
+    copy(task.out, to, joints);
+    Register& old = at(task.out);
+    const ExtrapolateJob<T> job{block_.left_pose(bound.left_pose).first(joints), elapsed, T(kSlowing),
+                                T(kLoss), jets(task.out, joints)};
+    if (Status status = job.Run(); !status) return status;
+    const T slow = std::exp(T(-kSlowing) * elapsed), fast = std::exp(T(-kLoss) * elapsed);
+    const auto dying = [&](T v, T a) {  // as ExtrapolateJob's velocities
+      const T more = (a + T(kSlowing) * v) / T(kLoss - kSlowing);
+      return TimeJet<T>(v * slow + more * (slow - fast),
+                        -T(kSlowing) * v * slow + more * (T(kLoss) * fast - T(kSlowing) * slow), T(0));
+    };
+    for (int k = 0; k < 3; ++k) {
+      const TimeJet<T> v = dying(m.travel.velocity[k], m.travel.change[k]);
+      old.travel.velocity[k] = v.value;
+      old.travel.change[k] = v.rate;
+    }
+    const std::span<const TimeJet<T>> curves = block_.curve_offsets(bound.offset);
+    for (std::size_t c = 0; c < curves.size(); ++c) old.curves[c] = extrapolated(curves[c], elapsed, dying);
+    return fade(task.out, EaseWeight<T>::at(elapsed, duration), joints);
+  }
+  template <class Dying>
+  static TimeJet<T> extrapolated(const TimeJet<T>& c, T elapsed, const Dying& dying) {
+    const T y = T(kSlowing), z = T(kLoss), more = (c.acceleration + y * c.rate) / (z - y);
+    const T gone_slow = -std::expm1(-y * elapsed) / y, gone_fast = -std::expm1(-z * elapsed) / z;
+    const TimeJet<T> rate = dying(c.rate, c.acceleration);
+    return {c.value + c.rate * gone_slow + more * (gone_slow - gone_fast), rate.value, rate.rate};
+  }
+
+  void travel();
+
+  const GraphPoseJob<T>& job_;
+  const Graph& graph_;
+  GraphBlock<T> block_;
+  GraphScratch<T>& s_;
+  static constexpr double kLeastFade = 0.08;  ///< s
+};
+
+/// Moves the character and puts its body there.
+template <class T>
+void Pose<T>::travel() {
+  const Register& pose = at(0);
+  std::copy_n(pose.jets.begin(), job_.jets.size(), job_.jets.begin());
+  std::copy_n(pose.curves.begin(), std::min(job_.curves.size(), pose.curves.size()), job_.curves.begin());
+  GraphHeader<T>& header = block_.header();
+  const TravelVelocity<T> before = header.travel, &now = pose.travel;
+  const double h = double(s_.h);
+  const auto world = [](const TravelVelocity<T>& t, double heading, Vec3<double>& v, Vec3<double>& a) {
+    const double c = std::cos(heading), s = std::sin(heading), turn = double(t.velocity[2]);
+    const double x = double(t.velocity[0]), y = double(t.velocity[1]);
+    const double ax = double(t.change[0]) - turn * y, ay = double(t.change[1]) + turn * x;
+    v << c * x - s * y, s * x + c * y, 0;
+    a << c * ax - s * ay, s * ax + c * ay, 0;
+  };
+  Vec3<double> v0, a0, v1, a1;
+  world(before, header.heading, v0, a0);
+  if (h > 0)
+    header.heading += h / 2 * double(before.velocity[2] + now.velocity[2]) +
+                      h * h / 12 * double(before.change[2] - now.change[2]);
+  world(now, header.heading, v1, a1);
+  if (h > 0)
+    for (int k = 0; k < 2; ++k) header.place[k] += h / 2 * (v0[k] + v1[k]) + h * h / 12 * (a0[k] - a1[k]);
+  header.travel = now;
+  JointJet<T> travel;
+  const double half = header.heading / 2;
+  travel.rotation = Quat<T>(T(std::cos(half)), T(0), T(0), T(std::sin(half)));
+  travel.omega = {T(0), T(0), now.velocity[2]};
+  travel.alpha = {T(0), T(0), now.change[2]};
+  travel.translation = {T(header.place[0]), T(header.place[1]), T(0)};
+  travel.velocity = v1.cast<T>();
+  travel.acceleration = a1.cast<T>();
+  job_.jets[0] = joint_jet<T>(moving_transform(travel) * moving_transform(job_.jets[0]));
+}
+
+}  // namespace
+
+template <class T>
+Status GraphPoseJob<T>::Validate() const {
+  if (Status status = check_block<T>(graph, state, true); !status) return status;
+  if (!scratch || scratch->registers.size() != std::size_t(graph->registers()) ||
+      scratch->shares.size() != graph->clips().size())
+    return Status::error(Code::kInvalidArgument, "no scratch, or that of another graph");
+  if (jets.empty() || jets.size() > std::size_t(graph->joint_count()))
+    return Status::error(Code::kInvalidArgument, "no joints to pose, or more than the graph has");
+  bool wants_physical = false;
+  for (int k = 0; k < scratch->task_count; ++k)
+    wants_physical |= scratch->tasks[std::size_t(k)].kind == GraphTask::Kind::kPhysical;
+  if (wants_physical && physical.size() < std::size_t(graph->joint_count()))
+    return Status::error(Code::kInvalidArgument, "the graph asks for the physical pose, which is not given");
+  return {};
+}
+
+template <class T>
+Status GraphPoseJob<T>::Run() const {
+  if (Status status = Validate(); !status) return status;
+  return Pose<T>(*this).run();
+}
+
+template struct GraphPoseJob<float>;
+template struct GraphPoseJob<double>;
+
+}  // namespace sinew

@@ -1,0 +1,80 @@
+// What one thread needs to play a graph for any number of characters, one after another.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/animation/clip_time.h"
+#include "sinew/animation/moving_transform.h"
+#include "sinew/graph/graph_state.h"
+
+namespace sinew {
+
+/// A step of making a pose, on registers: GraphUpdateJob writes them, GraphPoseJob carries them out.
+struct GraphTask {
+  enum class Kind : std::uint8_t {
+    kSample,       ///< clip `index` at `time` → out
+    kPhysical,     ///< the character's physical pose → out
+    kBlend,        ///< `count` registers from `out` on, mixed by weights → out
+    kCrossfade,    ///< out and out + 1, by one weight → out
+    kLayer,        ///< out + 1 upon out; `index`: node, `layer`
+    kKeep,         ///< copies out to `from`
+    kBeginOffset,  ///< `from` at the instant of a change, out what follows; `index`: machine
+    kOffset,       ///< what is left of it upon out
+    kLeave,        ///< keeps `from` as the pose left behind
+    kLeft,         ///< fades from the pose left behind to out
+  };
+  Kind kind = Kind::kSample;
+  bool whole = false;  ///< all joints, whatever level of detail
+  std::uint16_t out = 0, from = 0, count = 0;
+  int index = 0, layer = 0;
+  int weights = 0;  ///< first of GraphScratch::weights
+  ClipTime time;
+};
+
+template <class T>
+struct GraphScratch {
+  /// Allocates; nothing after this does.
+  explicit GraphScratch(const Graph& graph);
+
+  struct Register {
+    std::span<JointJet<T>> jets;
+    std::span<TimeJet<T>> curves;
+    TravelVelocity<T> travel;
+  };
+  struct Member {
+    int task, clip, group;
+    TimeJet<double> weight;
+  };
+  std::vector<JointJet<T>> jets;
+  std::vector<TimeJet<T>> curves;
+  std::vector<Register> registers;
+  std::vector<std::vector<T>> masks;                 ///< [mask][joint]
+  std::vector<std::vector<JointJet<T>>> references;  ///< [layer][joint], of the additive ones
+  std::vector<Transform<T>> rest;
+  std::vector<Quat<TimeJet<T>>> rotations;  ///< two per joint
+  std::vector<T> spare;                     ///< [joint] rad/s²
+
+  // Of one update:
+  std::vector<GraphTask> tasks;
+  int task_count = 0;
+  std::vector<TimeJet<T>> weights;
+  int weight_count = 0;
+  std::vector<Member> members;  ///< synchronised clips that were sampled
+  int member_count = 0;
+  struct Change {
+    int machine, kept;  ///< register of what it did up to the change
+  };
+  std::vector<Change> changes;
+  int change_count = 0;
+  std::vector<PhaseMember> phase_members;
+  std::vector<ClipTime> times;
+  std::vector<double> before;  ///< [clip] clip time at the last frame
+  std::vector<float> shares;   ///< [clip] weight in this frame; < 0: not played
+  T h = 0;
+};
+
+extern template struct GraphScratch<float>;
+extern template struct GraphScratch<double>;
+
+}  // namespace sinew

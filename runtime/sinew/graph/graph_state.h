@@ -1,0 +1,162 @@
+// A character's place in its graph: one flat block of bytes, and what stands in it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sinew/animation/inertialize_job.h"
+#include "sinew/graph/graph.h"
+
+namespace sinew {
+
+/// How the root moves over the ground in heading axes: forwards, to the left, and the turn. Each with its
+/// velocity (m/s, rad/s) and acceleration. Blends mix these, not places.
+template <class T>
+struct TravelVelocity {
+  T velocity[3] = {};
+  T change[3] = {};
+};
+
+template <class T>
+struct GraphHeader {
+  std::uint64_t hash;  ///< of the graph that the block belongs to
+  double place[2];     ///< m, on the ground
+  double heading;      ///< rad, about Z
+  TravelVelocity<T> travel;
+  std::uint32_t events;  ///< that conditions ask for and the last frame passed, a bit each
+  std::uint32_t begun;   ///< the pose of an instant has been shown
+};
+
+template <class T>
+struct GraphParameterState {
+  T goal;        ///< as the game set it; of a trigger the seconds that it still waits
+  TimeJet<T> x;  ///< filtered
+};
+
+struct GraphGroupState {
+  TimeJet<double> phase;  ///< cycles
+  std::uint64_t active;   ///< a clip of it plays
+};
+
+struct GraphClipState {
+  TimeJet<double> time;  ///< s played, which does not wrap; of unsynchronised clips
+  std::uint64_t fresh;   ///< entered, and not yet advanced
+};
+
+/// How a machine goes from one state to the next.
+enum class GraphFade : std::uint32_t {
+  kNone,
+  kOffset,     ///< what was different fades away
+  kLeft,       ///< the pose left behind does
+  kCrossfade,  ///< the old state still plays
+};
+
+template <class T>
+struct GraphMachineState {
+  double time;              ///< s in the present state
+  std::int16_t state;       ///< present
+  std::int16_t posed;       ///< the one whose pose is shown: `state`, or the one that an empty one follows
+  std::int16_t source;      ///< of a crossfade, or −1
+  std::int16_t transition;  ///< that runs, or −1
+  GraphFade fade;
+  std::uint32_t unused;
+  T elapsed, duration;       ///< s, of the fade
+  TravelVelocity<T> travel;  ///< what of the travel fades
+  TimeJet<T> shown_from;     ///< how far `shown` was from its target when that changed
+  T shown_elapsed, shown_duration;
+  T shown;  ///< target: 0 in an empty state, else 1
+
+  bool fading() const { return fade != GraphFade::kNone || shown_elapsed < shown_duration; }
+};
+
+/// The block, taken apart. Offers what playing needs; games use GraphParameters.
+template <class T>
+class GraphBlock {
+ public:
+  GraphBlock(const Graph& graph, std::span<std::byte> state)
+      : graph_(graph), at_(graph.layout<T>()), data_(state.data()) {}
+
+  GraphHeader<T>& header() { return *place<GraphHeader<T>>(0); }
+  GraphParameterState<T>& parameter(int k) { return place<GraphParameterState<T>>(at_.parameters)[k]; }
+  GraphGroupState& group(int k) { return place<GraphGroupState>(at_.groups)[k]; }
+  GraphClipState& clip(int k) { return place<GraphClipState>(at_.clips)[k]; }
+  GraphMachineState<T>& machine(int k) { return place<GraphMachineState<T>>(at_.machines)[k]; }
+  InertialState<T> offset(int k, T elapsed, T duration) {
+    const std::size_t numbers = inertial_numbers(graph_.joint_count(), graph_.translated());
+    return {{place<T>(at_.offsets) + std::size_t(k) * numbers, numbers},
+            graph_.joint_count(),
+            graph_.translated(),
+            elapsed,
+            duration};
+  }
+  std::span<TimeJet<T>> curve_offsets(int k) {
+    const std::size_t count = std::size_t(graph_.curve_count());
+    return {place<TimeJet<T>>(at_.curve_offsets) + std::size_t(k) * count, count};
+  }
+  std::span<JointJet<T>> left_pose(int k) {
+    const std::size_t count = std::size_t(graph_.joint_count());
+    return {place<JointJet<T>>(at_.left_poses) + std::size_t(k) * count, count};
+  }
+
+ private:
+  template <class V>
+  V* place(std::size_t offset) const {
+    return reinterpret_cast<V*>(data_ + offset);
+  }
+
+  const Graph& graph_;
+  const GraphLayout& at_;
+  std::byte* data_;
+};
+
+/// Refuses blocks of another size or alignment; with `begun`, also those of another graph.
+template <class T>
+Status check_block(const Graph* graph, std::span<std::byte> state, bool begun);
+
+/// Puts a character where its graph begins: parameters as the definition says, at the origin.
+template <class T>
+Status start_graph(const Graph& graph, std::span<std::byte> state);
+
+/// What a game sets and asks for. Indices as of the definition (`find_parameter`); wrong ones do nothing and
+/// give 0.
+template <class T>
+class GraphParameters {
+ public:
+  GraphParameters(const Graph& graph, std::span<std::byte> state) : graph_(graph), block_(graph, state) {}
+
+  /// A float, or a bool as 0 or 1. Refuses numbers that are not finite.
+  Status set(int parameter, T value);
+  /// Asks for something once; forgotten when no transition has taken it within the trigger's buffer.
+  Status trigger(int parameter);
+  T goal(int parameter);               ///< as set
+  TimeJet<T> filtered(int parameter);  ///< as weights and speeds see it
+
+  /// Present state of a machine (`node`: GraphDefinition::nodes), −1 where it is none.
+  int state(int node);
+  double seconds_in_state(int node);
+  bool fading(int node);
+
+  /// Where the character stands and heads: where the graph's root motion brought it. A game whose controller
+  /// moves characters puts them where it wants.
+  Vec3<double> place();
+  double heading();
+  void put(const Vec3<double>& place, double heading);
+  TravelVelocity<T> travel();
+
+ private:
+  bool is(int parameter, bool trigger) const;
+  bool machine(int node) const;
+
+  const Graph& graph_;
+  GraphBlock<T> block_;
+};
+
+#define SINEW_GRAPH_STATE_INSTANCES(prefix, T)                                     \
+  prefix template Status check_block<T>(const Graph*, std::span<std::byte>, bool); \
+  prefix template Status start_graph<T>(const Graph&, std::span<std::byte>);       \
+  prefix template class GraphParameters<T>;
+SINEW_GRAPH_STATE_INSTANCES(extern, float)
+SINEW_GRAPH_STATE_INSTANCES(extern, double)
+
+}  // namespace sinew

@@ -1,0 +1,173 @@
+#include "cli/graph.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "cli/files.h"
+#include "graph/certificate.h"
+#include "graph/compile.h"
+#include "graph/describe.h"
+#include "graph/trace.h"
+#include "sinew/graph/graph_file.h"
+
+namespace sinew::cli {
+namespace {
+
+using convert::Error;
+using graph_tools::Compiled;
+
+Error read_text(const std::string& path, std::string& out) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    if (file && file.peek() == std::ifstream::traits_type::eof()) return {path + ": is empty"};
+    return {path + ": cannot be read"};
+  }
+  out = text.str();
+  return {};
+}
+
+/// JSON or a compiled graph.
+Error load(const std::string& path, Compiled& out) {
+  std::string text;
+  if (Error error = read_text(path, text)) return error;
+  if (text.size() > 8 && text.compare(4, 4, "SNGR") == 0) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    const Status status = read_graph({bytes, text.size()}, out.graph);
+    out.lines.assign(out.graph.nodes.size(), 0);
+    return status ? Error{} : Error{path + ": " + status.reason};
+  }
+  out = graph_tools::compile_graph(text, path);
+  return {out.error};
+}
+
+std::string order_text(int order) {
+  return order < 0 ? "pose" : order == 0 ? "velocity" : "acceleration";
+}
+
+}  // namespace
+
+void GraphCommand::add(CLI::App& app) {
+  app.require_subcommand(1);
+  const auto graph = [&](CLI::App* c) {
+    c->add_option("graph", input, "JSON or a compiled graph")->required();
+  };
+  check_ = app.add_subcommand("check", "faults, warnings, and where the motion is not smooth");
+  graph(check_);
+  check_->add_option("--asset", asset, "asset or source file that its clips must be in");
+  check_->add_flag("--strict", strict_, "a graph that is not smooth, or has warnings, is a fault");
+  check_->add_flag("--json", json_output);
+  compile_ = app.add_subcommand("compile", "JSON to the file that games load");
+  graph(compile_);
+  compile_->add_option("-o,--output", output, ".sgraph")->required();
+  dot_ = app.add_subcommand(
+      "dot", "a drawing for Graphviz\nExample: sinew graph dot hero.graph.json | dot -Tsvg > hero.svg");
+  graph(dot_);
+  dot_->add_option("-o,--output", output, "standard output otherwise");
+  trace_ = app.add_subcommand("trace", "plays a graph and writes what it does, frame by frame");
+  graph(trace_);
+  trace_->add_option("--asset", asset, "asset or source file with its clips")->required();
+  trace_->add_option("--inputs", script,
+                     "JSON: [[seconds, \"parameter\", value], [seconds, \"trigger\"], …]");
+  trace_->add_option("--seconds", seconds, "how long (10)")->check(CLI::Range(0.0, 36000.0));
+  trace_->add_option("--rate", rate, "frames per second (60)")->check(CLI::Range(1.0, 10000.0));
+  trace_->add_option("-o,--output", output, "CSV; standard output otherwise");
+  trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
+}
+
+Error GraphCommand::run() {
+  if (check_->parsed()) return check();
+  if (compile_->parsed()) return compile();
+  return dot_->parsed() ? dot() : trace();
+}
+
+Error GraphCommand::check() {
+  Compiled compiled;
+  if (Error error = load(input, compiled)) return error;
+  if (!asset.empty()) {
+    Asset with;
+    nlohmann::json report;
+    if (Error error = convert::open_any(asset, {}, with, report)) return error;
+    if (const std::string fault = graph_tools::bind_fault(compiled, input, with); !fault.empty())
+      return {fault};
+  }
+  const auto losses = graph_tools::smoothness_losses(compiled.graph);
+  if (json_output) {
+    graph_tools::Json out = {
+        {"nodes", compiled.graph.nodes.size()}, {"warnings", compiled.warnings}, {"smooth", losses.empty()}};
+    out["jumps"] = graph_tools::Json::array();
+    for (const auto& loss : losses)
+      out["jumps"].push_back({{"node", compiled.graph.nodes[std::size_t(loss.node)].name},
+                              {"line", compiled.lines[std::size_t(loss.node)]},
+                              {"what", order_text(loss.order)},
+                              {"reason", loss.reason}});
+    std::puts(out.dump().c_str());
+  } else {
+    for (const std::string& warning : compiled.warnings) std::printf("warning: %s\n", warning.c_str());
+    for (const auto& loss : losses)
+      std::printf("%s:%d: %s: the %s may jump: %s\n", input.c_str(), compiled.lines[std::size_t(loss.node)],
+                  compiled.graph.nodes[std::size_t(loss.node)].name.c_str(), order_text(loss.order).c_str(),
+                  loss.reason.c_str());
+    std::printf(
+        "%s: %zu nodes, %zu parameters; %s\n", input.c_str(), compiled.graph.nodes.size(),
+        compiled.graph.parameters.size(),
+        losses.empty() ? "poses, velocities and accelerations are continuous" : "not smooth everywhere");
+  }
+  if (strict_ && !(losses.empty() && compiled.warnings.empty()))
+    return {input + ": has warnings or is not smooth (--strict)"};
+  return {};
+}
+
+Error GraphCommand::compile() {
+  Compiled compiled;
+  if (Error error = load(input, compiled)) return error;
+  for (const std::string& warning : compiled.warnings)
+    std::fprintf(stderr, "sinew: warning: %s\n", warning.c_str());
+  const std::vector<std::uint8_t> bytes = write_graph(compiled.graph);
+  if (Error error = write_atomically(output, bytes.data(), bytes.size())) return error;
+  std::printf("%s: %zu nodes, %zu bytes\n", output.c_str(), compiled.graph.nodes.size(), bytes.size());
+  return {};
+}
+
+Error GraphCommand::dot() {
+  Compiled compiled;
+  if (Error error = load(input, compiled)) return error;
+  const std::string text = graph_tools::graph_dot(compiled.graph);
+  if (!output.empty()) return write_atomically(output, text);
+  std::fputs(text.c_str(), stdout);
+  return {};
+}
+
+Error GraphCommand::trace() {
+  Compiled compiled;
+  if (Error error = load(input, compiled)) return error;
+  Asset with;
+  nlohmann::json report;
+  if (Error error = convert::open_any(asset, {}, with, report)) return error;
+  if (const std::string fault = graph_tools::bind_fault(compiled, input, with); !fault.empty())
+    return {fault};
+  Graph graph;
+  if (const Status status = Graph::bind(compiled.graph, with, graph); !status)
+    return {input + ": " + status.reason};
+  graph_tools::InputScript inputs;
+  if (!script.empty()) {
+    std::string text;
+    if (Error error = read_text(script, text)) return error;
+    if (const std::string fault = inputs.read(text, script, compiled.graph); !fault.empty()) return {fault};
+  }
+  std::ostringstream rows;
+  graph_tools::Json end;
+  if (const Status status = graph_tools::trace_graph(graph, with, inputs, seconds, rate, rows, end); !status)
+    return {input + ": " + status.reason};
+  if (json_output) {
+    std::puts(end.dump(2).c_str());
+    return {};
+  }
+  if (!output.empty()) return write_atomically(output, rows.str());
+  std::fputs(rows.str().c_str(), stdout);
+  return {};
+}
+
+}  // namespace sinew::cli

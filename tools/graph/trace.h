@@ -1,0 +1,34 @@
+// Plays a graph with given inputs and writes what happens.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "graph/located_json.h"
+#include "sinew/graph/graph.h"
+
+namespace sinew::graph_tools {
+
+/// What a game would set, and when.
+struct InputScript {
+  struct Input {
+    double time = 0;
+    int parameter = 0;
+    float value = 0;
+  };
+  std::vector<Input> inputs;  ///< by time
+
+  /// [[seconds, "parameter", number or true or false], [seconds, "trigger"], …]. What is wrong, or empty.
+  std::string read(const std::string& text, const std::string& path, const GraphDefinition& graph);
+  /// Those in [from, to).
+  void apply(const Graph& graph, std::span<std::byte> state, double from, double to) const;
+};
+
+/// A row of CSV per frame: time, states of all machines, place and heading, the joint with the greatest
+/// angular acceleration and what it is (rad/s²), events. `end`: describe_state() of the last one. Physical
+/// poses are the graph's own.
+Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& inputs, double seconds,
+                   double rate, std::ostream& rows, Json& end);
+
+}  // namespace sinew::graph_tools
