@@ -267,7 +267,15 @@ class Pose {
   void leave(const GraphTask& task) {
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     const Register& from = at(task.from);
-    std::copy(from.jets.begin(), from.jets.end(), block_.left_pose(bound.left_pose).begin());
+    const std::span<JointJet<T>> left = block_.left_pose(bound.left_pose);
+    for (std::size_t j = 0; j < left.size(); ++j) {  // number by number: a block has no bytes of chance
+      left[j].rotation = from.jets[j].rotation;
+      left[j].omega = from.jets[j].omega;
+      left[j].alpha = from.jets[j].alpha;
+      left[j].translation = from.jets[j].translation;
+      left[j].velocity = from.jets[j].velocity;
+      left[j].acceleration = from.jets[j].acceleration;
+    }
     std::copy(from.curves.begin(), from.curves.end(), block_.curve_offsets(bound.offset).begin());
     block_.machine(task.index).travel = from.travel;
   }

@@ -18,8 +18,11 @@ bool nothing(const TimeJet<T>& weight) {
 
 constexpr int kMostHits = 64;  ///< of one clip in one frame
 
-bool earlier(const EventHit& a, const EventHit& b) {
-  return a.seconds_ago > b.seconds_ago;
+/// Keeps the order of those at one time; takes no memory, as std::stable_sort does.
+void sort_by_time(std::span<EventHit> hits) {
+  const auto earlier = [](const EventHit& a, const EventHit& b) { return a.seconds_ago > b.seconds_ago; };
+  for (auto at = hits.begin(); at != hits.end(); ++at)
+    std::rotate(std::upper_bound(hits.begin(), at, *at, earlier), at, at + 1);
 }
 
 template <class T>
@@ -46,8 +49,7 @@ class Update {
     emit(graph_.root(), 0, TimeJet<T>(T(1)), false);
     if (Status status = move_phases(double(h_)); !status) return status;
     report(graph_.root());
-    if (events_)
-      std::stable_sort(events_->hits.begin() + first, events_->hits.begin() + events_->count, earlier);
+    if (events_) sort_by_time(events_->hits.subspan(std::size_t(first), std::size_t(events_->count - first)));
     block_.header().begun = 1;
     return {};
   }
