@@ -10,8 +10,7 @@
 #include "fixtures/clips.h"
 #include "graph/compile.h"
 #include "sinew/animation/sampling_job.h"
-#include "sinew/graph/graph_pose.h"
-#include "sinew/graph/graph_update.h"
+#include "sinew/graph/graph_step.h"
 
 namespace sinew::fixtures {
 
@@ -110,10 +109,8 @@ struct GraphPlayer {
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   void step(double h) {
-    update(h);
-    GraphPoseJob<T> job{&graph, state, &scratch, jets, curves};
-    job.physical = physical;
-    const Status status = job.Run();
+    events.count = events.lost = 0;
+    const Status status = GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical}.Run();
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   /// Name of the state of the machine of this name.
