@@ -234,6 +234,33 @@ TEST(SnapshotBytes, DamagedOrForeignBytesAreRefusedAndMoveNothing) {
   EXPECT_TRUE(other.world.restore(good).ok());
 }
 
+TEST(Snapshot, KeepsTheGamesOwnBytes) {
+  Story<float> story;
+  std::vector<std::byte> block(100, std::byte{7});
+  const std::size_t before = story.world.snapshot_capacity();
+  story.world.keep_with_state(block);
+  EXPECT_EQ(story.world.snapshot_capacity(), before + block.size());
+  story.step();
+  const std::vector<std::byte> bytes = saved(story.world);
+  std::fill(block.begin(), block.end(), std::byte{9});
+  ASSERT_TRUE(story.world.restore(bytes).ok());
+  EXPECT_EQ(block, std::vector<std::byte>(100, std::byte{7}));
+  Story<float> without;
+  EXPECT_FALSE(without.world.restore(bytes).ok()) << "of a world that keeps other bytes";
+
+  // What the game does to them between two steps is recorded as what it does to the world.
+  Recorder<float> recorder(story.world);
+  for (int frame = 0; frame < 10; ++frame) {
+    block[std::size_t(frame)] = std::byte{1};
+    story.inputs();
+    ASSERT_TRUE(recorder.step(1 / 60.f).ok());
+  }
+  ReplayReport report;
+  ASSERT_TRUE(replay(story.world, recorder.bytes(), report).ok());
+  EXPECT_TRUE(report.same);
+  EXPECT_EQ(report.steps, 10);
+}
+
 TEST(Recording, ReplaysToTheBitFromTheRecordedStart) {
   Story<float> story, again;
   Recorder<float> recorder(story.world);

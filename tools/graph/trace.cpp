@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "graph/describe.h"
-#include "sinew/graph/graph_pose.h"
-#include "sinew/graph/graph_update.h"
+#include "sinew/graph/graph_step.h"
 
 namespace sinew::graph_tools {
 
@@ -69,11 +68,8 @@ Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& in
     const double time = k / rate, h = k == 0 ? 0 : 1 / rate;
     inputs.apply(graph, state, k == 0 ? -1e300 : time - h, k == 0 ? 1e-9 : time - 1e-9);
     EventSink events{hits};
-    if (Status status = GraphUpdateJob<float>{&graph, state, float(h), &scratch, &events}.Run(); !status)
+    if (Status status = GraphStepJob<float>{&graph, state, float(h), &scratch, jets, &events, {}, jets}.Run(); !status)
       return status;
-    GraphPoseJob<float> pose{&graph, state, &scratch, jets};
-    pose.physical = jets;
-    if (Status status = pose.Run(); !status) return status;
     GraphParameters<float> parameters(graph, state);
     rows << time;
     for (const Graph::BoundMachine& machine : graph.machines())

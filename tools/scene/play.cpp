@@ -87,7 +87,11 @@ convert::Error Play<T>::drive(int c, double t) {
   Asked& asked = asked_[c];
   Character<T> character = world_.character(c);
   if (!asked.still) {
-    const Status status = character.set_target(players_[c].at(t, character.local()));
+    double load = 0;
+    if (source.graph.graph)  // worked out when asked for
+      for (const T& l : character.load()) load = std::max(load, double(l));
+    Status status = character.set_target(players_[c].at(t, character.local(), load));
+    if (!players_[c].fault()) status = players_[c].fault();
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     asked.still = !players_[c].moves();
   }

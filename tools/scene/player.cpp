@@ -34,16 +34,21 @@ Player<T>::Player(const SceneCharacter& c)
     : c_(c), places_(c.clips.size()), a_(c.asset->skeleton.joints.size()), b_(a_.size()) {
   for (auto& place : places_) place = upright(c.position, c.yaw);
   for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
+  if (c.graph.graph) graph_.emplace(c.graph, c.asset->skeleton, upright(c.position, c.yaw));
 }
 
 template <class T>
 bool Player<T>::moves() const {
-  return !c_.clips.empty() || c_.path.size() > 1 || !c_.turn_rate.empty() ||
+  return graph_ || !c_.clips.empty() || c_.path.size() > 1 || !c_.turn_rate.empty() ||
          std::any_of(c_.pose.begin(), c_.pose.end(), [](const auto& p) { return p.second.size() > 1; });
 }
 
 template <class T>
-const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transform<T>> now) {
+const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transform<T>> now, double load) {
+  if (graph_) {
+    fault_ = graph_->at(t, now, load, a_);
+    return a_;
+  }
   stand(t, a_);
   bool any = false;
   for (std::size_t i = 0; i < c_.clips.size(); ++i) {
@@ -78,7 +83,7 @@ const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transfor
 template <class T>
 std::vector<JointJet<T>> Player<T>::start(std::span<const Transform<T>> now) {
   std::vector<JointJet<T>> jets = at(0, now);
-  if (c_.clips.empty())  // at rest: what it is led along begins to move it in the first step
+  if (c_.clips.empty() && !graph_)  // at rest: what it is led along begins to move it in the first step
     for (JointJet<T>& jet : jets) jet.omega.setZero(), jet.velocity.setZero();
   add_speeds(c_.asset->skeleton, c_.speeds, jets);
   return jets;

@@ -2,6 +2,7 @@
 // down.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,9 @@ class Player {
   /// Whether what it wants changes in time.
   bool moves() const;
   /// `now`: local pose of the character, root in the world.
-  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now);
+  /// `load`: the greatest of its muscles. What is wrong with a graph's motion: fault().
+  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now, double load = 0);
+  const Status& fault() const { return fault_; }
   /// At time 0, with the speeds that the character starts with.
   std::vector<JointJet<T>> start(std::span<const Transform<T>> now);
 
@@ -38,6 +41,8 @@ class Player {
   std::size_t begun_ = 0;           ///< uses that have started
   std::vector<Transform<T>> held_;  ///< [joint] pose in which the last use with from_pose began
   std::vector<JointJet<T>> a_, b_;
+  std::optional<GraphMotion<T>> graph_;
+  Status fault_;
 };
 
 extern template class Player<float>;

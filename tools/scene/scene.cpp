@@ -4,12 +4,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "convert/roles.h"
+#include "graph/compile.h"
 #include "scene/effect_registry.h"
 #include "scene/figure.h"
 #include "scene/presets.h"
@@ -90,8 +92,8 @@ void read_motion(const Reader& in, const Skeleton& skeleton, SceneCharacter& c) 
   named("pose", [&](const Reader& entry, const char* name, int joint) {
     c.pose.emplace_back(joint, timeline<Vec3<double>>(entry, name, {}, Reader::vector_of));
   });
-  if (!c.clips.empty() && !(c.path.empty() && c.turn_rate.empty() && c.pose.empty()))
-    fail(in.inside("clips"), "a character that plays clips has no path, turn_rate or pose");
+  if ((!c.clips.empty() || c.graph.graph) && !(c.path.empty() && c.turn_rate.empty() && c.pose.empty()))
+    fail(in.inside("clips"), "a character that plays clips or a graph has no path, turn_rate or pose");
   named("spin", [&](const Reader& entry, const char* name, int joint) {
     c.speeds.spin.emplace_back(joint, entry.vector(name, Vec3<double>::Zero()));
   });
@@ -103,13 +105,45 @@ void read_motion(const Reader& in, const Skeleton& skeleton, SceneCharacter& c) 
   }
 }
 
+/// `graph`: the name of a file, or the graph itself; `inputs`: what is done with it, as `sinew graph trace`
+/// takes it.
+void read_graph(const Reader& in, const Asset& asset, const std::filesystem::path& base, SceneCharacter& c) {
+  if (!in.has("graph")) {
+    if (in.has("inputs")) fail(in.inside("inputs"), "there is no graph");
+    return;
+  }
+  if (in.has("clips")) fail(in.inside("graph"), "there are clips too");
+  std::string name = in.inside("graph"), text;
+  if (in.at("graph").is_string()) {
+    std::filesystem::path path = in.at("graph").get<std::string>();
+    if (path.is_relative()) path = base / path;
+    name = path.string();
+    std::ifstream file(path);
+    if (!file) fail(in.inside("graph"), "cannot read " + name);
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  } else {
+    text = in.at("graph").dump();
+  }
+  const graph_tools::Compiled compiled = graph_tools::compile_graph(text, name);
+  if (!compiled.error.empty()) fail(in.inside("graph"), compiled.error);
+  if (const std::string fault = graph_tools::bind_fault(compiled, name, asset); !fault.empty())
+    fail(in.inside("graph"), fault);
+  auto graph = std::make_shared<Graph>();
+  if (const Status status = Graph::bind(compiled.graph, asset, *graph); !status) fail(in.inside("graph"), status.reason);
+  if (in.has("inputs"))
+    if (const std::string fault = c.graph.inputs.read(in.at("inputs").dump(), in.inside("inputs"), compiled.graph);
+        !fault.empty())
+      fail(in.inside("inputs"), fault);
+  c.graph.graph = std::move(graph);
+}
+
 SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
   const Reader in(value, where,
                   {"asset",          "figure",         "name", "position",   "yaw_deg",     "clips",
                    "path",           "turn_rate",      "pose", "velocity",   "spin",        "random_spin",
                    "strength",       "group_strength", "root", "root_force", "root_torque", "ground_contact",
-                   "self_collision", "options",        "grid", "bake"});
+                   "self_collision", "options",        "grid", "bake",       "graph",       "inputs"});
   SceneCharacter c;
   const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
@@ -138,6 +172,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
       fail(use.inside("start"), "clips must be in order of time");
     c.clips.push_back(made);
   }
+  read_graph(in, *asset, base, c);
   read_motion(in, asset->skeleton, c);
   c.strength = timeline<double>(in, "strength", c.strength, strength_of);
   const json& groups = in.list("group_strength");

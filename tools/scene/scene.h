@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "convert/convert.h"
+#include "scene/graph_motion.h"
 #include "scene/recording.h"
 #include "scene/start.h"
 #include "scene/timeline.h"
@@ -33,6 +34,7 @@ struct SceneCharacter {
   Vec3<double> position = Vec3<double>::Zero();
   double yaw = 0;  ///< rad
   std::vector<ClipUse> clips;
+  GraphUse graph;  ///< instead of clips, where there is one
   // What it does without clips: stands at `position`, or goes along `path`, turning from `yaw` on; all joined
   // by straight lines.
   Timeline<Vec3<double>> path;                               ///< m; a jump where a time stands twice

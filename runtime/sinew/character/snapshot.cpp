@@ -314,6 +314,7 @@ std::uint64_t layout_of(const MovingParts<T>& world) {
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
   }
   for (const auto& c : world.couplings) add(c->stencils.size());
+  for (const auto& bytes : world.games) add(bytes.size());
   return hash;
 }
 
@@ -397,6 +398,8 @@ void visit_world(const MovingParts<T>& world, ByteStream& stream) {
   visit_budget(world.budget, stream);
   for (const auto& c : world.couplings) visit_coupling(*c, stream);
   visit_lagged(world.lagged, stream);
+  for (const std::span<std::byte> bytes : world.games)
+    stream.array("the game's own bytes", reinterpret_cast<unsigned char*>(bytes.data()), bytes.size());
 }
 
 /// The bytes behind the header.

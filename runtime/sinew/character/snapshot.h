@@ -115,6 +115,7 @@ struct MovingParts {
   std::vector<LaggedForce<T>>& lagged;  ///< normal forces remembered for friction
   BudgetState& budget;
   std::span<const std::unique_ptr<Coupling<T>>> couplings;
+  std::span<const std::span<std::byte>> games;  ///< bytes that the game wants kept with the state
 };
 
 enum class Content : std::uint32_t { kState = 0x324e5753, kInputs = 0x31495753 };  ///< SWN2, SWI1

@@ -405,6 +405,11 @@ Status World<T>::step(T h, const ParallelFor& parallel_for) {
 }
 
 template <class T>
+void World<T>::keep_with_state(std::span<std::byte> bytes) {
+  impl_->games.push_back(bytes);
+}
+
+template <class T>
 std::size_t World<T>::snapshot_capacity() const {
   return bytes_at_most(impl_->moving(), Content::kState);
 }

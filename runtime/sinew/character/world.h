@@ -269,6 +269,9 @@ class World {
   // are inputs and not part of it: set them after restoring. torque(), limit(), unknown() and report() follow
   // with the next step. recording.h writes whole runs and replays them.
 
+  /// Set-up: bytes of the game's own that belong to the state, such as the block of a character's graph
+  /// (graph/graph_state.h). save() writes them too, restore() puts them back; they stay where they are.
+  void keep_with_state(std::span<std::byte> bytes);
   /// Bytes that a snapshot takes at most.
   std::size_t snapshot_capacity() const;
   /// Bytes written, or 0 where `out` is too small.

@@ -58,6 +58,7 @@ struct World<T>::Impl {
   std::vector<KeptStep<T>> kept;       ///< [state]
   std::vector<int> characters, props;  ///< into states
   Couplings<T> couplings;
+  std::vector<std::span<std::byte>> games;  ///< their bytes are saved with the state
   std::vector<int> loops;  ///< into couplings
   std::vector<ParticleSet> particles;
   std::vector<Collider> obstacles;
@@ -120,7 +121,7 @@ struct World<T>::Impl {
   static void work(void* context, int index);
   void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
-  MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all()}; }
+  MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all(), games}; }
   Surroundings surroundings() const {
     Surroundings around{obstacles, &obstacle_grid, hosts, couplings.apart()};
     if (settings.ground) around.floor = settings.ground_height;
