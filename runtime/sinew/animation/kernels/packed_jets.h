@@ -51,6 +51,18 @@ struct Block {
     }
     return packed;
   }
+  /// Of poses, x y z w; of none that of the parent.
+  void rotations(const PoseLayout<T>* poses, P* out) const {
+    if (!poses) {
+      for (int c = 0; c < 4; ++c) out[c] = P::all(c == 3 ? 1 : 0);
+      return;
+    }
+    P m[4];
+    for (int r = 0; r < 4; ++r)
+      m[r] = load_fours<P>([&](int group) { return poses[joint[4 * group + r]].rotation; });
+    transpose(m);
+    for (int c = 0; c < 4; ++c) out[c] = m[c];
+  }
   void store(const PackedJets<P>& packed, JetLayout<T>* jets) const {
     T* to = reinterpret_cast<T*>(jets);
     if (!whole) return store_part(packed, to);
