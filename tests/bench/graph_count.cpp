@@ -30,6 +30,7 @@ Asset asset_of(int clips) {
     asset.clips.push_back(fixtures::random_clip({.seed = unsigned(k + 1)}));
     asset.clips.back().name = "c" + std::to_string(k);
     asset.clips.back().markers = {{0, 1}, {0.5, 8}};
+    asset.clips.back().events = {ClipEvent{1, 1, 1, false, {}}, ClipEvent{8, 8, 1, false, {}}};
   }
   return asset;
 }
@@ -49,7 +50,7 @@ std::string sixty_nodes() {
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y)
       plane += (plane.empty() ? "[" : ", [") + std::to_string(x) + ", " + std::to_string(y) + ", " + next() + "]";
-  return R"({"parameters": {"speed": 1, "side": 1, "pick": -1}, "graph": {"layers": [{"states": {"plane":
+  return R"({"parameters": {"speed": 0.6, "side": 0.7, "pick": -1}, "graph": {"layers": [{"states": {"plane":
     {"blend": ["speed", "side"], "sync": "feet", "points": [)" +
          plane + "]}" + states + "}, \"transitions\": [" + transitions + "]}, {\"node\": " + next() + ", \"weight\": 0.3}]}}";
 }

@@ -43,11 +43,13 @@ Status check_markers(std::span<const PhaseMarker> markers, double duration, int 
   return {};
 }
 
-/// What the members ask of the phase at an instant.
-TimeJet<double> pace(std::span<const PhaseMember> members, double phase) {
+/// What the members ask of the phase at an instant; `times`: theirs, and their derivatives by the phase.
+TimeJet<double> pace(std::span<const PhaseMember> members, double phase, std::span<ClipTime> times) {
   double weight = 0, weight_rate = 0, cycle = 0, by_weight = 0, by_phase = 0;
-  for (const PhaseMember& m : members) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const PhaseMember& m = members[i];
     const TimeJet<double> time = m.map->by_phase(phase);
+    times[i] = time;
     weight += m.weight.value;
     weight_rate += m.weight.rate;
     cycle += m.weight.value * time.rate / m.speed;
@@ -57,6 +59,12 @@ TimeJet<double> pace(std::span<const PhaseMember> members, double phase) {
   const double rate = weight / cycle;
   const double change = (by_weight + by_phase * rate) / weight - cycle * weight_rate / (weight * weight);
   return {phase, rate, -rate * rate * change};
+}
+
+/// A time and its derivatives by the phase → by time, of a phase that moves.
+ClipTime moving_with(const TimeJet<double>& t, const TimeJet<double>& phase) {
+  return {t.value, t.rate * phase.rate,
+          t.acceleration * phase.rate * phase.rate + t.rate * phase.acceleration};
 }
 
 }  // namespace
@@ -77,9 +85,7 @@ TimeJet<double> PhaseMap::by_phase(double phase) const {
 }
 
 ClipTime PhaseMap::at(const TimeJet<double>& phase) const {
-  const TimeJet<double> t = by_phase(phase.value);
-  return {t.value, t.rate * phase.rate,
-          t.acceleration * phase.rate * phase.rate + t.rate * phase.acceleration};
+  return moving_with(by_phase(phase.value), phase);
 }
 
 Status fit_phase_map(std::span<const PhaseMarker> markers, double duration, int cycles, PhaseMap& out) {
@@ -172,12 +178,12 @@ Status PhaseJob::Run() const {
   const TimeJet<double> before = *phase;
   double end = before.value + h * before.rate + h * h / 2 * before.acceleration;
   for (int n = 0; n < 2 && h > 0; ++n) {  // the rates at the end depend on where it is
-    const TimeJet<double> there = pace(members, end);
+    const TimeJet<double> there = pace(members, end, times);
     end = before.value + h / 2 * (before.rate + there.rate) +
           h * h / 12 * (before.acceleration - there.acceleration);
   }
-  *phase = pace(members, end);
-  for (std::size_t i = 0; i < members.size(); ++i) times[i] = members[i].map->at(*phase);
+  *phase = pace(members, end, times);
+  for (std::size_t i = 0; i < members.size(); ++i) times[i] = moving_with(times[i], *phase);
   return {};
 }
 

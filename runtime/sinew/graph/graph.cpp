@@ -274,6 +274,8 @@ GraphScratch<T>::GraphScratch(const Graph& graph) {
   phase_members.resize(std::size_t(needs.members));
   times.resize(std::size_t(needs.members));
   before.resize(graph.clips().size());
+  now.resize(graph.clips().size());
+  phases.resize(graph.definition().groups.size());
   changes.resize(graph.machines().size());
   shares.resize(graph.clips().size());
 }

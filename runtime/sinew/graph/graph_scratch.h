@@ -69,7 +69,9 @@ struct GraphScratch {
   int change_count = 0;
   std::vector<PhaseMember> phase_members;
   std::vector<ClipTime> times;
-  std::vector<double> before;  ///< [clip] clip time at the last frame
+  std::vector<double> before;  ///< [clip] clip time at the last frame, of those not synchronised
+  std::vector<double> now;     ///< [clip] and now, of those that are
+  std::vector<double> phases;  ///< [group] at the last frame
   std::vector<float> shares;   ///< [clip] weight in this frame; < 0: not played
   T h = 0;
 };

@@ -44,7 +44,10 @@ class Update {
     if (Status status = begin_offsets(); !status) return status;
     filter();
     block_.header().events = 0;
-    for (std::size_t g = 0; g < graph_.definition().groups.size(); ++g) block_.group(int(g)).active = 0;
+    for (std::size_t g = 0; g < s_.phases.size(); ++g) {
+      s_.phases[g] = block_.group(int(g)).phase.value;
+      block_.group(int(g)).active = 0;
+    }
     advance(graph_.root());
     emit(graph_.root(), 0, TimeJet<T>(T(1)), false);
     if (Status status = move_phases(double(h_)); !status) return status;
@@ -318,13 +321,14 @@ void Update<T>::advance(int index) {
   for (const int child : node.children) advance(child);
   if (node.type != NodeType::kClip) return;
   const int slot = graph_.slot(index);
-  s_.before[std::size_t(slot)] = clip_time(graph_, block_, slot).value;
   s_.shares[std::size_t(slot)] = -1;
   if (node.group >= 0) {
     block_.group(node.group).active = 1;
     return;
   }
-  TimeJet<double>& played = block_.clip(slot).time;  // exact to h⁵, as a phase is
+  TimeJet<double>& played = block_.clip(slot).time;
+  s_.before[std::size_t(slot)] = played_time(*graph_.clips()[std::size_t(slot)].clip, played).value;
+  // exact to h⁵, as a phase is
   const TimeJet<double> speed = clip_speed(graph_, block_, node);
   const double h = double(h_);
   played.value += h / 2 * (played.rate + speed.value) + h * h / 12 * (played.acceleration - speed.rate);
@@ -350,9 +354,12 @@ Status Update<T>::move_phases(double h) {
     const PhaseJob job{{s_.phase_members.data(), count}, h, &phase, {s_.times.data(), count}};
     if (Status status = job.Run(); !status) return status;
     count = 0;
-    for (int k = 0; k < s_.member_count; ++k)
-      if (s_.members[std::size_t(k)].group == g)
-        s_.tasks[std::size_t(s_.members[std::size_t(k)].task)].time = s_.times[count++];
+    for (int k = 0; k < s_.member_count; ++k) {
+      const auto& member = s_.members[std::size_t(k)];
+      if (member.group != g) continue;
+      s_.now[std::size_t(member.clip)] = s_.times[count].value;
+      s_.tasks[std::size_t(member.task)].time = s_.times[count++];
+    }
   }
   return {};
 }
@@ -465,17 +472,15 @@ void Update<T>::report_clip(int slot) {
   if (share < 0 || c.events.empty()) return;
   EventHit hits[kMostHits];  // conditions see events whether the game wants them or not
   EventSink sink{hits};
-  const double now = clip_time(graph_, block_, slot).value;
-  const EventJob job{c.events,
-                     double(c.duration),
-                     c.loops,
-                     s_.before[std::size_t(slot)],
-                     now,
-                     starts,
-                     static_cast<float>(h_),
-                     share,
-                     0.5f,
-                     &sink};
+  const Graph::BoundClip& bound = graph_.clips()[std::size_t(slot)];
+  const int group = graph_.node(bound.node).group;
+  const double before = group < 0 ? s_.before[std::size_t(slot)]
+                                  : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
+  const double now = group < 0 ? played_time(c, clip.time).value : s_.now[std::size_t(slot)];
+  EventJob job{c.events, double(c.duration), c.loops, before, now, starts};
+  job.step = static_cast<float>(h_);
+  job.weight = share;
+  job.out = &sink;
   (void)job.Run();  // valid: the clip was, and a frame is no thousand loops
   for (int k = 0; k < sink.count; ++k) {
     block_.header().events |= graph_.event_bit(hits[k].event->name);
