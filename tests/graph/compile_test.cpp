@@ -1,5 +1,5 @@
 // Graphs as text and as files: what they say comes back, and what is wrong with them is said in one line.
-#include "graph/certificate.h"
+#include "graph/attribution.h"
 #include "graph/describe.h"
 #include "graph_fixture.h"
 #include "sinew/graph/graph_file.h"
@@ -30,17 +30,22 @@ TEST(GraphCompile, FaultsNameFileLineAndCulprit) {
       {R"({"graph": {"clip": "walk", "sync": "feet", "speed": 0}})", "speed of a synchronised clip"},
       {"{\"parameters\": {\n\"go\": true,\n\"x\": {\"type\": \"floot\"}}, \"graph\": \"walk\"}",
        "test:3: unknown 'floot', known are: float, bool, trigger"},
-      {R"({"parameters": {"go": true}, "graph": {"clip": "walk", "speed": "go"}})", "parameter 'go' is no float"},
+      {R"({"parameters": {"go": true}, "graph": {"clip": "walk", "speed": "go"}})",
+       "parameter 'go' is no float"},
       {R"({"parameters": {"time": 1}, "graph": "walk"})", "'time' means something in conditions already"},
       {R"({"parameters": {"a b": 1}, "graph": "walk"})", "name of a parameter"},
-      {R"({"parameters": {"a": {"type": "bool", "filter": 1}}, "graph": "walk"})", "only floats are filtered"},
+      {R"({"parameters": {"a": {"type": "bool", "filter": 1}}, "graph": "walk"})",
+       "only floats are filtered"},
       {R"({"nodes": {"a": {"layers": ["b"]}, "b": {"layers": ["a"]}}, "graph": "a"})",
        "node 'a' contains itself: a > b > a"},
-      {R"({"parameters": {"s": 0}, "graph": {"blend": "s", "points": [[0, "a"], [1]]}})", "a point is [position, node]"},
-      {R"({"parameters": {"s": 0}, "graph": {"blend": "s", "points": [[0, null]]}})", "a blend has an empty child"},
+      {R"({"parameters": {"s": 0}, "graph": {"blend": "s", "points": [[0, "a"], [1]]}})",
+       "a point is [position, node]"},
+      {R"({"parameters": {"s": 0}, "graph": {"blend": "s", "points": [[0, null]]}})",
+       "a blend has an empty child"},
       {R"({"graph": {"layers": ["a", {"node": "b", "mode": "overide"}]}})", "unknown 'overide', known are"},
       {R"({"graph": {"layers": ["a", {"node": "b", "weight": 2}]}})", "must be from 0.0 to 1.0"},
-      {R"({"graph": {"layers": ["a", {"node": "b", "reference": "c"}]}})", "only additive layers have a reference"},
+      {R"({"graph": {"layers": ["a", {"node": "b", "reference": "c"}]}})",
+       "only additive layers have a reference"},
       {R"({"graph": {"states": {}}})", "expected states by name"},
       {R"({"graph": {"states": {"a": "x", "b": null}}})", "only a machine that is a layer has empty states"},
       {R"({"graph": {"states": {"a": {"conduit": true}}}})", "cannot start in a conduit"},
@@ -107,7 +112,8 @@ TEST(GraphCompile, ConditionsSayWhatTheyMean) {
       player.set("free", free);
       if (jump) player.trigger("jump");
       player.update(0.01);
-      EXPECT_EQ(player.in("graph") == "b", c.meant(speed, free, jump)) << c.text << " of " << speed << free << jump;
+      EXPECT_EQ(player.in("graph") == "b", c.meant(speed, free, jump))
+          << c.text << " of " << speed << free << jump;
     }
   }
 }
@@ -128,9 +134,11 @@ TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
   const Asset asset = fixtures::graph_asset();
   const Wrong cases[] = {
       {"{\n\"graph\": \"wolk\"}", "test:2: graph: the asset has no clip of this name ('wolk')"},
-      {R"({"graph": {"clip": "idle", "sync": "feet"}})", "a synchronised clip has no markers of its phase ('idle')"},
+      {R"({"graph": {"clip": "idle", "sync": "feet"}})",
+       "a synchronised clip has no markers of its phase ('idle')"},
       {R"({"graph": {"clip": "hit", "sync": "feet"}})", "a clip that does not loop cannot be synchronised"},
-      {R"({"graph": {"layers": ["idle", {"node": "run", "mask": "lower"}]}})", "no mask of this name ('lower')"},
+      {R"({"graph": {"layers": ["idle", {"node": "run", "mask": "lower"}]}})",
+       "no mask of this name ('lower')"},
       {R"({"graph": {"layers": ["idle", {"node": "run", "mode": "additive", "reference": "rest"}]}})",
        "no clip of the reference's name ('rest')"},
       {R"({"parameters": {"s": 0}, "graph": {"blend": "s", "points": [[0, "idle"], [0, "run"]]}})",
@@ -208,6 +216,43 @@ TEST(GraphDescribe, SaysWhatPlaysAndWhatItWaitsFor) {
   for (const auto& w : machine["waits"])
     if (w["to"] == "move") waits = w["condition"] == "(remaining < 0.2 && !(fading))" && w["holds"] == false;
   EXPECT_TRUE(waits) << machine.dump(2);
+}
+
+TEST(GraphAttribution, SharesAddUpToTheAcceleration) {
+  const Asset asset = fixtures::graph_asset();
+  Graph graph;
+  fixtures::bind_graph(fixtures::kSmoothGraph, asset, graph);
+  fixtures::GraphPlayer<float> player(graph);
+  player.step(0);
+  std::mt19937 random(2);
+  const auto machine = [&](const char* name) {
+    for (const Graph::BoundMachine& m : graph.machines())
+      if (graph.node(m.node).name == name) return m.node;
+    return -1;
+  };
+  bool transition_told = false;
+  for (int k = 0; k < 400; ++k) {
+    if (k % 40 == 10) player.set("speed", k % 80 ? 3 : 0);
+    if (k % 90 == 30) player.trigger("hit");
+    if (k % 130 == 50) player.trigger("dead");
+    if (k == 100 || k == 200) player.set("wave", k == 100);
+    if (k == 150) player.set("lean", 1);
+    const int joint = k % fixtures::kGraphJoints;
+    graph_tools::Attribution attribution(graph, player.scratch, joint);
+    GraphStepJob<float> job{&graph,      player.state,   1 / 60.f, &player.scratch,
+                            player.jets, &player.events, {},       player.physical};
+    job.watch = attribution.watch();
+    player.events.count = 0;
+    ASSERT_TRUE(job.Run().ok());
+    Vec3<float> sum = Vec3<float>::Zero();
+    for (const graph_tools::AccelerationShare& share : attribution.shares()) {
+      sum += share.alpha;
+      transition_told |= share.node == machine("graph/0") && share.alpha.norm() > 1;
+    }
+    if (joint == 0) continue;  // the root is moved over the ground after all nodes
+    EXPECT_LT((sum - player.jets[std::size_t(joint)].alpha).norm(), 1e-3 * (1 + sum.norm())) << "frame " << k;
+  }
+  EXPECT_TRUE(transition_told);
 }
 
 }  // namespace

@@ -73,6 +73,8 @@ void GraphCommand::add(CLI::App& app) {
                      "JSON: [[seconds, \"parameter\", value], [seconds, \"trigger\"], …]");
   trace_->add_option("--seconds", seconds, "how long (10)")->check(CLI::Range(0.0, 36000.0));
   trace_->add_option("--rate", rate, "frames per second (60)")->check(CLI::Range(1.0, 10000.0));
+  trace_->add_option("--joint", joint,
+                     "whose acceleration is explained: by which nodes; the busiest otherwise");
   trace_->add_option("-o,--output", output, "CSV; standard output otherwise");
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
 }
@@ -157,9 +159,12 @@ Error GraphCommand::trace() {
     if (Error error = read_text(script, text)) return error;
     if (const std::string fault = inputs.read(text, script, compiled.graph); !fault.empty()) return {fault};
   }
+  graph_tools::TraceOptions options{seconds, rate, -1};
+  if (!joint.empty() && (options.joint = with.skeleton.find(joint.c_str())) < 0)
+    return {asset + ": no joint '" + joint + "'"};
   std::ostringstream rows;
   graph_tools::Json end;
-  if (const Status status = graph_tools::trace_graph(graph, with, inputs, seconds, rate, rows, end); !status)
+  if (const Status status = graph_tools::trace_graph(graph, with, inputs, options, rows, end); !status)
     return {input + ": " + status.reason};
   if (json_output) {
     std::puts(end.dump(2).c_str());

@@ -9,7 +9,7 @@
 namespace sinew::cli {
 
 struct GraphCommand {
-  std::string input, output, asset, script;
+  std::string input, output, asset, script, joint;
   double seconds = 10, rate = 60;
   bool json_output = false;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graph/attribution.h"
 #include "graph/describe.h"
 #include "sinew/graph/graph_step.h"
 
@@ -49,46 +50,109 @@ void InputScript::apply(const Graph& graph, std::span<std::byte> state, double f
   }
 }
 
-Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& inputs, double seconds,
-                   double rate, std::ostream& rows, Json& end) {
-  GraphScratch<float> scratch(graph);
-  std::vector<std::byte> state(graph.state_bytes<float>());
-  if (Status status = start_graph<float>(graph, state); !status) return status;
-  std::vector<JointJet<float>> jets(std::size_t(graph.joint_count()));
-  for (std::size_t j = 0; j < jets.size(); ++j) {
-    jets[j].rotation = graph.rest()[j].rotation;
-    jets[j].translation = graph.rest()[j].translation;
+namespace {
+
+/// A name as a cell of CSV.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+/// "graph/move 61 %, graph/move/1 30 %": parts of the acceleration along itself, those above a hundredth.
+std::string shares_text(const Graph& graph, const Attribution& attribution, const Vec3<float>& alpha) {
+  const float length = alpha.norm();
+  std::string text;
+  if (!(length > 0)) return text;
+  for (const AccelerationShare& share : attribution.shares()) {
+    const int percent = static_cast<int>(std::lround(100 * share.alpha.dot(alpha) / (length * length)));
+    if (percent == 0) continue;
+    text += (text.empty() ? "" : "; ") + graph.node(share.node).name + (share.time ? " (time) " : " ") +
+            std::to_string(percent) + " %";
   }
-  std::vector<EventHit> hits(256);
-  rows << "time";
-  for (const Graph::BoundMachine& machine : graph.machines()) rows << "," << graph.node(machine.node).name;
-  rows << ",x,y,heading,joint,angular_acceleration,events\n";
-  const int frames = static_cast<int>(seconds * rate);
-  for (int k = 0; k <= frames; ++k) {
-    const double time = k / rate, h = k == 0 ? 0 : 1 / rate;
-    inputs.apply(graph, state, k == 0 ? -1e300 : time - h, k == 0 ? 1e-9 : time - 1e-9);
-    EventSink events{hits};
-    if (Status status = GraphStepJob<float>{&graph, state, float(h), &scratch, jets, &events, {}, jets}.Run(); !status)
-      return status;
-    GraphParameters<float> parameters(graph, state);
-    rows << time;
-    for (const Graph::BoundMachine& machine : graph.machines())
-      rows << "," << graph.node(machine.node).states[std::size_t(parameters.state(machine.node))].name;
-    std::size_t worst = 0;
-    for (std::size_t j = 1; j < jets.size(); ++j)
-      if (jets[j].alpha.norm() > jets[worst].alpha.norm()) worst = j;
-    rows << "," << parameters.place().x() << "," << parameters.place().y() << "," << parameters.heading()
-         << "," << asset.skeleton.joints[worst].name << "," << jets[worst].alpha.norm() << ",";
-    for (int e = 0; e < events.count; ++e) {
-      const auto name = std::find_if(
-          asset.event_names.begin(), asset.event_names.end(),
-          [&](const std::string& n) { return event_name(n) == hits[std::size_t(e)].event->name; });
-      rows << (e ? " " : "") << *name;
+  return text;
+}
+
+class Trace {
+ public:
+  Trace(const Graph& graph, const Asset& asset, const TraceOptions& options, std::ostream& rows)
+      : graph_(graph),
+        asset_(asset),
+        options_(options),
+        rows_(rows),
+        jets_(std::size_t(graph.joint_count())) {
+    for (std::size_t j = 0; j < jets_.size(); ++j) {
+      jets_[j].rotation = graph.rest()[j].rotation;
+      jets_[j].translation = graph.rest()[j].translation;
     }
-    rows << "\n";
+    rows_ << "time";
+    for (const Graph::BoundMachine& machine : graph.machines())
+      rows_ << "," << cell(graph.node(machine.node).name);
+    rows_ << ",x,y,heading,joint,angular_acceleration,comes_from,events\n";
   }
-  end = describe_state(graph, state);
-  return {};
+  Status run(const InputScript& inputs, Json& end) {
+    if (Status status = start_graph<float>(graph_, state_); !status) return status;
+    const int frames = static_cast<int>(options_.seconds * options_.rate);
+    for (int k = 0; k <= frames; ++k) {
+      const double time = k / options_.rate, h = k == 0 ? 0 : 1 / options_.rate;
+      inputs.apply(graph_, state_, k == 0 ? -1e300 : time - h, k == 0 ? 1e-9 : time - 1e-9);
+      if (Status status = frame(time, h); !status) return status;
+    }
+    end = describe_state(graph_, state_);
+    return {};
+  }
+
+ private:
+  Status frame(double time, double h) {
+    EventSink events{hits_};
+    Attribution attribution(graph_, scratch_, options_.joint);
+    GraphStepJob<float> job{&graph_, state_, float(h), &scratch_, jets_, &events, {}, jets_};
+    if (options_.joint >= 0) job.watch = attribution.watch();
+    if (Status status = job.Run(); !status) return status;
+    GraphParameters<float> parameters(graph_, state_);
+    rows_ << time;
+    for (const Graph::BoundMachine& machine : graph_.machines())
+      rows_ << ","
+            << cell(graph_.node(machine.node).states[std::size_t(parameters.state(machine.node))].name);
+    const std::size_t joint = options_.joint >= 0 ? std::size_t(options_.joint) : busiest();
+    const Vec3<float>& alpha = jets_[joint].alpha;
+    rows_ << "," << parameters.place().x() << "," << parameters.place().y() << "," << parameters.heading()
+          << "," << cell(asset_.skeleton.joints[joint].name) << "," << alpha.norm() << ",";
+    if (options_.joint >= 0) rows_ << cell(shares_text(graph_, attribution, alpha));
+    rows_ << ",";
+    for (int e = 0; e < events.count; ++e)
+      rows_ << (e ? " " : "") << cell(name_of(hits_[std::size_t(e)].event->name));
+    rows_ << "\n";
+    return {};
+  }
+  std::size_t busiest() const {
+    const auto less = [](const JointJet<float>& a, const JointJet<float>& b) {
+      return a.alpha.norm() < b.alpha.norm();
+    };
+    return std::size_t(std::max_element(jets_.begin(), jets_.end(), less) - jets_.begin());
+  }
+  std::string name_of(std::uint32_t number) const {
+    for (const std::string& name : asset_.event_names)
+      if (event_name(name) == number) return name;
+    return std::to_string(number);
+  }
+
+  const Graph& graph_;
+  const Asset& asset_;
+  const TraceOptions& options_;
+  std::ostream& rows_;
+  GraphScratch<float> scratch_{graph_};
+  std::vector<std::byte> state_ = std::vector<std::byte>(graph_.state_bytes<float>());
+  std::vector<JointJet<float>> jets_;
+  std::vector<EventHit> hits_ = std::vector<EventHit>(256);
+};
+
+}  // namespace
+
+Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& inputs,
+                   const TraceOptions& options, std::ostream& rows, Json& end) {
+  return Trace(graph, asset, options, rows).run(inputs, end);
 }
 
 }  // namespace sinew::graph_tools

@@ -25,10 +25,15 @@ struct InputScript {
   void apply(const Graph& graph, std::span<std::byte> state, double from, double to) const;
 };
 
-/// A row of CSV per frame: time, states of all machines, place and heading, the joint with the greatest
-/// angular acceleration and what it is (rad/s²), events. `end`: describe_state() of the last one. Physical
-/// poses are the graph's own.
-Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& inputs, double seconds,
-                   double rate, std::ostream& rows, Json& end);
+struct TraceOptions {
+  double seconds = 10, rate = 60;
+  int joint = -1;  ///< whose acceleration is told and explained; −1: of each frame the one that has most
+};
+
+/// A row of CSV per frame: time, states of all machines, place and heading, the joint, its angular
+/// acceleration (rad/s²), the nodes that this comes from with their shares (of the joint that is asked for),
+/// events. `end`: describe_state() of the last one. Physical poses are the graph's own.
+Status trace_graph(const Graph& graph, const Asset& asset, const InputScript& inputs,
+                   const TraceOptions& options, std::ostream& rows, Json& end);
 
 }  // namespace sinew::graph_tools

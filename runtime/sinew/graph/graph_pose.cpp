@@ -63,6 +63,7 @@ class Pose {
       const GraphTask& task = s_.tasks[std::size_t(k)];
       const std::size_t joints = task.whole ? std::size_t(graph_.joint_count()) : job_.jets.size();
       if (Status status = carry_out(task, joints); !status) return status;
+      if (job_.watch.task_done) job_.watch.task_done(job_.watch.tool, task, jets(task.out, joints));
     }
     travel();
     return {};

@@ -13,6 +13,13 @@ namespace sinew {
 ///
 /// Allocates nothing. Fewer joints are a level of detail; one joint is what a server needs that only wants to
 /// know where characters are.
+/// Is told of every task and of the motion that it left in its register: for tools that explain a pose.
+template <class T>
+struct GraphWatch {
+  void (*task_done)(void* tool, const GraphTask& task, std::span<const JointJet<T>> out) = nullptr;
+  void* tool = nullptr;
+};
+
 template <class T>
 struct GraphPoseJob {
   const Graph* graph = nullptr;
@@ -22,6 +29,7 @@ struct GraphPoseJob {
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
   std::span<const JointJet<T>> physical = {};  ///< [joint] what it does do, for NodeType::kPhysical
   std::span<const T> spare_acceleration = {};  ///< [joint] rad/s², see GraphTransition::budget
+  GraphWatch<T> watch = {};
 
   Status Validate() const;
   Status Run() const;

@@ -23,16 +23,21 @@ struct GraphStepJob {
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
   std::span<const JointJet<T>> physical = {};  ///< as of GraphPoseJob
   std::span<const T> spare_acceleration = {};  ///< likewise
+  GraphWatch<T> watch = {};                    ///< of the last part
 
   Status Run() const {
-    const int parts = std::isfinite(h) && h <= T(1) ? std::max(1, static_cast<int>(std::ceil(h * T(60) - T(0.01)))) : 1;
+    const int parts =
+        std::isfinite(h) && h <= T(1) ? std::max(1, static_cast<int>(std::ceil(h * T(60) - T(0.01)))) : 1;
     for (int k = 1; k <= parts; ++k) {
       const int before = events ? events->count : 0;
-      if (Status status = GraphUpdateJob<T>{graph, state, h / T(parts), scratch, events}.Run(); !status) return status;
+      if (Status status = GraphUpdateJob<T>{graph, state, h / T(parts), scratch, events}.Run(); !status)
+        return status;
       for (int e = before; events && e < events->count; ++e)
         events->hits[std::size_t(e)].seconds_ago += static_cast<float>(h * T(parts - k) / T(parts));
-      const std::span<JointJet<T>> posed = k == parts ? jets : jets.first(std::min<std::size_t>(1, jets.size()));
-      const GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical, spare_acceleration};
+      const std::span<JointJet<T>> posed =
+          k == parts ? jets : jets.first(std::min<std::size_t>(1, jets.size()));
+      GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical, spare_acceleration};
+      if (k == parts) pose.watch = watch;
       if (Status status = pose.Run(); !status) return status;
     }
     return {};
