@@ -18,6 +18,7 @@
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/mesh_additive_job.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/phase_map.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/sampling_job.h"
@@ -401,6 +402,32 @@ struct MeshAdditiveNode : MotionNode<T> {
   }
 };
 
+/// Mirrored on a rig whose sides differ: two limbs with axes of their own, a sword in one.
+inline Skeleton lopsided_rig() {
+  constexpr int kParents[] = {-1, 0, 1, 2, 3, 0, 5, 6, 7, 7, 9};
+  constexpr const char* kNames[] = {"root",   "thigh_l", "shin_l", "foot_l", "toes_l", "thigh_r",
+                                    "shin_r", "foot_r",  "toes_r", "sword",  "tip"};
+  Skeleton s;
+  s.joints.resize(kNodeJoints);
+  for (int i = 0; i < kNodeJoints; ++i) {
+    Joint& joint = s.joints[std::size_t(i)];
+    joint.name = kNames[i];
+    joint.parent = kParents[i];
+    joint.rest = {rotation_exp<double>({0.3 * i, -0.2, 0.1 * i}), {0.1, 0.05 * i, -0.2}};
+  }
+  return s;
+}
+template <class T>
+struct MirrorNode : MotionNode<T> {
+  Clip clip = node_clip(1);
+  MirrorMap<T> map;
+  MirrorNode() { (void)build_mirror_map<T>(lopsided_rig(), map); }
+  void pose(std::span<JointJet<T>> out) override {
+    sample<T>(clip, this->now, out);
+    (void)MirrorJob<T>{&map, out, out}.Run();
+  }
+};
+
 /// One node and what it promises.
 template <class T>
 struct NodeCase {
@@ -426,6 +453,7 @@ std::vector<NodeCase<T>> motion_nodes() {
   add("mix", 2, {}, std::make_unique<BlendNode<T>>(mix, mix));
   add("override_and_additive", 2, {}, std::make_unique<BlendNode<T>>(over, more));
   add("additive_in_model_space", 2, {}, std::make_unique<MeshAdditiveNode<T>>());
+  add("mirror", 2, {}, std::make_unique<MirrorNode<T>>());
   add("crossfade_quintic", 2, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, QuinticEase>>());
   add("crossfade_smoothstep", 1, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, SmoothstepEase>>());
   add("crossfade_by_filtered_input", 2, {0.5, 0.6, 1.5}, std::make_unique<CrossfadeNode<T, FilteredEase>>());

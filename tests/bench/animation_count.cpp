@@ -1,7 +1,7 @@
 // Calls one animation job so many times, for callgrind to count: the difference between two runs is the
 // calls' own. 67 joints, float; or a clip of an asset.
 //
-//     animation_count sample|seek|blend|inertialize|begin CALLS
+//     animation_count sample|seek|blend|inertialize|begin|mirror CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
 // `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
@@ -13,6 +13,7 @@
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/inertialize_job.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/io/asset.h"
 
@@ -27,6 +28,17 @@ Clip clip_of(int argc, char** argv) {
   if (!load_asset(argv[3], asset)) return {};
   const int index = asset.find_clip(argv[4]);
   return index < 0 ? Clip() : asset.clips[std::size_t(index)];
+}
+
+/// All joints in pairs.
+MirrorMap<float> mirror_map(int joints) {
+  Skeleton skeleton;
+  skeleton.joints.resize(std::size_t(joints));
+  for (int i = 0; i < joints; ++i)
+    skeleton.joints[std::size_t(i)].name = (i % 2 == 0 ? "l" : "r") + std::to_string(i / 2);
+  MirrorMap<float> map;
+  (void)build_mirror_map(skeleton, map);
+  return map;
 }
 
 }  // namespace
@@ -46,6 +58,7 @@ int main(int argc, char** argv) {
   (void)begin_inertial<float>(a, b, 1, state);
   state.elapsed = 0.3f;
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  const MirrorMap<float> mirror = mirror_map(joints);
   bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")
@@ -58,10 +71,13 @@ int main(int argc, char** argv) {
       ok = InertializeJob<float>{b, &state, {}, out}.Run().ok();
     else if (job == "begin")
       ok = begin_inertial<float>(a, b, 1, state).ok();
+    else if (job == "mirror")
+      ok = MirrorJob<float>{&mirror, a, out}.Run().ok();
     else
       ok = false;
   }
   if (ok) return 0;
-  std::fputs("usage: animation_count sample|seek|blend|inertialize|begin CALLS [ASSET.sinew CLIP]\n", stderr);
+  std::fputs("usage: animation_count sample|seek|blend|inertialize|begin|mirror CALLS [ASSET.sinew CLIP]\n",
+             stderr);
   return 2;
 }
