@@ -15,6 +15,7 @@
 #include "sinew/animation/blend_space.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
+#include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/mesh_additive_job.h"
@@ -296,6 +297,68 @@ struct LookNode : LimbNode<T> {
   }
 };
 
+/// A foot on a body that rocks: it comes down, leaves, and finds other ground.
+template <class T>
+struct FootNode : LimbNode<T> {
+  FootState<T> state;
+  GroundHit<T> local{{T(0), T(0), T(-0.78)}, Vec3<T>(T(0.2), T(-0.1), T(1)).normalized(), 0};
+  T contact = 0, since = 0;  ///< s, since the state was moved on
+  std::vector<JointJet<T>> scratch = std::vector<JointJet<T>>(4);
+  void begin() override {
+    state = {};
+    contact = since = 0;
+    local.normal = Vec3<T>(T(0.2), T(-0.1), T(1)).normalized();
+    run(scratch, state);
+  }
+  void step(double h) override {
+    this->now += h;
+    since += T(h);
+  }
+  void change(int k) override {
+    if (k == 0) contact = 1;
+    if (k == 2) contact = 0;
+    if (k == 4) local.normal = Vec3<T>(T(-0.3), T(0.1), T(1)).normalized();
+    run(scratch, state);
+    since = 0;
+  }
+  MovingTransform<T> ground() const {
+    JointJet<T> jet;
+    const T a = T(0.3 * std::sin(2 * this->now)), v = T(0.6 * std::cos(2 * this->now));
+    jet.rotation = rotation_exp<T>({a, 0, 0});
+    jet.omega << v, 0, 0;
+    jet.alpha << -4 * a, 0, 0;
+    jet.translation << 0, a, 0;
+    jet.velocity << 0, v, 0;
+    jet.acceleration << 0, -4 * a, 0;
+    return moving_transform(jet);
+  }
+  void run(std::span<JointJet<T>> out, FootState<T>& foot) {
+    sample<T>(this->clip, this->now, out);
+    const MovingTransform<T> body[] = {ground()};
+    const JointJet<T> place = joint_jet(body[0]);
+    const GroundHit<T> hit[] = {
+        {place.rotation * local.point + place.translation, place.rotation * local.normal, 0}};
+    const FootInput<T> input[] = {{contact, hit, {}}};
+    const Vec3<T> toe(T(0.1), 0, T(-0.05));
+    const FootLeg<T> leg[] = {{this->kUpper, this->kMiddle, this->kEnd, toe, toe, Vec3<T>::UnitX()}};
+    FootPlacementJob<T> job;
+    job.parents = this->parents;
+    job.jets = out;
+    job.legs = leg;
+    job.feet = input;
+    job.states = {&foot, 1};
+    job.grounds = body;
+    job.level = TimeJet<T>(T(-0.75));
+    job.step = since;
+    job.settings.farthest = T(10);
+    (void)job.Run();
+  }
+  void pose(std::span<JointJet<T>> out) override {
+    FootState<T> copy = state;
+    run(out, copy);
+  }
+};
+
 /// A loop of 4 s and one of 3 s that step together, mixed by a filtered input.
 inline PhaseMap phase_map(std::span<const PhaseMarker> markers, double duration) {
   PhaseMap map;
@@ -462,6 +525,7 @@ std::vector<NodeCase<T>> motion_nodes() {
       std::make_unique<InertializeNode<T>>(true));
   add("dead_blend", 2, {0.5, 0.7, 1.1, 2, 2.4}, std::make_unique<DeadBlendNode<T>>());
   add("two_bone_to_a_target_that_jumps", 2, {0.5, 0.7, 1.1}, std::make_unique<ReachNode<T>>());
+  add("foot_that_is_locked_and_released", 2, {0.5, 0.6, 1.3, 1.5, 2}, std::make_unique<FootNode<T>>());
   add("aim_at_a_target_in_steps", 2, {0.5, 0.7}, std::make_unique<LookNode<T>>());
   add("step_together", 2, {0.5, 0.7, 1.5}, std::make_unique<SyncNode<T>>());
   add("blend_space", 2, {0.5, 0.7, 1.5}, std::make_unique<SpaceNode<T>>());

@@ -1,7 +1,7 @@
 // Calls one animation job so many times, for callgrind to count: the difference between two runs is the
 // calls' own. 67 joints, float; or a clip of an asset.
 //
-//     animation_count sample|seek|blend|inertialize|begin|mirror CALLS
+//     animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
 // `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
@@ -12,6 +12,7 @@
 
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
+#include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/mirror_job.h"
 #include "sinew/animation/sampling_job.h"
@@ -41,6 +42,29 @@ MirrorMap<float> mirror_map(int joints) {
   return map;
 }
 
+/// Pelvis and two legs, locked, the ground where the feet hang.
+bool place_feet(FootState<float> (&states)[2]) {
+  static const int parents[] = {-1, 0, 1, 2, 0, 4, 5};
+  JointJet<float> jets[7];
+  for (const int joint : {2, 3, 5, 6}) jets[joint].translation << 0.05f, 0, -0.4f;
+  FootLeg<float> legs[2] = {{1, 2, 3}, {4, 5, 6}};
+  for (FootLeg<float>& leg : legs) {
+    leg.toe << 0.15f, 0, -0.05f;
+    leg.bend << 1, 0, 0;
+  }
+  const GroundHit<float> hits[2] = {{{0, 0, -0.85f}}, {{0, 0, -0.85f}}};
+  const FootInput<float> feet[2] = {{1, hits, {}}, {1, hits, {}}};
+  FootPlacementJob<float> job;
+  job.parents = parents;
+  job.jets = jets;
+  job.legs = legs;
+  job.feet = feet;
+  job.states = states;
+  job.level = TimeJet<float>(-0.85f);
+  job.step = 0.01f;
+  return job.Run().ok();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -59,6 +83,7 @@ int main(int argc, char** argv) {
   state.elapsed = 0.3f;
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
   const MirrorMap<float> mirror = mirror_map(joints);
+  FootState<float> feet[2];
   bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")
@@ -73,11 +98,14 @@ int main(int argc, char** argv) {
       ok = begin_inertial<float>(a, b, 1, state).ok();
     else if (job == "mirror")
       ok = MirrorJob<float>{&mirror, a, out}.Run().ok();
+    else if (job == "feet")
+      ok = place_feet(feet);
     else
       ok = false;
   }
   if (ok) return 0;
-  std::fputs("usage: animation_count sample|seek|blend|inertialize|begin|mirror CALLS [ASSET.sinew CLIP]\n",
-             stderr);
+  std::fputs(
+      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS [ASSET.sinew CLIP]\n",
+      stderr);
   return 2;
 }
