@@ -18,6 +18,7 @@
 #include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/animation/mesh_additive_job.h"
 #include "sinew/animation/mirror_job.h"
 #include "sinew/animation/phase_map.h"
@@ -297,6 +298,64 @@ struct LookNode : LimbNode<T> {
   }
 };
 
+/// Three joints that look at one target after the other, with a weight that sways.
+template <class T>
+struct LookChainNode : LimbNode<T> {
+  LookChain<T> chain;
+  LookState<T> state;
+  int looked_at = 0;
+  T since = 0;  ///< s
+  std::vector<JointJet<T>> scratch = std::vector<JointJet<T>>(4);
+  LookChainNode() {
+    chain.count = 3;
+    for (int k = 0; k < 3; ++k) chain.joints[k] = k + 1;
+    chain.shares[0] = T(0.2);
+    chain.shares[1] = T(0.3);
+    chain.shares[2] = T(0.5);
+    chain.base = 0;
+    chain.axis = Vec3<T>(T(0.8), T(-0.6), 0);
+  }
+  void begin() override {
+    state = {};
+    looked_at = 0;
+    since = 0;
+    run(scratch, state, nullptr);
+  }
+  void step(double h) override {
+    this->now += h;
+    since += T(h);
+  }
+  void change(int k) override {
+    const MovingVector<T> before = target();
+    if (k < 2) looked_at = k + 1;
+    run(scratch, state, k < 2 ? &before : nullptr);
+    since = 0;
+  }
+  MovingVector<T> target() const {
+    const double t = this->now;
+    const TimeJet<T> up(T(std::sin(3 * t)), T(3 * std::cos(3 * t)), T(-9 * std::sin(3 * t)));
+    if (looked_at == 1) return {TimeJet<T>(T(2)), TimeJet<T>(T(-2)), up};
+    return {TimeJet<T>(T(looked_at == 0 ? 2 : -1)), TimeJet<T>(T(1)), up};
+  }
+  void run(std::span<JointJet<T>> out, LookState<T>& look, const MovingVector<T>* before) {
+    sample<T>(this->clip, this->now, out);
+    LookAtJob<T> job;
+    job.parents = this->parents;
+    job.jets = out;
+    job.chain = &chain;
+    job.state = &look;
+    job.target = target();
+    job.before = before;
+    job.weight = swaying_weight<T>(this->now, 0.6, 0.3, 1);
+    job.step = since;
+    (void)job.Run();
+  }
+  void pose(std::span<JointJet<T>> out) override {
+    LookState<T> copy = state;
+    run(out, copy, nullptr);
+  }
+};
+
 /// A foot on a body that rocks: it comes down, leaves, and finds other ground.
 template <class T>
 struct FootNode : LimbNode<T> {
@@ -527,6 +586,7 @@ std::vector<NodeCase<T>> motion_nodes() {
   add("two_bone_to_a_target_that_jumps", 2, {0.5, 0.7, 1.1}, std::make_unique<ReachNode<T>>());
   add("foot_that_is_locked_and_released", 2, {0.5, 0.6, 1.3, 1.5, 2}, std::make_unique<FootNode<T>>());
   add("aim_at_a_target_in_steps", 2, {0.5, 0.7}, std::make_unique<LookNode<T>>());
+  add("look_at_one_target_after_the_other", 2, {0.5, 0.7}, std::make_unique<LookChainNode<T>>());
   add("step_together", 2, {0.5, 0.7, 1.5}, std::make_unique<SyncNode<T>>());
   add("blend_space", 2, {0.5, 0.7, 1.5}, std::make_unique<SpaceNode<T>>());
   return all;

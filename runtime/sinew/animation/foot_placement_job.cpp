@@ -70,13 +70,8 @@ void shift_joint(const FootPlacementJob<T>& job, int joint, const MovingVector<T
 template <class T>
 void turn_to(const FootPlacementJob<T>& job, int joint, const Quat<TimeJet<T>>& rotation) {
   JointJet<T>& jet = job.jets[std::size_t(joint)];
-  MovingTransform<T> local = moving_transform(jet);
   const MovingTransform<T> parent = model_motion<T>(job.jets, job.parents, job.parents[std::size_t(joint)]);
-  local.rotation = parent.rotation.conjugate() * rotation;
-  const JointJet<T> turned = joint_jet(local);
-  jet.rotation = turned.rotation;
-  jet.omega = turned.omega;
-  jet.alpha = turned.alpha;
+  set_rotation<T>(parent.rotation.conjugate() * rotation, jet);
 }
 
 template <class T>

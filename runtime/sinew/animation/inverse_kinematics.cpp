@@ -43,12 +43,7 @@ MovingVector<T> part_normal_to(const MovingVector<T>& unit, const MovingVector<T
 /// Turns a joint, whose model rotation `was` so with its parents as they are by now, to what it `becomes`.
 template <class T>
 void turn_joint(const Quat<TimeJet<T>>& was, const Quat<TimeJet<T>>& becomes, JointJet<T>& jet) {
-  MovingTransform<T> local = moving_transform(jet);
-  local.rotation = local.rotation * (was.conjugate() * becomes);
-  const JointJet<T> turned = joint_jet(local);
-  jet.rotation = turned.rotation;
-  jet.omega = turned.omega;
-  jet.alpha = turned.alpha;
+  set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * becomes), jet);
 }
 
 }  // namespace
