@@ -15,9 +15,12 @@
 #include "sinew/animation/blend_space.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
+#include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/animation/mesh_additive_job.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/phase_map.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/sampling_job.h"
@@ -295,6 +298,126 @@ struct LookNode : LimbNode<T> {
   }
 };
 
+/// Three joints that look at one target after the other, with a weight that sways.
+template <class T>
+struct LookChainNode : LimbNode<T> {
+  LookChain<T> chain;
+  LookState<T> state;
+  int looked_at = 0;
+  T since = 0;  ///< s
+  std::vector<JointJet<T>> scratch = std::vector<JointJet<T>>(4);
+  LookChainNode() {
+    chain.count = 3;
+    for (int k = 0; k < 3; ++k) chain.joints[k] = k + 1;
+    chain.shares[0] = T(0.2);
+    chain.shares[1] = T(0.3);
+    chain.shares[2] = T(0.5);
+    chain.base = 0;
+    chain.axis = Vec3<T>(T(0.8), T(-0.6), 0);
+  }
+  void begin() override {
+    state = {};
+    looked_at = 0;
+    since = 0;
+    run(scratch, state, nullptr);
+  }
+  void step(double h) override {
+    this->now += h;
+    since += T(h);
+  }
+  void change(int k) override {
+    const MovingVector<T> before = target();
+    if (k < 2) looked_at = k + 1;
+    run(scratch, state, k < 2 ? &before : nullptr);
+    since = 0;
+  }
+  MovingVector<T> target() const {
+    const double t = this->now;
+    const TimeJet<T> up(T(std::sin(3 * t)), T(3 * std::cos(3 * t)), T(-9 * std::sin(3 * t)));
+    if (looked_at == 1) return {TimeJet<T>(T(2)), TimeJet<T>(T(-2)), up};
+    return {TimeJet<T>(T(looked_at == 0 ? 2 : -1)), TimeJet<T>(T(1)), up};
+  }
+  void run(std::span<JointJet<T>> out, LookState<T>& look, const MovingVector<T>* before) {
+    sample<T>(this->clip, this->now, out);
+    LookAtJob<T> job;
+    job.parents = this->parents;
+    job.jets = out;
+    job.chain = &chain;
+    job.state = &look;
+    job.target = target();
+    job.before = before;
+    job.weight = swaying_weight<T>(this->now, 0.6, 0.3, 1);
+    job.step = since;
+    (void)job.Run();
+  }
+  void pose(std::span<JointJet<T>> out) override {
+    LookState<T> copy = state;
+    run(out, copy, nullptr);
+  }
+};
+
+/// A foot on a body that rocks: it comes down, leaves, and finds other ground.
+template <class T>
+struct FootNode : LimbNode<T> {
+  FootState<T> state;
+  GroundHit<T> local{{T(0), T(0), T(-0.78)}, Vec3<T>(T(0.2), T(-0.1), T(1)).normalized(), 0};
+  T contact = 0, since = 0;  ///< s, since the state was moved on
+  std::vector<JointJet<T>> scratch = std::vector<JointJet<T>>(4);
+  void begin() override {
+    state = {};
+    contact = since = 0;
+    local.normal = Vec3<T>(T(0.2), T(-0.1), T(1)).normalized();
+    run(scratch, state);
+  }
+  void step(double h) override {
+    this->now += h;
+    since += T(h);
+  }
+  void change(int k) override {
+    if (k == 0) contact = 1;
+    if (k == 2) contact = 0;
+    if (k == 4) local.normal = Vec3<T>(T(-0.3), T(0.1), T(1)).normalized();
+    run(scratch, state);
+    since = 0;
+  }
+  MovingTransform<T> ground() const {
+    JointJet<T> jet;
+    const T a = T(0.3 * std::sin(2 * this->now)), v = T(0.6 * std::cos(2 * this->now));
+    jet.rotation = rotation_exp<T>({a, 0, 0});
+    jet.omega << v, 0, 0;
+    jet.alpha << -4 * a, 0, 0;
+    jet.translation << 0, a, 0;
+    jet.velocity << 0, v, 0;
+    jet.acceleration << 0, -4 * a, 0;
+    return moving_transform(jet);
+  }
+  void run(std::span<JointJet<T>> out, FootState<T>& foot) {
+    sample<T>(this->clip, this->now, out);
+    const MovingTransform<T> body[] = {ground()};
+    const JointJet<T> place = joint_jet(body[0]);
+    const GroundHit<T> hit[] = {
+        {place.rotation * local.point + place.translation, place.rotation * local.normal, 0}};
+    const FootInput<T> input[] = {{contact, hit, {}}};
+    const Vec3<T> toe(T(0.1), 0, T(-0.05));
+    const FootLeg<T> leg[] = {{this->kUpper, this->kMiddle, this->kEnd, toe, toe, Vec3<T>::UnitX()}};
+    FootPlacementJob<T> job;
+    job.parents = this->parents;
+    job.jets = out;
+    job.legs = leg;
+    job.feet = input;
+    job.states = {&foot, 1};
+    job.grounds = body;
+    job.level = TimeJet<T>(T(-0.75));
+    job.step = since;
+    job.settings.farthest = T(10);
+    (void)job.Run();
+  }
+  void pose(std::span<JointJet<T>> out) override {
+    FootState<T> copy = state;
+    run(out, copy);
+  }
+};
+
 /// A loop of 4 s and one of 3 s that step together, mixed by a filtered input.
 inline PhaseMap phase_map(std::span<const PhaseMarker> markers, double duration) {
   PhaseMap map;
@@ -401,6 +524,32 @@ struct MeshAdditiveNode : MotionNode<T> {
   }
 };
 
+/// Mirrored on a rig whose sides differ: two limbs with axes of their own, a sword in one.
+inline Skeleton lopsided_rig() {
+  constexpr int kParents[] = {-1, 0, 1, 2, 3, 0, 5, 6, 7, 7, 9};
+  constexpr const char* kNames[] = {"root",   "thigh_l", "shin_l", "foot_l", "toes_l", "thigh_r",
+                                    "shin_r", "foot_r",  "toes_r", "sword",  "tip"};
+  Skeleton s;
+  s.joints.resize(kNodeJoints);
+  for (int i = 0; i < kNodeJoints; ++i) {
+    Joint& joint = s.joints[std::size_t(i)];
+    joint.name = kNames[i];
+    joint.parent = kParents[i];
+    joint.rest = {rotation_exp<double>({0.3 * i, -0.2, 0.1 * i}), {0.1, 0.05 * i, -0.2}};
+  }
+  return s;
+}
+template <class T>
+struct MirrorNode : MotionNode<T> {
+  Clip clip = node_clip(1);
+  MirrorMap<T> map;
+  MirrorNode() { (void)build_mirror_map<T>(lopsided_rig(), map); }
+  void pose(std::span<JointJet<T>> out) override {
+    sample<T>(clip, this->now, out);
+    (void)MirrorJob<T>{&map, out, out}.Run();
+  }
+};
+
 /// One node and what it promises.
 template <class T>
 struct NodeCase {
@@ -426,6 +575,7 @@ std::vector<NodeCase<T>> motion_nodes() {
   add("mix", 2, {}, std::make_unique<BlendNode<T>>(mix, mix));
   add("override_and_additive", 2, {}, std::make_unique<BlendNode<T>>(over, more));
   add("additive_in_model_space", 2, {}, std::make_unique<MeshAdditiveNode<T>>());
+  add("mirror", 2, {}, std::make_unique<MirrorNode<T>>());
   add("crossfade_quintic", 2, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, QuinticEase>>());
   add("crossfade_smoothstep", 1, {0.5, 1.1}, std::make_unique<CrossfadeNode<T, SmoothstepEase>>());
   add("crossfade_by_filtered_input", 2, {0.5, 0.6, 1.5}, std::make_unique<CrossfadeNode<T, FilteredEase>>());
@@ -434,7 +584,9 @@ std::vector<NodeCase<T>> motion_nodes() {
       std::make_unique<InertializeNode<T>>(true));
   add("dead_blend", 2, {0.5, 0.7, 1.1, 2, 2.4}, std::make_unique<DeadBlendNode<T>>());
   add("two_bone_to_a_target_that_jumps", 2, {0.5, 0.7, 1.1}, std::make_unique<ReachNode<T>>());
+  add("foot_that_is_locked_and_released", 2, {0.5, 0.6, 1.3, 1.5, 2}, std::make_unique<FootNode<T>>());
   add("aim_at_a_target_in_steps", 2, {0.5, 0.7}, std::make_unique<LookNode<T>>());
+  add("look_at_one_target_after_the_other", 2, {0.5, 0.7}, std::make_unique<LookChainNode<T>>());
   add("step_together", 2, {0.5, 0.7, 1.5}, std::make_unique<SyncNode<T>>());
   add("blend_space", 2, {0.5, 0.7, 1.5}, std::make_unique<SpaceNode<T>>());
   return all;

@@ -1,7 +1,7 @@
 // Calls one animation job so many times, for callgrind to count: the difference between two runs is the
 // calls' own. 67 joints, float; or a clip of an asset.
 //
-//     animation_count sample|seek|blend|inertialize|begin CALLS
+//     animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
 // `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
@@ -12,7 +12,9 @@
 
 #include "fixtures/clips.h"
 #include "sinew/animation/blending_job.h"
+#include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/io/asset.h"
 
@@ -27,6 +29,40 @@ Clip clip_of(int argc, char** argv) {
   if (!load_asset(argv[3], asset)) return {};
   const int index = asset.find_clip(argv[4]);
   return index < 0 ? Clip() : asset.clips[std::size_t(index)];
+}
+
+/// All joints in pairs.
+MirrorMap<float> mirror_map(int joints) {
+  Skeleton skeleton;
+  skeleton.joints.resize(std::size_t(joints));
+  for (int i = 0; i < joints; ++i)
+    skeleton.joints[std::size_t(i)].name = (i % 2 == 0 ? "l" : "r") + std::to_string(i / 2);
+  MirrorMap<float> map;
+  (void)build_mirror_map(skeleton, map);
+  return map;
+}
+
+/// Pelvis and two legs, locked, the ground where the feet hang.
+bool place_feet(FootState<float> (&states)[2]) {
+  static const int parents[] = {-1, 0, 1, 2, 0, 4, 5};
+  JointJet<float> jets[7];
+  for (const int joint : {2, 3, 5, 6}) jets[joint].translation << 0.05f, 0, -0.4f;
+  FootLeg<float> legs[2] = {{1, 2, 3}, {4, 5, 6}};
+  for (FootLeg<float>& leg : legs) {
+    leg.toe << 0.15f, 0, -0.05f;
+    leg.bend << 1, 0, 0;
+  }
+  const GroundHit<float> hits[2] = {{{0, 0, -0.85f}}, {{0, 0, -0.85f}}};
+  const FootInput<float> feet[2] = {{1, hits, {}}, {1, hits, {}}};
+  FootPlacementJob<float> job;
+  job.parents = parents;
+  job.jets = jets;
+  job.legs = legs;
+  job.feet = feet;
+  job.states = states;
+  job.level = TimeJet<float>(-0.85f);
+  job.step = 0.01f;
+  return job.Run().ok();
 }
 
 }  // namespace
@@ -46,6 +82,8 @@ int main(int argc, char** argv) {
   (void)begin_inertial<float>(a, b, 1, state);
   state.elapsed = 0.3f;
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  const MirrorMap<float> mirror = mirror_map(joints);
+  FootState<float> feet[2];
   bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")
@@ -58,10 +96,16 @@ int main(int argc, char** argv) {
       ok = InertializeJob<float>{b, &state, {}, out}.Run().ok();
     else if (job == "begin")
       ok = begin_inertial<float>(a, b, 1, state).ok();
+    else if (job == "mirror")
+      ok = MirrorJob<float>{&mirror, a, out}.Run().ok();
+    else if (job == "feet")
+      ok = place_feet(feet);
     else
       ok = false;
   }
   if (ok) return 0;
-  std::fputs("usage: animation_count sample|seek|blend|inertialize|begin CALLS [ASSET.sinew CLIP]\n", stderr);
+  std::fputs(
+      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS [ASSET.sinew CLIP]\n",
+      stderr);
   return 2;
 }

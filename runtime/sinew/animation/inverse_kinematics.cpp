@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sinew/animation/soft_limits.h"
+
 namespace sinew {
 namespace {
 
@@ -38,25 +40,10 @@ MovingVector<T> part_normal_to(const MovingVector<T>& unit, const MovingVector<T
   return v - unit * unit.dot(v);
 }
 
-/// r as far as `soft`, then slower and slower up to kLongest: slope 1 − 3u² + 2u³ on the way.
-template <class T>
-TimeJet<T> soft_reach(const TimeJet<T>& r, T softness) {
-  const T soft = T(kLongest) - softness, width = 2 * softness;
-  if (r.value <= soft) return r;
-  if (r.value >= soft + width) return {T(kLongest)};
-  const TimeJet<T> u = (r - soft) * TimeJet<T>(1 / width);
-  return TimeJet<T>(soft) + width * (u - u * u * u * (TimeJet<T>(T(1)) - T(0.5) * u));
-}
-
 /// Turns a joint, whose model rotation `was` so with its parents as they are by now, to what it `becomes`.
 template <class T>
 void turn_joint(const Quat<TimeJet<T>>& was, const Quat<TimeJet<T>>& becomes, JointJet<T>& jet) {
-  MovingTransform<T> local = moving_transform(jet);
-  local.rotation = local.rotation * (was.conjugate() * becomes);
-  const JointJet<T> turned = joint_jet(local);
-  jet.rotation = turned.rotation;
-  jet.omega = turned.omega;
-  jet.alpha = turned.alpha;
+  set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * becomes), jet);
 }
 
 }  // namespace
@@ -92,7 +79,7 @@ Status TwoBoneJob<T>::Run() const {
   if (!(l1.value > T(0)) || !(l2.value > T(0)) || !(far.value > T(1e-6) * l1.value))
     return Status::error(Code::kOutOfRange, "target at the upper joint, or a bone without length", upper);
 
-  TimeJet<T> reach = (l1 + l2) * soft_reach(far / (l1 + l2), softness);
+  TimeJet<T> reach = (l1 + l2) * soft_min<T>(far / (l1 + l2), {T(kLongest)}, softness);
   const TimeJet<T> folded = shortest + T(1 - kLongest) * l1;
   if (reach < folded) reach = folded;
   const MovingVector<T> along = wanted / far;

@@ -12,17 +12,6 @@ Quat<TimeJet<T>> in_model(std::span<const int> parents, const JointJet<T>& jet, 
   return parents[joint] < 0 ? local : Quat<TimeJet<T>>(model[std::size_t(parents[joint])] * local);
 }
 
-/// The rotation of a moving quaternion of any length; the rest of the jet stays.
-template <class T>
-void set_rotation(const Quat<TimeJet<T>>& q, JointJet<T>& jet) {
-  MovingTransform<T> moving = moving_transform(jet);
-  moving.rotation = q;
-  const JointJet<T> turned = joint_jet(moving);
-  jet.rotation = turned.rotation;
-  jet.omega = turned.omega;
-  jet.alpha = turned.alpha;
-}
-
 /// (1 − w)·1 + w·δ, of ±δ the nearer to 1.
 template <class T>
 Quat<TimeJet<T>> part_of(const JointJet<T>& difference, const TimeJet<T>& w) {

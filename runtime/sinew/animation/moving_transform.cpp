@@ -27,18 +27,28 @@ MovingTransform<T> moving_transform(const JointJet<T>& jet) {
 }
 
 template <class T>
-JointJet<T> joint_jet(const MovingTransform<T>& moving) {
+void set_rotation(const Quat<TimeJet<T>>& rotation, JointJet<T>& jet) {
   T p[4], dp[4], ddp[4], q[4], omega[3], alpha[3];
   for (int i = 0; i < 4; ++i) {
-    const TimeJet<T>& x = moving.rotation.coeffs()[i];
+    const TimeJet<T>& x = rotation.coeffs()[i];
     p[i] = x.value;
     dp[i] = x.rate;
     ddp[i] = x.acceleration;
   }
   project(p, dp, ddp, q, omega, alpha);
-  return {Quat<T>(q[3], q[0], q[1], q[2]), {omega[0], omega[1], omega[2]},
-          {alpha[0], alpha[1], alpha[2]},  value_of<T>(moving.translation),
-          rate_of<T>(moving.translation),  acceleration_of<T>(moving.translation)};
+  jet.rotation = Quat<T>(q[3], q[0], q[1], q[2]);
+  jet.omega << omega[0], omega[1], omega[2];
+  jet.alpha << alpha[0], alpha[1], alpha[2];
+}
+
+template <class T>
+JointJet<T> joint_jet(const MovingTransform<T>& moving) {
+  JointJet<T> jet;
+  set_rotation(moving.rotation, jet);
+  jet.translation = value_of<T>(moving.translation);
+  jet.velocity = rate_of<T>(moving.translation);
+  jet.acceleration = acceleration_of<T>(moving.translation);
+  return jet;
 }
 
 template <class T>

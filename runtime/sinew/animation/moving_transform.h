@@ -57,6 +57,10 @@ MovingTransform<T> moving_transform(const JointJet<T>& jet);
 template <class T>
 JointJet<T> joint_jet(const MovingTransform<T>& moving);
 
+/// Gives a jet the rotation of a moving quaternion, of any length. Its translation stays.
+template <class T>
+void set_rotation(const Quat<TimeJet<T>>& rotation, JointJet<T>& jet);
+
 /// Frame of a joint in that of an ancestor, or in model space (the axes of the root's parent), by walking up.
 /// `parents` [joint], −1 for a root.
 template <class T>
@@ -67,6 +71,7 @@ MovingTransform<T> model_motion(std::span<const JointJet<T>> jets, std::span<con
   prefix Quat<TimeJet<T>> shortest_arc<T>(const MovingVector<T>&, const MovingVector<T>&); \
   prefix MovingTransform<T> moving_transform<T>(const JointJet<T>&);                       \
   prefix JointJet<T> joint_jet<T>(const MovingTransform<T>&);                              \
+  prefix void set_rotation<T>(const Quat<TimeJet<T>>&, JointJet<T>&);                      \
   prefix MovingTransform<T> model_motion<T>(std::span<const JointJet<T>>, std::span<const int>, int, int);
 SINEW_MOVING_INSTANCES(extern template, float)
 SINEW_MOVING_INSTANCES(extern template, double)

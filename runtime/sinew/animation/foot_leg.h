@@ -1,0 +1,32 @@
+// The parts of a leg that stands: its joints and where its sole touches the ground.
+#pragma once
+
+#include "sinew/animation/clip.h"
+#include "sinew/skeleton/skeleton.h"
+
+namespace sinew {
+
+template <class T>
+struct FootLeg {
+  int upper = -1, middle = -1, foot = -1;  ///< joints: thigh, shin, foot
+  Vec3<T> toe = Vec3<T>::Zero();           ///< m, foot axes: the sole under the ball
+  Vec3<T> heel = Vec3<T>::Zero();          ///< m, foot axes: the sole under the heel; = toe: a point foot
+  /// Direction in the axes of the upper joint to which the middle one points away; zero: as the animation
+  /// bends it, which must not be straight then.
+  Vec3<T> bend = Vec3<T>::Zero();
+  Vec3<T> hinge = Vec3<T>::Zero();  ///< see TwoBoneJob
+};
+
+/// Leg and sole of a foot found by its role (kFootL, kFootR): thigh and shin above it, toes below it, the
+/// sole by the colliders of foot and toes at rest. Errors if a role is missing.
+template <class T>
+Status find_foot_leg(const Skeleton& skeleton, Role foot, FootLeg<T>& out);
+
+/// Whether a joint rests on the ground at a time of a clip, by Clip::contacts. The contact weight of a blend
+/// is the sum of its clips' weights where they rest.
+bool in_contact(const Clip& clip, double time, int joint);
+
+extern template Status find_foot_leg<float>(const Skeleton&, Role, FootLeg<float>&);
+extern template Status find_foot_leg<double>(const Skeleton&, Role, FootLeg<double>&);
+
+}  // namespace sinew

@@ -1,0 +1,28 @@
+// Limits without a kink: what bounds a motion keeps its velocity and acceleration continuous.
+#pragma once
+
+#include "sinew/animation/time_jet.h"
+
+namespace sinew {
+
+/// x above `width`, 0 below −width, and C² between the two: slope 3u² − 2u³. Never below either 0 or x, and
+/// above them by 3/16 of `width` (> 0, in the unit of x) at most.
+template <class T>
+TimeJet<T> soft_positive(const TimeJet<T>& x, const T& width) {
+  if (x.value >= width) return x;
+  if (x.value <= -width) return TimeJet<T>(T(0));
+  const T twice = 2 * width;
+  const TimeJet<T> u = (T(1) / twice) * (x + TimeJet<T>(width));
+  return twice * (u * u * u * (TimeJet<T>(T(1)) - T(0.5) * u));
+}
+/// The larger and the smaller of two, C²; their error is that of soft_positive(), away from the other one.
+template <class T>
+TimeJet<T> soft_max(const TimeJet<T>& a, const TimeJet<T>& b, const T& width) {
+  return a + soft_positive<T>(b - a, width);
+}
+template <class T>
+TimeJet<T> soft_min(const TimeJet<T>& a, const TimeJet<T>& b, const T& width) {
+  return a - soft_positive<T>(a - b, width);
+}
+
+}  // namespace sinew
