@@ -7,6 +7,7 @@
 
 #include "cli/convert_folder.h"
 #include "cli/evaluate.h"
+#include "cli/export.h"
 #include "cli/files.h"
 #include "cli/memory.h"
 #include "cli/study_program.h"
@@ -357,6 +358,44 @@ struct RenderCommand {
   }
 };
 
+struct ExportCommand {
+  std::string input, interpolation = "linear", mesh = "skin";
+  SourceOptions source;
+  cli::Export what;
+  bool json_output = false;
+
+  Error run() {
+    what.cubic = interpolation == "cubic";
+    what.surface = mesh == "skin"     ? sinew::exporting::Surface::kSkin
+                   : mesh == "shapes" ? sinew::exporting::Surface::kShapes
+                                      : sinew::exporting::Surface::kNone;
+    json conversion, report = {{"animations", json::array()}, {"notes", json::array()}};
+    if (Error error = what.check()) return error;
+    if (Error error = source.read(conversion)) return error;
+    if (std::filesystem::path(input).extension() == ".json") {
+      sinew::scene::Scene scene;
+      if (Error error = load_scene(input, "", scene)) return error;
+      if (Error error = cli::export_scene(scene, what, report)) return in_input(error);
+    } else {
+      json ignored;
+      Asset asset;
+      if (Error error = sinew::convert::open_any(input, conversion, asset, ignored)) return error;
+      if (Error error = cli::export_asset(asset, what, report)) return in_input(error);
+    }
+    if (json_output)
+      std::puts(cli::json_text(report).c_str());
+    else
+      std::fputs(cli::export_text(report).c_str(), stdout);
+    return {};
+  }
+
+ private:
+  /// What is wrong with the output names it already.
+  Error in_input(const Error& error) const {
+    return error.message.rfind(what.output + ": ", 0) == 0 ? error : Error{input + ": " + error.message};
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -449,6 +488,34 @@ int main(int argc, char** argv) try {
   r->add_option("--scheme", render.scheme, kSchemes);
   render.source.add(*r);
 
+  ExportCommand exporting;
+  auto* x =
+      app.add_subcommand("export",
+                         "assets, clips and what characters did in a scene to files of other tools\n"
+                         "Examples: sinew export hero.sinew -o hero.glb --clip walk --interpolation cubic\n"
+                         "          sinew export push.json -o push.glb");
+  x->add_option("input", exporting.input, "asset or source file; or a scene (.json), which is played")
+      ->required();
+  x->add_option("-o,--output", exporting.what.output, "glTF: .glb, or .gltf in one file")->required();
+  x->add_option("--clip", exporting.what.clips, "assets: a clip by name, or several (default: all)")
+      ->allow_extra_args(false);
+  x->add_option("--character", exporting.what.character,
+                "scenes: one character by name (default: all, with the scene's props)");
+  x->add_option("--rate", exporting.what.rate, "keys per second of clips; a scene has one a step")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  x->add_option("--interpolation", exporting.interpolation,
+                "linear, or cubic: splines through the keys with the clips' own velocities")
+      ->check(CLI::IsMember({"linear", "cubic"}))
+      ->capture_default_str();
+  x->add_option("--mesh", exporting.mesh,
+                "skin (the body's shapes where the asset has none), shapes (of the physical body) or none")
+      ->check(CLI::IsMember({"skin", "shapes", "none"}))
+      ->capture_default_str();
+  x->add_flag("--json", exporting.json_output, "what was written, on standard output as JSON");
+  exporting.source.add(*x);
+  x->footer("Exit codes: 0 done, 1 bad input, 2 usage");
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
@@ -468,6 +535,8 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (s->parsed())
     error = simulate.run();
+  else if (x->parsed())
+    error = exporting.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -1,0 +1,148 @@
+#include "cli/export.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/files.h"
+#include "scene/run.h"
+
+namespace sinew::cli {
+namespace {
+
+using convert::Error;
+using exporting::Motion;
+
+std::string ending_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+std::vector<std::string> clip_names(const Asset& asset) {
+  std::vector<std::string> names;
+  for (const Clip& clip : asset.clips) names.push_back(clip.name);
+  return names;
+}
+
+/// Indices of the clips that are asked for; all without names.
+Error chosen_clips(const Asset& asset, const std::vector<std::string>& names, std::vector<int>& out) {
+  for (std::size_t i = 0; i < asset.clips.size() && names.empty(); ++i) out.push_back(static_cast<int>(i));
+  for (const std::string& name : names) {
+    const int clip = asset.find_clip(name);
+    if (clip < 0) return {"it has no clip '" + name + "' (" + listed(clip_names(asset)) + ")"};
+    if (std::find(out.begin(), out.end(), clip) == out.end()) out.push_back(clip);
+  }
+  return {};
+}
+
+Error chosen_characters(const scene::Recording& recording, const std::string& name, std::vector<int>& out) {
+  for (std::size_t n = 0; n < recording.names.size(); ++n)
+    if (name.empty() || recording.names[n] == name) out.push_back(static_cast<int>(n));
+  if (!name.empty() && out.empty())
+    return {"it has no character '" + name + "' (" + listed(recording.names) + ")"};
+  return {};
+}
+
+void describe(const Motion& motion, nlohmann::json& report) {
+  for (const auto& known : report["animations"])
+    if (known["name"] == motion.name) return;  // of another character
+  report["animations"].push_back(
+      {{"name", motion.name}, {"keys", motion.times.size()}, {"duration_s", motion.times.back()}});
+}
+
+Error write(const std::string& bytes, const Export& what, nlohmann::json& report) {
+  if (Error error = write_atomically(what.output, bytes)) return error;
+  report["output"] = what.output;
+  report["bytes"] = bytes.size();
+  return {};
+}
+
+exporting::GltfContent content_of(const Export& what) {
+  exporting::GltfContent content;
+  content.surface = what.surface;
+  content.cubic = what.cubic;
+  content.binary = ending_of(what.output) == ".glb";
+  return content;
+}
+
+/// The scene's bodies beside its characters.
+void add_props(const scene::Recording& recording, const std::string& motion,
+               exporting::GltfContent& content) {
+  for (std::size_t p = 0; p < recording.props.size(); ++p) {
+    exporting::GltfProp prop{recording.props[p], {}, {}, {}, motion};
+    for (const scene::Frame& frame : recording.frames) {
+      prop.times.push_back(frame.time);
+      prop.poses.push_back(frame.props[p].world);
+      prop.hidden.push_back(frame.props[p].world.translation.z() <= scene::kHidden);
+    }
+    content.props.push_back(std::move(prop));
+  }
+}
+
+}  // namespace
+
+Error Export::check() const {
+  const std::string ending = ending_of(output);
+  if (ending != ".glb" && ending != ".gltf")
+    return {output + ": what it is to be is not known by its ending: .glb or .gltf"};
+  return check_writable(output);
+}
+
+Error export_asset(const Asset& asset, const Export& what, nlohmann::json& report) {
+  if (!what.character.empty()) return {"--character is for scenes"};
+  std::vector<int> clips;
+  if (Error error = chosen_clips(asset, what.clips, clips)) return error;
+  exporting::GltfContent content = content_of(what);
+  exporting::GltfFigure figure{&asset, asset.skeleton.name, {}};
+  for (const int clip : clips) {
+    figure.motions.push_back(exporting::sample_clip(asset, asset.clips[static_cast<std::size_t>(clip)],
+                                                    what.rate, exporting::Keys::kGrid));
+    describe(figure.motions.back(), report);
+  }
+  content.figures.push_back(std::move(figure));
+  return write(exporting::write_gltf(content), what, report);
+}
+
+Error export_scene(const scene::Scene& scene, const Export& what, nlohmann::json& report) {
+  if (!what.clips.empty()) return {"--clip is for assets: a scene's result is one animation"};
+  if (what.cubic)
+    return {"--interpolation cubic is for clips: between its steps a scene's motion is not known"};
+  scene::Recording recording;
+  scene::Telemetry telemetry;
+  std::vector<int> characters;
+  if (Error error = scene::run_scene(scene, recording, telemetry, progress_line("export: frame")))
+    return error;
+  if (Error error = chosen_characters(recording, what.character, characters)) return error;
+  const std::string name = scene.title.empty() ? "simulation" : scene.title;
+  exporting::GltfContent content = content_of(what);
+  for (const int n : characters) {
+    const auto at = static_cast<std::size_t>(n);
+    exporting::GltfFigure figure{recording.characters[at].get(), recording.names[at], {}};
+    figure.motions.push_back(exporting::played_motion(recording, n, name));
+    describe(figure.motions.back(), report);
+    content.figures.push_back(std::move(figure));
+  }
+  if (what.character.empty()) add_props(recording, name, content);
+  return write(exporting::write_gltf(content), what, report);
+}
+
+std::string export_text(const nlohmann::json& report) {
+  std::string text;
+  char line[64];
+  for (const auto& animation : report["animations"]) {
+    std::snprintf(line, sizeof line, ": %.2f s, %d keys\n", animation["duration_s"].get<double>(),
+                  animation["keys"].get<int>());
+    text += "animation " + animation["name"].get<std::string>() + line;
+  }
+  for (const auto& note : report["notes"]) text += "note: " + note.get<std::string>() + "\n";
+  return text + report["output"].get<std::string>() + ": " +
+         std::to_string(report["bytes"].get<std::size_t>()) + " bytes\n";
+}
+
+}  // namespace sinew::cli
