@@ -41,6 +41,24 @@ TEST(ExportCommand, PlaysAScene) {
   expect_refused("export " + scene + " --interpolation cubic -o " + one, "cubic is for clips");
 }
 
+TEST(ExportCommand, WritesOneMotionAsBvh) {
+  const std::string out = own_directory() + "one.bvh";
+  ASSERT_EQ(sinew("export " + kAsset + " --clip walk -o " + out).code, 0);
+  EXPECT_EQ(bytes_of(out).rfind("HIERARCHY\nROOT ", 0), 0u);
+  EXPECT_NE(bytes_of(out).find("\nFrames: 65\n"), std::string::npos);
+  expect_refused("export " + kAsset + " -o " + out, "BVH holds one clip: choose with --clip (walk, run");
+  expect_refused("export " + kAsset + " --clip walk --interpolation cubic -o " + out,
+                 ".bvh holds no splines");
+  const std::string scene =
+      written("pair.json", R"({"duration": 0.1, "characters": [
+    {"asset": ")" + kAsset + R"(", "name": "anna"}, {"asset": ")" +
+                               kAsset + R"(", "name": "ben", "position": [0, 2, 0]}]})");
+  expect_refused("export " + scene + " -o " + out,
+                 "BVH holds one character: choose with --character (anna, ben)");
+  ASSERT_EQ(sinew("export " + scene + " --character ben -o " + out).code, 0);
+  EXPECT_NE(bytes_of(out).find("\nFrames: 7\n"), std::string::npos);
+}
+
 TEST(ExportCommand, BadInputIsNamedInOneLineAndNothingIsLeftBehind) {
   const std::string out = own_directory() + "never.glb";
   expect_refused("export /no/such.sinew -o " + out, "/no/such.sinew");
@@ -58,7 +76,7 @@ TEST(ExportCommand, BadInputIsNamedInOneLineAndNothingIsLeftBehind) {
 TEST(ExportCommand, HelpSaysEveryDefault) {
   const Outcome help = sinew("export --help");
   EXPECT_EQ(help.code, 0);
-  for (const char* words : {"[60]", "[linear]", "[skin]", "default: all", "Examples", "Exit codes"})
+  for (const char* words : {"=60", "=linear", "=skin", "default: all", "Examples", "Exit codes"})
     EXPECT_NE(help.out.find(words), std::string::npos) << words << "\n" << help.out;
 }
 

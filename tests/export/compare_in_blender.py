@@ -7,17 +7,24 @@ import sys
 import bpy
 import numpy
 
-# Debian 12's Blender 3.4 asks its glTF importer's numpy for a name that Debian's numpy 1.24 has no more.
+# Debian 12's Blender 3.4 is older than its Python 3.11 and numpy 1.24: its importers ask these for what they have no more.
 if "bool" not in numpy.__dict__:
     numpy.bool = bool
+
+
+def open_without_universal_newlines(path, mode="r", **options):
+    return open(path, mode.replace("U", ""), **options)
+
 
 file, expected, answer = sys.argv[sys.argv.index("--") + 1:]
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
 scene.render.fps = 60
 if file.endswith(".bvh"):
+    import io_anim_bvh.import_bvh
+    io_anim_bvh.import_bvh.open = open_without_universal_newlines
     # Blender takes the file's frames as its own, one by one.
-    bpy.ops.import_anim.bvh(filepath=file, axis_forward="Z", axis_up="Y", use_fps_scale=False,
+    bpy.ops.import_anim.bvh(filepath=file, axis_forward="-Z", axis_up="Y", use_fps_scale=False,
                             update_scene_fps=True, rotate_mode="QUATERNION")
 else:
     bpy.ops.import_scene.gltf(filepath=file)

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cli/files.h"
+#include "export/bvh.h"
 #include "scene/run.h"
 
 namespace sinew::cli {
@@ -16,6 +17,10 @@ std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return ending;
+}
+
+bool is_gltf(const std::string& ending) {
+  return ending == ".glb" || ending == ".gltf";
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -85,19 +90,36 @@ void add_props(const scene::Recording& recording, const std::string& motion,
   }
 }
 
-}  // namespace
-
-Error Export::check() const {
-  const std::string ending = ending_of(output);
-  if (ending != ".glb" && ending != ".gltf")
-    return {output + ": what it is to be is not known by its ending: .glb or .gltf"};
-  return check_writable(output);
+Error write_gltf(const exporting::GltfContent& content, const Export& what, nlohmann::json& report) {
+  return write(exporting::write_gltf(content), what, report);
 }
 
-Error export_asset(const Asset& asset, const Export& what, nlohmann::json& report) {
-  if (!what.character.empty()) return {"--character is for scenes"};
-  std::vector<int> clips;
-  if (Error error = chosen_clips(asset, what.clips, clips)) return error;
+Error write_bvh(const Skeleton& skeleton, const Motion& motion, const Export& what, nlohmann::json& report) {
+  std::string text;
+  std::vector<std::string> notes;
+  if (Error error = exporting::write_bvh(skeleton, motion, text, notes)) return error;
+  for (const std::string& note : notes) report["notes"].push_back(note);
+  return write(text, what, report);
+}
+
+/// The one clip that goes into a BVH file; without clips, the pose at rest.
+Error bvh_of_asset(const Asset& asset, const std::vector<int>& clips, const Export& what,
+                   nlohmann::json& report) {
+  if (clips.size() > 1) return {"BVH holds one clip: choose with --clip (" + listed(clip_names(asset)) + ")"};
+  Motion motion{"rest", nullptr, {0}, {std::vector<JointJet<double>>(asset.skeleton.joints.size())}};
+  for (std::size_t j = 0; j < asset.skeleton.joints.size(); ++j) {
+    motion.frames[0][j].rotation = asset.skeleton.joints[j].rest.rotation;
+    motion.frames[0][j].translation = asset.skeleton.joints[j].rest.translation;
+  }
+  if (!clips.empty())
+    motion = exporting::sample_clip(asset, asset.clips[static_cast<std::size_t>(clips[0])], what.rate,
+                                    exporting::Keys::kEven);
+  describe(motion, report);
+  return write_bvh(asset.skeleton, motion, what, report);
+}
+
+Error gltf_of_asset(const Asset& asset, const std::vector<int>& clips, const Export& what,
+                    nlohmann::json& report) {
   exporting::GltfContent content = content_of(what);
   exporting::GltfFigure figure{&asset, asset.skeleton.name, {}};
   for (const int clip : clips) {
@@ -106,10 +128,44 @@ Error export_asset(const Asset& asset, const Export& what, nlohmann::json& repor
     describe(figure.motions.back(), report);
   }
   content.figures.push_back(std::move(figure));
-  return write(exporting::write_gltf(content), what, report);
+  return write_gltf(content, what, report);
+}
+
+Error gltf_of_scene(const scene::Recording& recording, const std::vector<int>& characters,
+                    const std::string& name, const Export& what, nlohmann::json& report) {
+  exporting::GltfContent content = content_of(what);
+  for (const int n : characters) {
+    const auto at = static_cast<std::size_t>(n);
+    exporting::GltfFigure figure{recording.characters[at].get(), recording.names[at], {}};
+    figure.motions.push_back(exporting::played_motion(recording, n, name));
+    describe(figure.motions.back(), report);
+    content.figures.push_back(std::move(figure));
+  }
+  if (what.character.empty()) add_props(recording, name, content);
+  return write_gltf(content, what, report);
+}
+
+}  // namespace
+
+Error Export::check() const {
+  const std::string ending = ending_of(output);
+  if (!is_gltf(ending) && ending != ".bvh")
+    return {output + ": what it is to be is not known by its ending: .glb, .gltf or .bvh"};
+  if (!is_gltf(ending) && cubic)
+    return {"--interpolation cubic is for glTF: " + ending + " holds no splines"};
+  return check_writable(output);
+}
+
+Error export_asset(const Asset& asset, const Export& what, nlohmann::json& report) {
+  if (!what.character.empty()) return {"--character is for scenes"};
+  std::vector<int> clips;
+  if (Error error = chosen_clips(asset, what.clips, clips)) return error;
+  if (ending_of(what.output) == ".bvh") return bvh_of_asset(asset, clips, what, report);
+  return gltf_of_asset(asset, clips, what, report);
 }
 
 Error export_scene(const scene::Scene& scene, const Export& what, nlohmann::json& report) {
+  const bool bvh = ending_of(what.output) == ".bvh";
   if (!what.clips.empty()) return {"--clip is for assets: a scene's result is one animation"};
   if (what.cubic)
     return {"--interpolation cubic is for clips: between its steps a scene's motion is not known"};
@@ -120,16 +176,13 @@ Error export_scene(const scene::Scene& scene, const Export& what, nlohmann::json
     return error;
   if (Error error = chosen_characters(recording, what.character, characters)) return error;
   const std::string name = scene.title.empty() ? "simulation" : scene.title;
-  exporting::GltfContent content = content_of(what);
-  for (const int n : characters) {
-    const auto at = static_cast<std::size_t>(n);
-    exporting::GltfFigure figure{recording.characters[at].get(), recording.names[at], {}};
-    figure.motions.push_back(exporting::played_motion(recording, n, name));
-    describe(figure.motions.back(), report);
-    content.figures.push_back(std::move(figure));
-  }
-  if (what.character.empty()) add_props(recording, name, content);
-  return write(exporting::write_gltf(content), what, report);
+  if (!bvh) return gltf_of_scene(recording, characters, name, what, report);
+  if (characters.size() != 1)
+    return {"BVH holds one character: choose with --character (" + listed(recording.names) + ")"};
+  const Motion motion = exporting::played_motion(recording, characters[0], name);
+  describe(motion, report);
+  return write_bvh(recording.characters[static_cast<std::size_t>(characters[0])]->skeleton, motion, what,
+                   report);
 }
 
 std::string export_text(const nlohmann::json& report) {

@@ -10,7 +10,7 @@
 namespace sinew::cli {
 
 struct Export {
-  std::string output;              ///< .glb or .gltf
+  std::string output;              ///< its ending says what it is
   std::vector<std::string> clips;  ///< names; none: all
   double rate = 60;                ///< keys per second
   bool cubic = false;

@@ -493,11 +493,14 @@ int main(int argc, char** argv) try {
       app.add_subcommand("export",
                          "assets, clips and what characters did in a scene to files of other tools\n"
                          "Examples: sinew export hero.sinew -o hero.glb --clip walk --interpolation cubic\n"
-                         "          sinew export push.json -o push.glb");
+                         "          sinew export push.json -o push.glb\n"
+                         "          sinew export hero.sinew --clip walk -o walk.bvh");
   x->add_option("input", exporting.input, "asset or source file; or a scene (.json), which is played")
       ->required();
-  x->add_option("-o,--output", exporting.what.output, "glTF: .glb, or .gltf in one file")->required();
-  x->add_option("--clip", exporting.what.clips, "assets: a clip by name, or several (default: all)")
+  x->add_option("-o,--output", exporting.what.output, "glTF: .glb, or .gltf in one file; motion: .bvh")
+      ->required();
+  x->add_option("--clip", exporting.what.clips,
+                "assets: a clip by name, or several (default: all; BVH holds one)")
       ->allow_extra_args(false);
   x->add_option("--character", exporting.what.character,
                 "scenes: one character by name (default: all, with the scene's props)");
