@@ -5,6 +5,8 @@
 
 #include "cli/files.h"
 #include "export/bvh.h"
+#include "export/mjcf.h"
+#include "export/urdf.h"
 #include "scene/run.h"
 
 namespace sinew::cli {
@@ -21,6 +23,11 @@ std::string ending_of(const std::string& path) {
 
 bool is_gltf(const std::string& ending) {
   return ending == ".glb" || ending == ".gltf";
+}
+
+/// Formats that hold a physical body and no motion.
+bool is_body(const std::string& ending) {
+  return ending == ".xml" || ending == ".urdf";
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -98,7 +105,19 @@ Error write_bvh(const Skeleton& skeleton, const Motion& motion, const Export& wh
   std::string text;
   std::vector<std::string> notes;
   if (Error error = exporting::write_bvh(skeleton, motion, text, notes)) return error;
-  for (const std::string& note : notes) report["notes"].push_back(note);
+  report["notes"] = notes;
+  return write(text, what, report);
+}
+
+/// The physical body alone: MJCF or URDF.
+Error write_body(const Skeleton& skeleton, const Export& what, nlohmann::json& report) {
+  std::string text;
+  std::vector<std::string> notes;
+  if (ending_of(what.output) == ".xml")
+    text = exporting::write_mjcf(skeleton, notes);
+  else if (Error error = exporting::write_urdf(skeleton, text, notes))
+    return error;
+  report["notes"] = notes;
   return write(text, what, report);
 }
 
@@ -149,8 +168,10 @@ Error gltf_of_scene(const scene::Recording& recording, const std::vector<int>& c
 
 Error Export::check() const {
   const std::string ending = ending_of(output);
-  if (!is_gltf(ending) && ending != ".bvh")
-    return {output + ": what it is to be is not known by its ending: .glb, .gltf or .bvh"};
+  if (!is_gltf(ending) && ending != ".bvh" && !is_body(ending))
+    return {output + ": what it is to be is not known by its ending: .glb, .gltf, .bvh, .xml or .urdf"};
+  if (is_body(ending) && !clips.empty())
+    return {"--clip is for glTF and BVH: " + ending + " holds no motion"};
   if (!is_gltf(ending) && cubic)
     return {"--interpolation cubic is for glTF: " + ending + " holds no splines"};
   return check_writable(output);
@@ -158,6 +179,7 @@ Error Export::check() const {
 
 Error export_asset(const Asset& asset, const Export& what, nlohmann::json& report) {
   if (!what.character.empty()) return {"--character is for scenes"};
+  if (is_body(ending_of(what.output))) return write_body(asset.skeleton, what, report);
   std::vector<int> clips;
   if (Error error = chosen_clips(asset, what.clips, clips)) return error;
   if (ending_of(what.output) == ".bvh") return bvh_of_asset(asset, clips, what, report);
@@ -166,6 +188,8 @@ Error export_asset(const Asset& asset, const Export& what, nlohmann::json& repor
 
 Error export_scene(const scene::Scene& scene, const Export& what, nlohmann::json& report) {
   const bool bvh = ending_of(what.output) == ".bvh";
+  if (is_body(ending_of(what.output)))
+    return {"a scene is played: glTF and BVH hold that, " + ending_of(what.output) + " does not"};
   if (!what.clips.empty()) return {"--clip is for assets: a scene's result is one animation"};
   if (what.cubic)
     return {"--interpolation cubic is for clips: between its steps a scene's motion is not known"};

@@ -497,7 +497,8 @@ int main(int argc, char** argv) try {
                          "          sinew export hero.sinew --clip walk -o walk.bvh");
   x->add_option("input", exporting.input, "asset or source file; or a scene (.json), which is played")
       ->required();
-  x->add_option("-o,--output", exporting.what.output, "glTF: .glb, or .gltf in one file; motion: .bvh")
+  x->add_option("-o,--output", exporting.what.output,
+                "glTF: .glb, or .gltf in one file; a motion: .bvh; the physical body: .xml (MJCF) or .urdf")
       ->required();
   x->add_option("--clip", exporting.what.clips,
                 "assets: a clip by name, or several (default: all; BVH holds one)")
