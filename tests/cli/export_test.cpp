@@ -38,6 +38,7 @@ TEST(ExportCommand, PlaysAScene) {
   EXPECT_EQ(json::parse(bytes_of(one))["animations"][0]["name"], "two");
   expect_refused("export " + scene + " --character carl -o " + one, "no character 'carl' (anna, ben)");
   expect_refused("export " + scene + " --clip walk -o " + one, "--clip is for assets");
+  expect_refused("export " + scene + " --rate 30 -o " + one, "a key per step");
   expect_refused("export " + scene + " --interpolation cubic -o " + one, "cubic is for clips");
 }
 
@@ -57,6 +58,23 @@ TEST(ExportCommand, WritesOneMotionAsBvh) {
                  "BVH holds one character: choose with --character (anna, ben)");
   ASSERT_EQ(sinew("export " + scene + " --character ben -o " + out).code, 0);
   EXPECT_NE(bytes_of(out).find("\nFrames: 7\n"), std::string::npos);
+}
+
+TEST(ExportCommand, WritesThePhysicalBodyAndSaysWhatIsNotInIt) {
+  for (const char* name : {"body.xml", "body.urdf"}) {
+    const std::string out = own_directory() + name;
+    const Outcome run = sinew("export " + kAsset + " --json -o " + out);
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_FALSE(json::parse(run.out)["notes"].empty());
+    EXPECT_NE(bytes_of(out).find("name=\"pelvis\""), std::string::npos) << name;
+    expect_refused("export " + kAsset + " --clip walk -o " + out, "holds no motion");
+    expect_refused("export " + kAsset + " --rate 30 -o " + out, "--rate is for glTF and BVH");
+    expect_refused("export " + kAsset + " --mesh shapes -o " + out, "--mesh is for glTF");
+    const std::string scene =
+        written("one.json", R"({"duration": 0.1, "characters": [{"asset": ")" + kAsset + R"("}]})");
+    expect_refused("export " + scene + " -o " + out, "a scene is played");
+  }
+  EXPECT_EQ(sinew("info " + own_directory() + "body.urdf").code, 0);
 }
 
 TEST(ExportCommand, BadInputIsNamedInOneLineAndNothingIsLeftBehind) {

@@ -2,6 +2,7 @@
 #include "export/urdf.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "bodies.h"
 #include "exported.h"
@@ -33,7 +34,9 @@ void expect_same_joint(const Joint& a, const Joint& b) {
   EXPECT_EQ(a.source_joint, b.source_joint) << a.name;
   EXPECT_LT((a.rest.translation - b.rest.translation).norm(), 1e-15) << a.name;
   EXPECT_LT(a.rest.rotation.angularDistance(b.rest.rotation), 1e-12) << a.name;
-  EXPECT_LT((a.axis - b.axis).norm(), 1e-15) << a.name;
+  if (dof_count(a.type) == 1 || a.type == JointType::kPlanar) {
+    EXPECT_LT((a.axis - b.axis).norm(), 1e-15) << a.name;
+  }
   EXPECT_EQ(a.mass, b.mass) << a.name;
   EXPECT_EQ(a.center_of_mass, b.center_of_mass) << a.name;
   EXPECT_LT((a.inertia - b.inertia).norm(), 1e-15 * (1 + a.inertia.norm())) << a.name;
@@ -137,18 +140,21 @@ TEST(UrdfExport, CharacterMovesTheSameMass) {
   EXPECT_NEAR(back.total_mass(), s.total_mass(), 1e-12);
 }
 
-/// Pitches of a quarter turn leave roll and yaw one turn.
+/// Where the pitch is a quarter turn, roll and yaw are one turn; close to it they tell each other apart
+/// badly.
 TEST(UrdfExport, TurnsOfAQuarterAreKept) {
   Skeleton s = chain_of_all_joints(JointType::kFree);
-  for (const double sign : {-1.0, 1.0})
-    for (const double roll : {-2.0, 0.0, 0.7}) {
-      s.joints[1].rest.rotation = Quat<double>(Eigen::AngleAxisd(0.4, Vec3<double>::UnitZ()) *
-                                               Eigen::AngleAxisd(sign * M_PI / 2, Vec3<double>::UnitY()) *
-                                               Eigen::AngleAxisd(roll, Vec3<double>::UnitX()));
-      expect_same_joint(s.joints[5], named(read_back(s), "part 5"));
-      EXPECT_LT(s.joints[1].rest.rotation.angularDistance(named(read_back(s), "part 1").rest.rotation), 1e-7)
-          << roll;
-    }
+  for (const double off : {0.0, 1e-9, 1e-6, 1e-3})
+    for (const double sign : {-1.0, 1.0})
+      for (const double roll : {-2.0, 0.0, 0.7}) {
+        s.joints[1].rest.rotation =
+            Quat<double>(Eigen::AngleAxisd(0.4, Vec3<double>::UnitZ()) *
+                         Eigen::AngleAxisd(sign * (std::numbers::pi / 2 - off), Vec3<double>::UnitY()) *
+                         Eigen::AngleAxisd(roll, Vec3<double>::UnitX()));
+        EXPECT_LT(s.joints[1].rest.rotation.angularDistance(named(read_back(s), "part 1").rest.rotation),
+                  1e-7)
+            << off << " " << roll;
+      }
 }
 
 TEST(UrdfExport, SeveralRootsAreRefused) {

@@ -170,8 +170,10 @@ Error Export::check() const {
   const std::string ending = ending_of(output);
   if (!is_gltf(ending) && ending != ".bvh" && !is_body(ending))
     return {output + ": what it is to be is not known by its ending: .glb, .gltf, .bvh, .xml or .urdf"};
-  if (is_body(ending) && !clips.empty())
-    return {"--clip is for glTF and BVH: " + ending + " holds no motion"};
+  if (is_body(ending) && (!clips.empty() || rate_asked))
+    return {std::string(clips.empty() ? "--rate" : "--clip") + " is for glTF and BVH: " + ending +
+            " holds no motion"};
+  if (!is_gltf(ending) && surface_asked) return {"--mesh is for glTF: " + ending + " holds no mesh"};
   if (!is_gltf(ending) && cubic)
     return {"--interpolation cubic is for glTF: " + ending + " holds no splines"};
   return check_writable(output);
@@ -191,6 +193,7 @@ Error export_scene(const scene::Scene& scene, const Export& what, nlohmann::json
   if (is_body(ending_of(what.output)))
     return {"a scene is played: glTF and BVH hold that, " + ending_of(what.output) + " does not"};
   if (!what.clips.empty()) return {"--clip is for assets: a scene's result is one animation"};
+  if (what.rate_asked) return {"--rate is for clips: a scene has a key per step (its frame_rate)"};
   if (what.cubic)
     return {"--interpolation cubic is for clips: between its steps a scene's motion is not known"};
   scene::Recording recording;

@@ -15,7 +15,8 @@ struct Export {
   double rate = 60;                ///< keys per second
   bool cubic = false;
   exporting::Surface surface = exporting::Surface::kSkin;
-  std::string character;  ///< of a scene, by name; empty: all
+  bool rate_asked = false, surface_asked = false;  ///< by the user, who is told where they mean nothing
+  std::string character;                           ///< of a scene, by name; empty: all
 
   /// Why the output cannot be made, asked before any work is done for it.
   convert::Error check() const;

@@ -364,6 +364,34 @@ struct ExportCommand {
   cli::Export what;
   bool json_output = false;
 
+  void add(CLI::App& app) {
+    app.add_option("input", input, "asset or source file; or a scene (.json), which is played")->required();
+    app.add_option(
+           "-o,--output", what.output,
+           "glTF: .glb, or .gltf in one file; a motion: .bvh; the physical body: .xml (MJCF) or .urdf")
+        ->required();
+    app.add_option("--clip", what.clips, "assets: a clip by name, or several (default: all; BVH holds one)")
+        ->allow_extra_args(false);
+    app.add_option("--character", what.character,
+                   "scenes: one character by name (default: all, with the scene's props)");
+    app.add_option("--rate", what.rate, "keys per second of clips; a scene has one a step")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str()
+        ->each([this](const std::string&) { what.rate_asked = true; });
+    app.add_option("--interpolation", interpolation,
+                   "linear, or cubic: splines through the keys with the clips' own velocities")
+        ->check(CLI::IsMember({"linear", "cubic"}))
+        ->capture_default_str();
+    app.add_option("--mesh", mesh,
+                   "skin (the body's shapes where the asset has none), shapes (of the physical body) or none")
+        ->check(CLI::IsMember({"skin", "shapes", "none"}))
+        ->capture_default_str()
+        ->each([this](const std::string&) { what.surface_asked = true; });
+    app.add_flag("--json", json_output, "what was written, on standard output as JSON");
+    source.add(app);
+    app.footer("Exit codes: 0 done, 1 bad input, 2 usage");
+  }
+
   Error run() {
     what.cubic = interpolation == "cubic";
     what.surface = mesh == "skin"     ? sinew::exporting::Surface::kSkin
@@ -495,30 +523,7 @@ int main(int argc, char** argv) try {
                          "Examples: sinew export hero.sinew -o hero.glb --clip walk --interpolation cubic\n"
                          "          sinew export push.json -o push.glb\n"
                          "          sinew export hero.sinew --clip walk -o walk.bvh");
-  x->add_option("input", exporting.input, "asset or source file; or a scene (.json), which is played")
-      ->required();
-  x->add_option("-o,--output", exporting.what.output,
-                "glTF: .glb, or .gltf in one file; a motion: .bvh; the physical body: .xml (MJCF) or .urdf")
-      ->required();
-  x->add_option("--clip", exporting.what.clips,
-                "assets: a clip by name, or several (default: all; BVH holds one)")
-      ->allow_extra_args(false);
-  x->add_option("--character", exporting.what.character,
-                "scenes: one character by name (default: all, with the scene's props)");
-  x->add_option("--rate", exporting.what.rate, "keys per second of clips; a scene has one a step")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  x->add_option("--interpolation", exporting.interpolation,
-                "linear, or cubic: splines through the keys with the clips' own velocities")
-      ->check(CLI::IsMember({"linear", "cubic"}))
-      ->capture_default_str();
-  x->add_option("--mesh", exporting.mesh,
-                "skin (the body's shapes where the asset has none), shapes (of the physical body) or none")
-      ->check(CLI::IsMember({"skin", "shapes", "none"}))
-      ->capture_default_str();
-  x->add_flag("--json", exporting.json_output, "what was written, on standard output as JSON");
-  exporting.source.add(*x);
-  x->footer("Exit codes: 0 done, 1 bad input, 2 usage");
+  exporting.add(*x);
 
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");

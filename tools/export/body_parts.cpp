@@ -105,11 +105,18 @@ double largest_angle(const Joint& joint) {
   return std::min(std::sqrt(square), kAny);
 }
 
+void BodyNotes::add(const std::string& joint, const std::string& what) {
+  std::vector<std::string>& joints = joints_[what];
+  if (joints.empty() || joints.back() != joint) joints.push_back(joint);
+}
+
 void BodyNotes::append_to(std::vector<std::string>& notes) const {
+  constexpr std::size_t kNamed = 3;
   for (const auto& [what, joints] : joints_) {
-    std::string line = what + " (";
-    for (std::size_t k = 0; k < joints.size(); ++k) line += (k > 0 ? ", " : "") + joints[k];
-    notes.push_back(line + ")");
+    std::string names;
+    for (std::size_t k = 0; k < joints.size() && k < kNamed; ++k) names += (k > 0 ? ", " : "") + joints[k];
+    if (joints.size() > kNamed) names += " and " + std::to_string(joints.size() - kNamed) + " more";
+    notes.push_back(what + " (" + names + ")");
   }
 }
 

@@ -39,10 +39,10 @@ std::vector<JointPart> parts_of(const Joint& joint);
 /// The largest angle that a ball joint's limits allow, rad; π where they allow any.
 double largest_angle(const Joint& joint);
 
-/// Says the same of several joints once.
+/// Says the same of several joints once, and names the first of them.
 class BodyNotes {
  public:
-  void add(const std::string& joint, const std::string& what) { joints_[what].push_back(joint); }
+  void add(const std::string& joint, const std::string& what);
   void append_to(std::vector<std::string>& notes) const;
 
  private:

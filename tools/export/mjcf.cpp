@@ -122,8 +122,10 @@ class Writer : XmlText {
       if (!ball) attributes.emplace_back("axis", in_digits(part.axis));
       add_range(i, part, attributes);
       if (ball && (dofs[0].damping != dofs[1].damping || dofs[0].damping != dofs[2].damping))
-        note(i, "one damping for all axes of a ball joint: that of the first");
-      if (dofs[0].damping > 0) attributes.emplace_back("damping", in_digits(dofs[0].damping));
+        note(i, "one damping for all axes of a ball joint: their mean");
+      const double damping =
+          ball ? (dofs[0].damping + dofs[1].damping + dofs[2].damping) / 3 : dofs[0].damping;
+      if (damping > 0) attributes.emplace_back("damping", in_digits(damping));
       if (dofs[0].dry_friction > 0 && j.type != JointType::kFree)
         attributes.emplace_back("frictionloss", in_digits(dofs[0].dry_friction));
       element("joint", attributes);
