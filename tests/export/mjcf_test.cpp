@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -180,6 +181,21 @@ TEST(MjcfExport, CollidersAndRidersAreWhereTheyWere) {
   const Vec3<double> at = (rest[7] * s.joints[8].rest).translation;
   ASSERT_EQ(m->nsite, 1);
   EXPECT_LT((Vec3<double>(d->site_xpos[0], d->site_xpos[1], d->site_xpos[2]) - at).norm(), 1e-12);
+}
+
+TEST(MjcfExport, SaysWhichJointMovesNoMass) {
+  Skeleton s = chain_of_all_joints(JointType::kFree);
+  s.joints[1].type = JointType::kBall;
+  std::vector<std::string> notes;
+  write_mjcf(s, notes);
+  for (const std::string& note : notes) EXPECT_EQ(note.find("no mass"), std::string::npos) << note;
+  s.joints[0].mass = 0;  // and turns about the ball without anybody noticing
+  s.joints[0].inertia.setZero();
+  write_mjcf(s, notes);
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.find("moves no mass against the others") != std::string::npos &&
+           note.find("(part 0)") != std::string::npos;
+  }));
 }
 
 // Bodies rest on the floor by their colliders, and do not touch each other.

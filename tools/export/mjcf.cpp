@@ -7,6 +7,7 @@
 
 #include "export/body_parts.h"
 #include "export/xml_text.h"
+#include "sinew/residual/dynamics.h"
 #include "sinew/skeleton/principal_axes.h"
 
 namespace sinew::exporting {
@@ -33,6 +34,30 @@ struct Moments {
     axes = Quat<double>(found.axes).normalized();
   }
 };
+
+/// Joints that can move at rest without moving any mass against the others, as a root without mass before a
+/// ball joint can: pivots that vanish when the mass matrix is factorised from the tips to the root.
+std::vector<int> joints_without_inertia(const Skeleton& s) {
+  constexpr double kNone = 1e-11;  // of the inertia that the joint moves when all others stand still
+  const std::vector<JointState> rest(static_cast<std::size_t>(s.body_count));
+  Eigen::MatrixXd m = evaluate_dynamics(s, rest, Vec3<double>::Zero()).mass_matrix;
+  const Eigen::VectorXd alone = m.diagonal();
+  std::vector<int> found;
+  Eigen::Index dof = m.rows() - 1;
+  for (int i = s.body_count - 1; i >= 0; --i)
+    for (int k = dof_count(s.joints[static_cast<std::size_t>(i)].type); k > 0; --k, --dof) {
+      if (m(dof, dof) > kNone * alone[dof]) {
+        for (Eigen::Index row = 0; row < dof; ++row) {
+          const double factor = m(row, dof) / m(dof, dof);
+          for (Eigen::Index column = 0; column <= row; ++column)
+            m(row, column) = m(column, row) -= factor * m(column, dof);
+        }
+      } else if (found.empty() || found.back() != i) {
+        found.push_back(i);
+      }
+    }
+  return found;
+}
 
 class Writer : XmlText {
  public:
@@ -65,6 +90,8 @@ class Writer : XmlText {
     for (int i = 0; i < s_.body_count; ++i) motors(i);
     close();
     close();
+    for (const int i : joints_without_inertia(s_))
+      note(i, "moves no mass against the others at rest, which MuJoCo refuses once something touches");
     notes_.append_to(notes);
     return text();
   }
