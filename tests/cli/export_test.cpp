@@ -24,6 +24,9 @@ TEST(ExportCommand, WritesClipsOfAnAsset) {
   EXPECT_EQ(bytes_of(out).substr(0, 4), "glTF");
   EXPECT_NE(sinew("export " + kAsset + " -o " + out).out.find("animation get_up_prone: 2.80 s"),
             std::string::npos);
+  const std::string again = own_directory() + "again.glb";
+  ASSERT_EQ(sinew("export " + kAsset + " -o " + again).code, 0);
+  EXPECT_EQ(bytes_of(out), bytes_of(again));
 }
 
 TEST(ExportCommand, PlaysAScene) {
@@ -74,7 +77,9 @@ TEST(ExportCommand, WritesThePhysicalBodyAndSaysWhatIsNotInIt) {
         written("one.json", R"({"duration": 0.1, "characters": [{"asset": ")" + kAsset + R"("}]})");
     expect_refused("export " + scene + " -o " + out, "a scene is played");
   }
-  EXPECT_EQ(sinew("info " + own_directory() + "body.urdf").code, 0);
+  const std::string body = own_directory() + "body.urdf";
+  EXPECT_EQ(sinew("info " + body).code, 0);
+  expect_refused("export " + body + " -o " + own_directory() + "./body.urdf", "body.urdf: is the input");
 }
 
 TEST(ExportCommand, BadInputIsNamedInOneLineAndNothingIsLeftBehind) {

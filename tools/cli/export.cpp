@@ -142,9 +142,12 @@ Error gltf_of_asset(const Asset& asset, const std::vector<int>& clips, const Exp
   exporting::GltfContent content = content_of(what);
   exporting::GltfFigure figure{&asset, asset.skeleton.name, {}};
   for (const int clip : clips) {
-    figure.motions.push_back(exporting::sample_clip(asset, asset.clips[static_cast<std::size_t>(clip)],
-                                                    what.rate, exporting::Keys::kGrid));
-    describe(figure.motions.back(), report);
+    Motion motion = exporting::sample_clip(asset, asset.clips[static_cast<std::size_t>(clip)], what.rate,
+                                           exporting::Keys::kGrid);
+    const auto same = [&](const Motion& m) { return m.name == motion.name; };
+    while (std::any_of(figure.motions.begin(), figure.motions.end(), same)) motion.name += "_2";
+    describe(motion, report);
+    figure.motions.push_back(std::move(motion));
   }
   content.figures.push_back(std::move(figure));
   return write_gltf(content, what, report);

@@ -399,6 +399,8 @@ struct ExportCommand {
                                       : sinew::exporting::Surface::kNone;
     json conversion, report = {{"animations", json::array()}, {"notes", json::array()}};
     if (Error error = what.check()) return error;
+    std::error_code none;
+    if (std::filesystem::equivalent(input, what.output, none)) return {what.output + ": is the input"};
     if (Error error = source.read(conversion)) return error;
     if (std::filesystem::path(input).extension() == ".json") {
       sinew::scene::Scene scene;

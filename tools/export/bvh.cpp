@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "export/body_parts.h"
+
 namespace sinew::exporting {
 namespace {
 
@@ -55,7 +57,8 @@ std::string numbers(const Vec3<double>& v) {
 
 class Writer {
  public:
-  Writer(const Skeleton& skeleton, const Motion& motion) : s_(skeleton), motion_(motion) {
+  Writer(const Skeleton& skeleton, const Motion& motion)
+      : s_(skeleton), motion_(motion), names_(unique_names(skeleton)) {
     children_.resize(s_.joints.size());
     for (std::size_t j = 0; j < s_.joints.size(); ++j)
       if (s_.joints[j].parent >= 0) children_[static_cast<std::size_t>(s_.joints[j].parent)].push_back(j);
@@ -92,12 +95,12 @@ class Writer {
   }
 
   std::string name(std::size_t j, std::vector<std::string>& notes) const {
-    std::string plain = s_.joints[j].name;
+    std::string plain = names_[j];
     for (char& c : plain)
       if (c == ' ' || c == '\t' || c == '{' || c == '}') c = '_';
     if (plain != s_.joints[j].name)
       notes.push_back("joint '" + s_.joints[j].name + "' is called '" + plain +
-                      "': BVH has no spaces in names");
+                      "': in BVH names are unique and have no spaces");
     return plain;
   }
 
@@ -143,6 +146,7 @@ class Writer {
 
   const Skeleton& s_;
   const Motion& motion_;
+  std::vector<std::string> names_;
   std::vector<std::vector<std::size_t>> children_;
   std::vector<Transform<double>> rest_;  ///< Y up
   std::vector<bool> moves_;              ///< has position channels

@@ -18,7 +18,8 @@ enum class Surface {
 struct GltfFigure {
   const Asset* asset = nullptr;
   std::string name;
-  std::vector<Motion> motions;  ///< an animation each; of the same name as another figure's: one for both
+  std::vector<Motion> motions;  ///< an animation each, its name once; of another figure's name: one for both,
+                                ///< at the same times
 };
 
 struct GltfProp {
