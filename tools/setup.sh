@@ -9,7 +9,7 @@ set -euo pipefail
 # ccache and lld change the command lines of the build: they are there for the demo and for the tests, or what one of
 # them built would be built again for the other.
 packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffers-dev flatbuffers-compiler
-  libassimp-dev liburdfdom-dev libosmesa6-dev libgl-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  libassimp-dev liburdfdom-dev libtinyxml2-dev libosmesa6-dev libgl-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)

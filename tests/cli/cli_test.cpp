@@ -19,7 +19,7 @@ TEST(Command, UsageErrorsExitWithTwoAndHelpWithZero) {
   EXPECT_EQ(sinew("").code, 2);
   EXPECT_EQ(sinew("convert").code, 2);
   EXPECT_EQ(sinew("render a.sinew -o x.mp4 --theme pink").code, 2);
-  for (const char* command : {"convert", "info", "evaluate", "simulate", "render"}) {
+  for (const char* command : {"convert", "info", "evaluate", "simulate", "render", "export"}) {
     const Outcome help = sinew(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;

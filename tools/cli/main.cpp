@@ -7,6 +7,7 @@
 
 #include "cli/convert_folder.h"
 #include "cli/evaluate.h"
+#include "cli/export.h"
 #include "cli/files.h"
 #include "cli/graph.h"
 #include "cli/memory.h"
@@ -358,6 +359,74 @@ struct RenderCommand {
   }
 };
 
+struct ExportCommand {
+  std::string input, interpolation = "linear", mesh = "skin";
+  SourceOptions source;
+  cli::Export what;
+  bool json_output = false;
+
+  void add(CLI::App& app) {
+    app.add_option("input", input, "asset or source file; or a scene (.json), which is played")->required();
+    app.add_option(
+           "-o,--output", what.output,
+           "glTF: .glb, or .gltf in one file; a motion: .bvh; the physical body: .xml (MJCF) or .urdf")
+        ->required();
+    app.add_option("--clip", what.clips, "assets: a clip by name, or several (default: all; BVH holds one)")
+        ->allow_extra_args(false);
+    app.add_option("--character", what.character,
+                   "scenes: one character by name (default: all, with the scene's props)");
+    app.add_option("--rate", what.rate, "keys per second of clips; a scene has one a step")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str()
+        ->each([this](const std::string&) { what.rate_asked = true; });
+    app.add_option("--interpolation", interpolation,
+                   "linear, or cubic: splines through the keys with the clips' own velocities")
+        ->check(CLI::IsMember({"linear", "cubic"}))
+        ->capture_default_str();
+    app.add_option("--mesh", mesh,
+                   "skin (the body's shapes where the asset has none), shapes (of the physical body) or none")
+        ->check(CLI::IsMember({"skin", "shapes", "none"}))
+        ->capture_default_str()
+        ->each([this](const std::string&) { what.surface_asked = true; });
+    app.add_flag("--json", json_output, "what was written, on standard output as JSON");
+    source.add(app);
+    app.footer("Exit codes: 0 done, 1 bad input, 2 usage");
+  }
+
+  Error run() {
+    what.cubic = interpolation == "cubic";
+    what.surface = mesh == "skin"     ? sinew::exporting::Surface::kSkin
+                   : mesh == "shapes" ? sinew::exporting::Surface::kShapes
+                                      : sinew::exporting::Surface::kNone;
+    json conversion, report = {{"animations", json::array()}, {"notes", json::array()}};
+    if (Error error = what.check()) return error;
+    std::error_code none;
+    if (std::filesystem::equivalent(input, what.output, none)) return {what.output + ": is the input"};
+    if (Error error = source.read(conversion)) return error;
+    if (std::filesystem::path(input).extension() == ".json") {
+      sinew::scene::Scene scene;
+      if (Error error = load_scene(input, "", scene)) return error;
+      if (Error error = cli::export_scene(scene, what, report)) return in_input(error);
+    } else {
+      json ignored;
+      Asset asset;
+      if (Error error = sinew::convert::open_any(input, conversion, asset, ignored)) return error;
+      if (Error error = cli::export_asset(asset, what, report)) return in_input(error);
+    }
+    if (json_output)
+      std::puts(cli::json_text(report).c_str());
+    else
+      std::fputs(cli::export_text(report).c_str(), stdout);
+    return {};
+  }
+
+ private:
+  /// What is wrong with the output names it already.
+  Error in_input(const Error& error) const {
+    return error.message.rfind(what.output + ": ", 0) == 0 ? error : Error{input + ": " + error.message};
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -456,6 +525,15 @@ int main(int argc, char** argv) try {
                                "Example: sinew graph check hero.graph.json --asset hero.sinew");
   graph.add(*g);
 
+  ExportCommand exporting;
+  auto* x =
+      app.add_subcommand("export",
+                         "assets, clips and what characters did in a scene to files of other tools\n"
+                         "Examples: sinew export hero.sinew -o hero.glb --clip walk --interpolation cubic\n"
+                         "          sinew export push.json -o push.glb\n"
+                         "          sinew export hero.sinew --clip walk -o walk.bvh");
+  exporting.add(*x);
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
@@ -477,6 +555,8 @@ int main(int argc, char** argv) try {
     error = graph.run();
   else if (s->parsed())
     error = simulate.run();
+  else if (x->parsed())
+    error = exporting.run();
   else
     error = render.run();
   if (!error) return 0;

@@ -1,0 +1,16 @@
+// A figure's joints as nodes, its skin, and the meshes that follow it.
+#pragma once
+
+#include "export/gltf.h"
+#include "export/gltf_file.h"
+
+namespace sinew::exporting {
+
+/// Adds nodes, skin, meshes and materials; all roots go into the scene. Returns the node of joint 0: those of
+/// the others follow.
+int add_figure(const GltfFigure& figure, Surface surface, GltfFile& file);
+
+/// A node with a solid on it; returns it.
+int add_solid(const std::string& name, Shape shape, const Vec3<float>& size, GltfFile& file);
+
+}  // namespace sinew::exporting
