@@ -151,6 +151,28 @@ TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
   }
 }
 
+TEST(GraphCompile, TwentyThousandDamagedTextsGiveOneLineOrAGraph) {
+  const std::string text = fixtures::kSmoothGraph;
+  const std::string pieces[] = {"{", "}", "[", "]", "\"", ":", ",", "null", "true", "-1", "1e9", "\"move\"", "\"*\"", "\"if\"", "\n"};
+  std::mt19937 random(6);
+  int compiled = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    std::string damaged = text;
+    for (int n = 0; n <= k % 3; ++n) {
+      const std::size_t at = std::uniform_int_distribution<std::size_t>(0, damaged.size() - 1)(random);
+      const std::size_t length = random() % 12;
+      damaged.replace(at, std::min(length, damaged.size() - at), pieces[random() % std::size(pieces)]);
+    }
+    const Compiled made = compile_graph(damaged, "test");
+    EXPECT_EQ(made.error.find('\n'), std::string::npos) << made.error;
+    compiled += made.error.empty();
+    if (made.error.empty()) {
+      EXPECT_TRUE(validate(made.graph).ok());
+    }
+  }
+  EXPECT_GT(compiled, 100);
+}
+
 TEST(GraphFile, SaysWhatTheTextSaid) {
   const Compiled compiled = compile_graph(fixtures::kSmoothGraph, "test");
   ASSERT_EQ(compiled.error, "");

@@ -134,8 +134,11 @@ inline const char* kSmoothGraph = R"({
   },
   "graph": {"layers": [
     {
-      "states": {"move": "move", "plane": "plane", "hit": "hit", "rise": {"clip": "rise", "speed": "pace"}},
+      "states": {"move": "move", "plane": "plane", "hit": "hit", "rise": {"clip": "rise", "speed": "pace"},
+                 "other": {"mirror": {"blend": "speed", "points": [[0, "lean"], [2, "walk"]]}}},
       "transitions": [
+        {"from": "hit", "to": "other", "if": "rise", "duration": 0.2},
+        {"from": "other", "to": "move", "if": "time > 0.8", "duration": 0.3},
         {"from": "*", "to": "hit", "if": "hit", "duration": 0.3},
         {"from": ["hit", "rise"], "to": "move", "if": "remaining < 0.2 && !fading", "duration": 0.25},
         {"from": "*", "to": "rise", "if": "rise", "kind": "crossfade", "duration": 0.5},

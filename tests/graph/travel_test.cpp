@@ -1,7 +1,10 @@
 // Where a graph takes a character: the same place at any frame rate, through blends, and in step.
 #include <cmath>
 
+#include "fixtures/paths.h"
 #include "graph_fixture.h"
+#include "sinew/animation/foot_leg.h"
+#include "sinew/graph/graph_contacts.h"
 
 namespace sinew {
 namespace {
@@ -100,6 +103,76 @@ TEST(GraphTravel, WalkAndRunPutTheirFeetDownTogether) {
     }
   }
   EXPECT_GT(downs, 25);
+}
+
+// The demo character's walk is the same on both sides: mirrored, and half a cycle on, it is itself.
+TEST(GraphMirror, AMirroredWalkInStepIsTheWalk) {
+  Asset asset;
+  ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset).ok());
+  Graph plain, mirrored;
+  fixtures::bind_graph(R"({"graph": {"clip": "walk", "sync": "feet"}})", asset, plain);
+  fixtures::bind_graph(R"({"graph": {"mirror": {"clip": "walk", "sync": "feet"}}})", asset, mirrored);
+  GraphPlayer<double> a(plain), b(mirrored);
+  for (int k = 0; k < 120; ++k) {
+    a.step(k ? 1 / 60.0 : 0);
+    b.step(k ? 1 / 60.0 : 0);
+    for (std::size_t j = 0; j < a.jets.size(); ++j) {
+      // The clip is symmetric as far as it was authored and fitted: a degree and some millimetres.
+      EXPECT_LT(2 * (a.jets[j].rotation.conjugate() * b.jets[j].rotation).vec().norm(), 0.02) << j << " at " << k;
+      EXPECT_LT((a.jets[j].translation - b.jets[j].translation).norm(), 0.01) << j << " at " << k;
+    }
+  }
+}
+
+TEST(GraphMirror, TurnsAndStepsToTheOtherSide) {
+  Asset asset;
+  ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset).ok());
+  asset.clips[std::size_t(asset.find_clip("walk"))].root_step.y() = 0.3f;
+  Graph plain, mirrored;
+  fixtures::bind_graph(R"({"graph": {"layers": ["walk"]}})", asset, plain);
+  fixtures::bind_graph(R"({"graph": {"mirror": "walk"}})", asset, mirrored);
+  GraphPlayer<double> a(plain), b(mirrored);
+  for (int k = 0; k < 60; ++k) {
+    a.step(k ? 1 / 60.0 : 0);
+    b.step(k ? 1 / 60.0 : 0);
+  }
+  const Vec3<double> there = GraphParameters<double>(plain, a.state).place(),
+                     other = GraphParameters<double>(mirrored, b.state).place();
+  EXPECT_GT(there.y(), 0.2);
+  EXPECT_LT((other - Vec3<double>(there.x(), -there.y(), 0)).norm(), 1e-9);
+  // Fewer joints are mirrored from all: the other side is needed.
+  GraphPlayer<double> all(mirrored), few(mirrored);
+  few.jets.resize(5);
+  for (int k = 0; k < 10; ++k) {
+    all.step(k ? 1 / 60.0 : 0);
+    few.step(k ? 1 / 60.0 : 0);
+  }
+  for (std::size_t j = 0; j < few.jets.size(); ++j)
+    EXPECT_EQ(few.jets[j].rotation.coeffs(), all.jets[j].rotation.coeffs());
+}
+
+TEST(GraphContacts, FeetRestAsTheClipsSay) {
+  Asset asset;
+  ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset).ok());
+  const Clip& walk = asset.clips[std::size_t(asset.find_clip("walk"))];
+  const int foot = asset.skeleton.find(Role::kFootL), other = asset.skeleton.find(Role::kFootR);
+  ASSERT_GE(foot, 0);
+  Graph plain, mirrored;
+  fixtures::bind_graph(R"({"graph": "walk"})", asset, plain);
+  fixtures::bind_graph(R"({"graph": {"mirror": "walk"}})", asset, mirrored);
+  GraphPlayer<float> a(plain), b(mirrored);
+  int rests = 0, frames = 0;
+  for (; frames < 120; ++frames) {
+    a.step(frames ? 1 / 60.0 : 0);
+    b.step(frames ? 1 / 60.0 : 0);
+    const float contact = graph_contact(plain, a.scratch, foot);
+    EXPECT_EQ(contact, in_contact(walk, frames / 60.0, foot) ? 1 : 0) << frames;
+    EXPECT_EQ(graph_contact(mirrored, b.scratch, other), contact) << frames;
+    rests += contact > 0;
+  }
+  EXPECT_GT(rests, 40);
+  EXPECT_LT(rests, 100);
+  EXPECT_EQ(graph_contact(plain, a.scratch, -1), 0);
 }
 
 TEST(GraphEvents, WhatBeganEndsWhenItsStateIsLeft) {

@@ -60,6 +60,7 @@ void Attribution::done(const GraphTask& task, std::span<const JointJet<float>> o
       return rest(node, jet.alpha, at);
     }
     case GraphTask::Kind::kPhysical:
+    case GraphTask::Kind::kMirror:  // whose parts are the other side's
       at = {{task.index, false, jet.alpha}};
       return;
     case GraphTask::Kind::kBlend: {

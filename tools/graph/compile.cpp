@@ -219,12 +219,18 @@ class Compiler {
     if (place.has("blend")) return blend(place, std::move(out), sync);
     if (place.has("layers")) return layers(place, std::move(out));
     if (place.has("states")) return machine(place, std::move(out));
+    if (place.has("mirror")) {
+      out.type = NodeType::kMirror;
+      out.children.push_back(node(place.object({"mirror"}).at("mirror"), name, sync));
+      if (graph_.nodes.back().type == NodeType::kEmpty) place.fail("a mirror has nothing to show");
+      return add(std::move(out), place);
+    }
     if (place.has("physical")) {
       if (!place.object({"physical"}).at("physical").flag()) place.fail("'physical' can only be true");
       out.type = NodeType::kPhysical;
       return add(std::move(out), place);
     }
-    place.fail("a node has one of: clip, blend, layers, states, physical");
+    place.fail("a node has one of: clip, blend, layers, states, mirror, physical");
   }
   int named(const Place& place, const std::string& wanted, const std::string& name, const std::string& sync) {
     for (const auto& [known, at] : named_) {

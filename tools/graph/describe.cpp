@@ -45,6 +45,7 @@ class Dot {
     if (n.type == NodeType::kLayers) add("layers");
     if (n.type == NodeType::kEmpty) add("(nothing)");
     if (n.type == NodeType::kPhysical) add("(physical pose)");
+    if (n.type == NodeType::kMirror) add("mirrored");
     return text;
   }
   void node(int index, const std::string& state, int depth) {

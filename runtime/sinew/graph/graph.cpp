@@ -42,6 +42,12 @@ struct Needs {
   int registers = 1, tasks = 0, weights = 0, members = 0;
 };
 
+/// How many registers further on than itself a node's k-th child is made.
+int base_of(const GraphNode& node, int k) {
+  if (node.type == NodeType::kBlend) return k;
+  return node.type == NodeType::kMirror || (node.type == NodeType::kLayers && k == 0) ? 0 : 1;
+}
+
 Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
   Needs sum;
   const auto add = [&](int child, int base) {
@@ -53,9 +59,7 @@ Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
   };
   const int children = static_cast<int>(node.children.size());
   for (int k = 0; k < children; ++k)
-    add(node.children[std::size_t(k)], node.type == NodeType::kBlend              ? k
-                                       : node.type == NodeType::kLayers && k == 0 ? 0
-                                                                                  : 1);
+    add(node.children[std::size_t(k)], base_of(node, k));
   sum.tasks += std::max(3, children);
   sum.weights += std::max(1, children);
   sum.members += node.type == NodeType::kClip;
@@ -121,8 +125,9 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   if (in.group >= 0) {
     if (!bound.clip->loops) return bad("a clip that does not loop cannot be synchronised", index);
     if (bound.clip->markers.empty()) return bad("a synchronised clip has no markers of its phase", index);
-    if (Status status =
-            fit_phase_map(bound.clip->markers, double(bound.clip->duration), bound.clip->cycles, bound.map);
+    std::vector<PhaseMarker> markers = bound.clip->markers;
+    for (PhaseMarker& marker : markers) marker.phase += mirrored_[std::size_t(index)] ? 0.5 : 0.0;
+    if (Status status = fit_phase_map(markers, double(bound.clip->duration), bound.clip->cycles, bound.map);
         !status)
       return bad(status.reason, index);
   }
@@ -130,6 +135,20 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   slots_[std::size_t(index)] = static_cast<int>(clips_.size());
   clips_.push_back(bound);
   return {};
+}
+
+Status Graph::bind_mirrors(const Asset& asset) {
+  mirrored_.assign(definition_.nodes.size(), 0);
+  bool any = false;
+  for (std::size_t k = definition_.nodes.size(); k-- > 0;) {  // parents come after their children
+    const bool mirror = node(static_cast<int>(k)).type == NodeType::kMirror;
+    any |= mirror;
+    for (const int child : node(static_cast<int>(k)).children)
+      mirrored_[std::size_t(child)] = static_cast<char>(mirrored_[k] != static_cast<char>(mirror));
+  }
+  if (!any) return {};
+  if (Status status = build_mirror_map(asset.skeleton, mirror_float_); !status) return status;
+  return build_mirror_map(asset.skeleton, mirror_double_);
 }
 
 Status Graph::bind_layers(int index, const Asset& asset) {
@@ -212,6 +231,7 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
   graph.curve_slots_ = asset.curve_slots;
   for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
   graph.slots_.assign(definition.nodes.size(), -1);
+  if (Status status = graph.bind_mirrors(asset); !status) return bad(status.reason, -1);
   for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k) {
     Status status;
     switch (graph.node(k).type) {
@@ -229,6 +249,7 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
         break;
       case NodeType::kEmpty:
       case NodeType::kPhysical:
+      case NodeType::kMirror:
         break;
     }
     if (!status) return status;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sinew/animation/blend_space.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/animation/phase_map.h"
 #include "sinew/graph/graph_definition.h"
 #include "sinew/io/asset.h"
@@ -49,7 +50,7 @@ class Graph {
   static constexpr float kSoftEnd = 0.1f;  ///< s before its end in which a clip that does not loop slows down
   struct BoundClip {
     const Clip* clip = nullptr;
-    PhaseMap map;  ///< of those in a group
+    PhaseMap map;  ///< of those in a group; of mirrored ones half a cycle on
     int node = 0;
   };
   struct BoundLayer {
@@ -78,12 +79,21 @@ class Graph {
   const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }
   const std::vector<int>& parents() const { return parents_; }
   const std::vector<Transform<float>>& rest() const { return rest_; }
+  template <class T>
+  const MirrorMap<T>& mirror() const {
+    if constexpr (sizeof(T) == sizeof(double))
+      return mirror_double_;
+    else
+      return mirror_float_;
+  }
+  bool mirrored(int node) const { return mirrored_[std::size_t(node)] != 0; }  ///< by the mirrors above it
   int registers() const { return registers_; }        ///< poses that playing it needs at once
   int translated() const { return translated_; }      ///< first joints that clips move against their parents
   std::uint32_t event_bit(std::uint32_t name) const;  ///< bit of an event that conditions ask for, or 0
   std::uint64_t hash() const { return hash_; }  ///< of the definition and the sizes of what it is bound to
 
  private:
+  Status bind_mirrors(const Asset& asset);
   Status bind_clip(int node, const Asset& asset);
   Status bind_layers(int node, const Asset& asset);
   Status bind_blend(int node);
@@ -102,6 +112,9 @@ class Graph {
   std::vector<int> parents_;
   std::vector<Transform<float>> rest_;
   std::vector<std::uint32_t> event_names_;
+  std::vector<char> mirrored_;  ///< [node] below an odd number of mirrors
+  MirrorMap<float> mirror_float_;
+  MirrorMap<double> mirror_double_;
   GraphLayout layouts_[2];
   std::uint64_t hash_ = 0;
 };

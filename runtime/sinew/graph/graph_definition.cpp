@@ -50,14 +50,35 @@ class Check {
         return layers(node, index);
       case NodeType::kMachine:
         return machine(node, index);
+      case NodeType::kMirror:
+        return node.children.size() == 1 && !empty(node.children[0])
+                   ? Status{}
+                   : bad("a mirror has another number of children than one, or an empty one", index);
       case NodeType::kEmpty:
       case NodeType::kPhysical:
         return node.children.empty() ? Status{} : bad("a pose has children", index);
     }
     return bad("unknown type of node", index);
   }
+  Status parents() const {
+    std::vector<int> parents(graph_.nodes.size(), 0);
+    for (const GraphNode& node : graph_.nodes)
+      for (std::size_t k = 0; k < node.children.size(); ++k) {
+        const int child = node.children[k];
+        if (++parents[std::size_t(child)] > 1) return bad("node has two parents", child);
+        if (fades(child) && (node.type != NodeType::kLayers || k == 0))
+          return bad("a machine with an empty state is no layer", child);
+      }
+    const int root = static_cast<int>(graph_.nodes.size()) - 1;
+    return fades(root) ? bad("a machine with an empty state is no layer", root) : Status{};
+  }
 
  private:
+  bool fades(int node) const {
+    const auto& states = graph_.nodes[std::size_t(node)].states;
+    return std::any_of(states.begin(), states.end(),
+                       [&](const GraphState& state) { return state.node >= 0 && empty(state.node); });
+  }
   bool is_float(int parameter) const {
     return parameter >= 0 && std::size_t(parameter) < graph_.parameters.size() &&
            graph_.parameters[std::size_t(parameter)].type == ParameterType::kFloat;
@@ -168,11 +189,7 @@ Status validate(const GraphDefinition& graph) {
   if (Status status = check.parameters(); !status) return status;
   for (std::size_t k = 0; k < graph.nodes.size(); ++k)
     if (Status status = check.node(static_cast<int>(k)); !status) return status;
-  std::vector<int> parents(graph.nodes.size(), 0);
-  for (const GraphNode& node : graph.nodes)
-    for (const int child : node.children)
-      if (++parents[std::size_t(child)] > 1) return bad("node has two parents", child);
-  return {};
+  return check.parents();
 }
 
 }  // namespace sinew

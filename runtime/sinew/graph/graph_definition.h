@@ -95,6 +95,7 @@ enum class NodeType : std::uint8_t {
   kMachine,   ///< states
   kEmpty,     ///< no pose: a state of a machine that is a layer, which then fades out
   kPhysical,  ///< the pose that the physical character has
+  kMirror,    ///< children[0], left and right exchanged (MirrorJob)
 };
 
 enum class LayerMode : std::uint8_t { kOverride, kAdditive, kMeshAdditive };

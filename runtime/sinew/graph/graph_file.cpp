@@ -55,7 +55,7 @@ Status unpack(const fb::GraphTransition& in, GraphTransition& out) {
 }
 
 Status unpack(const fb::GraphNode& in, int index, GraphNode& out) {
-  if (in.type() > static_cast<int>(NodeType::kPhysical)) return bad("unknown type of node", index);
+  if (in.type() > static_cast<int>(NodeType::kMirror)) return bad("unknown type of node", index);
   out.type = static_cast<NodeType>(in.type());
   out.name = in.name()->str();
   out.children = whole(in.children());

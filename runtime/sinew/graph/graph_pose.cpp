@@ -84,6 +84,8 @@ class Pose {
         return blend(task, joints);
       case GraphTask::Kind::kCrossfade:
         return fade(task.out, weight(task.weights), joints);
+      case GraphTask::Kind::kMirror:
+        return mirror(task, joints);
       case GraphTask::Kind::kLayer:
         return layer(task, joints);
       case GraphTask::Kind::kKeep:
@@ -179,6 +181,14 @@ class Pose {
     return {};
   }
 
+  Status mirror(const GraphTask& task, std::size_t joints) {
+    TravelVelocity<T>& travel = at(task.out).travel;
+    for (const int k : {1, 2}) {  // to the left, and the turn
+      travel.velocity[k] = -travel.velocity[k];
+      travel.change[k] = -travel.change[k];
+    }
+    return MirrorJob<T>{&graph_.template mirror<T>(), at(task.out).jets, jets(task.out, joints)}.Run();
+  }
   Status layer(const GraphTask& task, std::size_t joints) {
     const GraphLayer& in = graph_.node(task.index).layers[std::size_t(task.layer)];
     const Graph::BoundLayer& bound = graph_.layer(task.index, task.layer);
@@ -249,8 +259,8 @@ class Pose {
     const GraphMachineState<T>& m = block_.machine(task.index);
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     // A change overwrites the machine's times before what it did before is made.
-    const T elapsed = task.whole ? T(task.time.value) : m.elapsed,
-            duration = task.whole ? T(task.time.rate) : m.duration;
+    const T elapsed = task.at_change ? T(task.time.value) : m.elapsed,
+            duration = task.at_change ? T(task.time.rate) : m.duration;
     const InertialState<T> state = block_.offset(bound.offset, elapsed, duration);
     if (!state.running()) return {};
     const QuinticOffset<T> left = QuinticOffset<T>::at(elapsed, duration);

@@ -17,6 +17,7 @@ struct GraphTask {
     kPhysical,     ///< the character's physical pose → out
     kBlend,        ///< `count` registers from `out` on, mixed by weights → out
     kCrossfade,    ///< out and out + 1, by one weight → out
+    kMirror,       ///< left and right of out exchanged
     kLayer,        ///< out + 1 upon out; `index`: node, `layer`
     kKeep,         ///< copies out to `from`
     kBeginOffset,  ///< `from` at the instant of a change, out what follows; `index`: machine
@@ -25,7 +26,8 @@ struct GraphTask {
     kLeft,         ///< fades from the pose left behind to out
   };
   Kind kind = Kind::kSample;
-  bool whole = false;  ///< all joints, whatever level of detail
+  bool at_change = false;  ///< at the instant of a change, before the frame
+  bool whole = false;      ///< all joints, whatever level of detail
   std::uint16_t out = 0, from = 0, count = 0;
   int index = 0, layer = 0;
   int weights = 0;  ///< first of GraphScratch::weights

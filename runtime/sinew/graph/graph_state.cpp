@@ -6,6 +6,11 @@
 #include "sinew/graph/graph_walk.h"
 
 namespace sinew {
+namespace {
+
+constexpr double kMostValue = 1e6;  ///< of a parameter
+
+}  // namespace
 
 template <class T>
 Status check_block(const Graph* graph, std::span<std::byte> state, bool begun) {
@@ -53,6 +58,7 @@ Status GraphParameters<T>::set(int parameter, T value) {
   if (!is(parameter, false))
     return Status::error(Code::kInvalidArgument, "no float or bool of this number", parameter);
   if (!std::isfinite(value)) return Status::error(Code::kNotFinite, "parameter is not finite", parameter);
+  if (std::abs(value) > T(kMostValue)) return Status::error(Code::kOutOfRange, "parameter is absurd", parameter);
   block_.parameter(parameter).goal = value;
   return {};
 }

@@ -125,7 +125,7 @@ class GraphParameters {
  public:
   GraphParameters(const Graph& graph, std::span<std::byte> state) : graph_(graph), block_(graph, state) {}
 
-  /// A float, or a bool as 0 or 1. Refuses numbers that are not finite.
+  /// A float, or a bool as 0 or 1. Refuses numbers that are not finite, or beyond 10⁶.
   Status set(int parameter, T value);
   /// Asks for something once; forgotten when no transition has taken it within the trigger's buffer.
   Status trigger(int parameter);

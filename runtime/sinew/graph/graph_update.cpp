@@ -92,7 +92,8 @@ class Update {
     GraphTask& t = s_.tasks[std::size_t(s_.task_count++)];
     t = {};
     t.kind = kind;
-    t.whole = prelude_;
+    t.at_change = prelude_;
+    t.whole = prelude_ || mirrored_ > 0;
     t.out = static_cast<std::uint16_t>(base);
     t.index = index;
     return t;
@@ -113,6 +114,7 @@ class Update {
   GraphScratch<T>& s_;
   EventSink* events_;
   T h_;
+  int mirrored_ = 0;      ///< mirrors around what is emitted: they ask for both sides
   bool prelude_ = false;  ///< tasks belong to a change, at the start of the frame
 };
 
@@ -230,7 +232,10 @@ void Update<T>::take(int index, int slot, const Choice& choice) {
   m.state = static_cast<std::int16_t>(choice.to);
   const T duration = t.kind == TransitionKind::kCut ? T(0) : T(t.duration);
   const int next = node.states[std::size_t(choice.to)].node;
-  if (graph_.node(next).type == NodeType::kEmpty) return start_showing(m, T(0), duration);
+  if (graph_.node(next).type == NodeType::kEmpty) {
+    if (!(duration > T(0)) && m.shown != T(0)) leave(node.states[std::size_t(m.posed)].node);
+    return start_showing(m, T(0), duration);
+  }
 
   const bool visible = !nothing(shown(m));
   start_showing(m, T(1), duration);
@@ -246,7 +251,7 @@ void Update<T>::take(int index, int slot, const Choice& choice) {
     s_.changes[std::size_t(s_.change_count++)] = {slot, kept};
     prelude_ = false;
   }
-  if (!crossfade) {
+  if (!crossfade && visible) {
     if (m.source >= 0) leave(node.states[std::size_t(m.source)].node);
     leave(node.states[std::size_t(m.posed)].node);
   }
@@ -308,7 +313,9 @@ void Update<T>::advance_machine(int index) {
     m.source = -1;
     m.fade = GraphFade::kNone;
   }
+  const bool fades_out = m.shown == T(0) && m.shown_elapsed < m.shown_duration;
   m.shown_elapsed = std::min(m.shown_elapsed + h_, m.shown_duration);
+  if (fades_out && m.shown_elapsed == m.shown_duration) leave(node.states[std::size_t(m.posed)].node);
   if (!m.fading()) m.transition = -1;
   if (m.source >= 0) advance(node.states[std::size_t(m.source)].node);
   advance(node.states[std::size_t(m.posed)].node);
@@ -379,6 +386,12 @@ void Update<T>::emit(int index, int base, const TimeJet<T>& weight, bool now) {
       return;  // its layer shows nothing
     case NodeType::kPhysical:
       task(GraphTask::Kind::kPhysical, base, index);
+      return;
+    case NodeType::kMirror:
+      ++mirrored_;
+      emit(graph_.node(index).children.front(), base, weight, now);
+      --mirrored_;
+      task(GraphTask::Kind::kMirror, base, index);
   }
 }
 
@@ -481,7 +494,7 @@ void Update<T>::report_clip(int slot) {
   job.step = static_cast<float>(h_);
   job.weight = share;
   job.out = &sink;
-  (void)job.Run();  // valid: the clip was, and a frame is no thousand loops
+  if (!job.Run() && events_) ++events_->lost;  // a thousand loops in a frame
   for (int k = 0; k < sink.count; ++k) {
     block_.header().events |= graph_.event_bit(hits[k].event->name);
     if (events_) events_->add(hits[k]);
