@@ -290,6 +290,25 @@ TEST(GltfExport, HoldsWhatASceneDidToItsCharacter) {
   expect_valid(path);
 }
 
+TEST(GltfExport, PropThatIsThrownLaterHasNoSizeUntilThen) {
+  const scene::Recording recording = fall();
+  const Parts parts(write_gltf(played(recording)));
+  const json& animation = parts.document["animations"][0];
+  int found = 0;
+  for (const json& channel : animation["channels"]) {
+    if (channel["target"]["path"] != "scale") continue;
+    ++found;
+    const json& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+    EXPECT_EQ(sampler["interpolation"], "STEP");
+    const std::vector<float> sizes = parts.numbers(sampler["output"].get<int>());
+    EXPECT_EQ(sizes.front(), 0);
+    EXPECT_EQ(sizes.back(), 1);
+    const json& node = parts.document["nodes"][channel["target"]["node"].get<std::size_t>()];
+    EXPECT_EQ(node["name"], "ball");
+  }
+  EXPECT_EQ(found, 1);
+}
+
 TEST(GltfExport, BlenderShowsWhatASceneDid) {
   const scene::Recording recording = fall();
   const GltfContent content = played(recording);
