@@ -8,6 +8,7 @@
 #include "importer.h"
 #include "scene/run.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/animation/skinning_job.h"
 
 namespace sinew::exporting::test {
 namespace {
@@ -282,6 +283,41 @@ TEST(GltfExport, BlenderFindsEveryJointWhereItWasInAllFrames) {
   for (const Motion& motion : lines.motions()) tracks.push_back(track_of(asset.skeleton, motion));
   expect_same_in_blender(written("lines.glb", lines.bytes), tracks);
   if (!IsSkipped()) expect_same_in_blender(written("splines.glb", splines.bytes), tracks);
+}
+
+/// Where the runtime's own skinning puts the vertices of a mesh.
+std::vector<Vec3<double>> skinned(const Asset& asset, const Mesh& mesh,
+                                  const std::vector<JointJet<double>>& frame) {
+  std::vector<Transform<float>> model, bind;
+  for (const Transform<double>& x : model_pose(asset.skeleton, frame)) model.push_back(x.cast<float>());
+  for (const Transform<float>& x : asset.inverse_bind) bind.push_back(x.inverse());
+  std::vector<SkinMatrix> palette(model.size());
+  skinning_palette(model, bind, palette);
+  std::vector<float> positions(mesh.positions.size());
+  SkinningJob job;
+  job.palette = palette;
+  job.joints = mesh.joints;
+  job.weights = mesh.weights;
+  job.positions = mesh.positions;
+  job.out_positions = positions;
+  const Status status = job.Run();
+  EXPECT_TRUE(status) << status.reason;
+  std::vector<Vec3<double>> out;
+  for (std::size_t v = 0; v < positions.size(); v += 3)
+    out.emplace_back(double(positions[v]), double(positions[v + 1]), double(positions[v + 2]));
+  return out;
+}
+
+TEST(GltfExport, BlenderSkinsEveryVertexAsTheRuntimeDoes) {
+  const Asset asset = mannequin();
+  const File file(asset);
+  Motion motion = sample_clip(asset, asset.clips[static_cast<std::size_t>(asset.find_clip("get_up_prone"))],
+                              1, Keys::kGrid);
+  Track track = track_of(asset.skeleton, motion);
+  track.mesh = asset.meshes[0].name;
+  for (const auto& frame : motion.frames) track.vertices.push_back(skinned(asset, asset.meshes[0], frame));
+  ASSERT_GT(track.vertices.size(), 2u);
+  expect_same_in_blender(written("skin.glb", file.bytes), {track});
 }
 
 /// A figure that walks, is hit by a ball and falls.
