@@ -1,6 +1,8 @@
-# Run by Blender: opens a glTF or BVH file and compares where bones begin with where joints should be.
+# Run by Blender: opens a glTF or BVH file and compares where bones begin with where joints should be, and vertices of a
+# mesh where some are given.
 #   blender -b --python compare_in_blender.py -- FILE EXPECTED.json ANSWER.json
-# EXPECTED: [{"motion": name, "times": [s], "joints": [name], "places": [[[x, y, z] m]]}], X forward, Z up.
+# EXPECTED: [{"motion": name, "times": [s], "joints": [name], "places": [[[x, y, z] m]],
+#             "mesh": name or "", "vertices": [[[x, y, z] m]]}], X forward, Z up.
 import json
 import sys
 
@@ -28,8 +30,9 @@ if file.endswith(".bvh"):
                             update_scene_fps=True, rotate_mode="QUATERNION")
 else:
     bpy.ops.import_scene.gltf(filepath=file)
+tracks = json.load(open(expected))
 for thing in list(bpy.data.objects):
-    if thing.type == "MESH":
+    if thing.type == "MESH" and not any(thing.name == track["mesh"] for track in tracks):
         bpy.data.objects.remove(thing)  # nobody looks at it
 armature = next(o for o in bpy.data.objects if o.type == "ARMATURE")
 animation = armature.animation_data
@@ -42,8 +45,18 @@ def action_of(motion):
     return next(a for a in bpy.data.actions if a.name == motion or a.name.startswith(motion + "_" + armature.name))
 
 
+def apart(blender, place):
+    # Blender looks along -Y where glTF looks along Z.
+    return max(abs(-blender.y - place[0]), abs(blender.x - place[1]), abs(blender.z - place[2]))
+
+
+def skin(name):
+    mesh = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return [mesh.matrix_world @ vertex.co for vertex in mesh.to_mesh().vertices]
+
+
 found = []
-for track in json.load(open(expected)):
+for track in tracks:
     animation.action = action_of(track["motion"])
     missing = [name for name in track["joints"] if name not in armature.pose.bones]
     assert not missing, missing
@@ -54,9 +67,15 @@ for track in json.load(open(expected)):
         scene.frame_set(int(frame), subframe=frame - int(frame))
         for name, place in zip(track["joints"], places):
             head = armature.matrix_world @ armature.pose.bones[name].head
-            # Blender looks along -Y where glTF looks along Z.
-            away = max(abs(-head.y - place[0]), abs(head.x - place[1]), abs(head.z - place[2]))
+            away = apart(head, place)
             if away > largest:
                 largest, where = away, f"{name} at {time} s"
+        if track["mesh"]:
+            vertices = skin(track["mesh"])
+            assert len(vertices) == len(track["vertices"][k]), len(vertices)
+            for v, (vertex, place) in enumerate(zip(vertices, track["vertices"][k])):
+                away = apart(vertex, place)
+                if away > largest:
+                    largest, where = away, f"vertex {v} at {time} s"
     found.append({"frames": len(track["times"]), "largest_m": largest, "where": where})
 json.dump(found, open(answer, "w"))

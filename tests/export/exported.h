@@ -71,11 +71,23 @@ struct Track {
   std::string motion;
   std::vector<double> times;
   std::vector<std::string> joints;
-  std::vector<std::vector<Vec3<double>>> places;  ///< [time][joint] m, Sinew's axes
+  std::vector<std::vector<Vec3<double>>> places;    ///< [time][joint] m, Sinew's axes
+  std::string mesh;                                 ///< whose vertices are compared as well, or none
+  std::vector<std::vector<Vec3<double>>> vertices;  ///< [time][vertex] m, Sinew's axes
 };
 
+inline nlohmann::json as_json(const std::vector<std::vector<Vec3<double>>>& frames) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const auto& places : frames) {
+    nlohmann::json frame = nlohmann::json::array();
+    for (const Vec3<double>& p : places) frame.push_back({p.x(), p.y(), p.z()});
+    out.push_back(std::move(frame));
+  }
+  return out;
+}
+
 inline Track track_of(const Skeleton& skeleton, const Motion& motion) {
-  Track track{motion.name, motion.times, {}, {}};
+  Track track{motion.name, motion.times, {}, {}, {}, {}};
   for (const Joint& joint : skeleton.joints) track.joints.push_back(joint.name);
   for (const auto& frame : motion.frames) {
     std::vector<Vec3<double>> places;
@@ -85,22 +97,20 @@ inline Track track_of(const Skeleton& skeleton, const Motion& motion) {
   return track;
 }
 
-/// Opens a file in Blender and compares where its bones begin. Skips the test where there is no Blender.
+/// Opens a file in Blender and compares where its bones begin, and vertices where a track has some. Skips the
+/// test where there is no Blender.
 inline void expect_same_in_blender(const std::string& file, const std::vector<Track>& tracks) {
   if (run("blender --version 2>/dev/null").code != 0 ||
       run("blender -b --factory-startup --python-exit-code 1 --python-expr 'import numpy' 2>&1").code != 0)
     GTEST_SKIP() << "Blender (Debian: blender, python3-numpy) is not installed: not compared with it";
   nlohmann::json expected = nlohmann::json::array();
-  for (const Track& track : tracks) {
-    nlohmann::json frames = nlohmann::json::array();
-    for (const auto& places : track.places) {
-      nlohmann::json frame = nlohmann::json::array();
-      for (const Vec3<double>& p : places) frame.push_back({p.x(), p.y(), p.z()});
-      frames.push_back(std::move(frame));
-    }
-    expected.push_back(
-        {{"motion", track.motion}, {"times", track.times}, {"joints", track.joints}, {"places", frames}});
-  }
+  for (const Track& track : tracks)
+    expected.push_back({{"motion", track.motion},
+                        {"times", track.times},
+                        {"joints", track.joints},
+                        {"places", as_json(track.places)},
+                        {"mesh", track.mesh},
+                        {"vertices", as_json(track.vertices)}});
   const std::string wanted = written("expected.json", expected.dump()), answer = own_path("answer.json");
   const Outcome blender =
       run("blender -b --factory-startup --python-exit-code 1 --python " + source_dir() +

@@ -183,6 +183,16 @@ TEST(MjcfExport, CollidersAndRidersAreWhereTheyWere) {
   EXPECT_LT((Vec3<double>(d->site_xpos[0], d->site_xpos[1], d->site_xpos[2]) - at).norm(), 1e-12);
 }
 
+TEST(MjcfExport, NamesThatMujocoCannotTakeAreChanged) {
+  Skeleton s = chain_of_all_joints(JointType::kFixed);
+  s.joints[0].name = "world";
+  s.joints[2].name = s.joints[1].name = "a \"<twin>\" & more";
+  const Model m = compiled(s);
+  ASSERT_TRUE(m);
+  EXPECT_GT(mj_name2id(m.get(), mjOBJ_BODY, "world_2"), 0);
+  EXPECT_GT(mj_name2id(m.get(), mjOBJ_BODY, "a \"<twin>\" & more_2"), 0);
+}
+
 TEST(MjcfExport, SaysWhichJointMovesNoMass) {
   Skeleton s = chain_of_all_joints(JointType::kFree);
   s.joints[1].type = JointType::kBall;

@@ -133,6 +133,16 @@ TEST(UrdfExport, BoltedRootHangsOnTheWorld) {
   expect_same_mass_matrix_at_rest(s, back);
 }
 
+TEST(UrdfExport, OnlyABoltedRootIsCalledWorld) {
+  Skeleton s = chain_of_all_joints(JointType::kFixed);
+  s.joints[0].name = "world";
+  EXPECT_EQ(read_back(s).joints.size(), read_back(chain_of_all_joints(JointType::kFixed)).joints.size() - 1);
+  s.joints[0].type = JointType::kFree;
+  const Skeleton free = read_back(s);
+  EXPECT_EQ(free.joints[0].name, "world_2");
+  EXPECT_EQ(free.joints[0].type, JointType::kFree);
+}
+
 TEST(UrdfExport, CharacterMovesTheSameMass) {
   const Skeleton s = mannequin().skeleton, back = read_back(s);
   expect_same_mass_matrix_at_rest(s, back);

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 namespace sinew::exporting {
 namespace {
@@ -33,8 +32,7 @@ std::string in_digits(const Quat<double>& q) {
   return in_digits(q.w()) + " " + in_digits(Vec3<double>(q.vec()));
 }
 
-std::vector<std::string> unique_names(const Skeleton& skeleton) {
-  std::set<std::string> taken;
+std::vector<std::string> unique_names(const Skeleton& skeleton, std::set<std::string> taken) {
   std::vector<std::string> names;
   for (const Joint& joint : skeleton.joints) names.push_back(made_unique(joint.name, taken));
   return names;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ std::string in_digits(double number);
 std::string in_digits(const Vec3<double>& v);
 std::string in_digits(const Quat<double>& q);  ///< w x y z
 
-/// Names of joints, made unique: "hand", "hand_2".
-std::vector<std::string> unique_names(const Skeleton& skeleton);
+/// Names of joints, made unique and none of `taken`: "hand", "hand_2".
+std::vector<std::string> unique_names(const Skeleton& skeleton, std::set<std::string> taken = {});
 /// What moves each body: Joint::source_joint, or the body's own name; made unique.
 std::vector<std::string> unique_joint_names(const Skeleton& skeleton);
 

@@ -63,7 +63,7 @@ class Writer : XmlText {
  public:
   explicit Writer(const Skeleton& skeleton)
       : s_(skeleton),
-        names_(unique_names(skeleton)),
+        names_(unique_names(skeleton, {"world"})),  // which is MuJoCo's own
         joint_names_(unique_joint_names(skeleton)),
         children_(simulated_children(skeleton)) {}
 

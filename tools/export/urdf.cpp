@@ -38,10 +38,19 @@ std::vector<JointPart> single_axes(const Joint& joint) {
   return parts;
 }
 
+/// "world" is what a bolted root is called or hangs on, and nothing else.
+std::set<std::string> taken_names(const Skeleton& skeleton) {
+  for (const Joint& joint : skeleton.joints)
+    if (joint.parent < 0 && joint.type == JointType::kFixed && joint.name == "world") return {};
+  return {"world"};
+}
+
 class Writer : XmlText {
  public:
   explicit Writer(const Skeleton& skeleton)
-      : s_(skeleton), names_(unique_names(skeleton)), joint_names_(unique_joint_names(skeleton)) {}
+      : s_(skeleton),
+        names_(unique_names(skeleton, taken_names(skeleton))),
+        joint_names_(unique_joint_names(skeleton)) {}
 
   std::string write(std::vector<std::string>& notes) {
     open("robot", {{"name", s_.name.empty() ? "robot" : s_.name}});
