@@ -31,11 +31,7 @@ std::array<T, 3> array_of(const Vec3<T>& v) {
 
 template <class T>
 MovingTransform<T> frame_of(int ground, Grounds<T> grounds) {
-  if (ground >= 0) return grounds[std::size_t(ground)];
-  MovingTransform<T> still;
-  still.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), TimeJet<T>(T(0)), TimeJet<T>(T(0)), TimeJet<T>(T(0)));
-  still.translation = MovingVector<T>(TimeJet<T>(T(0)), TimeJet<T>(T(0)), TimeJet<T>(T(0)));
-  return still;
+  return ground >= 0 ? grounds[std::size_t(ground)] : MovingTransform<T>();
 }
 
 /// A plane as a height over x and y, in model space, as it moves.
