@@ -77,10 +77,12 @@ void turn_to(const FootPlacementJob<T>& job, int joint, const Quat<TimeJet<T>>& 
 template <class T>
 Placed<T> place(const FootPlacementJob<T>& job, std::size_t k) {
   const FootLeg<T>& leg = job.legs[k];
-  const MovingTransform<T> upper = model_motion<T>(job.jets, job.parents, leg.upper);
-  const MovingTransform<T> middle = model_motion<T>(job.jets, job.parents, leg.middle);
+  const std::span<const JointJet<T>> jets = job.jets;
+  const MovingTransform<T> upper = model_motion<T>(jets, job.parents, leg.upper);
+  const MovingTransform<T> middle = upper * model_motion<T>(jets, job.parents, leg.middle, leg.upper);
+  const MovingTransform<T> foot = middle * model_motion<T>(jets, job.parents, leg.foot, leg.middle);
   Placed<T> placed;
-  placed.motion = {model_motion<T>(job.jets, job.parents, leg.foot), leg.toe, leg.heel, job.level};
+  placed.motion = FootMotion<T>(foot, leg.toe, leg.heel, job.level);
   placed.hip = upper.translation;
   placed.pole = upper.rotation * still<T>(leg.bend);
   placed.length = distance<T>(upper.translation, middle.translation) +
