@@ -1,10 +1,11 @@
 // Calls one animation job so many times, for callgrind to count: the difference between two runs is the
 // calls' own. 67 joints, float; or a clip of an asset.
 //
-//     animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS
+//     animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
 // `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -14,7 +15,9 @@
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/inertialize_job.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/animation/mirror_job.h"
+#include "sinew/animation/morph_job.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/io/asset.h"
 
@@ -65,6 +68,36 @@ bool place_feet(FootState<float> (&states)[2]) {
   return job.Run().ok();
 }
 
+/// Spine, chest, neck and head.
+bool look(LookState<float>& state) {
+  static const int parents[] = {-1, 0, 1, 2, 3};
+  JointJet<float> jets[5];
+  for (JointJet<float>& jet : jets) jet.translation << 0, 0, 0.2f;
+  const LookChain<float> chain{4, {1, 2, 3, 4}, {0.1f, 0.2f, 0.3f, 0.4f}, 0};
+  LookAtJob<float> job;
+  job.parents = parents;
+  job.jets = jets;
+  job.chain = &chain;
+  job.state = &state;
+  job.target = still<float>({1, 0.5f, 1});
+  return job.Run().ok();
+}
+
+/// A face: 52 targets that touch 2000 of 20000 vertices each.
+struct Face {
+  std::vector<float> positions = std::vector<float>(60000, 1.f), weights = std::vector<float>(52, 0.5f), out;
+  std::vector<MorphTarget> targets = std::vector<MorphTarget>(52);
+  Face() : out(positions) {
+    std::vector<float> moves(positions.size());
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      std::fill(moves.begin(), moves.end(), 0.f);
+      std::fill_n(moves.begin() + std::ptrdiff_t(1000 * k), 6000, 0.01f);
+      (void)build_morph_target(moves, {}, 1e-5f, targets[k]);
+    }
+  }
+  bool run() { return MorphJob{positions, {}, targets, weights, out}.Run().ok(); }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -84,6 +117,8 @@ int main(int argc, char** argv) {
   const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
   const MirrorMap<float> mirror = mirror_map(joints);
   FootState<float> feet[2];
+  LookState<float> head;
+  Face face;
   bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")
@@ -100,12 +135,17 @@ int main(int argc, char** argv) {
       ok = MirrorJob<float>{&mirror, a, out}.Run().ok();
     else if (job == "feet")
       ok = place_feet(feet);
+    else if (job == "look")
+      ok = look(head);
+    else if (job == "morph")
+      ok = face.run();
     else
       ok = false;
   }
   if (ok) return 0;
   std::fputs(
-      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet CALLS [ASSET.sinew CLIP]\n",
+      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS [ASSET.sinew "
+      "CLIP]\n",
       stderr);
   return 2;
 }

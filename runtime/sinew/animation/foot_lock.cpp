@@ -30,12 +30,13 @@ std::array<T, 3> array_of(const Vec3<T>& v) {
 }
 
 template <class T>
+bool is_zero(const TimeJet<T>& x) {
+  return x.value == T(0) && x.rate == T(0) && x.acceleration == T(0);
+}
+
+template <class T>
 MovingTransform<T> frame_of(int ground, Grounds<T> grounds) {
-  if (ground >= 0) return grounds[std::size_t(ground)];
-  MovingTransform<T> still;
-  still.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), TimeJet<T>(T(0)), TimeJet<T>(T(0)), TimeJet<T>(T(0)));
-  still.translation = MovingVector<T>(TimeJet<T>(T(0)), TimeJet<T>(T(0)), TimeJet<T>(T(0)));
-  return still;
+  return ground >= 0 ? grounds[std::size_t(ground)] : MovingTransform<T>();
 }
 
 /// A plane as a height over x and y, in model space, as it moves.
@@ -57,14 +58,37 @@ MovingPlane<T> plane_of(const FootState<T>& state, Grounds<T> grounds) {
 }
 
 template <class T>
+bool is_wall(const GroundHit<T>& hit, T steepest) {
+  return !(hit.normal.z() > std::cos(steepest));
+}
+template <class T>
+T height_at(const GroundHit<T>& hit, T steepest, T x, T y) {
+  if (is_wall(hit, steepest)) return hit.point.z();
+  const T fall = hit.normal.x() * (x - hit.point.x()) + hit.normal.y() * (y - hit.point.y());
+  return hit.point.z() - fall / hit.normal.z();
+}
+
+template <class T>
+Quat<T> value_of(const Quat<TimeJet<T>>& q) {
+  return {q.w().value, q.x().value, q.y().value, q.z().value};
+}
+/// A point of the model in the axes of a ground.
+template <class T>
+std::array<T, 3> on_ground(int ground, Grounds<T> grounds, const Vec3<T>& point) {
+  if (ground < 0) return array_of(point);
+  const MovingTransform<T>& body = grounds[std::size_t(ground)];
+  return array_of<T>(value_of(body.rotation).conjugate() *
+                     Vec3<T>(point - sinew::value_of<T>(body.translation)));
+}
+
+template <class T>
 void lay_plane(const GroundHit<T>& hit, T steepest, Grounds<T> grounds, FootState<T>& state) {
-  const bool wall = !(hit.normal.z() > std::cos(steepest));
-  const MovingTransform<T> body = frame_of<T>(hit.ground, grounds);
-  const JointJet<T> jet = joint_jet(body);
-  const Quat<T> back = jet.rotation.conjugate();
+  const Vec3<T> normal = is_wall(hit, steepest) ? Vec3<T>(Vec3<T>::UnitZ()) : hit.normal;
   state.ground = hit.ground;
-  state.point = array_of<T>(back * Vec3<T>(hit.point - jet.translation));
-  state.normal = array_of<T>(back * (wall ? Vec3<T>(Vec3<T>::UnitZ()) : hit.normal));
+  state.point = on_ground<T>(hit.ground, grounds, hit.point);
+  state.normal = hit.ground < 0
+                     ? array_of(normal)
+                     : array_of<T>(value_of(grounds[std::size_t(hit.ground)].rotation).conjugate() * normal);
 }
 
 /// What of a foot's target does not depend on where it goes.
@@ -75,7 +99,7 @@ struct Stance {
   MovingPlane<T> plane;
   TimeJet<T> upright;               ///< z of the normal that the foot lies to
   Quat<TimeJet<T>> rotation;        ///< of the foot, wanted
-  MovingVector<T> toe, heel;        ///< of the animation
+  TimeJet<T> toe, heel;             ///< m, height over the animation's ground
   MovingVector<T> to_toe, to_heel;  ///< from the ankle, wanted
 };
 /// x, but for what lies within twice kFlat of 0, softly.
@@ -94,15 +118,16 @@ Stance<T> stance_of(const FootMotion<T>& motion, Grounds<T> grounds, const FootS
                                one);
   s.upright = one / sqrt(normal.squaredNorm());
   s.rotation = motion.foot.rotation;
-  s.toe = motion.foot * still<T>(motion.toe);
-  s.heel = motion.foot * still<T>(motion.heel);
+  s.toe = motion.toe_at.z() - motion.level;
+  s.heel = motion.heel_at.z() - motion.level;
   s.grip = TimeJet<T>(state.locked() ? T(1) : T(0)) + s.fade(state.grip);
-  if (motion.toe != motion.heel) {
-    const MovingVector<T> sole = s.toe - s.heel;
-    MovingVector<T> flat = sole;
-    flat.z() += s.grip * (without_tremble(sole.z()) - sole.z());
-    s.rotation = shortest_arc<T>(sole, flat) * s.rotation;
-    s.heel.z() += sole.z() - flat.z();
+  const TimeJet<T> raised = s.heel - s.toe, flat = without_tremble(raised) - raised;
+  if (motion.toe != motion.heel && !is_zero(s.grip)) {
+    const MovingVector<T> sole = motion.toe_at - motion.heel_at;
+    MovingVector<T> turned = sole;
+    turned.z() -= s.grip * flat;
+    s.rotation = shortest_arc<T>(sole, turned) * s.rotation;
+    s.heel += s.grip * flat;
   }
   s.rotation = shortest_arc<T>(still<T>(Vec3<T>::UnitZ()), normal) * s.rotation;
   s.to_toe = s.rotation * still<T>(motion.toe);
@@ -114,11 +139,10 @@ Stance<T> stance_of(const FootMotion<T>& motion, Grounds<T> grounds, const FootS
 /// the sole has, so that one of its ends rests; what is below the ground is lifted out of it. No term changes
 /// when the other end takes the lead.
 template <class T>
-TimeJet<T> clearance(const Stance<T>& s, const FootMotion<T>& motion, FootHold hold) {
-  const TimeJet<T> toe = s.toe.z() - motion.level, heel = s.heel.z() - motion.level;
-  const TimeJet<T> lowest = soft_min<T>(toe, heel, T(kPivot));
+TimeJet<T> clearance(const Stance<T>& s, FootHold hold) {
+  const TimeJet<T> lowest = soft_min<T>(s.toe, s.heel, T(kPivot));
   const TimeJet<T> left = (TimeJet<T>(T(1)) - s.grip) * (lowest + soft_positive<T>(-lowest, T(kSole)));
-  return ((hold == FootHold::kHeel ? heel : toe) - lowest + left) / s.upright;
+  return ((hold == FootHold::kHeel ? s.heel : s.toe) - lowest + left) / s.upright;
 }
 
 template <class T>
@@ -130,11 +154,11 @@ MovingVector<T> to_pivot(const Stance<T>& s, FootHold hold) {
 template <class T>
 MovingVector<T> pivot_target(const Stance<T>& s, const FootMotion<T>& motion, Grounds<T> grounds,
                              const FootState<T>& state, const MovingVector<T>& fading) {
-  MovingVector<T> p = s.toe;
+  MovingVector<T> p = motion.toe_at;
   if (state.locked()) p = frame_of<T>(state.ground, grounds) * still<T>(vector_of(state.lock));
   p.x() += fading.x();
   p.y() += fading.y();
-  p.z() = s.plane.height(p.x(), p.y()) + state.height.x + fading.z() + clearance(s, motion, state.hold);
+  p.z() = s.plane.height(p.x(), p.y()) + state.height.x + fading.z() + clearance(s, state.hold);
   return p;
 }
 
@@ -151,18 +175,18 @@ T apart_on_ground(const MovingVector<T>& a, const MovingVector<T>& b) {
 }
 
 template <class T>
-FootHold wanted_hold(const Stance<T>& s, const FootSettings<T>& settings, T contact, bool reached,
+FootHold wanted_hold(const FootMotion<T>& motion, const FootSettings<T>& settings, T contact, bool reached,
                      Grounds<T> grounds, const FootState<T>& state) {
   if (state.locked()) {
     const MovingVector<T> lock = frame_of<T>(state.ground, grounds) * still<T>(vector_of(state.lock));
-    const MovingVector<T>& animated = state.hold == FootHold::kHeel ? s.heel : s.toe;
+    const MovingVector<T>& animated = state.hold == FootHold::kHeel ? motion.heel_at : motion.toe_at;
     if (contact < settings.release_at || !reached || apart_on_ground<T>(lock, animated) > settings.farthest)
       return FootHold::kFree;
   } else if (contact < settings.lock_at || !reached || state.elapsed < state.duration) {
     return FootHold::kFree;
   }
   // The heel only while the toe is well above it: who stands on the whole sole turns about the ball.
-  const T raised = s.toe.z().value - s.heel.z().value;
+  const T raised = motion.toe_at.z().value - motion.heel_at.z().value;
   return raised > T(state.hold == FootHold::kHeel ? kToeDown : kToeUp) ? FootHold::kHeel : FootHold::kToe;
 }
 
@@ -186,26 +210,27 @@ void find_ground(const FootMotion<T>& motion, const FootSettings<T>& settings, c
     const GroundHit<T> level{{T(0), T(0), motion.level.value}};
     lay_plane<T>(input.under.empty() ? level : input.under[0], settings.steepest, grounds, state);
   }
-  const MovingPlane<T> before = plane_of<T>(state, grounds);
-  const MovingVector<T> at = present_pivot<T>(stance_of<T>(motion, grounds, state), motion, grounds, state);
-  FootState<T> highest = state;
+  const QuinticOffset<T> fade = QuinticOffset<T>::at(state.elapsed, state.duration);
+  const TimeJet<T> x = motion.toe_at.x() + fade(state.offset[0]),
+                   y = motion.toe_at.y() + fade(state.offset[1]);
+  const GroundHit<T>* highest = nullptr;
   T height = -std::numeric_limits<T>::infinity();
   const auto look_at = [&](std::span<const GroundHit<T>> hits) {
     for (const GroundHit<T>& hit : hits) {
-      FootState<T> candidate = state;
-      lay_plane<T>(hit, settings.steepest, grounds, candidate);
-      const T under_foot = plane_of<T>(candidate, grounds).height(at.x(), at.y()).value;
+      const T under_foot = height_at(hit, settings.steepest, x.value, y.value);
       if (!(under_foot > height)) continue;
       height = under_foot;
-      highest = candidate;
+      highest = &hit;
     }
   };
   look_at(input.under);
   if (input.contact < settings.lock_at) look_at(input.ahead);
-  state = highest;
+  if (!highest) return;
+  const MovingPlane<T> before = plane_of<T>(state, grounds);
+  lay_plane<T>(*highest, settings.steepest, grounds, state);
   if (appears) return;
   const MovingPlane<T> plane = plane_of<T>(state, grounds);
-  state.height.x += before.height(at.x(), at.y()) - plane.height(at.x(), at.y());
+  state.height.x += before.height(x, y) - plane.height(x, y);
   for (int k = 0; k < 2; ++k) state.slope[k].x += before.slope[k] - plane.slope[k];
 }
 
@@ -219,17 +244,17 @@ FootTarget<T> foot_target(const FootMotion<T>& motion, std::span<const MovingTra
 template <class T>
 void change_hold(const FootMotion<T>& motion, const FootSettings<T>& settings, T contact, bool reached,
                  std::span<const MovingTransform<T>> grounds, FootState<T>& state) {
-  const Stance<T> s = stance_of<T>(motion, grounds, state);
-  const FootHold before = state.hold, after = wanted_hold<T>(s, settings, contact, reached, grounds, state);
+  const FootHold before = state.hold,
+                 after = wanted_hold<T>(motion, settings, contact, reached, grounds, state);
   if (before == after) return;
+  const Stance<T> s = stance_of<T>(motion, grounds, state);
   // Where the point that leads from now on is at this instant.
   const MovingVector<T> now =
       present_pivot<T>(s, motion, grounds, state) - to_pivot(s, before) + to_pivot(s, after);
   state.hold = after;
   if (state.locked()) {
-    const JointJet<T> ground = joint_jet(frame_of<T>(state.ground, grounds));
-    const Vec3<T> on_ground(now.x().value, now.y().value, s.plane.height(now.x(), now.y()).value);
-    state.lock = array_of<T>(ground.rotation.conjugate() * Vec3<T>(on_ground - ground.translation));
+    const Vec3<T> lock(now.x().value, now.y().value, s.plane.height(now.x(), now.y()).value);
+    state.lock = on_ground<T>(state.ground, grounds, lock);
     state.height = {};
   }
   state.grip = s.grip - TimeJet<T>(state.locked() ? T(1) : T(0));

@@ -73,7 +73,18 @@ template <class T>
 struct FootMotion {
   MovingTransform<T> foot;  ///< foot joint → model
   Vec3<T> toe, heel;        ///< points of the sole in the foot joint's axes: under the ball, under the heel
-  TimeJet<T> level;         ///< m, height of the ground that the animation walks on
+  MovingVector<T> toe_at, heel_at;  ///< the same, in model space
+  TimeJet<T> level;                 ///< m, height of the ground that the animation walks on
+
+  FootMotion() = default;
+  FootMotion(const MovingTransform<T>& joint, const Vec3<T>& under_ball, const Vec3<T>& under_heel,
+             const TimeJet<T>& floor)
+      : foot(joint),
+        toe(under_ball),
+        heel(under_heel),
+        toe_at(joint * still<T>(under_ball)),
+        heel_at(under_heel == under_ball ? toe_at : MovingVector<T>(joint * still<T>(under_heel))),
+        level(floor) {}
 };
 
 /// A foot's target: where its joint shall be, and how it lies.

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kLongest = 0.9995;  ///< of a leg: where TwoBoneJob ends
 constexpr double kSpare = 5e-4;      ///< of a leg, between the pelvis' reach and where TwoBoneJob slows down
-constexpr double kWidth = 0.01;      ///< m, of the pelvis' soft limits
+constexpr double kWidth = 0.04;      ///< m, in which the pelvis begins to come down: less, and knees jerk
+constexpr double kRising = 0.02;     ///< m, that what lets the pelvis rise slowly stays above it
 constexpr double kFlattest = 0.2;    ///< of a leg: height of the hip that is left if a foot is far out
 constexpr int kMostLegs = 8;
 
@@ -38,6 +39,17 @@ TimeJet<T> missing(const Placed<T>& leg, const MovingVector<T>& shift, T reach) 
   return down.z() - sqrt(soft_max<T>(high, {flattest * flattest}, flattest * flattest / 2));
 }
 
+/// What the legs need, or what is left of what they needed: follows them down at once, lets go with three
+/// poles.
+template <class T>
+TimeJet<T> slow_to_rise(const TimeJet<T>& needed, const FootPlacementJob<T>& job) {
+  SmoothInput<T>& left = *job.drop;
+  left.step(needed.value - T(kRising), SmoothInput<T>::pole_of(job.rise), job.step);
+  const TimeJet<T> below = needed - TimeJet<T>(T(kRising));
+  if (left.x < below) left.x = below;  // not seen where it happens: soft_max is `needed` up to here
+  return soft_max<T>(needed, left.x, T(kRising));
+}
+
 template <class T>
 MovingVector<T> pelvis_shift(std::span<const Placed<T>> legs, const FootPlacementJob<T>& job) {
   const TimeJet<T> none{T(0)};
@@ -47,6 +59,7 @@ MovingVector<T> pelvis_shift(std::span<const Placed<T>> legs, const FootPlacemen
   shift.z() = none;
   TimeJet<T> drop = none;
   for (const Placed<T>& leg : legs) drop = soft_max<T>(drop, missing<T>(leg, shift, job.reach), T(kWidth));
+  if (job.drop) drop = slow_to_rise(drop, job);
   shift.z() = -soft_min<T>(drop, {job.deepest}, T(kWidth));
   return shift;
 }
@@ -77,10 +90,12 @@ void turn_to(const FootPlacementJob<T>& job, int joint, const Quat<TimeJet<T>>& 
 template <class T>
 Placed<T> place(const FootPlacementJob<T>& job, std::size_t k) {
   const FootLeg<T>& leg = job.legs[k];
-  const MovingTransform<T> upper = model_motion<T>(job.jets, job.parents, leg.upper);
-  const MovingTransform<T> middle = model_motion<T>(job.jets, job.parents, leg.middle);
+  const std::span<const JointJet<T>> jets = job.jets;
+  const MovingTransform<T> upper = model_motion<T>(jets, job.parents, leg.upper);
+  const MovingTransform<T> middle = upper * model_motion<T>(jets, job.parents, leg.middle, leg.upper);
+  const MovingTransform<T> foot = middle * model_motion<T>(jets, job.parents, leg.foot, leg.middle);
   Placed<T> placed;
-  placed.motion = {model_motion<T>(job.jets, job.parents, leg.foot), leg.toe, leg.heel, job.level};
+  placed.motion = FootMotion<T>(foot, leg.toe, leg.heel, job.level);
   placed.hip = upper.translation;
   placed.pole = upper.rotation * still<T>(leg.bend);
   placed.length = distance<T>(upper.translation, middle.translation) +
@@ -127,8 +142,9 @@ Status check_settings(const FootPlacementJob<T>& job) {
   if (!(s.lock_time >= T(0)) || !(s.release_time >= T(0)) || !(s.half_life > T(0)) || !(s.farthest > T(0)) ||
       !within(s.steepest, T(0), T(1.5)))
     return Status::error(Code::kOutOfRange, "a time, length or angle of the settings is absurd");
-  if (!within(job.reach, T(0.5), T(0.998)) || !within(job.follow, T(0), T(1)) || !(job.deepest >= T(0)))
-    return Status::error(Code::kOutOfRange, "reach, follow or deepest is out of range");
+  if (!within(job.reach, T(0.5), T(0.998)) || !within(job.follow, T(0), T(1)) || !(job.deepest >= T(0)) ||
+      !(job.rise > T(0)))
+    return Status::error(Code::kOutOfRange, "reach, follow, deepest or rise is out of range");
   if (!within(job.step, T(0), T(1e6))) return Status::error(Code::kOutOfRange, "step is negative or absurd");
   const TimeJet<T>& level = job.level;
   if (!std::isfinite(level.value + level.rate + level.acceleration))

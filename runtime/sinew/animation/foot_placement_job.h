@@ -23,8 +23,11 @@ struct FootPlacementJob {
   std::span<JointJet<T>> jets;   ///< [joint] local; pelvis and legs are changed
   int pelvis = 0;                ///< joint that carries the legs
   std::span<const FootLeg<T>> legs;
-  std::span<const FootInput<T>> feet;                ///< [leg]
-  std::span<FootState<T>> states;                    ///< [leg] the caller's
+  std::span<const FootInput<T>> feet;  ///< [leg]
+  std::span<FootState<T>> states;      ///< [leg] the caller's
+  /// The caller's, like `states`: the pelvis comes down as the legs need it, and rises no faster than this.
+  /// Null: as fast as they let it, which straightens a leg that leaves the ground in a jerk.
+  SmoothInput<T>* drop = nullptr;
   std::span<const MovingTransform<T>> grounds = {};  ///< [GroundHit::ground] body → model; those that locks
                                                      ///< are on stay in their places
   TimeJet<T> level{T(0)};                            ///< m
@@ -32,6 +35,7 @@ struct FootPlacementJob {
   FootSettings<T> settings = {};
   T reach = T(0.995);  ///< of a leg's length, to which the pelvis comes down; in [0.5, 0.998]
   T follow = T(0.5);   ///< part of the feet's mean shift sideways that the pelvis takes, in [0, 1]
+  T rise = T(0.07);    ///< s, half of the way up, > 0
   T deepest = T(0.3);  ///< m, that the pelvis comes down at most
 
   Status Validate() const;  ///< `Status::index`: leg at fault

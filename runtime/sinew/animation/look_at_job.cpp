@@ -143,7 +143,7 @@ template <class T>
 Axes<T> axes_of(const LookAtJob<T>& job) {
   const LookChain<T>& c = *job.chain;
   const MovingTransform<T> base =
-      c.base < 0 ? moving_transform(JointJet<T>{}) : model_motion<T>(job.jets, job.parents, c.base);
+      c.base < 0 ? MovingTransform<T>() : model_motion<T>(job.jets, job.parents, c.base);
   return {base.rotation * still<T>(c.forward), base.rotation * still<T>(c.up.cross(c.forward)),
           base.rotation * still<T>(c.up)};
 }
