@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <type_traits>
 
 #include "sinew/animation/foot_placement_job.h"
 #include "sinew/animation/soft_limits.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew {
 namespace {
@@ -166,6 +168,38 @@ TEST_F(OneFoot, StepsOfTheGroundFadeInWithTheirHalfLife) {
   input.contact = 1;
   toe_at(0);
   EXPECT_EQ(state.point[2], 0.1) << "comes down on what is under it";
+}
+
+TEST_F(OneFoot, StaysFiniteAndWithinItsLegOnAnyGround) {
+  constexpr unsigned kSeed = 20261126;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> any(-1, 1);
+  SmoothInput<double> drop;
+  job.drop = &drop;
+  MovingTransform<double> body;
+  job.grounds = {&body, 1};
+  for (int frame = 0; frame < 20000; ++frame) {
+    if (frame % 40 == 0) input.contact = 0.5 + 0.5 * any(random);
+    if (frame % 7 == 0) {
+      const double steep = 1.5 * any(random), round = 3 * any(random);
+      hit.normal << std::sin(steep) * std::cos(round), std::sin(steep) * std::sin(round), std::cos(steep);
+      hit.point << any(random), any(random), 0.5 * any(random);
+      hit.ground = any(random) < 0 ? -1 : 0;
+    }
+    input.under = {&hit, any(random) < 0.8 ? 1u : 0u};
+    JointJet<double> jet;
+    jet.rotation = rotation_exp<double>({0.1 * any(random), 0.1 * any(random), any(random)});
+    jet.omega << any(random), any(random), any(random);
+    jet.translation << any(random), any(random), 0.3 * any(random);
+    body = moving_transform(jet);
+    toe_at(any(random), any(random) < 0 ? 0 : 0.05 * (1 + any(random)));
+    ASSERT_TRUE(status.ok()) << status.reason << ", frame " << frame << ", seed " << kSeed;
+    for (const JointJet<double>& j : jets)
+      ASSERT_TRUE(j.rotation.coeffs().allFinite() && j.alpha.allFinite() && j.acceleration.allFinite())
+          << frame;
+    const Vec ankle = value_of<double>(model_motion<double>(jets, parents, 3).translation);
+    ASSERT_LE((ankle - jets[0].translation).norm(), 0.8 * 0.9995 + 1e-9) << frame;
+  }
 }
 
 TEST_F(OneFoot, RefusesWhatCannotBeMeant) {

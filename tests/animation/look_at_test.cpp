@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <type_traits>
 #include <utility>
 
@@ -216,6 +217,33 @@ TEST_F(LookAt, OverheadIsNoSingularPoint) {
     fastest = std::max(fastest, rate_of<double>(direction).norm());
   }
   EXPECT_LT(fastest, 15) << "rad/s, of a target that passes a metre above at 1 m/s";
+}
+
+TEST_F(LookAt, StaysFiniteAndWithinItsLimitsWhateverIsLookedAt) {
+  constexpr unsigned kSeed = 20261126;
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> normal;
+  const LookSettings<double>& s = job.settings;
+  Moving target = still<double>({1, 0, 1.6}), before = target;
+  for (int frame = 0; frame < 20000; ++frame) {
+    job.before = nullptr;
+    if (frame % 11 == 0) {
+      before = target;
+      job.before = &before;
+    }
+    for (int k = 0; k < 3; ++k) target[k] = {2 * normal(random), 5 * normal(random), 20 * normal(random)};
+    const Moving direction = look(target, std::abs(normal(random)) / 30);
+    if (status.code == Code::kOutOfRange) continue;  // at the head
+    ASSERT_TRUE(status.ok()) << status.reason << ", frame " << frame << ", seed " << kSeed;
+    for (const JointJet<double>& j : jets)
+      ASSERT_TRUE(j.rotation.coeffs().allFinite() && j.alpha.allFinite()) << frame;
+    // What is left of a look at another target may lie beyond: at most 0.2 of its rate's way, see
+    // QuinticOffset.
+    if (state.elapsed >= state.duration) {
+      ASSERT_LE(std::abs(yaw(direction)), s.yaw + 1e-9) << frame;
+      ASSERT_LE(value_of<double>(direction).z(), std::sin(s.pitch_up) + 1e-9) << frame;
+    }
+  }
 }
 
 TEST_F(LookAt, RefusesWhatCannotBeMeant) {

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLongest = 0.9995;  ///< of a leg: where TwoBoneJob ends
 constexpr double kSpare = 5e-4;      ///< of a leg, between the pelvis' reach and where TwoBoneJob slows down
-constexpr double kWidth = 0.04;      ///< m, in which the pelvis begins to come down: less, and knees jerk
-constexpr double kRising = 0.02;     ///< m, that what lets the pelvis rise slowly stays above it
-constexpr double kFlattest = 0.2;    ///< of a leg: height of the hip that is left if a foot is far out
+constexpr double kWidth = 0.045;  ///< of a leg, in which the pelvis begins to come down: less, and knees jerk
+constexpr double kRising = 0.023;  ///< of a leg, that what lets the pelvis rise slowly stays above it
+constexpr double kFlattest = 0.2;  ///< of a leg: height of the hip that is left if a foot is far out
 constexpr int kMostLegs = 8;
 
 /// One leg while it is placed.
@@ -42,12 +42,12 @@ TimeJet<T> missing(const Placed<T>& leg, const MovingVector<T>& shift, T reach) 
 /// What the legs need, or what is left of what they needed: follows them down at once, lets go with three
 /// poles.
 template <class T>
-TimeJet<T> slow_to_rise(const TimeJet<T>& needed, const FootPlacementJob<T>& job) {
+TimeJet<T> slow_to_rise(const TimeJet<T>& needed, const FootPlacementJob<T>& job, T above) {
   SmoothInput<T>& left = *job.drop;
-  left.step(needed.value - T(kRising), SmoothInput<T>::pole_of(job.rise), job.step);
-  const TimeJet<T> below = needed - TimeJet<T>(T(kRising));
+  left.step(needed.value - above, SmoothInput<T>::pole_of(job.rise), job.step);
+  const TimeJet<T> below = needed - TimeJet<T>(above);
   if (left.x < below) left.x = below;  // not seen where it happens: soft_max is `needed` up to here
-  return soft_max<T>(needed, left.x, T(kRising));
+  return soft_max<T>(needed, left.x, above);
 }
 
 template <class T>
@@ -58,9 +58,10 @@ MovingVector<T> pelvis_shift(std::span<const Placed<T>> legs, const FootPlacemen
     shift += (leg.target.ankle - leg.motion.foot.translation) * (job.follow / T(legs.size()));
   shift.z() = none;
   TimeJet<T> drop = none;
-  for (const Placed<T>& leg : legs) drop = soft_max<T>(drop, missing<T>(leg, shift, job.reach), T(kWidth));
-  if (job.drop) drop = slow_to_rise(drop, job);
-  shift.z() = -soft_min<T>(drop, {job.deepest}, T(kWidth));
+  const T leg_length = legs.front().length.value, width = T(kWidth) * leg_length;
+  for (const Placed<T>& leg : legs) drop = soft_max<T>(drop, missing<T>(leg, shift, job.reach), width);
+  if (job.drop) drop = slow_to_rise(drop, job, T(kRising) * leg_length);
+  shift.z() = -soft_min<T>(drop, {job.deepest}, width);
   return shift;
 }
 
@@ -197,6 +198,7 @@ Status FootPlacementJob<T>::Validate() const {
 template <class T>
 Status FootPlacementJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
+  if (legs.empty()) return {};
   Placed<T> placed[kMostLegs];
   for (std::size_t k = 0; k < legs.size(); ++k) placed[k] = place(*this, k);
   const MovingVector<T> shift = pelvis_shift<T>({placed, legs.size()}, *this);

@@ -148,40 +148,61 @@ Axes<T> axes_of(const LookAtJob<T>& job) {
           base.rotation * still<T>(c.up)};
 }
 
-/// Turns a joint of the chain by `part` of what the look lacks to a direction.
+/// The chain in model space, and how far it has been turned so far.
 template <class T>
-Status turn_joint(const LookAtJob<T>& job, int joint, const MovingVector<T>& wanted, const TimeJet<T>& part) {
+struct Chain {
+  MovingTransform<T> frames[LookChain<T>::kMost];  ///< as animated
+  Quat<TimeJet<T>> turned = MovingTransform<T>().rotation;
+};
+template <class T>
+Chain<T> chain_of(const LookAtJob<T>& job) {
+  const std::span<const JointJet<T>> jets = job.jets;
   const LookChain<T>& c = *job.chain;
-  const MovingTransform<T> eyes = model_motion<T>(job.jets, job.parents, c.joints[c.count - 1]);
-  const MovingVector<T> now = eyes.rotation * still<T>(c.axis);
+  Chain<T> chain;
+  chain.frames[0] = model_motion<T>(jets, job.parents, c.joints[0]);
+  for (int k = 1; k < c.count; ++k)
+    chain.frames[k] = chain.frames[k - 1] * model_motion<T>(jets, job.parents, c.joints[k], c.joints[k - 1]);
+  return chain;
+}
+
+/// Turns joint k of the chain by `part` of what the look lacks to a direction.
+template <class T>
+Status turn_joint(const LookAtJob<T>& job, int k, const MovingVector<T>& wanted, const TimeJet<T>& part,
+                  Chain<T>& chain) {
+  const LookChain<T>& c = *job.chain;
+  const MovingVector<T> now = chain.turned * (chain.frames[c.count - 1].rotation * still<T>(c.axis));
   if (value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.9999))
-    return Status::error(Code::kOutOfRange, "looks the opposite way", joint);
+    return Status::error(Code::kOutOfRange, "looks the opposite way", c.joints[k]);
   Quat<TimeJet<T>> turn = shortest_arc<T>(now, wanted);
   for (int i = 0; i < 4; ++i) turn.coeffs()[i] *= part;
   turn.w() += TimeJet<T>(T(1)) - part;
-  JointJet<T>& jet = job.jets[std::size_t(joint)];
-  const Quat<TimeJet<T>> was = model_motion<T>(job.jets, job.parents, joint).rotation;
+  const TimeJet<T> length = sqrt(turn.squaredNorm());
+  for (int i = 0; i < 4; ++i) turn.coeffs()[i] /= length;
+  JointJet<T>& jet = job.jets[std::size_t(c.joints[k])];
+  const Quat<TimeJet<T>> was = chain.turned * chain.frames[k].rotation;
   set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * (turn * was)), jet);
+  chain.turned = turn * chain.turned;
   return {};
 }
 
 /// Turns all joints but the last, then the last one, which is where it stays by then.
 template <class T>
-Status turn_chain(Turn<T>& turn, const MovingVector<T>& eyes) {
+Status turn_chain(Turn<T>& turn, Chain<T>& chain) {
   const LookAtJob<T>& job = turn.job;
   const LookChain<T>& c = *job.chain;
-  const MovingVector<T> body = direction(turn.axes, turn.look(eyes, job.state->body));
+  const int last = c.count - 1;
+  const MovingVector<T> body =
+      direction(turn.axes, turn.look(chain.frames[last].translation, job.state->body));
   TimeJet<T> left{T(1)};
-  for (int k = 0; k + 1 < c.count; ++k) {
+  for (int k = 0; k < last; ++k) {
     const TimeJet<T> share = c.shares[k] * job.weight;
-    if (Status status = turn_joint<T>(job, c.joints[k], body, share / left); !status) return status;
+    if (Status status = turn_joint<T>(job, k, body, share / left, chain); !status) return status;
     left -= share;
   }
-  const int last = c.joints[c.count - 1];
-  const MovingVector<T> carried = model_motion<T>(job.jets, job.parents, last).translation;
+  const MovingVector<T> carried = model_motion<T>(job.jets, job.parents, c.joints[last]).translation;
   const MovingVector<T> head = direction(turn.axes, turn.look(carried, job.state->head));
-  const TimeJet<T> share = c.shares[c.count - 1] * job.weight;
-  return turn_joint<T>(job, last, head, share / (share + TimeJet<T>(T(1)) - job.weight));
+  const TimeJet<T> share = c.shares[last] * job.weight;
+  return turn_joint<T>(job, last, head, share / (share + TimeJet<T>(T(1)) - job.weight), chain);
 }
 
 template <class T>
@@ -249,13 +270,14 @@ template <class T>
 Status LookAtJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   const Axes<T> axes = axes_of(*this);
-  const int last = chain->joints[chain->count - 1];
-  const MovingVector<T> eyes = model_motion<T>(jets, parents, last).translation;
+  Chain<T> links = chain_of(*this);
+  const MovingVector<T>& eyes = links.frames[chain->count - 1].translation;
   for (const MovingVector<T>* to : {&target, before})
     if (to && !(value_of<T>(MovingVector<T>(*to - eyes)).norm() > T(kNearest)))
-      return Status::error(Code::kOutOfRange, "target at the joint that looks", last);
+      return Status::error(Code::kOutOfRange, "target at the joint that looks",
+                           chain->joints[chain->count - 1]);
   Turn<T> turn = begin_turn<T>(*this, axes, eyes);
-  const Status status = turn_chain<T>(turn, eyes);
+  const Status status = turn_chain<T>(turn, links);
   end_turn(turn, settings, *state);
   return status;
 }
