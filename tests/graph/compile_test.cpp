@@ -151,12 +151,13 @@ TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
   }
 }
 
-TEST(GraphCompile, TwentyThousandDamagedTextsGiveOneLineOrAGraph) {
+TEST(GraphCompile, FiveThousandDamagedTextsGiveOneLineOrAGraph) {
   const std::string text = fixtures::kSmoothGraph;
-  const std::string pieces[] = {"{", "}", "[", "]", "\"", ":", ",", "null", "true", "-1", "1e9", "\"move\"", "\"*\"", "\"if\"", "\n"};
+  const std::string pieces[] = {"{",    "}",  "[",   "]",        "\"",    ":",      ",", "null",
+                                "true", "-1", "1e9", "\"move\"", "\"*\"", "\"if\"", "\n"};
   std::mt19937 random(6);
   int compiled = 0;
-  for (int k = 0; k < 20'000; ++k) {
+  for (int k = 0; k < 5'000; ++k) {
     std::string damaged = text;
     for (int n = 0; n <= k % 3; ++n) {
       const std::size_t at = std::uniform_int_distribution<std::size_t>(0, damaged.size() - 1)(random);
@@ -170,7 +171,7 @@ TEST(GraphCompile, TwentyThousandDamagedTextsGiveOneLineOrAGraph) {
       EXPECT_TRUE(validate(made.graph).ok());
     }
   }
-  EXPECT_GT(compiled, 100);
+  EXPECT_GT(compiled, 25);
 }
 
 TEST(GraphFile, SaysWhatTheTextSaid) {

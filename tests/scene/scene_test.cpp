@@ -150,12 +150,33 @@ TEST(Scene, GetUpIsChosenByTheSideThatTheCharacterLiesOn) {
   }
 }
 
+/// A walker whose strength goes when it starts, so that it falls, and comes back at 3 s.
+Result fallen_and_getting_up(double height) {
+  return run(R"(, "clips": [{"clip": "walk"},
+                  {"clip": "get_up", "start": 3, "blend": 1, "rate": 0, "align": true, "from_pose": true}],
+                  "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]],
+                  "root_force": 450, "root_torque": 170, "position": [0, 0, )" +
+                 std::to_string(height) + "]",
+             "", 4.5);
+}
+
+/// How far its joints are from the clip's first pose, rad in all.
+float away_from_clip(const Result& r, double t) {
+  const SceneCharacter& c = r.scene.characters[0];
+  const bool prone = forward(r, r.at(2.9)).z() < 0;
+  std::vector<JointJet<float>> jets(c.asset->skeleton.joints.size());
+  SamplingJob<float>{&c.asset->clips[prone ? c.clips[1].clip_when_prone : c.clips[1].clip], 0, jets}.Run();
+  float sum = 0;
+  for (int i = 1; i < c.asset->skeleton.body_count; ++i) {
+    const int parent = c.asset->skeleton.joints[i].parent;
+    const auto& model = r.at(t).model;
+    sum += (model[parent].rotation.conjugate() * model[i].rotation).angularDistance(jets[i].rotation);
+  }
+  return sum;
+}
+
 TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
-  const Result r = run(R"(, "clips": [{"clip": "walk"},
-                            {"clip": "get_up", "start": 3, "blend": 1, "rate": 0, "align": true, "from_pose": true}],
-                            "strength": [[0, 0], [3, 0], [3.3, 1]], "root": [[0, "free"], [3, "assisted"]],
-                            "root_force": 450, "root_torque": 170, "position": [0, 0, 0.014])",
-                       "", 4.5);
+  const Result r = fallen_and_getting_up(0.014);
   const auto fastest = [&](double from, double to) {
     float speed = 0;
     for (double t = from; t < to; t += 1 / 60.0)
@@ -167,22 +188,18 @@ TEST(Scene, FromPoseBeginsWhereTheFallenBodyLiesAndMovesGently) {
   ASSERT_LT(r.at(2.9).model[0].translation.z(), 0.3f) << "it lies";
   // The ease has 0.17 of its peak speed 0.1 s after its start; the floor that bodies press on adds to it.
   EXPECT_LT(fastest(3, 3.1), 0.5f * fastest(3.1, 4));
-  // Measured joint by joint, rad: it comes to the first pose of the clip, but for what the floor is in the
-  // way of.
-  const SceneCharacter& c = r.scene.characters[0];
-  const bool prone = forward(r, r.at(2.9)).z() < 0;
-  std::vector<JointJet<float>> jets(c.asset->skeleton.joints.size());
-  SamplingJob<float>{&c.asset->clips[prone ? c.clips[1].clip_when_prone : c.clips[1].clip], 0, jets}.Run();
-  const auto away = [&](double t) {
-    float sum = 0;
-    for (int i = 1; i < c.asset->skeleton.body_count; ++i) {
-      const int parent = c.asset->skeleton.joints[i].parent;
-      const auto& model = r.at(t).model;
-      sum += (model[parent].rotation.conjugate() * model[i].rotation).angularDistance(jets[i].rotation);
-    }
-    return sum;
-  };
-  EXPECT_LT(away(4.5), 0.1f * away(3));
+}
+
+// However it fell: heights a hair apart make other falls.
+TEST(Scene, FromPoseComesToTheClipsFirstPose) {
+  float worst = 0;
+  for (const double height : {0.0135, 0.0137, 0.0138, 0.014, 0.0141, 0.0142, 0.0145, 0.015}) {
+    const Result r = fallen_and_getting_up(height);
+    worst = std::max(worst, away_from_clip(r, 4.5) / away_from_clip(r, 3));
+  }
+  SINEW_FAILS_TODAY(
+      worst < 0.1f,
+      "in half of the falls a limb stays caught under the body, up to 17 % of the way from the clip");
 }
 
 TEST(Scene, OffsetStartsInTheMiddleOfAClip) {

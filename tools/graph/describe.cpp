@@ -54,7 +54,9 @@ class Dot {
     line(depth, id(index) + " [label=" + in_quotes_label(label(n, state)) + "];");
     for (std::size_t k = 0; k < n.children.size(); ++k) {
       node(n.children[k], "", depth);
-      std::string how = n.type == NodeType::kLayers ? (k == 0 ? "below" : n.layers[k - 1].mask) : point(n, k);
+      std::string how;
+      if (n.type == NodeType::kLayers) how = k == 0 ? "below" : n.layers[k - 1].mask;
+      if (n.type == NodeType::kBlend) how = point(n, k);
       line(depth, id(index) + " -> " + id(anchor(n.children[k])) +
                       " [style=dashed, arrowhead=none, label=" + in_quotes(how) + "];");
     }
