@@ -65,7 +65,8 @@ int main(int argc, char** argv) {
     if (frame == 30) (void)parameters.set(speed, 1.275f);
     if (frame == 120) (void)parameters.set(speed, 3.2f);
     if (frame == 130 && chest >= 0)
-      world.character(hero).apply_impulse(chest, world.character(hero).model()[chest].translation, {0, 60, 0});
+      world.character(hero).apply_impulse(chest, world.character(hero).model()[chest].translation,
+                                          {0, 60, 0});
     if (frame == 140) {
       snapshot.resize(world.snapshot_capacity());
       saved = world.save(snapshot);
@@ -89,8 +90,9 @@ int main(int argc, char** argv) {
     else
       world.step(h);
     if (frame % 15 == 0)
-      std::printf("%5.2f s  at %.2f m, speed %.2f m/s, unknown DOFs %d\n", frame / 60.0, parameters.place().x(),
-                  double(parameters.travel().velocity[0]), world.character(hero).report().unknown_dofs);
+      std::printf("%5.2f s  at %.2f m, speed %.2f m/s, unknown DOFs %d\n", frame / 60.0,
+                  parameters.place().x(), double(parameters.travel().velocity[0]),
+                  world.character(hero).report().unknown_dofs);
   }
   return 0;
 }

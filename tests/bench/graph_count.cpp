@@ -41,18 +41,20 @@ std::string sixty_nodes() {
   const auto next = [&] { return "\"c" + std::to_string(clip++) + "\""; };
   for (int s = 0; s < 9; ++s) {
     const std::string name = "s" + std::to_string(s);
-    states += ", \"" + name + "\": {\"blend\": \"speed\", \"sync\": \"feet\", \"points\": [[0, " + next() + "], [1, " +
-              next() + "], [2, " + next() + "], [3, " + next() + "]]}";
+    states += ", \"" + name + "\": {\"blend\": \"speed\", \"sync\": \"feet\", \"points\": [[0, " + next() +
+              "], [1, " + next() + "], [2, " + next() + "], [3, " + next() + "]]}";
     transitions += std::string(s ? ", " : "") + R"({"from": "*", "to": ")" + name + R"(", "if": "pick == )" +
                    std::to_string(s) + " && speed > 0.5\"}";
   }
   std::string plane;
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y)
-      plane += (plane.empty() ? "[" : ", [") + std::to_string(x) + ", " + std::to_string(y) + ", " + next() + "]";
+      plane +=
+          (plane.empty() ? "[" : ", [") + std::to_string(x) + ", " + std::to_string(y) + ", " + next() + "]";
   return R"({"parameters": {"speed": 0.6, "side": 0.7, "pick": -1}, "graph": {"layers": [{"states": {"plane":
     {"blend": ["speed", "side"], "sync": "feet", "points": [)" +
-         plane + "]}" + states + "}, \"transitions\": [" + transitions + "]}, {\"node\": " + next() + ", \"weight\": 0.3}]}}";
+         plane + "]}" + states + "}, \"transitions\": [" + transitions + "]}, {\"node\": " + next() +
+         ", \"weight\": 0.3}]}}";
 }
 
 constexpr const char* kHero = R"({"parameters": {"speed": 0.5, "go": "trigger"}, "graph": {"layers": [

@@ -110,7 +110,8 @@ struct GraphPlayer {
   }
   void step(double h) {
     events.count = events.lost = 0;
-    const Status status = GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical}.Run();
+    const Status status =
+        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical}.Run();
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   /// Name of the state of the machine of this name.

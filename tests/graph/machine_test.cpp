@@ -74,7 +74,8 @@ GraphDefinition random_machine(std::mt19937& random) {
 /// condition is evaluated as the tree that it is.
 class Interpreter {
  public:
-  explicit Interpreter(const GraphDefinition& graph) : graph_(graph), m_(graph.nodes.back()), state(m_.start) {
+  explicit Interpreter(const GraphDefinition& graph)
+      : graph_(graph), m_(graph.nodes.back()), state(m_.start) {
     values.assign(graph.parameters.size(), 0);
   }
 
@@ -150,7 +151,8 @@ class Interpreter {
   }
   void use_up(const GraphTransition& t) {
     for (const ConditionStep& step : t.condition)
-      if (step.code == ConditionCode::kParameter && graph_.parameters[step.index].type == ParameterType::kTrigger)
+      if (step.code == ConditionCode::kParameter &&
+          graph_.parameters[step.index].type == ParameterType::kTrigger)
         values[step.index] = 0;
   }
 
@@ -231,7 +233,8 @@ TEST(GraphMachine, TheBlockIsTheWholeState) {
     for (std::size_t j = 0; j < other.jets.size(); ++j) {
       const JointJet<float>&a = other.jets[j], &b = shown[std::size_t(k)][j];
       ASSERT_TRUE(a.rotation.coeffs() == b.rotation.coeffs() && a.omega == b.omega && a.alpha == b.alpha &&
-                  a.translation == b.translation && a.velocity == b.velocity && a.acceleration == b.acceleration)
+                  a.translation == b.translation && a.velocity == b.velocity &&
+                  a.acceleration == b.acceleration)
           << "frame " << k << ", joint " << j;
     }
   }
@@ -263,11 +266,12 @@ TEST(GraphMachine, PlayingTakesNothingFromTheHeap) {
 TEST(GraphMachine, TransitionsTakenTakeWhatTheyWaitedFor) {
   const Asset asset = fixtures::graph_asset();
   Graph graph;
-  fixtures::bind_graph(R"({"parameters": {"jump": "trigger", "late": {"type": "trigger", "buffer": 0}, "free": true},
+  fixtures::bind_graph(
+      R"({"parameters": {"jump": "trigger", "late": {"type": "trigger", "buffer": 0}, "free": true},
     "graph": {"states": {"a": "idle", "b": "walk", "c": "run", "gate": {"conduit": true}},
       "transitions": [{"from": "a", "to": "b", "if": "jump && free"}, {"from": "b", "to": "c", "if": "jump"},
                       {"from": "c", "to": "gate", "if": "late"}, {"from": "gate", "to": "a", "if": "!free"}]}})",
-                       asset, graph);
+      asset, graph);
   GraphPlayer<float> player(graph);
   player.step(0);
   player.trigger("jump");

@@ -45,7 +45,8 @@ TEST(GraphTravel, IsTheSameAtEveryFrameRateToAMillimetre) {
   EXPECT_LT((run([] { return 1 / 30.0; }) - fine).norm(), 1e-3);
   EXPECT_LT((run([] { return 1 / 60.0; }) - fine).norm(), 1e-3);
   EXPECT_LT((run([] { return 1 / 144.0; }) - fine).norm(), 1e-3);
-  EXPECT_LT((run([&] { return std::uniform_real_distribution<double>(0.002, 0.05)(random); }) - fine).norm(), 1e-3);
+  EXPECT_LT((run([&] { return std::uniform_real_distribution<double>(0.002, 0.05)(random); }) - fine).norm(),
+            1e-3);
 }
 
 TEST(GraphTravel, ALoopGoesOnAsFarAsItsClip) {
@@ -76,7 +77,8 @@ TEST(GraphTravel, AGameMayPutACharacterElsewhere) {
     turned.step(k ? 1 / 60.0 : 0);
   }
   const Quat<double> by(Eigen::AngleAxisd(1.2, Vec3<double>::UnitZ()));
-  EXPECT_LT((turned.jets[0].translation - (by * player.jets[0].translation + Vec3<double>(10, -5, 0))).norm(), 1e-9);
+  EXPECT_LT((turned.jets[0].translation - (by * player.jets[0].translation + Vec3<double>(10, -5, 0))).norm(),
+            1e-9);
   EXPECT_LT((turned.jets[0].velocity - by * player.jets[0].velocity).norm(), 1e-9);
   EXPECT_LT((turned.jets[0].acceleration - by * player.jets[0].acceleration).norm(), 1e-9);
 }
@@ -118,7 +120,8 @@ TEST(GraphMirror, AMirroredWalkInStepIsTheWalk) {
     b.step(k ? 1 / 60.0 : 0);
     for (std::size_t j = 0; j < a.jets.size(); ++j) {
       // The clip is symmetric as far as it was authored and fitted: a degree and some millimetres.
-      EXPECT_LT(2 * (a.jets[j].rotation.conjugate() * b.jets[j].rotation).vec().norm(), 0.02) << j << " at " << k;
+      EXPECT_LT(2 * (a.jets[j].rotation.conjugate() * b.jets[j].rotation).vec().norm(), 0.02)
+          << j << " at " << k;
       EXPECT_LT((a.jets[j].translation - b.jets[j].translation).norm(), 0.01) << j << " at " << k;
     }
   }
@@ -187,7 +190,8 @@ TEST(GraphEvents, WhatBeganEndsWhenItsStateIsLeft) {
     if (crossfade) {
       const auto compiled = graph_tools::compile_graph(
           R"({"parameters": {"go": false}, "graph": {"states": {"rise": "rise", "walk": "walk"},
-             "transitions": [{"from": "rise", "to": "walk", "if": "go && time > 0.6", "kind": "crossfade"}]}})", "test");
+             "transitions": [{"from": "rise", "to": "walk", "if": "go && time > 0.6", "kind": "crossfade"}]}})",
+          "test");
       ASSERT_EQ(compiled.error, "");
       ASSERT_TRUE(Graph::bind(compiled.graph, asset, faded).ok());
     }
@@ -212,9 +216,10 @@ TEST(GraphEvents, WhatBeganEndsWhenItsStateIsLeft) {
 TEST(GraphPhysical, LeavesThePoseThatTheBodyHas) {
   const Asset asset = fixtures::graph_asset();
   Graph graph;
-  fixtures::bind_graph(R"({"parameters": {"limp": true}, "graph": {"states": {"limp": {"physical": true}, "rise": "rise"},
+  fixtures::bind_graph(
+      R"({"parameters": {"limp": true}, "graph": {"states": {"limp": {"physical": true}, "rise": "rise"},
     "transitions": [{"from": "limp", "to": "rise", "if": "!limp", "duration": 0.4}]}})",
-                       asset, graph);
+      asset, graph);
   GraphPlayer<double> player(graph);
   std::vector<JointJet<double>> body(fixtures::kGraphJoints);
   const auto at = [&](double t) {

@@ -18,7 +18,8 @@ GraphMotion<T>::GraphMotion(const GraphUse& use, const Skeleton& skeleton, const
 }
 
 template <class T>
-Status GraphMotion<T>::at(double t, std::span<const Transform<T>> now, double load, std::vector<JointJet<T>>& jets) {
+Status GraphMotion<T>::at(double t, std::span<const Transform<T>> now, double load,
+                          std::vector<JointJet<T>>& jets) {
   for (std::size_t j = 0; j < physical_.size() && j < now.size(); ++j) {
     physical_[j] = {};
     physical_[j].rotation = now[j].rotation;
@@ -37,7 +38,8 @@ template <class T>
 void GraphMotion<T>::feel(std::span<const Transform<T>> now, double load) {
   if (now.empty()) return;
   const Transform<double> root = now[0].template cast<double>();
-  const Mat3<double> turned = (root.rotation * skeleton_.joints[0].rest.rotation.conjugate()).toRotationMatrix();
+  const Mat3<double> turned =
+      (root.rotation * skeleton_.joints[0].rest.rotation.conjugate()).toRotationMatrix();
   const double height = skeleton_.joints[0].rest.translation.z();
   const auto set = [&](const char* name, double value) {
     const int parameter = use_.graph->definition().find_parameter(name);

@@ -18,16 +18,16 @@ struct GraphUse {
 
 /// Plays it. Copies are independent: one may be asked what comes next. The use must outlive it.
 ///
-/// Parameters that the graph has under these names are set in every frame: `physics.tilt`, how far the root is
-/// from upright (rad); `physics.height`, of the root over the ground as a part of that at rest;
+/// Parameters that the graph has under these names are set in every frame: `physics.tilt`, how far the root
+/// is from upright (rad); `physics.height`, of the root over the ground as a part of that at rest;
 /// `physics.face_up`, 1 on the back, −1 on the belly; `physics.load`, the greatest load of a muscle.
 template <class T>
 class GraphMotion {
  public:
   GraphMotion(const GraphUse& use, const Skeleton& skeleton, const Transform<double>& place);
 
-  /// The motion at t, which does not run backwards. `now`: local pose of the physical character; `load`: of its
-  /// muscles.
+  /// The motion at t, which does not run backwards. `now`: local pose of the physical character; `load`: of
+  /// its muscles.
   Status at(double t, std::span<const Transform<T>> now, double load, std::vector<JointJet<T>>& jets);
 
  private:

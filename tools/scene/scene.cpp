@@ -129,9 +129,11 @@ void read_graph(const Reader& in, const Asset& asset, const std::filesystem::pat
   if (const std::string fault = graph_tools::bind_fault(compiled, name, asset); !fault.empty())
     fail(in.inside("graph"), fault);
   auto graph = std::make_shared<Graph>();
-  if (const Status status = Graph::bind(compiled.graph, asset, *graph); !status) fail(in.inside("graph"), status.reason);
+  if (const Status status = Graph::bind(compiled.graph, asset, *graph); !status)
+    fail(in.inside("graph"), status.reason);
   if (in.has("inputs"))
-    if (const std::string fault = c.graph.inputs.read(in.at("inputs").dump(), in.inside("inputs"), compiled.graph);
+    if (const std::string fault =
+            c.graph.inputs.read(in.at("inputs").dump(), in.inside("inputs"), compiled.graph);
         !fault.empty())
       fail(in.inside("inputs"), fault);
   c.graph.graph = std::move(graph);

@@ -60,7 +60,8 @@ struct Along {
     for (int t = 0; t < 4; ++t) {
       node[t] = std::clamp(static_cast<int>(whole) + t - 1, 0, space.size[dimension] - 1);
       // Rounding makes the first and the last function as little as −2e-9 near their ends.
-      weight[t] = {std::max(w.value[t], T(0)), w.first[t] * rate, w.second[t] * (rate * rate) + w.first[t] * acceleration};
+      weight[t] = {std::max(w.value[t], T(0)), w.first[t] * rate,
+                   w.second[t] * (rate * rate) + w.first[t] * acceleration};
     }
   }
 };

@@ -59,7 +59,7 @@ struct World<T>::Impl {
   std::vector<int> characters, props;  ///< into states
   Couplings<T> couplings;
   std::vector<std::span<std::byte>> games;  ///< their bytes are saved with the state
-  std::vector<int> loops;  ///< into couplings
+  std::vector<int> loops;                   ///< into couplings
   std::vector<ParticleSet> particles;
   std::vector<Collider> obstacles;
   NeighbourGrid obstacle_grid;

@@ -58,8 +58,7 @@ Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
     sum.members += c.members;
   };
   const int children = static_cast<int>(node.children.size());
-  for (int k = 0; k < children; ++k)
-    add(node.children[std::size_t(k)], base_of(node, k));
+  for (int k = 0; k < children; ++k) add(node.children[std::size_t(k)], base_of(node, k));
   sum.tasks += std::max(3, children);
   sum.weights += std::max(1, children);
   sum.members += node.type == NodeType::kClip;

@@ -5,9 +5,9 @@
 
 namespace sinew {
 
-/// 0 … 1: the weights of the clips that play in this frame and have a contact window of the joint now, by what
-/// the whole of them weigh. After GraphUpdateJob (or GraphStepJob), for the same character. Layers count as far
-/// as they are shown, whatever their masks.
+/// 0 … 1: the weights of the clips that play in this frame and have a contact window of the joint now, by
+/// what the whole of them weigh. After GraphUpdateJob (or GraphStepJob), for the same character. Layers count
+/// as far as they are shown, whatever their masks.
 template <class T>
 T graph_contact(const Graph& graph, const GraphScratch<T>& scratch, int joint);
 

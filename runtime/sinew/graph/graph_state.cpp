@@ -58,7 +58,8 @@ Status GraphParameters<T>::set(int parameter, T value) {
   if (!is(parameter, false))
     return Status::error(Code::kInvalidArgument, "no float or bool of this number", parameter);
   if (!std::isfinite(value)) return Status::error(Code::kNotFinite, "parameter is not finite", parameter);
-  if (std::abs(value) > T(kMostValue)) return Status::error(Code::kOutOfRange, "parameter is absurd", parameter);
+  if (std::abs(value) > T(kMostValue))
+    return Status::error(Code::kOutOfRange, "parameter is absurd", parameter);
   block_.parameter(parameter).goal = value;
   return {};
 }

@@ -487,8 +487,8 @@ void Update<T>::report_clip(int slot) {
   EventSink sink{hits};
   const Graph::BoundClip& bound = graph_.clips()[std::size_t(slot)];
   const int group = graph_.node(bound.node).group;
-  const double before = group < 0 ? s_.before[std::size_t(slot)]
-                                  : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
+  const double before =
+      group < 0 ? s_.before[std::size_t(slot)] : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
   const double now = group < 0 ? played_time(c, clip.time).value : s_.now[std::size_t(slot)];
   EventJob job{c.events, double(c.duration), c.loops, before, now, starts};
   job.step = static_cast<float>(h_);
