@@ -86,8 +86,8 @@ bool look(LookState<float>& state) {
 /// A face: 52 targets that touch 2000 of 20000 vertices each.
 struct Face {
   std::vector<float> positions = std::vector<float>(60000, 1.f), weights = std::vector<float>(52, 0.5f), out;
-  std::vector<MorphTarget> targets = std::vector<MorphTarget>(52);
-  Face() : out(positions) {
+  std::vector<MorphTarget> targets;
+  explicit Face(std::size_t count) : out(positions), targets(count) {
     std::vector<float> moves(positions.size());
     for (std::size_t k = 0; k < targets.size(); ++k) {
       std::fill(moves.begin(), moves.end(), 0.f);
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
   const MirrorMap<float> mirror = mirror_map(joints);
   FootState<float> feet[2];
   LookState<float> head;
-  Face face;
+  Face face(job == "morph" ? 52 : 0);
   bool ok = calls > 0 && joints > 0;
   for (int i = 0; i < calls && ok; ++i) {
     if (job == "sample")

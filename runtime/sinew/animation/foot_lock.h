@@ -104,8 +104,7 @@ template <class T>
 void find_ground(const FootMotion<T>& motion, const FootSettings<T>& settings, const FootInput<T>& input,
                  std::span<const MovingTransform<T>> grounds, FootState<T>& state);
 
-/// Where the foot goes at this instant. Turned as the ground leans; never deeper in it than the animation is,
-/// and not at all while free.
+/// Where the foot goes at this instant. Turned as the ground leans; neither end of the sole in it.
 template <class T>
 FootTarget<T> foot_target(const FootMotion<T>& motion, std::span<const MovingTransform<T>> grounds,
                           const FootState<T>& state);

@@ -26,7 +26,8 @@ struct FootPlacementJob {
   std::span<const FootInput<T>> feet;  ///< [leg]
   std::span<FootState<T>> states;      ///< [leg] the caller's
   /// The caller's, like `states`: the pelvis comes down as the legs need it, and rises no faster than this.
-  /// Null: as fast as they let it, which straightens a leg that leaves the ground in a jerk.
+  /// Null: as fast as they let it, and a leg that leaves the ground nearly straight bends in a jerk. As all
+  /// of SmoothInput, it takes what the legs need as constant during a step.
   SmoothInput<T>* drop = nullptr;
   std::span<const MovingTransform<T>> grounds = {};  ///< [GroundHit::ground] body → model; those that locks
                                                      ///< are on stay in their places
