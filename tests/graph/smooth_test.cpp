@@ -207,6 +207,53 @@ TEST(Graph, WhatTheCertificateNamesDoesJump) {
   }
 }
 
+// A transition with a budget takes as long as the weakest joint needs, no longer than it may, and adds to no
+// joint more than the budget allows.
+TEST(Graph, TransitionsAreAsFastAsMusclesAllow) {
+  const Asset asset = fixtures::graph_asset();
+  Graph graph;
+  fixtures::bind_graph(R"({"parameters": {"go": false}, "graph": {"states": {"a": "idle", "b": "lean"},
+    "transitions": [{"from": "a", "to": "b", "if": "go", "budget": 0.5, "duration": 0.6}]}})",
+                       asset, graph);
+  const auto duration = [&](double spare) {
+    GraphPlayer<double> player(graph);
+    const std::vector<double> spares(fixtures::kGraphJoints, spare);
+    const auto frame = [&](double h) {
+      GraphStepJob<double> job{&graph, player.state, h, &player.scratch, player.jets};
+      job.spare_acceleration = spares;
+      ASSERT_TRUE(job.Run().ok());
+    };
+    frame(0);
+    for (int k = 0; k < 10; ++k) frame(1 / 60.0);
+    player.set("go", 1);
+    frame(1e-3);
+    const GraphMachineState<double> m = GraphBlock<double>(graph, player.state).machine(0);
+    EXPECT_GT(m.duration, 0);
+    double most = 0;  // what the offset adds, beyond what it began with
+    std::vector<JointJet<double>> clip(fixtures::kGraphJoints);
+    const auto added = [&](double t, std::size_t j) {
+      EXPECT_TRUE((SamplingJob<double>{&asset.clips[5], t, clip}.Run().ok()));
+      return (player.jets[j].alpha - clip[j].alpha).norm();
+    };
+    std::vector<double> begin;
+    for (std::size_t j = 1; j < clip.size(); ++j) begin.push_back(added(1e-3, j));
+    for (double t = 1e-3; t < m.duration; t += 2e-3) {
+      for (std::size_t j = 1; j < clip.size(); ++j) most = std::max(most, added(t, j) - begin[j - 1]);
+      frame(2e-3);
+    }
+    // Where it is not cut off at 0.6 s. ω of the clip turns with the offset: a tenth more.
+    if (m.duration < 0.599) {
+      EXPECT_LT(most, 1.1 * 0.5 * spare + 30) << spare;
+    }
+    return m.duration;
+  };
+  const double strong = duration(5000), usual = duration(800), weak = duration(20);
+  EXPECT_LT(strong, 0.8 * usual);
+  EXPECT_LT(usual, 0.6);
+  EXPECT_NEAR(weak, 0.6, 1e-6) << "as long as it may";
+  EXPECT_NEAR(duration(1e6), 0.08, 1e-6) << "the shortest that there is";
+}
+
 // A one-shot whose end no transition forestalls comes to rest there, and does not stop dead.
 TEST(Graph, AClipThatEndsSlowsDownBeforeItHolds) {
   const Asset asset = fixtures::graph_asset();

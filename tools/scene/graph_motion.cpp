@@ -18,26 +18,27 @@ GraphMotion<T>::GraphMotion(const GraphUse& use, const Skeleton& skeleton, const
 }
 
 template <class T>
-Status GraphMotion<T>::at(double t, std::span<const Transform<T>> now, double load,
-                          std::vector<JointJet<T>>& jets) {
+Status GraphMotion<T>::at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets) {
+  const std::span<const Transform<T>> now = felt.local;
   for (std::size_t j = 0; j < physical_.size() && j < now.size(); ++j) {
     physical_[j] = {};
     physical_[j].rotation = now[j].rotation;
     physical_[j].translation = now[j].translation;
   }
-  feel(now, load);
+  feel(felt);
   const double from = time_ < 0 ? -1e300 : time_, h = time_ < 0 ? 0 : std::max(0.0, t - time_);
   use_.inputs.apply(*use_.graph, state_, from, time_ < 0 ? t + 1e-9 : t - 1e-9);
   GraphStepJob<T> job{use_.graph.get(), state_, T(h), scratch_.get(), jets};
   job.physical = physical_;
+  job.spare_acceleration = felt.spare_acceleration;
   time_ = t;
   return job.Run();
 }
 
 template <class T>
-void GraphMotion<T>::feel(std::span<const Transform<T>> now, double load) {
-  if (now.empty()) return;
-  const Transform<double> root = now[0].template cast<double>();
+void GraphMotion<T>::feel(const Felt<T>& felt) {
+  if (felt.local.empty()) return;
+  const Transform<double> root = felt.local[0].template cast<double>();
   const Mat3<double> turned =
       (root.rotation * skeleton_.joints[0].rest.rotation.conjugate()).toRotationMatrix();
   const double height = skeleton_.joints[0].rest.translation.z();
@@ -48,7 +49,7 @@ void GraphMotion<T>::feel(std::span<const Transform<T>> now, double load) {
   set("physics.tilt", std::acos(std::clamp(turned(2, 2), -1.0, 1.0)));
   set("physics.face_up", turned(2, 0));
   set("physics.height", height > 0 ? root.translation.z() / height : 1);
-  set("physics.load", load);
+  set("physics.load", felt.load);
 }
 
 template class GraphMotion<float>;

@@ -16,6 +16,14 @@ struct GraphUse {
   graph_tools::InputScript inputs;
 };
 
+/// What the physical character says of itself.
+template <class T>
+struct Felt {
+  std::span<const Transform<T>> local = {};    ///< [joint] its pose
+  double load = 0;                             ///< the greatest of its muscles
+  std::span<const T> spare_acceleration = {};  ///< [joint], see spare_acceleration()
+};
+
 /// Plays it. Copies are independent: one may be asked what comes next. The use must outlive it.
 ///
 /// Parameters that the graph has under these names are set in every frame: `physics.tilt`, how far the root
@@ -26,12 +34,11 @@ class GraphMotion {
  public:
   GraphMotion(const GraphUse& use, const Skeleton& skeleton, const Transform<double>& place);
 
-  /// The motion at t, which does not run backwards. `now`: local pose of the physical character; `load`: of
-  /// its muscles.
-  Status at(double t, std::span<const Transform<T>> now, double load, std::vector<JointJet<T>>& jets);
+  /// The motion at t, which does not run backwards.
+  Status at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets);
 
  private:
-  void feel(std::span<const Transform<T>> now, double load);
+  void feel(const Felt<T>& felt);
 
   const GraphUse& use_;
   const Skeleton& skeleton_;

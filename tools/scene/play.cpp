@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/spare_acceleration.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
 
@@ -87,10 +88,14 @@ convert::Error Play<T>::drive(int c, double t) {
   Asked& asked = asked_[c];
   Character<T> character = world_.character(c);
   if (!asked.still) {
-    double load = 0;
-    if (source.graph.graph)  // worked out when asked for
-      for (const T& l : character.load()) load = std::max(load, double(l));
-    Status status = character.set_target(players_[c].at(t, character.local(), load));
+    Felt<T> felt{character.local()};
+    if (players_[c].has_graph()) {  // loads are worked out when asked for
+      for (const T& l : character.load()) felt.load = std::max(felt.load, double(l));
+      spare_.resize(source.asset->skeleton.joints.size());
+      spare_acceleration<T>(character, spare_);
+      felt.spare_acceleration = spare_;
+    }
+    Status status = character.set_target(players_[c].at(t, felt));
     if (!players_[c].fault()) status = players_[c].fault();
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     asked.still = !players_[c].moves();

@@ -59,6 +59,7 @@ class Play {
 
   const Scene& s_;
   World<T>& world_;
+  std::vector<T> spare_;  ///< [joint] of the character that is driven
   std::vector<Player<T>> players_;
   std::vector<Asked> asked_;
   std::vector<std::vector<JointJet<T>>> starts_;  ///< [character]

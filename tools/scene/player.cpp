@@ -44,11 +44,15 @@ bool Player<T>::moves() const {
 }
 
 template <class T>
-const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transform<T>> now, double load) {
-  if (graph_) {
-    fault_ = graph_->at(t, now, load, a_);
-    return a_;
-  }
+const std::vector<JointJet<T>>& Player<T>::at(double t, const Felt<T>& felt) {
+  if (!graph_) return at(t, felt.local);
+  fault_ = graph_->at(t, felt, a_);
+  return a_;
+}
+
+template <class T>
+const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transform<T>> now) {
+  if (graph_) return at(t, Felt<T>{now});
   stand(t, a_);
   bool any = false;
   for (std::size_t i = 0; i < c_.clips.size(); ++i) {

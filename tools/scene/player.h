@@ -25,8 +25,10 @@ class Player {
   /// Whether what it wants changes in time.
   bool moves() const;
   /// `now`: local pose of the character, root in the world.
-  /// `load`: the greatest of its muscles. What is wrong with a graph's motion: fault().
-  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now, double load = 0);
+  const std::vector<JointJet<T>>& at(double t, std::span<const Transform<T>> now);
+  /// The same for who plays a graph, which may ask for more. What is wrong with its motion: fault().
+  const std::vector<JointJet<T>>& at(double t, const Felt<T>& felt);
+  bool has_graph() const { return graph_.has_value(); }
   const Status& fault() const { return fault_; }
   /// At time 0, with the speeds that the character starts with.
   std::vector<JointJet<T>> start(std::span<const Transform<T>> now);

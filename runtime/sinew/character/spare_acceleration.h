@@ -1,0 +1,23 @@
+// What a character's muscles have left, as accelerations: how fast a transition may be.
+#pragma once
+
+#include <span>
+
+#include "sinew/character/world.h"
+
+namespace sinew {
+
+/// `out` [joint]: by how much the muscles could turn each joint faster than they do now, rad/s²: the least of
+/// (limit − |torque|) / inertia over its degrees of freedom, the inertia that of all that hangs on the joint
+/// about its origin, at most (half of the trace). As GraphPoseJob and inertial_duration() take it. Joints
+/// that no muscle moves, and those without a body, do not limit anything: 10⁶.
+///
+/// Of the last step. Torques are worked out where it was only played, see Character::load(). Allocates
+/// nothing; cost O(joints²) at worst, of chains; O(joints · depth).
+template <class T>
+void spare_acceleration(const Character<T>& character, std::span<T> out);
+
+extern template void spare_acceleration<float>(const Character<float>&, std::span<float>);
+extern template void spare_acceleration<double>(const Character<double>&, std::span<double>);
+
+}  // namespace sinew

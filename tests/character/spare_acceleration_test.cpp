@@ -1,0 +1,70 @@
+// What muscles have left, against figures worked out by hand.
+#include "sinew/character/spare_acceleration.h"
+
+#include "character/scenes.h"
+
+namespace sinew {
+namespace {
+
+/// A fixed root and a rod of 2 kg and 1 m that a hinge with 30 N m holds level: 9.81 N m of load.
+TEST(SpareAcceleration, OfALevelRodIsWhatItsHingeHasLeftOverItsInertia) {
+  Skeleton skeleton;
+  skeleton.joints.resize(2);
+  Joint& root = skeleton.joints[0];
+  root.name = "root";
+  root.type = JointType::kFree;
+  root.mass = 1;
+  root.inertia = Mat3<double>::Identity();
+  Joint& rod = skeleton.joints[1];
+  rod.name = "rod";
+  rod.parent = 0;
+  rod.type = JointType::kRevolute;
+  rod.axis = Vec3<double>::UnitY();
+  rod.mass = 2;
+  rod.center_of_mass = {0.5, 0, 0};
+  rod.inertia = Vec3<double>(1e-6, 2.0 / 12, 2.0 / 12).asDiagonal();
+  for (DofLimits& dof : rod.dofs) dof = {-2, 2, 30, 30, 0, 0};
+  skeleton.body_count = 2;
+  ASSERT_TRUE(validate(skeleton).ok()) << validate(skeleton).reason;
+  WorldSettings settings;
+  settings.ground = false;
+  World<double> world(settings);
+  Status status;
+  ASSERT_EQ(world.add_character(skeleton, {}, status), 0) << status.reason;
+  std::vector<JointJet<double>> still(2);
+  for (int k = 0; k < 3; ++k) {
+    ASSERT_TRUE(world.character(0).set_target(still).ok());
+    if (k == 0) world.character(0).reset();
+    ASSERT_TRUE(world.step(1 / 60.0).ok());
+  }
+  std::vector<double> spare(2);
+  spare_acceleration<double>(world.character(0), spare);
+  EXPECT_EQ(spare[0], 1e6) << "no muscle moves the root";
+  const double inertia = 2.0 / 12 + 2 * 0.25;  // about the hinge; half of the trace is a millionth more
+  EXPECT_NEAR(spare[1], (30 - 9.81) / inertia, 1e-3 * 30);
+}
+
+TEST(SpareAcceleration, OfATiredFigureIsLess) {
+  const Skeleton skeleton = fixtures::humanoid();
+  const auto least = [&](double strength) {
+    World<float> world({});
+    Status status;
+    CharacterSettings settings;
+    settings.strength = strength;
+    EXPECT_EQ(world.add_character(skeleton, settings, status), 0);
+    std::vector<float> spare(skeleton.joints.size());
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_TRUE(world.character(0).set_target(fixtures::idle<float>(skeleton, k / 60.0)).ok());
+      if (k == 0) world.character(0).reset();
+      EXPECT_TRUE(world.step(1 / 60.f).ok());
+    }
+    spare_acceleration<float>(world.character(0), spare);
+    return *std::min_element(spare.begin(), spare.end());
+  };
+  EXPECT_GT(least(1), 10);
+  EXPECT_LT(least(0.5), 0.6f * least(1));
+  EXPECT_GE(least(0.01), 0);
+}
+
+}  // namespace
+}  // namespace sinew
