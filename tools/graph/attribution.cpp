@@ -66,8 +66,8 @@ void Attribution::done(const GraphTask& task, std::span<const JointJet<float>> o
     case GraphTask::Kind::kBlend: {
       Shares mixed;
       for (int k = 0; k < task.count; ++k)
-        add(registers_[std::size_t(task.out + k)], scratch_.weights[std::size_t(task.weights + k)].value,
-            mixed);
+        add(registers_[std::size_t(task.out) + std::size_t(k)],
+            scratch_.weights[std::size_t(task.weights) + std::size_t(k)].value, mixed);
       at = std::move(mixed);
       return rest(task.index, jet.alpha, at);
     }

@@ -74,7 +74,9 @@ class Graph {
   const std::vector<BlendSpace>& spaces() const { return spaces_; }
   const std::vector<BoundMachine>& machines() const { return machines_; }
   /// Of layer `layer` of a kLayers node.
-  const BoundLayer& layer(int node, int layer) const { return layers_[std::size_t(slot(node) + layer)]; }
+  const BoundLayer& layer(int node, int layer) const {
+    return layers_[std::size_t(slot(node)) + std::size_t(layer)];
+  }
   const std::vector<JointMask>& masks() const { return masks_; }
   const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }
   const std::vector<int>& parents() const { return parents_; }

@@ -115,8 +115,8 @@ class Check {
   Status layers(const GraphNode& node, int index) const {
     if (node.children.empty() || node.layers.size() + 1 != node.children.size())
       return bad("layers and their nodes differ in number", index);
-    for (std::size_t k = 0; k < node.children.size(); ++k)
-      if (empty(node.children[k])) return bad("a layer is empty itself", index);
+    for (const int child : node.children)
+      if (empty(child)) return bad("a layer is empty itself", index);
     for (const GraphLayer& layer : node.layers) {
       if (!fine(layer.weight)) return bad("weight of a layer is not a number or a float parameter", index);
       if (layer.weight.parameter < 0 && !within(layer.weight.constant, 0, 1))

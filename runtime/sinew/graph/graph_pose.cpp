@@ -209,7 +209,7 @@ class Pose {
         return status;
     }
     const std::vector<JointJet<T>>& reference =
-        s_.references[std::size_t(graph_.slot(task.index) + task.layer)];
+        s_.references[std::size_t(graph_.slot(task.index)) + std::size_t(task.layer)];
     if (in.mode == LayerMode::kMeshAdditive) return add_in_model(below, upper, reference, w, mask);
     if (in.mode == LayerMode::kAdditive) {
       for (std::size_t j = 0; j < joints; ++j) {
