@@ -10,6 +10,7 @@
 #include "cli/files.h"
 #include "cli/graph.h"
 #include "cli/memory.h"
+#include "cli/retarget.h"
 #include "cli/study_program.h"
 #include "convert/convert.h"
 #include "render/render.h"
@@ -456,6 +457,12 @@ int main(int argc, char** argv) try {
                                "Example: sinew graph check hero.graph.json --asset hero.sinew");
   graph.add(*g);
 
+  cli::RetargetCommand retarget;
+  auto* t = app.add_subcommand("retarget",
+                               "clips of one character for another\n"
+                               "Example: sinew retarget walk.fbx --to hero.sinew -o hero_walks.sinew");
+  retarget.add(*t);
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
@@ -475,6 +482,8 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (g->parsed())
     error = graph.run();
+  else if (t->parsed())
+    error = retarget.run();
   else if (s->parsed())
     error = simulate.run();
   else
