@@ -18,6 +18,7 @@ constexpr double kPatch = 0.002;    ///< m: see patch_of
 constexpr double kNearZero = 0.06;  ///< m: a floor so near z = 0 is meant to be there
 constexpr double kUneven = 0.06;    ///< m between what two feet stand on, on one floor
 constexpr double kWalks = 0.3;      ///< m/s: what moves back more slowly does not walk in place
+constexpr double kRound = 0.008;    ///< s: standard deviation of what rounds a sole's arrival
 constexpr double kSettle = 0.1;     ///< s over which hips go down for a leg that would not reach
 
 double smooth(double u) {
@@ -38,6 +39,7 @@ struct Track {
   int from = -1, to = -1;                   ///< end joints
   std::vector<std::array<int, 2>> windows;  ///< first and last frame; the last of a loop may be beyond it
   std::vector<double> weight;               ///< [frame] 1 on the floor
+  double floor = 0;                         ///< m, that it stands on in the source
   std::vector<double> height;               ///< [frame] of the source's sole over its floor, m
   std::vector<Patch> source_patch, patch;   ///< [frame]
   std::vector<Vec3<double>> path;           ///< [frame] of the target's end joint, m
@@ -128,9 +130,9 @@ class Planter {
       for (int f = 0; f < frames_; ++f)
         if (track.weight[f] == 1) standing.push_back(source_height(track, f));
       const double own = standing.empty() ? source_floor_ : median(std::move(standing));
-      const double floor = std::abs(own - source_floor_) < kUneven * size_ ? own : source_floor_;
+      track.floor = std::abs(own - source_floor_) < kUneven * size_ ? own : source_floor_;
       for (int f = 0; f < frames_; ++f) {
-        const double height = source_height(track, f) - floor;
+        const double height = source_height(track, f) - track.floor;
         track.height.push_back(plant_ ? std::max(height, 0.0) : height);
       }
     }
@@ -162,26 +164,57 @@ class Planter {
             out_.floor + ankle_ + map_.scale * (theirs.z() - source_floor_ - source_ankle_)};
   }
 
-  /// Where the end joint goes before anything is taken off for slipping; and the soles.
+  /// Where the end joint goes. What the floor asks for beside what the source does is rounded: a sole that
+  /// stops at once would ask for any torque.
   void find_path(Track& track) {
     const Sole sole(*map_.target, track.to);
     const int hip = map_.to[track.limb.upper].joints.front(),
               their_hip = map_.from[track.limb.upper].joints.front();
+    std::vector<Vec3<double>> without;
     for (int f = 0; f < frames_; ++f) {
       const std::vector<Transform<double>> model = model_of(*map_.target, out_.motion.local[f]);
       track.patch.push_back(patch_of(sole, model, kPatch * size_ * map_.scale));
       Vec3<double> at = model[track.to].translation;
+      const Vec3<double>& theirs = source_.model[f][track.from].translation;
       if (track.limb.leg) {
-        at = model[hip].translation + map_.scale * (source_.model[f][track.from].translation -
-                                                    source_.model[f][their_hip].translation);
-        at.z() = out_.floor + map_.scale * (1 - track.weight[f]) * track.height[f] - track.patch[f].low;
-      } else {
-        at.z() += track.weight[f] * (out_.floor - track.patch[f].low - at.z());
+        at = model[hip].translation + map_.scale * (theirs - source_.model[f][their_hip].translation);
+        at.z() = out_.floor + ankle_ + map_.scale * (theirs.z() - track.floor - source_ankle_);
       }
-      track.path.push_back(at);
+      without.push_back(at);
+      const double height =
+          track.limb.leg ? map_.scale * track.height[f] : at.z() + track.patch[f].low - out_.floor;
+      const double planted = out_.floor + (1 - track.weight[f]) * height - track.patch[f].low;
+      track.path.emplace_back(at.x(), at.y(), planted);
     }
     const std::vector<Vec3<double>> off = slips(track);
-    for (int f = 0; f < frames_; ++f) track.path[f] += (track.limb.leg ? 1 : track.weight[f]) * off[f];
+    std::vector<Vec3<double>> change;
+    for (int f = 0; f < frames_; ++f)
+      change.emplace_back(track.path[f] - without[f] + (track.limb.leg ? 1 : track.weight[f]) * off[f]);
+    if (plant_) change = rounded(change);
+    for (int f = 0; f < frames_; ++f) track.path[f] = without[f] + change[f];
+  }
+
+  /// Frame f and those beside it: loops go on, others hold their ends.
+  int frame_at(int f) const {
+    const int period = source_.intervals();
+    if (source_.loops && period > 0) return ((f % period) + period) % period;
+    return std::clamp(f, 0, frames_ - 1);
+  }
+
+  /// A bell of kRound s, as three means.
+  std::vector<Vec3<double>> rounded(std::vector<Vec3<double>> values) const {
+    const double deviation = kRound * pace_ * source_.rate;
+    const int radius = static_cast<int>(std::lround((std::sqrt(4 * deviation * deviation + 1) - 1) / 2));
+    for (int pass = 0; pass < 3; ++pass) {
+      std::vector<Vec3<double>> means;
+      for (int f = 0; f < frames_; ++f) {
+        Vec3<double> sum = Vec3<double>::Zero();
+        for (int k = -radius; k <= radius; ++k) sum += values[frame_at(f + k)];
+        means.emplace_back(sum / (2 * radius + 1));
+      }
+      values = std::move(means);
+    }
+    return values;
   }
 
   /// The slip of one interval, beside the floor's own movement.
@@ -287,14 +320,12 @@ class Planter {
     std::vector<double> drop = needed_drop();
     if (!plant_ || *std::max_element(drop.begin(), drop.end()) <= 0) return;
     const int radius = std::max(1, static_cast<int>(std::lround(kSettle / 2 * pace_ * source_.rate)));
-    const int period = source_.intervals();
     const auto around = [&](const std::vector<double>& values, int reach, bool largest) {
       std::vector<double> out(values.size());
       for (int f = 0; f < frames_; ++f) {
         double sum = 0;
         for (int k = -reach; k <= reach; ++k) {
-          const int at = source_.loops && period > 0 ? ((f + k) % period + period) % period
-                                                     : std::clamp(f + k, 0, frames_ - 1);
+          const int at = frame_at(f + k);
           sum = largest ? std::max(sum, values[at]) : sum + values[at];
         }
         out[f] = largest ? sum : sum / (2 * reach + 1);
@@ -307,7 +338,8 @@ class Planter {
   }
 
   void reach(const Track& track) {
-    const Reach solver(map_, track.limb);
+    Reach solver(map_, track.limb);
+    solver.learn_plane(out_.motion.local);
     double furthest = 0;
     for (int f = 0; f < frames_; ++f)
       furthest = std::max(

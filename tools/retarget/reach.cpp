@@ -18,7 +18,8 @@ namespace {
 constexpr double kStraight = 0.9985;  ///< of the length: where TwoBoneJob with kSoftness begins to slow down
 constexpr double kSoftness = 0.001;
 constexpr double kMargin = 0.004;   ///< of the length: over which a limb slows down before `longest`
-constexpr double kAnatomy = 0.05;   ///< of the upper bone: the sideways bend below which anatomy decides
+constexpr double kBend = 0.3;       ///< of the upper bone: how far a limb that walks bends to the side
+constexpr double kLearns = 0.01;    ///< of the upper bone, squared: bend from which on a plane can be seen
 constexpr double kFromStop = 0.01;  ///< rad that a hinge keeps from the end of its range
 
 bool is_hinge(const Joint& joint) {
@@ -84,7 +85,23 @@ void Reach::turn_as_hinge(Transform<double>& local) const {
       rotation_exp<double>(std::clamp(angle, joint.dofs[0].lower, joint.dofs[0].upper) * joint.axis);
 }
 
-bool Reach::solve(const Vec3<double>& goal, double anatomy, std::span<Transform<double>> local) const {
+void Reach::learn_plane(const std::vector<std::vector<Transform<double>>>& local) {
+  Vec3<double> sum = Vec3<double>::Zero();
+  double weights = 0;
+  for (const auto& frame : local) {
+    const std::vector<Transform<double>> model = model_of(*map_.target, frame);
+    const Vec3<double> bone = model[middle_].translation - model[upper_].translation;
+    const Vec3<double> along = (model[end_].translation - model[upper_].translation).normalized();
+    const Vec3<double> side = bone - along * along.dot(bone);
+    sum += side.norm() * (model[upper_].rotation.conjugate() * side);
+    weights += bone.squaredNorm();
+  }
+  // Of a limb that hardly bends nothing is learnt, nor of one that bends the other way.
+  if (!(weights > 0) || sum.norm() < kLearns * weights || sum.normalized().dot(pole_) < 0) return;
+  pole_ = sum.normalized();
+}
+
+bool Reach::solve(const Vec3<double>& goal, double learnt, std::span<Transform<double>> local) const {
   std::vector<Transform<double>> model = model_of(*map_.target, local);
   const Quat<double> kept = model[end_].rotation;
   const Vec3<double> from = model[upper_].translation;
@@ -94,8 +111,8 @@ bool Reach::solve(const Vec3<double>& goal, double anatomy, std::span<Transform<
   const Vec3<double> along = way / far;
   if (far > begin) way = along * (begin + margin * (far - begin) / (far - begin + margin));
   const Vec3<double> bone = model[middle_].translation - from;
-  const Vec3<double> pole =
-      bone - along * along.dot(bone) + anatomy * kAnatomy * bone.norm() * (model[upper_].rotation * pole_);
+  const Vec3<double> pole = (1 - learnt) * (bone - along * along.dot(bone)) +
+                            learnt * kBend * bone.norm() * (model[upper_].rotation * pole_);
 
   std::vector<Transform<double>> turned(local.begin(), local.end());
   turn_as_hinge(turned[middle_]);

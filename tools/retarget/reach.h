@@ -26,10 +26,15 @@ class Reach {
   /// little bent.
   double longest() const { return longest_; }
 
+  /// Learns from a motion in which plane the limb bends, as a direction in the upper joint's axes: the mean
+  /// over all frames, those that bend most counting most. A plane from each frame alone would be noise where
+  /// the limb is all but straight, and the wrong side where a captured knee goes through.
+  void learn_plane(const std::vector<std::vector<Transform<double>>>& local);
+
   /// Moves the end joint to `goal` (m, model), which keeps its orientation; the middle joint bends as a hinge
-  /// where it is one. Its plane is the animation's, and where the limb is all but straight, to the share
-  /// `anatomy`, that of its hinge. False where no plane can be found: the pose stays.
-  bool solve(const Vec3<double>& goal, double anatomy, std::span<Transform<double>> local) const;
+  /// where it is one, in the plane that was learnt, to the share `learnt`, else in the animation's. False
+  /// where no plane can be found: the pose stays.
+  bool solve(const Vec3<double>& goal, double learnt, std::span<Transform<double>> local) const;
 
  private:
   double reach_at(double angle) const;
