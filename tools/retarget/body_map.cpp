@@ -17,7 +17,7 @@ namespace {
 int common_ancestor(const Skeleton& skeleton, int a, int b) {
   while (a != b) {
     int& later = a > b ? a : b;  // parents come first: the later one cannot be above the other
-    later = skeleton.joints[static_cast<std::size_t>(later)].parent;
+    later = skeleton.joints[later].parent;
     if (later < 0) return -1;
   }
   return a;
@@ -29,7 +29,7 @@ Chain chain_between(const Skeleton& skeleton, int first, int end) {
   if (end < 0 || end == first || !is_below(skeleton, end, first)) return {{first}, -1};
   Chain chain{{}, end};
   for (int j = end; j != first;) {
-    j = skeleton.joints[static_cast<std::size_t>(j)].parent;
+    j = skeleton.joints[j].parent;
     chain.joints.push_back(j);
   }
   std::reverse(chain.joints.begin(), chain.joints.end());
@@ -55,9 +55,8 @@ Error check_legs(const Skeleton& skeleton) {
                 ": it has no legs, or name it (--map)"};
     for (const auto& [above, below] : {std::pair(leg.upper, leg.middle), std::pair(leg.middle, leg.end)})
       if (!is_below(skeleton, skeleton.find(below), skeleton.find(above)))
-        return {"joint '" + skeleton.joints[static_cast<std::size_t>(skeleton.find(below))].name + "' (" +
-                convert::role_name(below) + ") is not below '" +
-                skeleton.joints[static_cast<std::size_t>(skeleton.find(above))].name + "' (" +
+        return {"joint '" + skeleton.joints[skeleton.find(below)].name + "' (" + convert::role_name(below) +
+                ") is not below '" + skeleton.joints[skeleton.find(above)].name + "' (" +
                 convert::role_name(above) + ")"};
   }
   return {};
@@ -88,7 +87,7 @@ void find_trunk(const Skeleton& skeleton, int top, BodyMap& map) {
 }  // namespace
 
 bool is_below(const Skeleton& skeleton, int joint, int ancestor) {
-  while (joint > ancestor) joint = skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  while (joint > ancestor) joint = skeleton.joints[joint].parent;
   return joint == ancestor;
 }
 
@@ -100,9 +99,25 @@ Error name_roles(const std::map<std::string, std::string>& joint_of_role, Skelet
     if (found < 0) return {"it has no joint '" + joint + "'"};
     for (Joint& other : skeleton.joints)
       if (other.role == role) other.role = Role::kNone;
-    skeleton.joints[static_cast<std::size_t>(found)].role = role;
+    skeleton.joints[found].role = role;
   }
   return {};
+}
+
+void infer_roles(Skeleton& skeleton) {
+  constexpr std::array<std::array<Role, 4>, 4> kAbove = {
+      {{Role::kShinL, Role::kFootL, Role::kShinR, Role::kFootR},
+       {Role::kThighL, Role::kShinL, Role::kThighR, Role::kShinR},
+       {Role::kForearmL, Role::kHandL, Role::kForearmR, Role::kHandR},
+       {Role::kUpperArmL, Role::kForearmL, Role::kUpperArmR, Role::kForearmR}}};
+  for (const auto& [above_l, below_l, above_r, below_r] : kAbove) {
+    const int left = skeleton.find(below_l), right = skeleton.find(below_r);
+    if (left < 0 || right < 0) continue;
+    const int common = common_ancestor(skeleton, left, right);
+    for (const auto& [role, below] : {std::pair(above_l, left), std::pair(above_r, right)})
+      if (const int parent = skeleton.joints[below].parent; skeleton.find(role) < 0 && parent > common)
+        skeleton.joints[parent].role = role;
+  }
 }
 
 Error find_chains(const Skeleton& skeleton, BodyMap& out) {
@@ -134,8 +149,7 @@ std::vector<Transform<double>> model_rest(const Skeleton& skeleton) {
   std::vector<Transform<double>> model(skeleton.joints.size());
   for (std::size_t j = 0; j < model.size(); ++j) {
     const int parent = skeleton.joints[j].parent;
-    model[j] = parent < 0 ? skeleton.joints[j].rest
-                          : model[static_cast<std::size_t>(parent)] * skeleton.joints[j].rest;
+    model[j] = parent < 0 ? skeleton.joints[j].rest : model[parent] * skeleton.joints[j].rest;
   }
   return model;
 }

@@ -34,6 +34,10 @@ extern const std::array<Role, 20> kParts;
 /// Gives joints the roles that a user names: role → joint. An error names an unknown role or joint.
 Error name_roles(const std::map<std::string, std::string>& joint_of_role, Skeleton& skeleton);
 
+/// Gives a role that no name says to the joint above the one whose role is known, where that belongs to one
+/// side alone: the thigh above a knee, the upper arm above an elbow.
+void infer_roles(Skeleton& skeleton);
+
 /// Finds the chains. The pelvis is where the legs and the trunk meet. Legs are needed, all else may be
 /// missing. An error says which part has no joint.
 Error find_chains(const Skeleton& skeleton, BodyMap& out);

@@ -19,6 +19,7 @@ constexpr double kNearZero = 0.06;  ///< m: a floor so near z = 0 is meant to be
 constexpr double kUneven = 0.06;    ///< m between what two feet stand on, on one floor
 constexpr double kWalks = 0.3;      ///< m/s: what moves back more slowly does not walk in place
 constexpr double kRound = 0.008;    ///< s: standard deviation of what rounds a sole's arrival
+constexpr double kDeepest = 0.12;   ///< of the leg's length: lower hips would be another motion
 constexpr double kSettle = 0.1;     ///< s over which hips go down for a leg that would not reach
 
 double smooth(double u) {
@@ -65,7 +66,8 @@ class Planter {
       place_hips(map_, hips_at(f), local.back());
     }
     for (Track& track : tracks_) find_path(track);
-    lower_hips();
+    shift_hips(true);
+    shift_hips(false);
     for (const Track& track : tracks_) reach(track);
     for (const auto& frame : local) out_.motion.model.push_back(model_of(*map_.target, frame));
     return std::move(out_);
@@ -86,8 +88,8 @@ class Planter {
     std::vector<double> off(std::size_t(frames_), 1.0);
     for (const ContactWindow& w : contacts) {
       if (!plant_ || !is_below(*map_.source, w.joint, track.from)) continue;
-      const int first = static_cast<int>(std::ceil(double(w.begin) * source_.rate - 1e-3)),
-                last = static_cast<int>(std::floor(double(w.end) * source_.rate + 1e-3));
+      const int first = static_cast<int>(std::floor(double(w.begin) * source_.rate + 1e-3)),
+                last = static_cast<int>(std::ceil(double(w.end) * source_.rate - 1e-3));
       if (last < first || first >= frames_) continue;
       track.windows.push_back({first, source_.loops ? last : std::min(last, frames_ - 1)});
       for (int f = 0; f < frames_; ++f) off[f] *= 1 - nearness(f, track.windows.back());
@@ -297,28 +299,32 @@ class Planter {
     for (int f = 0; f < end; ++f) out[f] = moved.front() - eased(velocity_at(moved, false), end - f, 1e9);
   }
 
-  /// How far the hips have to come down in each frame so that standing legs reach, m.
-  std::vector<double> needed_drop() const {
+  /// How far the hips have to go down (or, for knees that would fold too far, up: a second pass with `down`
+  /// false) in each frame so that standing legs can be where they stand, m.
+  std::vector<double> needed_shift(bool down) const {
     std::vector<double> need(std::size_t(frames_), 0.0);
+    const double most = kDeepest * map_.leg * map_.scale;
     for (const Track& track : tracks_) {
       if (!track.limb.leg) continue;
-      const double longest = 0.995 * Reach(map_, track.limb).longest();
+      const Reach solver(map_, track.limb);
+      const double limit = down ? 0.995 * solver.longest() : 1.005 * solver.shortest();
       const int hip = map_.to[track.limb.upper].joints.front();
       for (int f = 0; f < frames_; ++f) {
         if (track.weight[f] == 0) continue;
         const Vec3<double> at = model_of(*map_.target, out_.motion.local[f])[hip].translation;
-        const Vec3<double> way = track.path[f] - at;
+        const Vec3<double> way = at - track.path[f];
         const double level = std::hypot(way.x(), way.y());
-        const double deep = std::sqrt(std::max(0.0, longest * longest - level * level));
-        need[f] = std::max(need[f], track.weight[f] * (-way.z() - deep));
+        const double high = std::sqrt(std::max(0.0, limit * limit - level * level));
+        const double shift = down ? way.z() - high : high - way.z();
+        need[f] = std::max(need[f], track.weight[f] * std::min(shift, most));
       }
     }
     return need;
   }
 
-  void lower_hips() {
-    std::vector<double> drop = needed_drop();
-    if (!plant_ || *std::max_element(drop.begin(), drop.end()) <= 0) return;
+  void shift_hips(bool down) {
+    std::vector<double> shift = needed_shift(down);
+    if (!plant_ || *std::max_element(shift.begin(), shift.end()) <= 0) return;
     const int radius = std::max(1, static_cast<int>(std::lround(kSettle / 2 * pace_ * source_.rate)));
     const auto around = [&](const std::vector<double>& values, int reach, bool largest) {
       std::vector<double> out(values.size());
@@ -332,9 +338,11 @@ class Planter {
       }
       return out;
     };
-    drop = around(around(around(drop, 2 * radius, true), radius, false), radius, false);
-    for (int f = 0; f < frames_; ++f)
-      place_hips(map_, hips_at(f) - drop[f] * Vec3<double>::UnitZ(), out_.motion.local[f]);
+    shift = around(around(around(shift, 2 * radius, true), radius, false), radius, false);
+    for (int f = 0; f < frames_; ++f) {
+      const Vec3<double> hips = hips_of(map_.to, model_of(*map_.target, out_.motion.local[f]));
+      place_hips(map_, hips + (down ? -1 : 1) * shift[f] * Vec3<double>::UnitZ(), out_.motion.local[f]);
+    }
   }
 
   void reach(const Track& track) {

@@ -69,10 +69,14 @@ void Reach::find_range() {
   const Joint& joint = map_.target->joints[middle_];
   if (!is_hinge(joint) || joint.dofs[0].upper - joint.dofs[0].lower > 6) return;
   constexpr int kSteps = 200;
-  double most = 0;
+  double most = 0, least = 1e300;
   const double low = joint.dofs[0].lower + kFromStop, high = joint.dofs[0].upper - kFromStop;
-  for (int k = 0; k <= kSteps && low < high; ++k)
-    most = std::max(most, reach_at(low + (high - low) * k / kSteps));
+  for (int k = 0; k <= kSteps && low < high; ++k) {
+    const double reach = reach_at(low + (high - low) * k / kSteps);
+    most = std::max(most, reach);
+    least = std::min(least, reach);
+  }
+  if (most > 0 && least < most) shortest_ = least;
   if (most > 0) longest_ = std::min(longest_, most);
 }
 
@@ -109,6 +113,7 @@ bool Reach::solve(const Vec3<double>& goal, double learnt, std::span<Transform<d
   const double far = way.norm(), margin = kMargin * length_, begin = longest_ - margin;
   if (!(far > 1e-6)) return false;
   const Vec3<double> along = way / far;
+  if (far < shortest_) way = along * shortest_;
   if (far > begin) way = along * (begin + margin * (far - begin) / (far - begin + margin));
   const Vec3<double> bone = model[middle_].translation - from;
   const Vec3<double> pole = (1 - learnt) * (bone - along * along.dot(bone)) +

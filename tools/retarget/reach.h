@@ -25,6 +25,8 @@ class Reach {
   /// From the upper joint to the end, m: what the limb reaches with its middle joint within its range, a
   /// little bent.
   double longest() const { return longest_; }
+  /// What it comes down to, folded, m.
+  double shortest() const { return shortest_; }
 
   /// Learns from a motion in which plane the limb bends, as a direction in the upper joint's axes: the mean
   /// over all frames, those that bend most counting most. A plane from each frame alone would be noise where
@@ -47,7 +49,7 @@ class Reach {
   std::vector<int> parents_;
   Vec3<double> pole_;  ///< to which the middle joint points, upper joint's axes
   double length_ = 0;  ///< of both bones
-  double longest_ = 0;
+  double shortest_ = 0, longest_ = 0;
 };
 
 /// Largest angle by which a revolute joint is beyond its range in a pose, rad; negative within.

@@ -32,6 +32,7 @@ Error prepare(const Asset& source, const Asset& target, const Options& options, 
   work.target = target.skeleton;
   if (Error error = name_roles(options.from_roles, work.source)) return {"the map, 'from': " + error.message};
   if (Error error = name_roles(options.to_roles, work.target)) return {"the map, 'to': " + error.message};
+  for (Skeleton* skeleton : {&work.source, &work.target}) infer_roles(*skeleton);
   if (Error error = map_poses(work.source, !source.meshes.empty(), work.target, !target.meshes.empty(),
                               options.joints, work.map))
     return error;
@@ -188,6 +189,7 @@ void describe_map(const Work& work, json& report) {
   std::vector<int> still, unused;
   json others = json::array();
   for (int j = 0; j < int(map.joints.size()); ++j) {
+    if (map.joints[j].a < 0 && j == 0) continue;  // travels below the pelvis
     if (map.joints[j].a < 0) {
       still.push_back(j);
       continue;
