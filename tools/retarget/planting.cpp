@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeg = 0.9;        ///< m, of the body that the times and lengths below are for
 constexpr double kFade = 0.12;      ///< s over which a limb comes down to the floor, and leaves it
-constexpr double kEase = 0.25;      ///< s over which a path that was taken off its slip stops drifting
+constexpr double kEase = 0.1;       ///< s over which a path that was taken off its slip stops drifting
 constexpr double kPatch = 0.002;    ///< m: see patch_of
 constexpr double kNearZero = 0.06;  ///< m: a floor so near z = 0 is meant to be there
 constexpr double kUneven = 0.06;    ///< m between what two feet stand on, on one floor
@@ -42,6 +42,7 @@ struct Track {
   std::vector<double> weight;               ///< [frame] 1 on the floor
   double floor = 0;                         ///< m, that it stands on in the source
   std::vector<double> height;               ///< [frame] of the source's sole over its floor, m
+  std::vector<double> over;                 ///< [frame] the same of the target, before it is planted
   std::vector<Patch> source_patch, patch;   ///< [frame]
   std::vector<Vec3<double>> path;           ///< [frame] of the target's end joint, m
 };
@@ -183,12 +184,11 @@ class Planter {
         at.z() = out_.floor + ankle_ + map_.scale * (theirs.z() - track.floor - source_ankle_);
       }
       without.push_back(at);
-      const double height =
-          track.limb.leg ? map_.scale * track.height[f] : at.z() + track.patch[f].low - out_.floor;
-      const double planted = out_.floor + (1 - track.weight[f]) * height - track.patch[f].low;
-      track.path.emplace_back(at.x(), at.y(), planted);
+      track.over.push_back(track.limb.leg ? map_.scale * track.height[f]
+                                          : at.z() + track.patch[f].low - out_.floor);
+      track.path.emplace_back(at.x(), at.y(), out_.floor + track.over[f] - track.patch[f].low);
     }
-    const std::vector<Vec3<double>> off = slips(track);
+    const std::vector<Vec3<double>> off = corrections(track);
     std::vector<Vec3<double>> change;
     for (int f = 0; f < frames_; ++f)
       change.emplace_back(track.path[f] - without[f] + (track.limb.leg ? 1 : track.weight[f]) * off[f]);
@@ -226,8 +226,9 @@ class Planter {
            out_.carried / source_.rate;
   }
 
-  /// What a path has to be moved by so that nothing slips in the windows, as little as possible.
-  std::vector<Vec3<double>> slips(const Track& track) const {
+  /// What a path has to be moved by so that soles are on the floor in the windows and nothing slips there,
+  /// as little as possible.
+  std::vector<Vec3<double>> corrections(const Track& track) const {
     const std::size_t count = track.windows.size();
     std::vector<Vec3<double>> out(std::size_t(frames_), Vec3<double>::Zero());
     if (count == 0 || frames_ < 2) return out;
@@ -243,12 +244,16 @@ class Planter {
       }
       mean /= double(off.size());
       for (std::size_t i = 0; i < off.size(); ++i) {
+        const int f = first + static_cast<int>(i);
         off[i] -= mean;
-        put(out, first + static_cast<int>(i), off[i]);
+        off[i].z() = -track.over[frame_at(f)];
+        put(out, f, off[i]);
       }
     }
     for (std::size_t k = 0; k < count; ++k) fill_after(track, k, moved, out);
     if (!source_.loops) fill_before(track, moved.front(), out);
+    for (int f = 0; f < frames_ && track.limb.leg; ++f)  // never through the floor
+      out[f].z() = std::max(out[f].z(), -track.over[f]);
     return out;
   }
 

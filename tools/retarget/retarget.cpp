@@ -28,6 +28,10 @@ struct Work {
 };
 
 Error prepare(const Asset& source, const Asset& target, const Options& options, Work& work) {
+  for (const auto& [asset, which] :
+       {std::pair(&source, "the clips' skeleton"), std::pair(&target, "the target")})
+    if (Status status = validate(asset->skeleton); !status)
+      return {std::string(which) + ": " + status.reason};
   work.source = source.skeleton;
   work.target = target.skeleton;
   if (Error error = name_roles(options.from_roles, work.source)) return {"the map, 'from': " + error.message};
@@ -216,6 +220,8 @@ bool is_wanted(const Options& options, const Clip& clip) {
 
 Error check_wanted(const Asset& source, const Options& options) {
   if (source.clips.empty()) return {"the source has no clips"};
+  for (const Clip& clip : source.clips)
+    if (Status status = validate(clip); !status) return {"clip '" + clip.name + "': " + status.reason};
   for (const std::string& name : options.clips)
     if (source.find_clip(name) < 0) return {"the source has no clip '" + name + "'"};
   return {};

@@ -30,6 +30,10 @@ Motion sample_motion(const Clip& clip, const Skeleton& skeleton, double least_ra
   return motion;
 }
 
+namespace {
+constexpr double kSharper = 0.3;  ///< of the patch's width: over which its height is a mean
+}
+
 Sole::Sole(const Skeleton& skeleton, int foot) : joint(foot), points(convert::points_below(skeleton, foot)) {
   if (!points.empty()) return;
   points.emplace_back();
@@ -44,15 +48,16 @@ Patch patch_of(const Sole& sole, std::span<const Transform<double>> model, doubl
                           p.radius * Vec3<double>::UnitZ());
     lowest = std::min(lowest, patch.at.back().z());
   }
-  double sum = 0;
+  double sum = 0, sharp_sum = 0;
   for (const Vec3<double>& at : patch.at) {
     patch.share.push_back(std::exp(-(at.z() - lowest) / width));
     sum += patch.share.back();
+    const double sharp = std::exp(-(at.z() - lowest) / (kSharper * width));
+    sharp_sum += sharp;
+    patch.low += sharp * at.z();
   }
-  for (std::size_t k = 0; k < patch.at.size(); ++k) {
-    patch.share[k] /= sum;
-    patch.low += patch.share[k] * patch.at[k].z();
-  }
+  patch.low /= sharp_sum;
+  for (double& share : patch.share) share /= sum;
   return patch;
 }
 

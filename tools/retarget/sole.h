@@ -31,8 +31,9 @@ struct Sole {
   std::vector<ContactPoint<double>> points;
 };
 
-/// What of a sole is lowest, as weights: exp(−height / width). Heights are those of their mean, so that a
-/// foot that rolls from heel to toe moves smoothly. Width: a fraction of a millimetre's error.
+/// What of a sole is lowest, as weights: exp(−height / width), so that a foot that rolls from heel to toe
+/// moves smoothly. Its height is a mean with sharper weights: a fraction of a millimetre above the lowest
+/// point.
 struct Patch {
   double low = 0;                ///< m, relative to the joint's origin
   std::vector<Vec3<double>> at;  ///< [point] the same, model axes
