@@ -71,7 +71,8 @@ TEST(PoseMap, BonesPointWhereTheSourcesDoWhateverTheAxesOfTheirJoints) {
         Quat<double>(normal(random), normal(random), normal(random), normal(random)).normalized();
     to.joints[j].axis = axes.conjugate() * to.joints[j].axis;
     for (Collider& collider : to.colliders)
-      if (collider.joint == int(j)) collider.local = Transform<double>{axes, {0, 0, 0}}.inverse() * collider.local;
+      if (collider.joint == int(j))
+        collider.local = Transform<double>{axes, {0, 0, 0}}.inverse() * collider.local;
     model[j].rotation = model[j].rotation * axes;
   }
   for (std::size_t j = 0; j < model.size(); ++j) {

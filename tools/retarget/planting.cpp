@@ -18,7 +18,6 @@ constexpr double kPatch = 0.002;    ///< m: see patch_of
 constexpr double kNearZero = 0.06;  ///< m: a floor so near z = 0 is meant to be there
 constexpr double kUneven = 0.06;    ///< m between what two feet stand on, on one floor
 constexpr double kWalks = 0.3;      ///< m/s: what moves back more slowly does not walk in place
-constexpr double kRound = 0.008;    ///< s: standard deviation of what rounds a sole's arrival
 constexpr double kDeepest = 0.12;   ///< of the leg's length: lower hips would be another motion
 constexpr double kSettle = 0.1;     ///< s over which hips go down for a leg that would not reach
 
@@ -167,33 +166,25 @@ class Planter {
             out_.floor + ankle_ + map_.scale * (theirs.z() - source_floor_ - source_ankle_)};
   }
 
-  /// Where the end joint goes. What the floor asks for beside what the source does is rounded: a sole that
-  /// stops at once would ask for any torque.
+  /// Where the end joint goes. (Rounding that path over some milliseconds only made it worse: three
+  /// millimetres of sole where heels come down, and no less torque.)
   void find_path(Track& track) {
     const Sole sole(*map_.target, track.to);
     const int hip = map_.to[track.limb.upper].joints.front(),
               their_hip = map_.from[track.limb.upper].joints.front();
-    std::vector<Vec3<double>> without;
     for (int f = 0; f < frames_; ++f) {
       const std::vector<Transform<double>> model = model_of(*map_.target, out_.motion.local[f]);
       track.patch.push_back(patch_of(sole, model, kPatch * size_ * map_.scale));
       Vec3<double> at = model[track.to].translation;
-      const Vec3<double>& theirs = source_.model[f][track.from].translation;
-      if (track.limb.leg) {
-        at = model[hip].translation + map_.scale * (theirs - source_.model[f][their_hip].translation);
-        at.z() = out_.floor + ankle_ + map_.scale * (theirs.z() - track.floor - source_ankle_);
-      }
-      without.push_back(at);
+      if (track.limb.leg)
+        at = model[hip].translation + map_.scale * (source_.model[f][track.from].translation -
+                                                    source_.model[f][their_hip].translation);
       track.over.push_back(track.limb.leg ? map_.scale * track.height[f]
                                           : at.z() + track.patch[f].low - out_.floor);
       track.path.emplace_back(at.x(), at.y(), out_.floor + track.over[f] - track.patch[f].low);
     }
     const std::vector<Vec3<double>> off = corrections(track);
-    std::vector<Vec3<double>> change;
-    for (int f = 0; f < frames_; ++f)
-      change.emplace_back(track.path[f] - without[f] + (track.limb.leg ? 1 : track.weight[f]) * off[f]);
-    if (plant_) change = rounded(change);
-    for (int f = 0; f < frames_; ++f) track.path[f] = without[f] + change[f];
+    for (int f = 0; f < frames_; ++f) track.path[f] += (track.limb.leg ? 1 : track.weight[f]) * off[f];
   }
 
   /// Frame f and those beside it: loops go on, others hold their ends.
@@ -201,22 +192,6 @@ class Planter {
     const int period = source_.intervals();
     if (source_.loops && period > 0) return ((f % period) + period) % period;
     return std::clamp(f, 0, frames_ - 1);
-  }
-
-  /// A bell of kRound s, as three means.
-  std::vector<Vec3<double>> rounded(std::vector<Vec3<double>> values) const {
-    const double deviation = kRound * pace_ * source_.rate;
-    const int radius = static_cast<int>(std::lround((std::sqrt(4 * deviation * deviation + 1) - 1) / 2));
-    for (int pass = 0; pass < 3; ++pass) {
-      std::vector<Vec3<double>> means;
-      for (int f = 0; f < frames_; ++f) {
-        Vec3<double> sum = Vec3<double>::Zero();
-        for (int k = -radius; k <= radius; ++k) sum += values[frame_at(f + k)];
-        means.emplace_back(sum / (2 * radius + 1));
-      }
-      values = std::move(means);
-    }
-    return values;
   }
 
   /// The slip of one interval, beside the floor's own movement.
@@ -312,7 +287,7 @@ class Planter {
     for (const Track& track : tracks_) {
       if (!track.limb.leg) continue;
       const Reach solver(map_, track.limb);
-      const double limit = down ? 0.995 * solver.longest() : 1.005 * solver.shortest();
+      const double limit = down ? 0.9975 * solver.longest() : 1.005 * solver.shortest();
       const int hip = map_.to[track.limb.upper].joints.front();
       for (int f = 0; f < frames_; ++f) {
         if (track.weight[f] == 0) continue;

@@ -244,15 +244,11 @@ std::string finger_name(const Skeleton& skeleton, const BodyMap& map, int joint)
   return {};
 }
 
-/// Joints that belong to no chain, and are no controls, by the names under which they are looked for.
-std::map<std::string, int> others(const Skeleton& skeleton, const BodyMap& map) {
-  std::vector<bool> used(skeleton.joints.size(), false);
-  for (const Chain& chain : map.chains)
-    for (const int j : chain.joints) used[j] = true;
+/// Joints that are no controls and not the pelvis or above it, by the names under which they are looked for.
+std::map<std::string, int> by_names(const Skeleton& skeleton, const BodyMap& map) {
   std::map<std::string, int> out;
   for (int j = 0; j < int(skeleton.joints.size()); ++j) {
-    if (used[j] || is_below(skeleton, map.pelvis(), j) || convert::is_control_name(skeleton.joints[j].name))
-      continue;
+    if (is_below(skeleton, map.pelvis(), j) || convert::is_control_name(skeleton.joints[j].name)) continue;
     out.emplace(plain_name(skeleton.joints[j].name), j);
     if (const std::string finger = finger_name(skeleton, map, j); !finger.empty()) out.emplace(finger, j);
   }
@@ -260,8 +256,8 @@ std::map<std::string, int> others(const Skeleton& skeleton, const BodyMap& map) 
 }
 
 Error pair_others(const JointPairs& pairs, PoseMap& map) {
-  const std::map<std::string, int> theirs = others(*map.source, map.from);
-  for (const auto& [name, joint] : others(*map.target, map.to))
+  const std::map<std::string, int> theirs = by_names(*map.source, map.from);
+  for (const auto& [name, joint] : by_names(*map.target, map.to))
     if (const auto found = theirs.find(name); found != theirs.end() && map.joints[joint].a < 0)
       map.joints[joint].a = map.joints[joint].b = found->second;
   for (const auto& [ours, their] : pairs) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStraight = 0.9985;  ///< of the length: where TwoBoneJob with kSoftness begins to slow down
 constexpr double kSoftness = 0.001;
-constexpr double kMargin = 0.004;   ///< of the length: over which a limb slows down before `longest`
+constexpr double kMargin = 0.002;   ///< of the length: over which a limb slows down before `longest`
 constexpr double kBend = 0.3;       ///< of the upper bone: how far a limb that walks bends to the side
 constexpr double kLearns = 0.01;    ///< of the upper bone, squared: bend from which on a plane can be seen
 constexpr double kFromStop = 0.01;  ///< rad that a hinge keeps from the end of its range

@@ -19,9 +19,9 @@ struct Motion {
   int intervals() const { return static_cast<int>(local.size()) - 1; }
 };
 
-/// At twice the rate of the clip's knots, between 60 and 240 Hz (at least `least_rate`). Empty where the clip
-/// cannot be sampled.
-Motion sample_motion(const Clip& clip, const Skeleton& skeleton, double least_rate = 60);
+/// At twice the rate of the clip's knots, at least `least_rate` and at most 240 Hz (or that). Empty where the
+/// clip cannot be sampled.
+Motion sample_motion(const Clip& clip, const Skeleton& skeleton, double least_rate = 120);
 
 /// Points that may touch the floor, of a joint and all below it; the joint's own origin where there are no
 /// colliders.
