@@ -8,6 +8,7 @@
 #include "convert/contact_windows.h"
 #include "convert/fit/clip_fit.h"
 #include "convert/muscles.h"
+#include "convert/options.h"
 #include "convert/roles.h"
 #include "retarget/landing.h"
 #include "retarget/planting.h"
@@ -282,6 +283,27 @@ Error retarget_clips(const Asset& source, const Asset& target, const Options& op
   asset.report_json = asset_report(target, asset, made);
   report = std::move(made);
   out = std::move(asset);
+  return {};
+}
+
+Error add_retargeted(const std::string& input, const convert::Options& conversion, Asset& character,
+                     json& report) {
+  json as = json::object(), ignored, made;
+  if (conversion.unit > 0) as["unit"] = conversion.unit;
+  if (!conversion.up.empty()) as["up"] = conversion.up;
+  Asset source;
+  if (Error error = convert::convert_files({input}, as, source, ignored)) return error;
+  Options options;
+  options.keep_clips = true;
+  for (const std::string& name : conversion.clips)
+    if (source.find_clip(name) >= 0) options.clips.push_back(name);
+  if (!conversion.clips.empty() && options.clips.empty()) return {};
+  if (Error error = retarget_clips(source, character, options, character, made))
+    return {input + ": retargeting: " + error.message};
+  for (const json& clip : made["clips"]) report["clips"].push_back(clip);
+  report["retarget"][input] = made;
+  report["notes"].push_back("'" + input + "': " + std::to_string(made["clips"].size()) +
+                            " clips for another skeleton, retargeted");
   return {};
 }
 

@@ -31,6 +31,11 @@ struct Options {
 Error retarget_clips(const Asset& source, const Asset& target, const Options& options, Asset& out,
                      nlohmann::json& report);
 
+/// What convert::convert_files asks for files of other skeletons: fits their clips to a character, which
+/// gains them, and notes it in the conversion's report.
+Error add_retargeted(const std::string& input, const convert::Options& conversion, Asset& character,
+                     nlohmann::json& report);
+
 /// The report as text for a person.
 std::string report_text(const nlohmann::json& report);
 
