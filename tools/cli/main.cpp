@@ -100,6 +100,7 @@ struct ConvertCommand {
 
  private:
   Error run_folder() const {
+    if (retarget) return {"--retarget is for one character and its files, not for folders"};
     json options;
     if (Error error = source.read(options)) return error;  // once, instead of once a file
     cli::FolderConversion folder;

@@ -211,7 +211,7 @@ class Planter {
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [first, last] = track.windows[k];
       std::vector<Vec3<double>>& off = moved[k];
-      off.push_back(Vec3<double>::Zero());
+      off.emplace_back(Vec3<double>::Zero());
       Vec3<double> mean = Vec3<double>::Zero();
       for (int f = first; f < last; ++f) {
         off.emplace_back(off.back() - slip_after(track, f));

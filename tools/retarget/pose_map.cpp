@@ -13,7 +13,8 @@ namespace sinew::retarget {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSamePosture = 20 * kDegree;  ///< what artists' joints differ by in trunks and collar bones
+constexpr double kSamePosture = 20 * kDegree;  ///< what artists' joints differ by in trunks,
+constexpr double kSameCollar = 45 * kDegree;   ///< in collar bones, which hardly turn in anybody,
 constexpr double kSameHand = 30 * kDegree;     ///< and in where a hand's mean bone points
 constexpr double kUpright = 45 * kDegree;      ///< of a trunk that stands
 
@@ -59,7 +60,10 @@ Role above(Role role) {
 }
 
 bool is_trunk(Role role) {
-  return role == Role::kSpine || role == Role::kNeck || role == Role::kClavicleL || role == Role::kClavicleR;
+  return role == Role::kSpine || role == Role::kNeck;
+}
+bool is_collar(Role role) {
+  return role == Role::kClavicleL || role == Role::kClavicleR;
 }
 bool is_hand(Role role) {
   return role == Role::kHandL || role == Role::kHandR;
@@ -169,6 +173,7 @@ class Turns {
     if (is_foot(role) && upright_) return heading(theirs, ours);
     const double apart = angle_between(parent * ours, theirs);
     if (is_trunk(role) && from_.skinned && to_.skinned && apart < kSamePosture) return parent;
+    if (is_collar(role) && apart < kSameCollar) return parent;
     if (is_hand(role) && apart < kSameHand) return parent;
     return (rotation_between<double>(parent * ours, theirs) * parent).normalized();
   }

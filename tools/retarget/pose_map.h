@@ -33,11 +33,11 @@ struct PoseMap {
 using JointPairs = std::map<std::string, std::string>;
 
 /// The retarget pose turns the target's rest until its bones point where the source's do: the pelvis by the
-/// line of the hips, then limb by limb the short way, each carrying along what lies below. Trunk, necks and
-/// collar bones of skinned characters that are less than 20 degrees apart are left: there rests differ by
-/// where artists put joints, not by posture. Soles stay level. Joints of chains with equally many joints
-/// follow one to one, others by their place along the chain. Joints beside the chains follow those that
-/// `pairs` names, or those of the same name, or the same bone of the same finger.
+/// line of the hips, then limb by limb the short way, each carrying along what lies below. Trunk and necks of
+/// skinned characters that are less than 20 degrees apart are left, and collar bones and hands less than 45
+/// and 30: there rests differ by where joints were put, not by posture. Soles stay level. Joints of chains
+/// with equally many joints follow one to one, others by their place along the chain. Joints beside the
+/// chains follow those that `pairs` names, or those of the same name, or the same bone of the same finger.
 ///
 /// Skinned: whether a character has a skin; if not, its rest is the first frame of a motion. The skeletons
 /// must outlive `out`. An error says which of the two is at fault.

@@ -302,8 +302,8 @@ Error add_retargeted(const std::string& input, const convert::Options& conversio
     return {input + ": retargeting: " + error.message};
   for (const json& clip : made["clips"]) report["clips"].push_back(clip);
   report["retarget"][input] = made;
-  report["notes"].push_back("'" + input + "': " + std::to_string(made["clips"].size()) +
-                            " clips for another skeleton, retargeted");
+  report["notes"].push_back("'" + input + "': is for another skeleton; clips fitted to this one: " +
+                            std::to_string(made["clips"].size()));
   return {};
 }
 
