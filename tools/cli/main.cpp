@@ -11,9 +11,11 @@
 #include "cli/files.h"
 #include "cli/graph.h"
 #include "cli/memory.h"
+#include "cli/retarget.h"
 #include "cli/study_program.h"
 #include "convert/convert.h"
 #include "render/render.h"
+#include "retarget/retarget.h"
 #include "scene/presets.h"
 #include "scene/run.h"
 #include "sinew/skeleton/version.h"
@@ -62,7 +64,8 @@ struct ConvertCommand {
   std::vector<std::string> inputs;
   std::string output, report_file;
   SourceOptions source;
-  bool json_output = false, reference = false, each = false, dry_run = false, again = false, watch = false;
+  bool json_output = false, reference = false, each = false, dry_run = false, again = false, watch = false,
+       retarget = false;
   int jobs = 1;
 
   Error run() const {
@@ -78,7 +81,10 @@ struct ConvertCommand {
     for (const std::string& path : {output, report_file})
       if (Error error = path.empty() ? Error{} : cli::check_writable(path)) return error;
     if (Error error = source.read(options)) return error;
-    if (Error error = sinew::convert::convert_files(inputs, options, asset, report)) return error;
+    if (retarget) options["retarget"] = true;
+    if (Error error =
+            sinew::convert::convert_files(inputs, options, asset, report, sinew::retarget::add_retargeted))
+      return error;
     const std::vector<std::uint8_t> bytes = sinew::write_asset(asset);
     if (Error error = cli::write_atomically(output, bytes.data(), bytes.size())) return error;
     if (!report_file.empty())
@@ -95,6 +101,7 @@ struct ConvertCommand {
 
  private:
   Error run_folder() const {
+    if (retarget) return {"--retarget is for one character and its files, not for folders"};
     json options;
     if (Error error = source.read(options)) return error;  // once, instead of once a file
     cli::FolderConversion folder;
@@ -453,6 +460,7 @@ int main(int argc, char** argv) try {
   c->add_flag("--watch", convert.watch, "folders: go on, and convert what changes")->excludes(dry);
   c->add_option("--report", convert.report_file,
                 "write the report as JSON; for a folder also as a page with pictures (.html)");
+  c->add_flag("--retarget", convert.retarget, "clips for another skeleton are fitted to this one");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
   c->add_flag("--reference", convert.reference, "print all conversion options with defaults and comments");
   convert.source.add(*c);
@@ -534,6 +542,12 @@ int main(int argc, char** argv) try {
                          "          sinew export hero.sinew --clip walk -o walk.bvh");
   exporting.add(*x);
 
+  cli::RetargetCommand retarget;
+  auto* t = app.add_subcommand("retarget",
+                               "clips of one character for another\n"
+                               "Example: sinew retarget walk.fbx --to hero.sinew -o hero_walks.sinew");
+  retarget.add(*t);
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
@@ -553,6 +567,8 @@ int main(int argc, char** argv) try {
     error = evaluate.run();
   else if (g->parsed())
     error = graph.run();
+  else if (t->parsed())
+    error = retarget.run();
   else if (s->parsed())
     error = simulate.run();
   else if (x->parsed())

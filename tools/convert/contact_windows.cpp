@@ -8,7 +8,6 @@
 
 #include "sinew/animation/phase_map.h"
 #include "sinew/animation/sampling_job.h"
-#include "sinew/effects/contact.h"
 
 namespace sinew::convert {
 namespace {
@@ -40,12 +39,7 @@ std::vector<Limb> limbs_of(const Skeleton& skeleton) {
     const bool ends =
         role == Role::kFootL || role == Role::kFootR || role == Role::kHandL || role == Role::kHandR;
     if (!ends) continue;
-    Limb limb{j, {}};
-    for (const Collider& c : skeleton.colliders) {
-      int above = c.joint;
-      while (above > j) above = skeleton.joints[static_cast<std::size_t>(above)].parent;
-      if (above == j && c.joint < skeleton.body_count) append_contact_points<double>(c, limb.points);
-    }
+    Limb limb{j, points_below(skeleton, j)};
     if (!limb.points.empty()) limbs.push_back(std::move(limb));
   }
   return limbs;
@@ -139,6 +133,16 @@ void add_markers(const Skeleton& skeleton, Clip& clip) {
 }
 
 }  // namespace
+
+std::vector<ContactPoint<double>> points_below(const Skeleton& skeleton, int joint) {
+  std::vector<ContactPoint<double>> points;
+  for (const Collider& c : skeleton.colliders) {
+    int above = c.joint;
+    while (above > joint) above = skeleton.joints[static_cast<std::size_t>(above)].parent;
+    if (above == joint && c.joint < skeleton.body_count) append_contact_points<double>(c, points);
+  }
+  return points;
+}
 
 double floor_of(std::vector<double> lowest) {
   std::sort(lowest.begin(), lowest.end());

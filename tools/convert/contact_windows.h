@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/effects/contact.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew::convert {
@@ -13,6 +14,10 @@ namespace sinew::convert {
 /// where that is most often, to a centimetre. Some frames are in flight, and in some a collider thicker than
 /// the skin sinks in.
 double floor_of(std::vector<double> lowest);
+
+/// What of a limb touches the floor: the points of the colliders of a joint and of all joints below it, of
+/// toes and fingers too.
+std::vector<ContactPoint<double>> points_below(const Skeleton& skeleton, int joint);
 
 /// Finds Clip::contacts, of feet (toes are theirs) and hands: the limb's lowest point is at most 3 cm above
 /// the floor, and rests there. A clip that walks in place moves all its feet back at one speed, which then

@@ -84,7 +84,7 @@ void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Optio
 
 /// What the fit's knots and rounding change of the torques that clips ask for.
 void report_torque_errors(const Asset& asset, const std::vector<Clip>& references, nlohmann::json& report) {
-  for (std::size_t i = 0; i < asset.clips.size(); ++i) {
+  for (std::size_t i = 0; i < references.size(); ++i) {
     const TorqueError error = torque_error(asset.clips[i], references[i], asset.skeleton);
     report["clips"][i]["largest_torque_error"] = error.largest;
     report["clips"][i]["rms_torque_error"] = error.rms;
@@ -129,17 +129,23 @@ Error read_extras(const std::string& extras, const std::function<Error(const nlo
 /// comes later counts.
 Error gather(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
              const Options& options, const Rig& rig, ClipData& data, nlohmann::json& report) {
+  const auto is_foreign = [&](std::size_t scene) {  // it says what it says when it is added
+    return std::any_of(rig.foreign.begin(), rig.foreign.end(),
+                       [&](const Rig::Foreign& f) { return f.scene == scene; });
+  };
   for (std::size_t i = 0; i < scenes.size(); ++i)
     if (Error error =
-            read_extras(scenes[i].extras, [&](const nlohmann::json& json) { return data.read(json); }))
+            is_foreign(i) ? Error{} : read_extras(scenes[i].extras, [&](const nlohmann::json& json) {
+              return data.read(json);
+            }))
       return in_file(inputs[i], error.message);
   for (const Rig::Motion& motion : rig.motions)
     if (Error error = read_extras(motion.extras, [&](const nlohmann::json& json) {
           return data.read_clip(motion.name, json, motion.begin);
         }))
       return in_file(inputs[0], "animation '" + motion.name + "': " + error.message);
-  for (const std::string& input : inputs)
-    if (Error error = read_beside(input, data, report)) return error;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (Error error = is_foreign(i) ? Error{} : read_beside(inputs[i], data, report)) return error;
   data.add(options.clip_data);
   return {};
 }
@@ -168,8 +174,29 @@ void note_odd_size(const Skeleton& skeleton, double height, nlohmann::json& repo
   }
 }
 
+/// Refuses files for another skeleton, and says what can be done with them.
+Error refuse_foreign(const std::vector<std::string>& inputs, const Rig& rig) {
+  if (rig.foreign.empty()) return {};
+  const Rig::Foreign& first = rig.foreign.front();
+  const std::string& clips = inputs[first.scene];
+  const std::string& character = inputs[first.scene == 0 && inputs.size() > 1 ? 1 : 0];
+  return in_file(clips, first.why + "; fit it to this one with: sinew retarget " + clips + " --to " +
+                            character + " -o OUT.sinew, or convert with --retarget");
+}
+
+/// Has clips of other skeletons added; all that were asked for must be there then.
+Error add_foreign_clips(const std::vector<std::string>& inputs, const Rig& rig, const Options& options,
+                        const AddForeignClips& add, Asset& asset, nlohmann::json& report) {
+  for (const Rig::Foreign& foreign : rig.foreign)
+    if (Error error = add(inputs[foreign.scene], options, asset, report)) return error;
+  for (const std::string& wanted : options.clips)
+    if (asset.find_clip(wanted) < 0) return in_file(inputs[0], "it has no clip '" + wanted + "'");
+  return {};
+}
+
 Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
-                     const Options& options, Asset& out, nlohmann::json& report) {
+                     const Options& options, const AddForeignClips& add_foreign, Asset& out,
+                     nlohmann::json& report) {
   Asset asset;
   ClipData data;
   if (scenes[0].format == "urdf") {
@@ -182,6 +209,8 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
   } else {
     Rig rig;
     if (Error error = build_rig(scenes, options, rig, report)) return in_file(inputs[0], error.message);
+    if (!options.retarget || !add_foreign)
+      if (Error error = refuse_foreign(inputs, rig)) return error;
     if (Error error = gather(inputs, scenes, options, rig, data, report)) return error;
     for (Rig::Motion& motion : rig.motions)
       if (const auto entry = data.clips.find(motion.name); entry != data.clips.end())
@@ -194,8 +223,6 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     std::vector<Clip> references;
     fit_clips(rig, joint_of_rig, options, asset, references, report);
     if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
-    strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
-    report_torque_errors(asset, references, report);
     for (Clip& clip : asset.clips) find_contacts(asset.skeleton, rig.height, clip, report);
     note_odd_size(asset.skeleton, rig.height, report);
     asset.meshes = std::move(rig.meshes);
@@ -205,6 +232,9 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     asset.inverse_bind.resize(rig.joints.size());
     for (std::size_t j = 0; j < rig.joints.size(); ++j)
       asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
+    if (Error error = add_foreign_clips(inputs, rig, options, add_foreign, asset, report)) return error;
+    strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
+    report_torque_errors(asset, references, report);
   }
   if (Error error = add_clip_data(data, !options.clips.empty(), asset, report))
     return in_file(inputs[0], "clip data: " + error.message);
@@ -227,7 +257,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
 }  // namespace
 
 Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& json, Asset& out,
-                    nlohmann::json& report) {
+                    nlohmann::json& report, const AddForeignClips& add_foreign) {
   if (inputs.empty()) return {"no input file"};
   Options options;
   if (Error error = Options::parse(json, options)) return in_file(inputs[0], error.message);
@@ -238,7 +268,7 @@ Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json
   }
   report = nlohmann::json::object();
   try {
-    return convert_scenes(inputs, scenes, options, out, report);
+    return convert_scenes(inputs, scenes, options, add_foreign, out, report);
   } catch (const std::bad_alloc&) {
     return in_file(inputs[0], "not enough memory to convert it");
   }
@@ -288,11 +318,12 @@ std::string report_text(const nlohmann::json& r) {
   list("curves", "curves:");
   if (r.contains("clips"))
     for (const auto& c : r["clips"]) {
-      std::snprintf(line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm",
-                    c.value("name", "").c_str(), c.value("duration_s", 0.0),
-                    c.value("loops", false) ? " loop" : "     ",
-                    c.contains("bytes_per_joint_second") ? "error along the chain" : "error at each joint",
-                    c.value("max_error_mm", 0.0), c.value("rms_error_mm", 0.0));
+      std::snprintf(
+          line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm", c.value("name", "").c_str(),
+          c.value("duration_s", 0.0), c.value("loops", false) ? " loop" : "     ",
+          c.contains("bytes_per_joint_second") || c.contains("sole_lowest_mm") ? "error along the chain"
+                                                                               : "error at each joint",
+          c.value("max_error_mm", 0.0), c.value("rms_error_mm", 0.0));
       text += line;
       if (c.contains("bytes_per_joint_second")) {
         std::snprintf(line, sizeof line, "; per joint and second %.1f bytes, %.1f in memory",

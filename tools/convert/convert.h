@@ -1,6 +1,7 @@
 // Source files → runtime asset: clean-up, units, physical body, clip fitting, report.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -17,11 +18,19 @@ struct Error {
   explicit operator bool() const { return !message.empty(); }
 };
 
+struct Options;
+
+/// Fits the clips of a file that holds another skeleton to a character, which gains them; `report` is the
+/// conversion's. Given from outside: retargeting builds on conversion (retarget/retarget.h has one).
+using AddForeignClips = std::function<Error(const std::string& input, const Options& options,
+                                            Asset& character, nlohmann::json& report)>;
+
 /// Converts one or more source files (mesh and clips may come from several) into an asset.
 /// `options` overrides the defaults that `reference_options()` documents; unknown keys are an error.
 /// `report` receives what was decided, as JSON (also stored in the asset).
+/// Files whose clips are for another skeleton are an error, or with option `retarget` given to `add_foreign`.
 Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json& options, Asset& out,
-                    nlohmann::json& report);
+                    nlohmann::json& report, const AddForeignClips& add_foreign = {});
 
 /// Where what clips say beside their motion stands for a source: walk.fbx → walk.clips.json.
 std::string clip_data_beside(const std::string& input);

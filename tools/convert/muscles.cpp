@@ -242,6 +242,23 @@ void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleto
   }
 }
 
+std::vector<double> torque_shares(const Clip& clip, const Skeleton& skeleton) {
+  Pass pass(skeleton);
+  const Tree<double>& tree = pass.tree;
+  const Demand demand = demand_of(clip, pass);
+  std::vector<double> shares(tree.bodies, 0.0);
+  for (int i = 0; i < tree.bodies; ++i) {
+    if (skeleton.joints[i].type == JointType::kFree) continue;
+    for (int k = 0; k < dof_count(skeleton.joints[i].type); ++k) {
+      const int d = tree.first_dof[i] + k;
+      const auto [minus, plus] = skeleton.torque_limits(i, k);
+      if (plus > 0) shares[i] = std::max(shares[i], peak_held(demand.plus[d], kSustained) / plus);
+      if (minus > 0) shares[i] = std::max(shares[i], peak_held(demand.minus[d], kSustained) / minus);
+    }
+  }
+  return shares;
+}
+
 TorqueError torque_error(const Clip& clip, const Clip& reference, const Skeleton& skeleton) {
   Pass pass(skeleton);
   const Tree<double>& tree = pass.tree;

@@ -36,6 +36,10 @@ void set_muscles(const AnatomicalAxes& anatomy, const std::map<std::string, doub
 /// is held so long, and the limits.
 void strengthen(const std::vector<Clip>& clips, double margin, Skeleton& skeleton, nlohmann::json& report);
 
+/// What a clip asks of each joint for 50 ms or longer, feet supported, as a share of what its muscles have in
+/// that direction: [simulated joint], 0 for those that no muscle moves.
+std::vector<double> torque_shares(const Clip& clip, const Skeleton& skeleton);
+
 /// How far the torques that a clip asks for are from those of a reference: over all joints and frames, 60 a
 /// second, as shares of a muscle's limit, or of its own root mean square where noise asks for more than that.
 /// Without the floor's forces: how they are shared among contact points jumps for reasons of its own.

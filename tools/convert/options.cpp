@@ -115,6 +115,8 @@ std::string reference_options() {
   "simulate_fingers": false,
   // URDF: true lets the root link move freely; false bolts it to the world.
   "free_base": true,
+  // Clips of files for another skeleton are fitted to this one instead of refused (sinew convert --retarget).
+  "retarget": false,
   // true refuses what would otherwise be repaired and reported (broken inertias, massless links).
   "strict": false,
   // Largest error of the fitted curves, mm in model space: the errors of all joints along the chain, at a point of
@@ -167,6 +169,8 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.simulate_fingers = value.get<bool>();
       else if (key == "free_base")
         o.free_base = value.get<bool>();
+      else if (key == "retarget")
+        o.retarget = value.get<bool>();
       else if (key == "strict")
         o.strict = value.get<bool>();
       else if (key == "fit_error_mm")

@@ -34,6 +34,7 @@ struct Options {
   double strength_margin = 1.5;                ///< muscles are at least this much stronger than the clips ask
   bool simulate_fingers = false;
   bool free_base = true;        ///< URDF: the root link may move
+  bool retarget = false;        ///< fit clips of other skeletons to this one instead of refusing them
   bool strict = false;          ///< refuse instead of repairing
   double fit_error_mm = 1;      ///< of a skin point, along the chain
   double fit_distance_cm = 10;  ///< of that point from its joint

@@ -463,15 +463,21 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       std::map<std::string, int> by_name;
       for (const int n : other_nodes) by_name.emplace(plain_name(from.nodes[n].original_name), n);
       int matched = 0;
+      std::string why;
       for (std::size_t j = 0; j < rig.joints.size(); ++j)
         if (const auto found = by_name.find(plain_name(rig.joints[j].name)); found != by_name.end()) {
           of_joint[j] = found->second;
           ++matched;
         }
       if (2 * matched < static_cast<int>(std::min(rig.joints.size(), by_name.size())))
-        return {"'" + from.name + "' shares " + (matched == 0 ? "no" : "only " + std::to_string(matched)) +
-                " joint name" + (matched > 1 ? "s" : "") + " with '" + scene.name + "'"};
-      if (const std::string fault = foreign_skeleton(rig, from, of_joint, to); !fault.empty()) return {fault};
+        why = "'" + from.name + "' shares " + (matched == 0 ? "no" : "only " + std::to_string(matched)) +
+              " joint name" + (matched > 1 ? "s" : "") + " with '" + scene.name + "'";
+      else
+        why = foreign_skeleton(rig, from, of_joint, to);
+      if (!why.empty()) {
+        rig.foreign.push_back({static_cast<std::size_t>(&from - scenes.data()), why});
+        continue;
+      }
       report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " +
                                 std::to_string(rig.joints.size()) + " joints matched by name");
     }
@@ -488,7 +494,7 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     }
   }
   for (const std::string& wanted : options.clips)
-    if (!taken.count(wanted)) return {"it has no clip '" + wanted + "'"};
+    if (!taken.count(wanted) && rig.foreign.empty()) return {"it has no clip '" + wanted + "'"};
   if (const std::string fault = fault_in_size(rig); !fault.empty()) return {fault};
   out = std::move(rig);
   return {};

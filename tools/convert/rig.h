@@ -29,8 +29,14 @@ struct Rig {
     std::string extras;                                   ///< see import::SourceClip
     std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
   };
+  /// A scene whose clips are for another skeleton.
+  struct Foreign {
+    std::size_t scene = 0;
+    std::string why;
+  };
   std::vector<Joint> joints;
-  std::vector<Mesh> meshes;  ///< model space at rest; Mesh::joints index `joints`
+  std::vector<Foreign> foreign;  ///< left out
+  std::vector<Mesh> meshes;      ///< model space at rest; Mesh::joints index `joints`
   std::vector<Material> materials;
   std::vector<Motion> motions;
   double unit = 1;
