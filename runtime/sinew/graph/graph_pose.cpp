@@ -234,7 +234,7 @@ class Pose {
   Status begin_offset(const GraphTask& task) {
     GraphMachineState<T>& m = block_.machine(task.index);
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
-    const GraphTransition& t = graph_.node(bound.node).transitions[std::size_t(m.transition)];
+    const GraphTransition& t = graph_.node(bound.node).transitions[std::size_t(task.layer)];
     InertialState<T> state = block_.offset(bound.offset, T(0), m.duration);
     const Register &before = at(task.from), &after = at(task.out);
     if (Status status = begin_inertial<T>(before.jets, after.jets, m.duration, state); !status) return status;

@@ -276,8 +276,9 @@ Status Update<T>::begin_offsets() {
     const GraphNode& node = graph_.node(graph_.machines()[std::size_t(slot)].node);
     const bool left = m.fade == GraphFade::kLeft;
     if (!left) emit(node.states[std::size_t(m.posed)].node, 0, TimeJet<T>(T(1)), false);
-    task(left ? GraphTask::Kind::kLeave : GraphTask::Kind::kBeginOffset, 0, slot).from =
-        static_cast<std::uint16_t>(kept);
+    GraphTask& begin = task(left ? GraphTask::Kind::kLeave : GraphTask::Kind::kBeginOffset, 0, slot);
+    begin.from = static_cast<std::uint16_t>(kept);
+    begin.layer = m.transition;  // which may be over before the frame is
   }
   const Status status = move_phases(0);
   s_.member_count = 0;
