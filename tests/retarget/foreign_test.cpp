@@ -34,8 +34,8 @@ TEST_P(ForeignCharacter, WalksAsTheMannequinDoes) {
   ASSERT_FALSE(error) << error.message;
   expect_stands(report["clips"][0]);
   EXPECT_GE(report["chains"].size(), 15u);
-  // Limbs point where the mannequin's do, but for what the soles ask of legs; of KayKit's, whose feet are long for
-  // their legs and lift the heels accordingly, only arms are alike.
+  // Limbs point where the mannequin's do, but for what the soles ask of legs; of KayKit's, whose feet are
+  // long for their legs and lift the heels accordingly, only arms are alike.
   const bool long_feet = file_.find("kaykit") != std::string::npos;
   const Motion a = sample_motion(mannequin().clips[std::size_t(mannequin().find_clip("walk"))],
                                  mannequin().skeleton, 240),
