@@ -298,6 +298,27 @@ TEST(GraphMachine, TransitionsTakenTakeWhatTheyWaitedFor) {
   EXPECT_EQ(player.in("graph"), "b") << "waited for 0.12 s of 0.15";
 }
 
+TEST(GraphMachine, ATransitionShorterThanAFrameIsOverAtItsEnd) {
+  const Asset asset = fixtures::graph_asset();
+  for (const char* kind : {"inertial", "dead", "crossfade"}) {
+    Graph graph;
+    fixtures::bind_graph(R"({"parameters": {"go": false}, "graph": {"states": {"a": "idle", "b": "lean"},
+      "transitions": [{"from": "a", "to": "b", "if": "go", "duration": 0.001, "kind": ")" +
+                             std::string(kind) + R"("}]}})",
+                         asset, graph);
+    GraphPlayer<float> player(graph);
+    player.step(0);
+    player.set("go", 1);
+    player.step(1 / 60.0);
+    EXPECT_EQ(player.in("graph"), "b");
+    EXPECT_FALSE(GraphParameters<float>(graph, player.state).fading(graph.root())) << kind;
+    std::vector<JointJet<float>> clip(fixtures::kGraphJoints);
+    ASSERT_TRUE((SamplingJob<float>{&asset.clips[5], double(1 / 60.f), clip}.Run().ok()));
+    for (std::size_t j = 1; j < clip.size(); ++j)
+      EXPECT_LT((clip[j].omega - player.jets[j].omega).norm(), 1e-4f) << kind << " " << j;
+  }
+}
+
 TEST(GraphMachine, WrongUseIsAStatus) {
   const Asset asset = fixtures::graph_asset();
   Graph graph, other;
