@@ -106,7 +106,8 @@ TEST(GraphCompile, ConditionsSayWhatTheyMean) {
     fixtures::bind_graph(with_condition(c.text), asset, graph);
     for (int k = 0; k < 12; ++k) {
       fixtures::GraphPlayer<float> player(graph);
-      const float speed = float(k / 4);
+      const int third = k / 4;
+      const auto speed = static_cast<float>(third);
       const bool free = (k & 1) != 0, jump = (k & 2) != 0;
       player.set("speed", double(speed));
       player.set("free", free);
