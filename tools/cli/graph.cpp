@@ -85,7 +85,7 @@ Error GraphCommand::run() {
   return dot_->parsed() ? dot() : trace();
 }
 
-Error GraphCommand::check() {
+Error GraphCommand::check() const {
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
   if (!asset.empty()) {
@@ -122,7 +122,7 @@ Error GraphCommand::check() {
   return {};
 }
 
-Error GraphCommand::compile() {
+Error GraphCommand::compile() const {
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
   for (const std::string& warning : compiled.warnings)
@@ -133,7 +133,7 @@ Error GraphCommand::compile() {
   return {};
 }
 
-Error GraphCommand::dot() {
+Error GraphCommand::dot() const {
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
   const std::string text = graph_tools::graph_dot(compiled.graph);

@@ -18,9 +18,9 @@ struct GraphCommand {
   convert::Error run();
 
  private:
-  convert::Error check();
-  convert::Error compile();
-  convert::Error dot();
+  convert::Error check() const;
+  convert::Error compile() const;
+  convert::Error dot() const;
   convert::Error trace();
   bool strict_ = false;
   CLI::App *check_ = nullptr, *compile_ = nullptr, *dot_ = nullptr, *trace_ = nullptr;
