@@ -36,7 +36,7 @@ void spare_acceleration(const Character<T>& character, std::span<T> out) {
     if (joint >= skeleton.body_count || skeleton.joints[j].type == JointType::kFree) continue;
     double left = kUnlimited;  // N·m
     for (int k = 0; k < dof_count(skeleton.joints[j].type); ++k) {
-      const std::size_t dof = std::size_t(character.first_dof(joint) + k);
+      const std::size_t dof = std::size_t(character.first_dof(joint)) + std::size_t(k);
       const double most = double(limit[dof]);
       if (most > 0 && std::isfinite(most)) left = std::min(left, most * std::max(0.0, 1 - double(load[dof])));
     }
