@@ -20,7 +20,8 @@ struct GraphTask {
     kMirror,       ///< left and right of out exchanged
     kLayer,        ///< out + 1 upon out; `index`: node, `layer`
     kKeep,         ///< copies out to `from`
-    kBeginOffset,  ///< `from` at the instant of a change, out what follows; `index`: machine, `layer`: transition
+    kBeginOffset,  ///< `from` at the instant of a change, out what follows; `index`: machine, `layer`:
+                   ///< transition
     kOffset,       ///< what is left of it upon out
     kLeave,        ///< keeps `from` as the pose left behind
     kLeft,         ///< fades from the pose left behind to out
