@@ -90,8 +90,8 @@ template <class P>
 struct Sum {
   P p[4], dp[4], ddp[4], translation[9];
 
-  /// `First`: of all. The side of the two quaternions that mean a rotation is the one nearer to `reference`; of
-  /// none it stays as it is.
+  /// `First`: of all. The side of the two quaternions that mean a rotation is the one nearer to `reference`;
+  /// of none it stays as it is.
   template <bool First>
   [[gnu::always_inline]] void add(const PackedJets<P>& jets, const TimeJet<P>& w, const P* reference) {
     const P* x = jets.number;
@@ -107,7 +107,8 @@ struct Sum {
     const P square = (omega[0] * omega[0] + omega[1] * omega[1]) + omega[2] * omega[2];
     add_product<First>(r, half * omega[0], half * omega[1], half * omega[2], w.rate, dp);
     add_product<First>(r, half * alpha[0] + w.rate * omega[0], half * alpha[1] + w.rate * omega[1],
-                half * alpha[2] + w.rate * omega[2], w.acceleration - (P::all(0.5f) * half) * square, ddp);
+                       half * alpha[2] + w.rate * omega[2], w.acceleration - (P::all(0.5f) * half) * square,
+                       ddp);
     for (int i = 0; i < 4; ++i) join<First>(p[i], w.value * r[i]);
     const P twice = w.rate + w.rate;
     for (int i = 0; i < 3; ++i) {
@@ -150,8 +151,8 @@ struct Sum {
   }
   /// sum += a⊗(x, y, z, w).
   template <bool First>
-  [[gnu::always_inline]] static void add_product(const P (&a)[4], const P& x, const P& y, const P& z, const P& w,
-                                                 P (&sum)[4]) {
+  [[gnu::always_inline]] static void add_product(const P (&a)[4], const P& x, const P& y, const P& z,
+                                                 const P& w, P (&sum)[4]) {
     join<First>(sum[0], (a[3] * x + a[0] * w) + (a[1] * z - a[2] * y));
     join<First>(sum[1], (a[3] * y + a[1] * w) + (a[2] * x - a[0] * z));
     join<First>(sum[2], (a[3] * z + a[2] * w) + (a[0] * y - a[1] * x));
@@ -159,8 +160,8 @@ struct Sum {
   }
 };
 
-/// The mixed layers of a blend without masks, their weights divided by the sum of all: then there is nothing to
-/// ask joint by joint.
+/// The mixed layers of a blend without masks, their weights divided by the sum of all: then there is nothing
+/// to ask joint by joint.
 template <class T>
 struct PlainMix {
   int layers[16], count = 0;
@@ -201,7 +202,8 @@ void mix_plainly(const BlendData<typename P::Scalar>& data, const PlainMix<typen
   Sum<P> sum;
   sum.template add<true>(jets, everywhere<P>(mixed.weights[0]), rest);
   for (int k = 1; k < mixed.count; ++k)
-    sum.template add<false>(block.load(data.layers[mixed.layers[k]].jets), everywhere<P>(mixed.weights[k]), reference);
+    sum.template add<false>(block.load(data.layers[mixed.layers[k]].jets), everywhere<P>(mixed.weights[k]),
+                            reference);
   jets = sum.jets();
 }
 

@@ -127,16 +127,16 @@ void go_on(const JetLayout<T>* from, const Extrapolation<T>& data, int joints, J
 
 namespace SINEW_KERNELS {
 
-#define SINEW_DEFINE_OFFSET_KERNELS(T)                                                               \
-  void start_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints,                   \
-                     const OffsetNumbers<T>& out) {                                                  \
-    take_offsets(from, to, joints, out);                                                             \
-  }                                                                                                  \
-  void add_offsets(const JetLayout<T>* to, const OffsetFade<T>& fade, int joints, JetLayout<T>* out) { \
-    add_all(to, fade, joints, out);                                                                  \
-  }                                                                                                  \
-  void extrapolate(const JetLayout<T>* from, const Extrapolation<T>& data, int joints, JetLayout<T>* out) {    \
-    go_on(from, data, joints, out);                                                              \
+#define SINEW_DEFINE_OFFSET_KERNELS(T)                                                                      \
+  void start_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints,                          \
+                     const OffsetNumbers<T>& out) {                                                         \
+    take_offsets(from, to, joints, out);                                                                    \
+  }                                                                                                         \
+  void add_offsets(const JetLayout<T>* to, const OffsetFade<T>& fade, int joints, JetLayout<T>* out) {      \
+    add_all(to, fade, joints, out);                                                                         \
+  }                                                                                                         \
+  void extrapolate(const JetLayout<T>* from, const Extrapolation<T>& data, int joints, JetLayout<T>* out) { \
+    go_on(from, data, joints, out);                                                                         \
   }
 SINEW_DEFINE_OFFSET_KERNELS(float)
 SINEW_DEFINE_OFFSET_KERNELS(double)
