@@ -104,7 +104,7 @@ TEST_F(OneFoot, LocksAndReleasesBetweenTwoWeights) {
 TEST_F(OneFoot, StaysOnTheGroundWhereItWasLocked) {
   input.contact = 1;
   after(10, 0);
-  EXPECT_TRUE(state.settled());
+  EXPECT_TRUE(state.at_rest());
   const Vec locked = toe_at(0);
   EXPECT_NEAR(locked.z(), 0, 1e-4) << "on the ground, and not 3 mm over it";
   EXPECT_LT((toe_at(0.15) - locked).norm(), 1e-9) << "m";
@@ -120,7 +120,7 @@ TEST_F(OneFoot, BreaksWhenTheAnimationIsTooFarAndClosesAnew) {
   EXPECT_FALSE(state.locked()) << "0.2 m";
   EXPECT_LT((before - toe_at(0.21, 0)).norm(), 1e-12) << "nothing jumps";
   const Vec later = after(20, 0.21);
-  EXPECT_TRUE(state.settled());
+  EXPECT_TRUE(state.at_rest());
   EXPECT_NEAR(later.x(), 0.21 + 0.15, 1e-9) << "at its new place";
 }
 

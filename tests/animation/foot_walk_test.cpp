@@ -206,7 +206,7 @@ class Walker {
       if (const double deep = over(point); deep < 0)
         walk_.depth = std::max(walk_.depth, ground_.depth(point, -deep));
     // The frame's pose is that of the state before the frame changed it.
-    const bool at_rest = !changed && state.settled();
+    const bool at_rest = !changed && state.at_rest();
     const Vec pivot = before.hold == FootHold::kHeel ? heel : toe;
     if (at_rest && !rested_[k]) {
       rest_[k] = pivot;

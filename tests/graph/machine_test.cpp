@@ -85,7 +85,7 @@ class Interpreter {
       state = last.to;
       running = legs->back();
       time = 0;
-      use_up(last);
+      for (const int leg : *legs) use_up(m_.transitions[std::size_t(leg)]);
       left = last.kind == TransitionKind::kCut ? 0 : last.duration;
       // A cut, a crossfade or an offset alike runs for its duration.
       frames_elapsed = 0;
@@ -296,6 +296,21 @@ TEST(GraphMachine, TransitionsTakenTakeWhatTheyWaitedFor) {
   player.set("free", 1);
   player.step(0.01);
   EXPECT_EQ(player.in("graph"), "b") << "waited for 0.12 s of 0.15";
+}
+
+TEST(GraphMachine, WhatOpensTheWayToAConduitIsUsedUpToo) {
+  const Asset asset = fixtures::graph_asset();
+  Graph graph;
+  fixtures::bind_graph(R"({"parameters": {"jump": "trigger"}, "graph": {
+    "states": {"a": "idle", "b": "walk", "c": "run", "gate": {"conduit": true}},
+    "transitions": [{"from": "a", "to": "gate", "if": "jump"}, {"from": "gate", "to": "b"},
+                    {"from": "b", "to": "c", "if": "jump"}]}})",
+                       asset, graph);
+  GraphPlayer<float> player(graph);
+  player.step(0);
+  player.trigger("jump");
+  for (int k = 0; k < 5; ++k) player.step(0.01);
+  EXPECT_EQ(player.in("graph"), "b") << "one press, one jump";
 }
 
 TEST(GraphMachine, ATransitionShorterThanAFrameIsOverAtItsEnd) {

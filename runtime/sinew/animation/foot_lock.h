@@ -65,7 +65,7 @@ struct FootState {
 
   bool locked() const { return hold != FootHold::kFree; }
   /// Locked, and at rest relative to the ground.
-  bool settled() const { return locked() && elapsed >= duration; }
+  bool at_rest() const { return locked() && elapsed >= duration; }
 };
 
 /// What the animation wants of a foot at an instant.

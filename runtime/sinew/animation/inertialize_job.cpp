@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/animation/dying_rate.h"
 #include "sinew/animation/kernels/layout.h"
 #include "sinew/animation/quintic_offset.h"
 
@@ -117,12 +118,10 @@ template <class T>
 Status ExtrapolateJob<T>::Run() const {
   if (Status status = Validate(); !status) return status;
   if (out.empty()) return {};
-  const T y = slowing, z = loss, slow = std::exp(-y * elapsed), fast = std::exp(-z * elapsed);
-  const T gone_slow = -std::expm1(-y * elapsed) / y, gone_fast = -std::expm1(-z * elapsed) / z;
-  const T lag[3] = {(gone_slow - gone_fast) / (z - y), (slow - fast) / (z - y),
-                    (z * fast - y * slow) / (z - y)};
-  const kernels::Extrapolation<T> data{{gone_slow + y * lag[0], slow + y * lag[1], y * lag[2] - y * slow},
-                                       {lag[0], lag[1], lag[2]}};
+  const DyingRate<T> left = DyingRate<T>::at(elapsed, slowing, loss);
+  kernels::Extrapolation<T> data;
+  std::copy_n(left.of_rate, 3, data.of_rate);
+  std::copy_n(left.of_acceleration, 3, data.of_acceleration);
   SINEW_DISPATCH(extrapolate(kernels::layout(from.data()), data, static_cast<int>(out.size()),
                              kernels::layout(out.data())));
   return {};

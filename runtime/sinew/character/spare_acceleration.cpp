@@ -8,19 +8,17 @@ namespace {
 
 constexpr double kUnlimited = 1e6;  ///< rad/s²
 
-/// Largest inertia of what hangs on a joint, itself included, about its origin: ½ tr I + m|c − o|² of each.
-double inertia_below(const Skeleton& skeleton, int joint, const auto& model) {
-  const Vec3<double> origin = model[joint].translation.template cast<double>();
-  double sum = 0;
-  for (int i = joint; i < skeleton.body_count; ++i) {
-    int above = i;
-    while (above > joint) above = skeleton.joints[above].parent;
-    if (above != joint) continue;
-    const Joint& body = skeleton.joints[i];
-    const Vec3<double> center = model[i].template cast<double>() * body.center_of_mass;
-    sum += body.inertia.trace() / 2 + body.mass * (center - origin).squaredNorm();
+/// N·m that the muscles of a joint have left, the least of its degrees of freedom.
+template <class T>
+double torque_left(const Character<T>& character, int joint) {
+  const std::span<const T> load = character.load(), limit = character.limit();
+  double left = kUnlimited;
+  for (int k = 0; k < dof_count(character.skeleton().joints[std::size_t(joint)].type); ++k) {
+    const std::size_t dof = std::size_t(character.first_dof(joint)) + std::size_t(k);
+    const double most = double(limit[dof]);
+    if (most > 0 && std::isfinite(most)) left = std::min(left, most * std::max(0.0, 1 - double(load[dof])));
   }
-  return sum;
+  return left;
 }
 
 }  // namespace
@@ -28,20 +26,24 @@ double inertia_below(const Skeleton& skeleton, int joint, const auto& model) {
 template <class T>
 void spare_acceleration(const Character<T>& character, std::span<T> out) {
   const Skeleton& skeleton = character.skeleton();
-  const std::span<const T> load = character.load(), limit = character.limit();
   const std::span<const Transform<T>> model = character.model();
+  const int bodies = std::min(skeleton.body_count, static_cast<int>(out.size()));
+  // First each joint's inertia: every body adds ½ tr I + m|c − o|² to all joints above it and its own.
+  std::fill(out.begin(), out.end(), T(0));
+  for (int i = 0; i < skeleton.body_count; ++i) {
+    const Joint& body = skeleton.joints[std::size_t(i)];
+    const Vec3<double> center = model[std::size_t(i)].template cast<double>() * body.center_of_mass;
+    for (int j = i; j >= 0; j = skeleton.joints[std::size_t(j)].parent) {
+      if (j >= bodies) continue;
+      const Vec3<double> origin = model[std::size_t(j)].translation.template cast<double>();
+      out[std::size_t(j)] += T(body.inertia.trace() / 2 + body.mass * (center - origin).squaredNorm());
+    }
+  }
   for (std::size_t j = 0; j < out.size(); ++j) {
     const int joint = static_cast<int>(j);
-    out[j] = T(kUnlimited);
-    if (joint >= skeleton.body_count || skeleton.joints[j].type == JointType::kFree) continue;
-    double left = kUnlimited;  // N·m
-    for (int k = 0; k < dof_count(skeleton.joints[j].type); ++k) {
-      const std::size_t dof = std::size_t(character.first_dof(joint)) + std::size_t(k);
-      const double most = double(limit[dof]);
-      if (most > 0 && std::isfinite(most)) left = std::min(left, most * std::max(0.0, 1 - double(load[dof])));
-    }
-    const double inertia = left < kUnlimited ? inertia_below(skeleton, joint, model) : 0;
-    if (inertia > 0) out[j] = T(std::min(kUnlimited, left / inertia));
+    const bool moved = joint < bodies && skeleton.joints[j].type != JointType::kFree;
+    const double left = moved ? torque_left(character, joint) : kUnlimited, inertia = double(out[j]);
+    out[j] = T(left < kUnlimited && inertia > 0 ? std::min(kUnlimited, left / inertia) : kUnlimited);
   }
 }
 

@@ -13,7 +13,7 @@ namespace sinew {
 /// that no muscle moves, and those without a body, do not limit anything: 10⁶.
 ///
 /// Of the last step. Torques are worked out where it was only played, see Character::load(). Allocates
-/// nothing; cost O(joints²) at worst, of chains; O(joints · depth).
+/// nothing. Cost O(joints · depth).
 template <class T>
 void spare_acceleration(const Character<T>& character, std::span<T> out);
 

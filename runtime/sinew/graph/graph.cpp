@@ -31,12 +31,6 @@ bool begins_offset(const GraphTransition& t) {
   return t.kind != TransitionKind::kCut;  // a crossfade that interrupts one is inertial
 }
 
-bool has_empty_state(const GraphDefinition& graph, const GraphNode& machine) {
-  return std::any_of(machine.states.begin(), machine.states.end(), [&](const GraphState& state) {
-    return state.node >= 0 && graph.nodes[std::size_t(state.node)].type == NodeType::kEmpty;
-  });
-}
-
 /// What emitting a node's tasks once takes at most, itself and all below it.
 struct Needs {
   int registers = 1, tasks = 0, weights = 0, members = 0;
@@ -193,7 +187,7 @@ void Graph::bind_machine(int index) {
   };
   BoundMachine machine;
   machine.node = index;
-  machine.fades = has_empty_state(definition_, in);
+  machine.fades = has_empty_state(definition_, index);
   if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
     machine.offset = count(&BoundMachine::offset);
   if (std::any_of(in.transitions.begin(), in.transitions.end(),
@@ -265,7 +259,7 @@ std::uint32_t Graph::event_bit(std::uint32_t name) const {
 }
 
 template <class T>
-GraphScratch<T>::GraphScratch(const Graph& graph) {
+GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
   const std::size_t joints = std::size_t(graph.joint_count()), slots = std::size_t(graph.curve_count()),
                     count = std::size_t(graph.registers());
   const Needs needs = most_needs(graph.definition());
@@ -300,7 +294,15 @@ GraphScratch<T>::GraphScratch(const Graph& graph) {
   shares.resize(graph.clips().size());
 }
 
+template <class T>
+Status check_scratch(const Graph& graph, const GraphScratch<T>* scratch) {
+  if (scratch && scratch->hash == graph.hash()) return {};
+  return Status::error(Code::kInvalidArgument, "no scratch, or that of another graph");
+}
+
 template struct GraphScratch<float>;
 template struct GraphScratch<double>;
+template Status check_scratch<float>(const Graph&, const GraphScratch<float>*);
+template Status check_scratch<double>(const Graph&, const GraphScratch<double>*);
 
 }  // namespace sinew

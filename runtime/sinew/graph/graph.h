@@ -1,12 +1,17 @@
 // A graph bound to the clips of one asset, ready to be played by any number of characters.
 //
-//     sinew::Graph graph;
-//     sinew::Graph::bind(definition, asset, graph);            // set-up: names become indices, spaces are
-//     baked sinew::GraphScratch<float> scratch(graph);               // one a thread std::vector<std::byte>
-//     state(graph.state_bytes<float>()); // one a character sinew::start_graph<float>(graph, state); …every
-//     frame: sinew::GraphParameters<float>(graph, state).set(speed, 1.4f);
-//     sinew::GraphUpdateJob<float>{&graph, state, h, &scratch, &events}.Run();
-//     sinew::GraphPoseJob<float>{&graph, state, &scratch, jets}.Run();
+// Set-up:
+//
+//     sinew::Graph graph;                                        // one an asset
+//     sinew::Graph::bind(definition, asset, graph);              // names become indices
+//     sinew::GraphScratch<float> scratch(graph);                 // one a thread
+//     std::vector<std::byte> state(graph.state_bytes<float>());  // one a character
+//     sinew::start_graph<float>(graph, state);
+//
+// Every frame:
+//
+//     sinew::GraphParameters<float>(graph, state).set(speed, 1.4f);
+//     sinew::GraphStepJob<float>{&graph, state, h, &scratch, jets, &events}.Run();
 //     character.set_target(jets);
 #pragma once
 

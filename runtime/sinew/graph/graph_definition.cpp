@@ -66,19 +66,14 @@ class Check {
       for (std::size_t k = 0; k < node.children.size(); ++k) {
         const int child = node.children[k];
         if (++parents[std::size_t(child)] > 1) return bad("node has two parents", child);
-        if (fades(child) && (node.type != NodeType::kLayers || k == 0))
+        if (has_empty_state(graph_, child) && (node.type != NodeType::kLayers || k == 0))
           return bad("a machine with an empty state is no layer", child);
       }
     const int root = static_cast<int>(graph_.nodes.size()) - 1;
-    return fades(root) ? bad("a machine with an empty state is no layer", root) : Status{};
+    return has_empty_state(graph_, root) ? bad("a machine with an empty state is no layer", root) : Status{};
   }
 
  private:
-  bool fades(int node) const {
-    const auto& states = graph_.nodes[std::size_t(node)].states;
-    return std::any_of(states.begin(), states.end(),
-                       [&](const GraphState& state) { return state.node >= 0 && empty(state.node); });
-  }
   bool is_float(int parameter) const {
     return parameter >= 0 && std::size_t(parameter) < graph_.parameters.size() &&
            graph_.parameters[std::size_t(parameter)].type == ParameterType::kFloat;
@@ -176,6 +171,13 @@ int GraphDefinition::find_parameter(const std::string& wanted) const {
   const auto found = std::find_if(parameters.begin(), parameters.end(),
                                   [&](const GraphParameter& p) { return p.name == wanted; });
   return found == parameters.end() ? -1 : static_cast<int>(found - parameters.begin());
+}
+
+bool has_empty_state(const GraphDefinition& graph, int node) {
+  const std::vector<GraphState>& states = graph.nodes[std::size_t(node)].states;
+  return std::any_of(states.begin(), states.end(), [&](const GraphState& state) {
+    return state.node >= 0 && graph.nodes[std::size_t(state.node)].type == NodeType::kEmpty;
+  });
 }
 
 Status validate(const GraphDefinition& graph) {

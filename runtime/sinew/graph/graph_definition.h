@@ -145,6 +145,9 @@ struct GraphDefinition {
   int find_parameter(const std::string& wanted) const;  ///< index, or −1
 };
 
+/// Is the node a machine that may show nothing? Then it is a layer.
+bool has_empty_state(const GraphDefinition& graph, int node);
+
 /// What is at fault, if anything, so that playing it needs no further checks: indices, order of nodes,
 /// numbers, depth, stacks of conditions. `Status::index`: node, or parameter.
 Status validate(const GraphDefinition& graph);

@@ -6,6 +6,7 @@
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/curve_job.h"
+#include "sinew/animation/dying_rate.h"
 #include "sinew/animation/mesh_additive_job.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/root_motion.h"
@@ -300,29 +301,16 @@ class Pose {
     const ExtrapolateJob<T> job{block_.left_pose(bound.left_pose).first(joints), elapsed, T(kSlowing),
                                 T(kLoss), jets(task.out, joints)};
     if (Status status = job.Run(); !status) return status;
-    const T slow = std::exp(T(-kSlowing) * elapsed), fast = std::exp(T(-kLoss) * elapsed);
-    const auto dying = [&](T v, T a) {  // as ExtrapolateJob's velocities
-      const T more = (a + T(kSlowing) * v) / T(kLoss - kSlowing);
-      return TimeJet<T>(v * slow + more * (slow - fast),
-                        -T(kSlowing) * v * slow + more * (T(kLoss) * fast - T(kSlowing) * slow), T(0));
-    };
+    const DyingRate<T> dying = DyingRate<T>::at(elapsed, T(kSlowing), T(kLoss));
     for (int k = 0; k < 3; ++k) {
-      const TimeJet<T> v = dying(m.travel.velocity[k], m.travel.change[k]);
-      old.travel.velocity[k] = v.value;
-      old.travel.change[k] = v.rate;
+      const TimeJet<T> x = dying(TimeJet<T>(T(0), m.travel.velocity[k], m.travel.change[k]));
+      old.travel.velocity[k] = x.rate;
+      old.travel.change[k] = x.acceleration;
     }
     const std::span<const TimeJet<T>> curves = block_.curve_offsets(bound.offset);
-    for (std::size_t c = 0; c < curves.size(); ++c) old.curves[c] = extrapolated(curves[c], elapsed, dying);
+    for (std::size_t c = 0; c < curves.size(); ++c) old.curves[c] = dying(curves[c]);
     return fade(task.out, EaseWeight<T>::at(elapsed, duration), joints);
   }
-  template <class Dying>
-  static TimeJet<T> extrapolated(const TimeJet<T>& c, T elapsed, const Dying& dying) {
-    const T y = T(kSlowing), z = T(kLoss), more = (c.acceleration + y * c.rate) / (z - y);
-    const T gone_slow = -std::expm1(-y * elapsed) / y, gone_fast = -std::expm1(-z * elapsed) / z;
-    const TimeJet<T> rate = dying(c.rate, c.acceleration);
-    return {c.value + c.rate * gone_slow + more * (gone_slow - gone_fast), rate.value, rate.rate};
-  }
-
   void travel();
 
   const GraphPoseJob<T>& job_;
@@ -373,9 +361,7 @@ void Pose<T>::travel() {
 template <class T>
 Status GraphPoseJob<T>::Validate() const {
   if (Status status = check_block<T>(graph, state, true); !status) return status;
-  if (!scratch || scratch->registers.size() != std::size_t(graph->registers()) ||
-      scratch->shares.size() != graph->clips().size())
-    return Status::error(Code::kInvalidArgument, "no scratch, or that of another graph");
+  if (Status status = check_scratch(*graph, scratch); !status) return status;
   if (jets.empty() || jets.size() > std::size_t(graph->joint_count()))
     return Status::error(Code::kInvalidArgument, "no joints to pose, or more than the graph has");
   bool wants_physical = false;

@@ -49,6 +49,7 @@ struct GraphScratch {
     int task, clip, group;
     TimeJet<double> weight;
   };
+  std::uint64_t hash;  ///< of the graph that it was made for
   std::vector<JointJet<T>> jets;
   std::vector<TimeJet<T>> curves;
   std::vector<Register> registers;
@@ -79,6 +80,12 @@ struct GraphScratch {
   T h = 0;
 };
 
+/// Refuses none, and that of another graph.
+template <class T>
+Status check_scratch(const Graph& graph, const GraphScratch<T>* scratch);
+
+extern template Status check_scratch<float>(const Graph&, const GraphScratch<float>*);
+extern template Status check_scratch<double>(const Graph&, const GraphScratch<double>*);
 extern template struct GraphScratch<float>;
 extern template struct GraphScratch<double>;
 

@@ -62,14 +62,16 @@ class Update {
 
   // Changes of state, at the start of the frame.
   struct Choice {
-    int transition = -1;  ///< the leg that reaches `to`
+    int legs[GraphDefinition::kMostConduits + 1] =
+        {};  ///< transitions, through conduits; the last reaches `to`
+    int count = 0;
     int to = -1;
   };
   void decide(int node);
   bool may_interrupt(const GraphNode& node, const GraphMachineState<T>& m, int to) const;
   Choice choose(int index, const GraphMachineState<T>& m) const;
-  Choice through(int index, const GraphMachineState<T>& m, int conduit, int depth) const;
-  void use_up(const GraphTransition& transition);
+  bool follow(int index, const GraphMachineState<T>& m, int from, Choice& choice) const;
+  void use_up(const GraphNode& node, const Choice& choice);
   void take(int index, int machine, const Choice& choice);
   void start_showing(GraphMachineState<T>& m, T target, T duration);
   void leave(int node);
@@ -127,49 +129,41 @@ bool Update<T>::may_interrupt(const GraphNode& node, const GraphMachineState<T>&
          running.interrupted_by.end();
 }
 
+/// The first transition out of a state, or of a conduit on the way, that may be taken and leads somewhere.
 template <class T>
-typename Update<T>::Choice Update<T>::through(int index, const GraphMachineState<T>& m, int conduit,
-                                              int depth) const {
+bool Update<T>::follow(int index, const GraphMachineState<T>& m, int from, Choice& choice) const {
   const GraphNode& node = graph_.node(index);
-  if (depth > GraphDefinition::kMostConduits) return {};
+  if (choice.count > GraphDefinition::kMostConduits) return false;
   GraphBlock<T> block = block_;
   for (std::size_t k = 0; k < node.transitions.size(); ++k) {
     const GraphTransition& t = node.transitions[k];
-    if (t.from != conduit || !holds(graph_, block, m, index, t)) continue;
-    if (node.states[std::size_t(t.to)].node >= 0) {
-      if (may_interrupt(node, m, t.to)) return {static_cast<int>(k), t.to};
-    } else if (const Choice further = through(index, m, t.to, depth + 1); further.to >= 0) {
-      return further;
-    }
+    const bool any = choice.count == 0 && t.from == GraphTransition::kAnyState && t.to != from;
+    if (t.from != from && !any) continue;
+    const bool conduit = node.states[std::size_t(t.to)].node < 0;
+    if (!conduit && !may_interrupt(node, m, t.to)) continue;
+    if (!holds(graph_, block, m, index, t)) continue;
+    choice.legs[choice.count++] = static_cast<int>(k);
+    choice.to = t.to;
+    if (!conduit || follow(index, m, t.to, choice)) return true;
+    --choice.count;
   }
-  return {};
+  return false;
 }
 
 template <class T>
 typename Update<T>::Choice Update<T>::choose(int index, const GraphMachineState<T>& m) const {
-  const GraphNode& node = graph_.node(index);
-  GraphBlock<T> block = block_;
-  for (std::size_t k = 0; k < node.transitions.size(); ++k) {
-    const GraphTransition& t = node.transitions[k];
-    const bool leaves = t.from == m.state || (t.from == GraphTransition::kAnyState && t.to != m.state);
-    if (!leaves) continue;
-    const bool conduit = node.states[std::size_t(t.to)].node < 0;
-    if (!conduit && !may_interrupt(node, m, t.to)) continue;
-    if (!holds(graph_, block, m, index, t)) continue;
-    if (!conduit) return {static_cast<int>(k), t.to};
-    Choice further = through(index, m, t.to, 1);
-    if (further.to < 0) continue;
-    return further;
-  }
-  return {};
+  Choice choice;
+  if (!follow(index, m, m.state, choice)) choice.to = -1;
+  return choice;
 }
 
 template <class T>
-void Update<T>::use_up(const GraphTransition& transition) {
-  for (const ConditionStep& step : transition.condition)
-    if (step.code == ConditionCode::kParameter &&
-        graph_.definition().parameters[step.index].type == ParameterType::kTrigger)
-      block_.parameter(step.index).goal = T(0);
+void Update<T>::use_up(const GraphNode& node, const Choice& choice) {
+  for (int leg = 0; leg < choice.count; ++leg)
+    for (const ConditionStep& step : node.transitions[std::size_t(choice.legs[leg])].condition)
+      if (step.code == ConditionCode::kParameter &&
+          graph_.definition().parameters[step.index].type == ParameterType::kTrigger)
+        block_.parameter(step.index).goal = T(0);
 }
 
 template <class T>
@@ -224,11 +218,12 @@ void Update<T>::leave(int index) {
 template <class T>
 void Update<T>::take(int index, int slot, const Choice& choice) {
   const GraphNode& node = graph_.node(index);
-  const GraphTransition& t = node.transitions[std::size_t(choice.transition)];
+  const int last = choice.legs[choice.count - 1];
+  const GraphTransition& t = node.transitions[std::size_t(last)];
   GraphMachineState<T>& m = block_.machine(slot);
-  use_up(t);
+  use_up(node, choice);
   m.time = 0;
-  m.transition = static_cast<std::int16_t>(choice.transition);
+  m.transition = static_cast<std::int16_t>(last);
   m.state = static_cast<std::int16_t>(choice.to);
   const T duration = t.kind == TransitionKind::kCut ? T(0) : T(t.duration);
   const int next = node.states[std::size_t(choice.to)].node;
@@ -520,9 +515,7 @@ void Update<T>::report(int index) {
 template <class T>
 Status GraphUpdateJob<T>::Validate() const {
   if (Status status = check_block<T>(graph, state, true); !status) return status;
-  if (!scratch || scratch->registers.size() != std::size_t(graph->registers()) ||
-      scratch->shares.size() != graph->clips().size())
-    return Status::error(Code::kInvalidArgument, "no scratch, or that of another graph");
+  if (Status status = check_scratch(*graph, scratch); !status) return status;
   if (!std::isfinite(h)) return Status::error(Code::kNotFinite, "step is not finite");
   if (h < T(0) || h > T(1)) return Status::error(Code::kOutOfRange, "step is not within 0 and 1 s");
   return {};
