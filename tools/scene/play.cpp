@@ -39,6 +39,9 @@ convert::Error Play<T>::add_all() {
     if (world_.add_character(c.asset->skeleton, settings, status) < 0)
       return {"character '" + c.name + "': " + status.reason};
     players_.emplace_back(c);
+    auto& behaviour = behaviours_.emplace_back();
+    if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
+    if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
     asked_.push_back({settings.strength, {}, settings.root, false});
   }
   for (const Collider& o : s_.obstacles)
@@ -77,13 +80,13 @@ convert::Error Play<T>::add_effects() {
 template <class T>
 convert::Error Play<T>::prepare(double from, double to) {
   for (std::size_t c = 0; c < s_.characters.size(); ++c)
-    if (convert::Error error = drive(static_cast<int>(c), to)) return error;
+    if (convert::Error error = drive(static_cast<int>(c), to, to - from)) return error;
   launch(from);
   return {};
 }
 
 template <class T>
-convert::Error Play<T>::drive(int c, double t) {
+convert::Error Play<T>::drive(int c, double t, double h) {
   const SceneCharacter& source = s_.characters[c];
   Asked& asked = asked_[c];
   Character<T> character = world_.character(c);
@@ -95,10 +98,16 @@ convert::Error Play<T>::drive(int c, double t) {
       spare_acceleration<T>(character, spare_);
       felt.spare_acceleration = spare_;
     }
-    Status status = character.set_target(players_[c].at(t, felt));
+    std::span<const JointJet<T>> wanted = players_[c].at(t, felt);
+    if (behaviours_[c]) {
+      jets_.assign(wanted.begin(), wanted.end());
+      behaviours_[c]->update(character, jets_, T(h));
+      wanted = jets_;
+    }
+    Status status = character.set_target(wanted);
     if (!players_[c].fault()) status = players_[c].fault();
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
-    asked.still = !players_[c].moves();
+    asked.still = !players_[c].moves() && !behaviours_[c];
   }
   if (const double strength = ramp_at(source.strength, t); strength != asked.strength)
     character.set_strength(T(asked.strength = strength));

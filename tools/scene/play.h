@@ -2,10 +2,12 @@
 // cases all play their scenes by it.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "scene/player.h"
 #include "scene/scene.h"
+#include "sinew/behaviour/behaviour.h"
 
 namespace sinew::scene {
 
@@ -39,6 +41,8 @@ class Play {
 
   /// The state in which a character started.
   const std::vector<JointJet<T>>& start(int character) const { return starts_[character]; }
+  /// Of a character that keeps its balance; null where it does not.
+  const Behaviour<T>* behaviour(int character) const { return behaviours_[character].get(); }
   bool launched(int prop) const { return launched_[static_cast<std::size_t>(prop)]; }
 
  private:
@@ -52,7 +56,7 @@ class Play {
 
   convert::Error add_all();
   convert::Error add_effects();
-  convert::Error drive(int character, double t);
+  convert::Error drive(int character, double t, double h);
   void launch(double t);
   Vec3<double> target_of(const SceneProp& prop, double t);
   void aim(const SceneProp& prop, double t, Vec3<double>& from, Vec3<double>& velocity);
@@ -61,6 +65,8 @@ class Play {
   World<T>& world_;
   std::vector<T> spare_;  ///< [joint] of the character that is driven
   std::vector<Player<T>> players_;
+  std::vector<std::unique_ptr<Behaviour<T>>> behaviours_;  ///< [character] null: has none
+  std::vector<JointJet<T>> jets_;  ///< [joint] of the character that is driven, as its behaviour wants it
   std::vector<Asked> asked_;
   std::vector<std::vector<JointJet<T>>> starts_;  ///< [character]
   std::vector<bool> launched_;

@@ -31,7 +31,8 @@ RootDrive drive_of(const json& v, const std::string& where) {
   if (text == "kinematic") return RootDrive::kKinematic;
   if (text == "assisted") return RootDrive::kAssisted;
   if (text == "free") return RootDrive::kFree;
-  fail(where, "root drive is kinematic, assisted or free");
+  if (text == "grounded") return RootDrive::kGrounded;
+  fail(where, "root drive is kinematic, assisted, grounded or free");
 }
 
 double strength_of(const json& v, const std::string& where) {
@@ -139,13 +140,29 @@ void read_graph(const Reader& in, const Asset& asset, const std::filesystem::pat
   c.graph.graph = std::move(graph);
 }
 
+/// `behaviour`: true, or an object of settings.
+void read_behaviour(const Reader& in, SceneCharacter& c) {
+  if (!in.has("behaviour")) return;
+  if (const json& value = in.at("behaviour"); value.is_boolean()) {
+    if (value.get<bool>()) c.behaviour.emplace();
+    return;
+  }
+  const Reader of(in.at("behaviour"), in.inside("behaviour"), {"reaction", "most_steps", "help_torque"});
+  BehaviourSettings settings;
+  settings.reaction = of.time("reaction", settings.reaction);
+  settings.most_steps = static_cast<int>(of.time("most_steps", settings.most_steps));
+  settings.help_torque = of.time("help_torque", settings.help_torque);
+  c.behaviour = settings;
+}
+
 SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
-  const Reader in(value, where,
-                  {"asset",          "figure",         "name", "position",   "yaw_deg",     "clips",
-                   "path",           "turn_rate",      "pose", "velocity",   "spin",        "random_spin",
-                   "strength",       "group_strength", "root", "root_force", "root_torque", "ground_contact",
-                   "self_collision", "options",        "grid", "bake",       "graph",       "inputs"});
+  const Reader in(value, where, {"asset",      "figure",      "name",           "position",       "yaw_deg",
+                                 "clips",      "path",        "turn_rate",      "pose",           "velocity",
+                                 "spin",       "random_spin", "strength",       "group_strength", "root",
+                                 "root_force", "root_torque", "ground_contact", "self_collision", "options",
+                                 "grid",       "bake",        "graph",          "inputs",         "behaviour",
+                                 "help_force", "help_torque"});
   SceneCharacter c;
   const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
@@ -191,7 +208,10 @@ SceneCharacter read_character(const json& value, const std::string& where,
   c.settings.root_torque = in.time("root_torque", c.settings.root_torque);
   c.settings.ground_contact = in.flag("ground_contact", true);
   c.settings.self_collision = in.flag("self_collision", false);
+  c.settings.help_force = in.time("help_force", c.settings.help_force);
+  c.settings.help_torque = in.time("help_torque", c.settings.help_torque);
   c.bake = in.flag("bake", false);
+  read_behaviour(in, c);
   c.asset = asset;
   return c;
 }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -14,6 +15,7 @@
 #include "scene/recording.h"
 #include "scene/start.h"
 #include "scene/timeline.h"
+#include "sinew/behaviour/behaviour_settings.h"
 #include "sinew/character/world.h"
 #include "study/schemes/schemes.h"
 
@@ -47,7 +49,8 @@ struct SceneCharacter {
   std::vector<std::pair<int, Timeline<double>>> group_strength;
   Timeline<RootDrive> root{{0, RootDrive::kKinematic}};
   CharacterSettings settings;
-  bool bake = false;  ///< see CharacterDetail
+  bool bake = false;                           ///< see CharacterDetail
+  std::optional<BehaviourSettings> behaviour;  ///< keeps its balance
 };
 
 struct SceneProp {

@@ -66,7 +66,7 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
   std::string csv =
       "time_s,character,dofs,unknown_dofs,microseconds,outer_passes,factorisations,converged,contacts,"
       "penetration_m,kinetic_J,potential_J,loaded_joint,load,torque_Nm,limit_Nm,plotted_torque_Nm,"
-      "plotted_limit_Nm,elastic_J,substeps,estimated_error_m";
+      "plotted_limit_Nm,elastic_J,substeps,estimated_error_m,help_N,help_Nm";
   const std::vector<std::string> names = body_names(scene);
   for (const std::string& name : names) csv += ",load_" + field(name);
   csv += '\n';
@@ -78,8 +78,9 @@ std::string telemetry_csv(const Scene& scene, const Telemetry& telemetry) {
                        r.report.outer_passes, r.report.factorisations, r.report.converged, r.report.contacts,
                        r.report.penetration, r.report.kinetic_energy, r.report.potential_energy,
                        field(skeleton.joints[r.loaded_joint].name), r.load);
-    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{},{:.3e}", r.torque, r.limit, r.plotted_torque,
-                       r.plotted_limit, r.report.elastic_energy, r.report.substeps, r.report.estimated_error);
+    csv += fmt::format(",{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{},{:.3e},{:.2f},{:.2f}", r.torque, r.limit,
+                       r.plotted_torque, r.plotted_limit, r.report.elastic_energy, r.report.substeps,
+                       r.report.estimated_error, r.report.help_force, r.report.help_torque);
     for (const std::string& name : names) {
       const int joint = skeleton.find(name.c_str());
       csv += joint >= 0 && joint < skeleton.body_count ? fmt::format(",{:.4f}", r.loads[joint]) : ",";

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "sinew/character/grounding.h"
 #include "sinew/character/state.h"
 
 namespace sinew {
@@ -38,15 +39,22 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
   for (std::size_t i = 0; i < jets.size(); ++i)
     if (Status status = check(jets[i], static_cast<int>(i)); !status) return status;
   // What is limp has no use for a target, and sleeps on.
+  const JointJet<T> root = displaced(state_->grounding.by, jets[0]);
   if (state_->levels.asleep && !state_->limp() &&
-      !std::equal(jets.begin(), jets.end(), state_->target.begin(), same_pose<T>))
+      !(same_pose<T>(root, state_->target[0]) &&
+        std::equal(jets.begin() + 1, jets.end(), state_->target.begin() + 1, same_pose<T>)))
     state_->levels.wake = true;
-  std::copy(jets.begin(), jets.end(), state_->new_target().begin());
+  std::vector<JointJet<T>>& target = state_->new_target();
+  std::copy(jets.begin(), jets.end(), target.begin());
+  target[0] = root;
   return {};
 }
 
 template <class T>
 void Character<T>::reset() {
+  if (const Displacement by = state_->grounding.by; by.any())
+    state_->target[0] = displaced(by.inverse(), state_->target[0]);
+  state_->grounding = {};
   state_->reset_to_target(Vec3<T>::Zero());
 }
 
@@ -70,6 +78,11 @@ Status Character<T>::set_strength(T strength) {
   state_->refresh_limits();
   state_->levels.wake = true;
   return {};
+}
+
+template <class T>
+T Character<T>::strength() const {
+  return T(state_->settings.strength);
 }
 
 template <class T>
@@ -126,6 +139,28 @@ void Character<T>::set_root_drive(RootDrive drive) {
   state_->settings.root = drive;
   state_->refresh_limits();
   state_->levels.wake = true;
+}
+
+template <class T>
+const Displacement& Character<T>::displacement() const {
+  return state_->grounding.by;
+}
+
+template <class T>
+void Character<T>::take_displacement() {
+  state_->grounding.by = {};
+}
+
+template <class T>
+void Character<T>::displace(const Displacement& further) {
+  displace_target(*state_, further);
+}
+
+template <class T>
+void Character<T>::set_help(double force, double torque) {
+  state_->grounding.help_force = force;
+  state_->grounding.help_torque = torque;
+  state_->refresh_limits();
 }
 
 namespace {

@@ -6,6 +6,8 @@
 
 #include "sinew/character/baking.h"
 #include "sinew/character/couplings.h"
+#include "sinew/character/grounding.h"
+#include "sinew/character/playback.h"
 #include "sinew/character/cut.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/touch_digest.h"
@@ -236,6 +238,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world_->gravity);
+  report_help(s);
 }
 
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
@@ -445,6 +448,8 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (std::size_t n = 0; n < states_.size(); ++n) settle_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
   stop_lost();
+  for (CharacterState<T>* s : states_)
+    if (s->grounded()) hand_back<T>(*s, h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   for (const auto& effect : effects_) {
     if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;

@@ -30,7 +30,8 @@ void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const
 /// What bears on the ground in a check of a character.
 template <class T>
 Standing<T> standing_of(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan) {
-  return {stands(s, world, plan) ? plan.support : nullptr, s.rig->support, T(world.ground_height)};
+  return {stands(s, world, plan) ? plan.support : nullptr, s.rig->support, T(world.ground_height),
+          T(world.ground_friction), s.grounded() ? T(s.total_mass * world.gravity.norm()) : T(0)};
 }
 
 /// What the muscles would have to give, with nothing that acts from outside left out.
@@ -56,7 +57,7 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     for (const ExternalForce<T>& f : s.forces)
       plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
   });
-  if (standing.support) standing.support->stand(standing.points, standing.ground - origin.z(), room);
+  standing.bear(origin.z() - standing.ground, room);
   take_off(!p.effects.empty(), [&] { add_effect_wrenches(s, world, origin, h); });
   project_bodies<T>(s.tree, room.body, [&](int dof, const T& t) { p.gradient[dof] = t; });
   for (const JointRow<T>& row : p.effect_rows)
@@ -102,6 +103,12 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
   if (leads_into_floor(s, world)) return false;
+  if (!s.undisturbed()) {
+    std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
+    follow(s, world, h);
+    report_help(s);
+    return true;
+  }
   std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.played_from.swap(s.local);
@@ -115,7 +122,18 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
+  report_help(s);
   return true;
+}
+
+template <class T>
+void report_help(CharacterState<T>& s) {
+  if (!s.grounded() || !s.floats) return;
+  const auto size = [&](int first) {
+    return std::hypot(double(s.torque[first]), double(s.torque[first + 1]), double(s.torque[first + 2]));
+  };
+  s.report.help_force = size(0);
+  s.report.help_torque = size(3);
 }
 
 template <class T>

@@ -26,6 +26,10 @@ bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T
 template <class T>
 bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
+/// What held a grounded root besides the ground, into the report.
+template <class T>
+void report_help(CharacterState<T>& state);
+
 /// Plays the clip without asking: what is off it goes back smoothly. Leaves the history behind.
 template <class T>
 void follow(CharacterState<T>& state, const WorldSettings& world, T h);
@@ -40,6 +44,7 @@ void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
   prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&);                 \
   prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, const CheckRoom<T>&); \
   prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                                  \
+  prefix void report_help<T>(CharacterState<T>&);                                                            \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                                        \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)

@@ -214,9 +214,21 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   std::uint8_t parked = s.parked ? 1 : 0;
   stream.value("out of the world", parked);
   if (stream.reading()) s.parked = parked != 0;
-  if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kFree))
+  if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kGrounded))
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
+  if (stream.reading()) s.grounding = {};
+  if (s.grounded() || stream.bounding()) {
+    stream.value("displaced along x", s.grounding.by.x);
+    stream.value("displaced along y", s.grounding.by.y);
+    stream.value("displaced about z", s.grounding.by.yaw);
+    stream.value("stands as it should", s.grounding.rest);
+    stream.value("help, N", s.grounding.help_force);
+    stream.value("help, N·m", s.grounding.help_torque);
+    std::uint8_t returns = s.grounding.returns ? 1 : 0;
+    stream.value("next to its animation", returns);
+    s.grounding.returns = returns != 0;
+  }
   const auto visit_strengths = [&](const char* name, std::vector<T>& strengths) {
     const bool some = std::any_of(strengths.begin(), strengths.end(), [](T x) { return x != T(1); });
     if (stream.part("has strengths of its own", some))

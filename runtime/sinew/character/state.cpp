@@ -180,6 +180,16 @@ T CharacterState<T>::muscle_limit(int muscle, double limit_at_rest) const {
 }
 
 template <class T>
+double CharacterState<T>::help_at_most(bool force) const {
+  constexpr double kHumanMass = 75, kLeast = 1e-3;  // with none at all there would be no animation to follow
+  if (const double asked = force ? grounding.help_force : grounding.help_torque; asked >= 0)
+    return std::max(asked, kLeast);
+  const double weight = total_mass / kHumanMass;
+  return weight *
+         std::max(force ? settings.help_force : settings.help_torque * double(tree.scale.length), kLeast);
+}
+
+template <class T>
 void CharacterState<T>::refresh_limits() {
   keep_loads();
   for (int i = 0; i < tree.bodies; ++i) {
@@ -193,6 +203,7 @@ void CharacterState<T>::refresh_limits() {
       if (root) {
         const bool assisted = settings.root == RootDrive::kAssisted && !is_prop;
         minus = plus = assisted ? T(k < 3 ? settings.root_force : settings.root_torque) : T(0);
+        if (grounded()) minus = plus = scaled(help_at_most(k < 3), T(settings.strength));
       }
       problem.law.torque_minus[dof] = minus;
       problem.law.torque_plus[dof] = plus;

@@ -66,6 +66,15 @@ struct LevelState {
   double spent = 0, work = 0;  ///< as Budget::limit; units of work
 };
 
+/// Of a grounded character, see grounding.h.
+template <class T>
+struct Grounding {
+  Displacement by;                           ///< of the targets that the host gives
+  T rest = T(0);                             ///< s that it has stood as its animation wants it
+  double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
+  bool returns = false;  ///< next to its animation, where it may be played if the ground can do it
+};
+
 /// What all characters of one skeleton share.
 template <class T>
 struct Rig {
@@ -107,6 +116,7 @@ struct CharacterState {
   Vec3<T> particles_middle = Vec3<T>::Zero();
 
   CharacterSettings settings;
+  Grounding<T> grounding;
   bool is_prop = false;       ///< or a body of particles: nothing animates it
   bool is_particles = false;  ///< every body but the fixed root is a particle
   CharacterDetail detail;
@@ -170,6 +180,8 @@ struct CharacterState {
   }
   /// What a limit (N·m) of one of the skeleton's muscles is at its strength, its joint's and the character's.
   T muscle_limit(int muscle, double limit_at_rest) const;
+  /// N or N·m that may hold a grounded root besides the ground.
+  double help_at_most(bool force) const;
   /// Muscle limits of this moment: strengths and the root's drive applied.
   void refresh_limits();
   /// Velocity (m/s, world) of a body's material point, given from the common origin of `problem.kinematics`.
@@ -265,6 +277,7 @@ struct CharacterState {
   int body_of(int joint) const;
   void update_model();
   void bound_particles();
+  bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
   /// And has limbs, that it could tear off: what has none, as a platform, presses whatever is in its way.
   bool leads_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }

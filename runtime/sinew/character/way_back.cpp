@@ -118,7 +118,7 @@ T below_floor(CharacterState<T>& s, std::span<const Transform<T>> pose, T ground
 /// Its root gives way to what its feet meet.
 template <class T>
 bool is_raised_by_feet(const CharacterState<T>& s) {
-  return s.settings.root == RootDrive::kAssisted && s.settings.ground_contact && s.floats &&
+  return (s.settings.root == RootDrive::kAssisted || s.grounded()) && s.settings.ground_contact && s.floats &&
          !s.rig->support.points.empty();
 }
 

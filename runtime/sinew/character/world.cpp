@@ -199,8 +199,8 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
   status = validate(skeleton);
   if (!status) return -1;
   if (std::isnan(settings.strength) || settings.strength < 0 || !(settings.root_force >= 0) ||
-      !(settings.root_torque >= 0)) {
-    status = Status::error(Code::kInvalidArgument, "strength and root drive limits must be ≥ 0");
+      !(settings.root_torque >= 0) || !(settings.help_force >= 0) || !(settings.help_torque >= 0)) {
+    status = Status::error(Code::kInvalidArgument, "strength, root drive limits and help must be ≥ 0");
     return -1;
   }
   status = validate(settings.detail);

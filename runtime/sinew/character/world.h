@@ -35,13 +35,36 @@ enum class RootDrive : std::uint8_t {
   kKinematic,  ///< follows the animation whatever it takes
   kAssisted,   ///< follows it up to `root_force` and `root_torque`
   kFree,       ///< unactuated: only contacts hold it
+  kGrounded,   ///< follows it as long as the ground can hold it so, with `help_force` and `help_torque` at
+               ///< most
+};
+
+/// Where a grounded character follows its animation: turned about the world's vertical, then moved.
+struct Displacement {
+  double x = 0, y = 0;  ///< m
+  double yaw = 0;       ///< rad
+
+  bool any() const { return x != 0 || y != 0 || yaw != 0; }
+  Quat<double> turn() const { return Quat<double>(Eigen::AngleAxisd(yaw, Vec3<double>::UnitZ())); }
+  Displacement inverse() const {
+    const Vec3<double> back = turn().conjugate() * Vec3<double>(-x, -y, 0);
+    return {back.x(), back.y(), -yaw};
+  }
+  /// This one, and after it another.
+  Displacement then(const Displacement& next) const {
+    const Vec3<double> to = next.turn() * Vec3<double>(x, y, 0);
+    return {to.x() + next.x, to.y() + next.y, yaw + next.yaw};
+  }
 };
 
 struct CharacterSettings {
   RootDrive root = RootDrive::kKinematic;
   double root_force = 2000;  ///< N, assisted
   double root_torque = 600;  ///< N·m, assisted
-  double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  /// N and N·m of a human, grounded: what an invisible hand may do where the ground can't. Scaled with the
+  /// character's weight and size; what it did is in the report.
+  double help_force = 8, help_torque = 8;
+  double strength = 1;  ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;
@@ -75,6 +98,7 @@ struct CharacterReport {
   Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
   Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
   double penetration = 0;                                ///< m, deepest contact
+  double help_force = 0, help_torque = 0;  ///< N, N·m: what held a grounded root besides the ground
   /// m, where Accuracy::estimate_error asks for it: how far this step alone, by its finite length, took the
   /// character from the exact motion (rms of all mass). 0 where the animation was played: that is exact.
   double estimated_error = 0;
@@ -143,6 +167,7 @@ class Character {
   void reset();
   /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
   Status set_strength(T strength);
+  T strength() const;
   Status set_strength(int joint, T strength);
   /// Strength of one of Skeleton::muscles, or of all of a group, ≥ 0; the character's and the joint's
   /// multiply it.
@@ -151,6 +176,16 @@ class Character {
   /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle.
   T muscle_torque(int muscle) const;
   void set_root_drive(RootDrive drive);
+  /// Where a grounded character follows its animation since something moved it: what a host adds to its own
+  /// place of the character, if it wants to. Targets are given as if nothing had happened; reset() forgets
+  /// it.
+  const Displacement& displacement() const;
+  /// The host has moved the character's place itself: targets are given there from now on.
+  void take_displacement();
+  /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that.
+  void displace(const Displacement& further);
+  /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
+  void set_help(double force, double torque);
   Status set_detail(const CharacterDetail& detail);
   const CharacterDetail& detail() const;
   /// A hit: impulse (N·s, world) at a world point on the body of a joint, at the beginning of the next step,

@@ -58,7 +58,7 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
 /// Whether it is on its animation, and nothing is in the way of that.
 template <class T>
 bool World<T>::Impl::may_play(CharacterState<T>& s, Worker& worker) const {
-  return !s.tied && s.driven && s.undisturbed() &&
+  return !s.tied && s.driven && (s.undisturbed() || s.grounding.returns) &&
          !(plan.contacts && plan.contacts->meets_obstacle(s, surroundings(), h, worker.obstacle_room));
 }
 
@@ -96,7 +96,7 @@ bool World<T>::Impl::play_set(std::span<CharacterState<T>* const> members, Worke
 template <class T>
 bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, const Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
-    return settings.batches && worker.checks && has_plain_check(s) && checks(s);
+    return settings.batches && worker.checks && has_plain_check(s) && !s.grounded() && checks(s);
   return false;
 }
 

@@ -3,6 +3,7 @@
 // batches: T is float, double or a pack of characters (kernels/check.inl), with the same bits.
 #pragma once
 
+#include "sinew/effects/ground_balance.h"
 #include "sinew/effects/support.h"
 #include "sinew/residual/residual_pass.h"
 #include "sinew/skeleton/transform.h"
@@ -17,10 +18,12 @@ struct CheckRoom {
   std::span<Vec3<T>> force, moment;      ///< about the root's origin, world axes
   std::span<Vec3<T>> origin;             ///< [joint] from the root's, world axes
   std::span<StandingPoint<T>> standing;  ///< [point]
+  std::span<BearingPoint<T>> bearing;    ///< [point]
 
   static constexpr std::size_t bytes(int bodies, int joints, int points) {
     return std::size_t(bodies) * (sizeof(BodyMotion<T>) + sizeof(Mat3<T>) + 2 * sizeof(Vec3<T>)) +
-           std::size_t(joints) * sizeof(Vec3<T>) + std::size_t(points) * sizeof(StandingPoint<T>);
+           std::size_t(joints) * sizeof(Vec3<T>) +
+           std::size_t(points) * (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>));
   }
   /// In `memory` of that many bytes, aligned as T is.
   CheckRoom(void* memory, int bodies, int joints, int points) {
@@ -34,6 +37,7 @@ struct CheckRoom {
     take(moment, bodies);
     take(origin, joints);
     take(standing, points);
+    take(bearing, points);
   }
 };
 
@@ -50,19 +54,21 @@ template <class T>
   }
 }
 
-/// The ground's share goes from the wrenches of the bodies that may stand on it. `ground`: its height from
-/// the root's origin, m.
+/// What the motion asks of the bodies, in world axes about the common origin.
 template <class T>
-void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckRoom<T>& r) {
-  const SupportSettings settings;
+[[gnu::always_inline]] inline void wrenches_in_world(const CheckRoom<T>& r) {
   for (std::size_t i = 0; i < r.body.size(); ++i) {
     r.force[i] = r.rotation[i] * r.body[i].force;
     r.moment[i] = r.rotation[i] * r.body[i].moment + r.origin[i].cross(r.force[i]);
   }
-  share_support<T>(points, r.rotation, r.origin.first(r.body.size()), ground, settings, r.standing, r.force,
-                   r.moment);
+}
+
+/// And back to the axes of those that may stand.
+template <class T>
+[[gnu::always_inline]] inline void wrenches_to_bodies(const SupportPoints<Number<T>>& points, const T& ground,
+                                                      const CheckRoom<T>& r) {
   for (std::size_t i = 0; i < r.body.size(); ++i) {
-    const Number<T> reach = Number<T>(settings.reach);
+    const Number<T> reach = Number<T>(SupportSettings{}.reach);
     if (!may_stand<T>(points, int(i), r.origin[i], ground, reach)) continue;
     // To the world and back rounds: who has no point within reach keeps what it had.
     const auto near = r.origin[i].z() - ground < T(points.bound[i] + reach);
@@ -71,6 +77,16 @@ void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckR
     r.body[i].force = select(near, force, r.body[i].force);
     r.body[i].moment = select(near, moment, r.body[i].moment);
   }
+}
+
+/// The ground's share goes from the wrenches of the bodies that may stand on it. `ground`: its height from
+/// the root's origin, m.
+template <class T>
+void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckRoom<T>& r) {
+  wrenches_in_world(r);
+  share_support<T>(points, r.rotation, r.origin.first(r.body.size()), ground, {}, r.standing, r.force,
+                   r.moment);
+  wrenches_to_bodies(points, ground, r);
 }
 
 /// The second sweep: put(dof, torque) for every degree of freedom.
@@ -89,7 +105,18 @@ template <class T>
 struct Standing {
   const SupportTerm<T>* support = nullptr;  ///< null: in flight
   const SupportPoints<T>& points;
-  T ground = T(0);  ///< m, its height
+  T ground = T(0);    ///< m, its height
+  T friction = T(1);  ///< the floor's
+  T weight = T(0);    ///< N, of a character that has nothing but the ground; 0: its root bears the rest
+
+  /// Takes off what the ground bears; `height`: of the root above it, m.
+  void bear(T height, const CheckRoom<T>& room) const {
+    if (!support) return;
+    if (weight > T(0))
+      support->balance(points, -height, friction, weight, room);
+    else
+      support->stand(points, -height, room);
+  }
 };
 
 /// Wrenches [body] in world axes about the root's origin, to those in the bodies' axes.
@@ -112,8 +139,7 @@ void check_motion(const Tree<T>& tree, std::span<const JointJet<T>> jets, const 
     move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &room.body[p], room.body[i]);
     if (standing.support) place_body<T>(tree, i, room);
   }
-  if (standing.support)
-    standing.support->stand(standing.points, standing.ground - jets[0].translation.z(), room);
+  standing.bear(jets[0].translation.z() - standing.ground, room);
   project_bodies<T>(tree, room.body, [&](int dof, const T& t) { torque[dof] = t; });
 }
 

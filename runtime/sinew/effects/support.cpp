@@ -22,7 +22,7 @@ SupportPoints<T>::SupportPoints(const Tree<T>& tree, std::span<const ContactPoin
   std::vector<int> next = first;
   for (const ContactPoint<T>& contact : contacts) {
     if (!stands(contact)) continue;
-    points[next[contact.body]++] = {contact.local, contact.radius};
+    points[next[contact.body]++] = {contact.local, contact.radius, contact.friction};
     bound[contact.body] = std::max(bound[contact.body], contact.local.norm() + contact.radius);
   }
 }
@@ -37,8 +37,34 @@ SupportPoints<T> points_of(const Tree<T>& tree, std::span<const ContactPoint<T>>
   return {tree, contacts};
 }
 
+constexpr double kBearsNothing = 1e-4;  ///< of a point's full share: left out
+
 template <class T>
-constexpr SupportTerm<T> kSupport{points_of<T>, stand<T>};
+void balance(const SupportPoints<T>& points, const T& ground, T friction, T weight, const CheckRoom<T>& r) {
+  wrenches_in_world(r);
+  Vec3<T> force = Vec3<T>::Zero(), moment = Vec3<T>::Zero();
+  for (std::size_t i = 0; i < r.body.size(); ++i) {
+    force += r.force[i];
+    moment += r.moment[i];
+  }
+  std::size_t count = 0;
+  share_support_to<T>(points, r.rotation, r.origin.first(r.body.size()), ground, {}, r.standing, r.force,
+                      r.moment, [&](int body, const StandingPoint<T>& s, const Vec3<T>& push) {
+                        if (!(s.share > T(kBearsNothing))) return;
+                        const T grip = friction * points.points[&s - r.standing.data()].friction;
+                        r.bearing[count++] = {s.place, Vec3<T>::UnitZ(), s.share, grip, body, push};
+                      });
+  const std::span<BearingPoint<T>> bearing = r.bearing.first(count);
+  balance_ground<T>(bearing, force, moment, weight, points.unit);
+  for (const BearingPoint<T>& p : bearing) {
+    r.force[p.body] -= p.force;
+    r.moment[p.body] -= p.place.cross(p.force);
+  }
+  wrenches_to_bodies(points, ground, r);
+}
+
+template <class T>
+constexpr SupportTerm<T> kSupport{points_of<T>, stand<T>, balance<T>};
 
 }  // namespace
 

@@ -30,6 +30,7 @@ struct SupportPoints {
   struct Point {
     Vec3<T> local;  ///< m, body axes
     T radius;       ///< m
+    T friction;     ///< μ on a floor whose own is 1
   };
   std::vector<Point> points;
   std::vector<int> first;  ///< [body + 1]
@@ -56,14 +57,15 @@ template <class T>
          any(origin.z() - ground < T(points.bound[body] + reach));
 }
 
-/// Subtracts the support forces from the body wrenches (before project_wrenches). `rotation`, `origin`
-/// [body]: see Kinematics. `force` and `moment` [body] hold the wrenches that the motion asks for, about the
-/// common origin; `ground` is the floor's height from it. Does nothing in flight. `room` [point]. T may be a
-/// pack of characters (pack.h). O(points).
-template <class T>
-void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation,
-                   std::span<const Vec3<T>> origin, const T& ground, const SupportSettings& settings,
-                   std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
+/// Shares the support out: put(body, point in `room`, force) for every point that may stand. `rotation`,
+/// `origin` [body]: see Kinematics. `force` and `moment` [body] hold the wrenches that the motion asks for,
+/// about the common origin; `ground` is the floor's height from it. Nothing in flight. `room` [point]. T may
+/// be a pack of characters (pack.h). O(points).
+template <class T, class Put>
+[[gnu::always_inline]] inline void share_support_to(
+    const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation, std::span<const Vec3<T>> origin,
+    const T& ground, const SupportSettings& settings, std::span<StandingPoint<T>> room,
+    std::span<const Vec3<T>> force, std::span<const Vec3<T>> moment, Put put) {
   using std::sqrt;
   const int bodies = int(rotation.size());
   const Number<T> reach = Number<T>(settings.reach) * points.unit, area = points.unit * points.unit;
@@ -150,9 +152,20 @@ void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<
     const Lean away = lean(body, s.place);
     const Vec3<T> push(select(bears, T(up * (x_push + follow * away.x)), zero),
                        select(bears, T(up * (y_push + follow * away.y)), zero), select(bears, up, zero));
-    force[body] -= push;
-    moment[body] -= s.place.cross(push);
+    put(body, s, push);
   });
+}
+
+/// Subtracts the support forces from the body wrenches (before project_wrenches), see share_support_to.
+template <class T>
+void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation,
+                   std::span<const Vec3<T>> origin, const T& ground, const SupportSettings& settings,
+                   std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
+  share_support_to<T>(points, rotation, origin, ground, settings, room, force, moment,
+                      [&](int body, const StandingPoint<T>& s, const Vec3<T>& push) {
+                        force[body] -= push;
+                        moment[body] -= s.place.cross(push);
+                      });
 }
 
 extern template struct SupportPoints<float>;
@@ -165,7 +178,12 @@ struct CheckRoom;
 template <class T>
 struct SupportTerm {
   SupportPoints<T> (*points)(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
+  /// As a driven root leaves it to them, which bears what they don't.
   void (*stand)(const SupportPoints<T>& points, const T& ground, const CheckRoom<T>& room);
+  /// As the ground can, for a root that has nothing else (ground_balance.h). `friction`: the floor's;
+  /// `weight`, N.
+  void (*balance)(const SupportPoints<T>& points, const T& ground, T friction, T weight,
+                  const CheckRoom<T>& room);
 };
 
 /// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.

@@ -1,0 +1,389 @@
+#include "sinew/behaviour/behaviour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sinew/skeleton/rotation.h"
+
+namespace sinew {
+namespace {
+
+// Of a human.
+constexpr double kMass = 75, kHipHeight = 0.95;          ///< kg, m
+constexpr double kNoticed = 0.01, kNoticedSpeed = 0.08;  ///< m and m/s off the clip, that are a push
+constexpr double kFade = 0.2;                            ///< s, from one plan's pose into the next
+constexpr double kTrunk = 0.25, kMostTrunk = 15;         ///< s and rad/s², in which the trunk comes upright
+constexpr double kHeight = 0.12;                         ///< s, in which the body comes to its height
+constexpr double kStraight = 0.985;                      ///< of a leg's length, that it reaches
+constexpr double kStill = 0.05;                          ///< m/s
+constexpr double kSame = 0.01;                           ///< m
+constexpr double kFallen = 0.75;                         ///< of the root's height
+constexpr double kOffPlan = 0.04, kOffPlanSpeed = 0.35;  ///< m, m/s: a plan that fails is made again
+constexpr double kKeepPlan = 0.05;                       ///< s at least
+constexpr double kLieStill = 0.1;                        ///< m/s
+constexpr double kLie = 0.5;                             ///< s
+
+Quat<double> upright(const Quat<double>& turned) {
+  const double size = std::hypot(turned.w(), turned.z());
+  return size > 0 ? Quat<double>(turned.w() / size, 0, 0, turned.z() / size) : Quat<double>::Identity();
+}
+
+Vec3<double> log_of(const Quat<double>& q) {
+  const Eigen::AngleAxisd turn(q);
+  const double angle = std::remainder(turn.angle(), 2 * 3.14159265358979323846);
+  return angle * turn.axis();
+}
+
+}  // namespace
+
+template <class T>
+Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status)
+    : settings_(settings) {
+  status = body_.find(skeleton);
+  if (!status) return;
+  unit_ = std::max(body_.height / kHipHeight, 1e-6);
+  weight_ = body_.total_mass / kMass;
+  for (double* length : {&law_.margin, &law_.longest_step, &law_.apart, &law_.lift}) *length *= unit_;
+  for (double* time : {&law_.step_time}) *time *= std::sqrt(unit_);
+  law_.gain /= std::sqrt(unit_);
+  const std::size_t joints = skeleton.joints.size();
+  last_.resize(joints);
+  model_.resize(joints);
+  fade_numbers_.resize(inertial_numbers(static_cast<int>(joints), 0));
+  fade_ = {fade_numbers_, static_cast<int>(joints), 0};
+  fade_.duration = T(0);
+}
+
+template <class T>
+MeasuredBody Behaviour<T>::measure(const Character<T>& character) {
+  const Displacement back = character.displacement().inverse();
+  const Transform<double> home{back.turn(), {back.x, back.y, 0}};
+  MeasuredBody is;
+  const std::span<const Transform<T>> model = character.model();
+  const auto place = [&](int joint) {
+    return home * model[static_cast<std::size_t>(joint)].template cast<double>();
+  };
+  is.mass = body_.mass_of(model);
+  is.mass.place = home * is.mass.place;
+  is.mass.velocity = home.rotation * Vec3<double>(character.report().momentum / body_.total_mass);
+  is.root = place(0);
+  for (std::size_t side = 0; side < 2; ++side) is.foot[side] = place(body_.legs[side].foot);
+  return is;
+}
+
+template <class T>
+Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets, T h) {
+  if (jets.size() != last_.size())
+    return Status::error(Code::kInvalidArgument, "a behaviour needs one jet per joint of its skeleton");
+  const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
+  if (!acts && character.unknown()[0] == 0) {
+    measured_ = false;
+    return {};
+  }
+  report_.time += double(h);
+  switch (report_.state) {
+    case BehaviourState::kFall:
+    case BehaviourState::kDown:
+      let_go(character, double(h));
+      std::copy(last_.begin(), last_.end(), jets.begin());
+      return {};
+    default:
+      break;
+  }
+  watch(character, jets, h);
+  if (report_.state == BehaviourState::kFall) {
+    std::copy(last_.begin(), last_.end(), jets.begin());
+    return {};
+  }
+  if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
+    write_stance(jets, double(h));
+  fade(jets, h);
+  std::copy(jets.begin(), jets.end(), last_.begin());
+  return {};
+}
+
+/// From one plan's pose into the next; the root is solved for, and is where it is.
+template <class T>
+void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
+  if (std::exchange(fades_, false)) {
+    for (std::size_t i = 1; i < last_.size(); ++i) {
+      JointJet<T>& now = last_[i];  // a step later, as it went on
+      now.rotation = now.rotation * rotation_exp<T>(Vec3<T>(h * now.omega + h * h / 2 * now.alpha));
+      now.omega += h * now.alpha;
+    }
+    last_[0] = jets[0];
+    begin_inertial<T>(last_, jets, T(kFade * std::sqrt(unit_)), fade_);
+  } else {
+    fade_.elapsed += h;
+  }
+  if (!fade_.running()) return;
+  const JointJet<T> root = jets[0];
+  InertializeJob<T>{jets, &fade_, {}, jets}.Run();
+  jets[0] = root;
+}
+
+/// Decides what to do in this frame, and moves the plan to its end.
+template <class T>
+void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> jets, T step) {
+  const auto h = static_cast<double>(step);
+  const MeasuredBody is = measure(character);
+  if (measured_)
+    turn_rate_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
+  else
+    turn_rate_.setZero();
+  const bool known = std::exchange(measured_, true);
+  root_before_ = is.root.rotation;
+  const MassMotion clip = body_.mass_of(jets, model_);
+  clip_velocity_ = from_above(clip.velocity);
+  clip_body_ = from_above(clip.place);
+  Vec2 middle = Vec2::Zero();
+  for (std::size_t side = 0; side < 2; ++side) {
+    const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
+    clip_ankle_[side].translation = value_of(ankle.translation).template cast<double>();
+    const Quat<TimeJet<T>>& q = ankle.rotation;
+    clip_ankle_[side].rotation =
+        Quat<double>(double(q.w().value), double(q.x().value), double(q.y().value), double(q.z().value))
+            .normalized();
+    clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
+    middle += from_above(clip_ankle_[side].translation) / 2;
+  }
+  from_clip_ = clip_body_ - middle;
+  if (report_.state == BehaviourState::kClip) {
+    const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
+               faster = from_above(is.mass.velocity) - clip_velocity_;
+    if (off.norm() < kNoticed * unit_ && faster.norm() < kNoticedSpeed * std::sqrt(unit_)) return;
+    report_ = {.state = BehaviourState::kPassive};
+    strength_ = double(character.strength());
+    return;
+  }
+  if (is.root.translation.z() < kFallen * body_.height) return fall(character, 0);
+  if (report_.state == BehaviourState::kPassive) {
+    if (report_.time < settings_.reaction || !known) return;
+    character.set_help(0, weight_ * unit_ * settings_.help_torque);
+    begin_plan(is, jets);
+  }
+  const Vec2 off = from_above(is.mass.place) - plan_.place,
+             faster = from_above(is.mass.velocity) - plan_.velocity;
+  if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time)
+    end_step(is, jets);
+  else if (off.norm() > kOffPlan * unit_ || faster.norm() > kOffPlanSpeed * std::sqrt(unit_)) {
+    plan_.place = from_above(is.mass.place);
+    plan_.velocity = from_above(is.mass.velocity);
+  }
+  if (report_.state == BehaviourState::kBalance) {
+    const Vec2 capture = plan_.capture_point(frequency_);
+    report_.capture_depth = support_.depth(capture);
+    if (report_.capture_depth < 0) {
+      if (out_of_reach(-report_.capture_depth, frequency_, settings_.most_steps - report_.steps, law_))
+        return fall(character, -report_.capture_depth);
+      begin_step(is);
+    } else if (may_finish(is)) {
+      return finish(character);
+    }
+  }
+  move_plan(h);
+}
+
+template <class T>
+Vec2 Behaviour<T>::goal() const {
+  return from_above(foot_[0].translation + foot_[1].translation) / 2 + from_clip_;
+}
+
+/// Where the feet are now they stand, upright, at the clip's height.
+template <class T>
+void Behaviour<T>::choose_support(const MeasuredBody& is) {
+  support_ = {};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (static_cast<int>(side) == swing_) continue;
+    Transform<double>& foot = foot_[side];
+    foot = is.foot[side];
+    foot.rotation =
+        upright(foot.rotation * clip_ankle_[side].rotation.conjugate()) * clip_ankle_[side].rotation;
+    foot.translation.z() = clip_ankle_[side].translation.z();
+    body_.add_sole(static_cast<int>(side), foot, support_);
+  }
+  support_.close();
+}
+
+template <class T>
+void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
+  report_.state = BehaviourState::kBalance;
+  swing_ = -1;
+  plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
+  frequency_ = std::sqrt(9.81 / std::max(is.mass.place.z(), 0.3 * unit_));
+  const Quat<double> wanted = jets[0].rotation.template cast<double>();
+  turn_ = log_of(is.root.rotation * wanted.conjugate());
+  turn_acceleration_.setZero();
+  height_ = {is.root.translation.z() - double(jets[0].translation.z()), 0.0, 0.0};
+  choose_support(is);
+  fades_ = true;
+}
+
+template <class T>
+void Behaviour<T>::begin_step(const MeasuredBody& is) {
+  report_.state = BehaviourState::kStep;
+  ++report_.steps;
+  const Vec2 capture = plan_.capture_point(frequency_);
+  const Vec2 facing = from_above(is.root.rotation * Vec3<double>::UnitX());
+  const Feet feet{{from_above(foot_[0].translation), from_above(foot_[1].translation)},
+                  std::atan2(facing.y(), facing.x())};
+  swing_ = stepping_foot(feet, capture, support_.middle(), law_);
+  swing_time_ = 0;
+  lifted_ = foot_[static_cast<std::size_t>(swing_)];
+  choose_support(is);
+}
+
+template <class T>
+void Behaviour<T>::end_step(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
+  swing_ = -1;
+  const Vec3<double> turn = turn_, rate = turn_rate_, acceleration = turn_acceleration_;
+  const TimeJet<double> height = height_;
+  begin_plan(is, jets);
+  turn_ = turn;
+  turn_rate_ = rate;
+  turn_acceleration_ = acceleration;
+  height_ = height;
+}
+
+template <class T>
+void Behaviour<T>::move_plan(double h) {
+  const Vec2 pressed =
+      press(plan_, frequency_, swing_ < 0 ? goal() : plan_.capture_point(frequency_), support_, law_);
+  plan_.advance(pressed, frequency_, h);
+  if (swing_ >= 0) move_swing(h);
+  move_trunk(h);
+}
+
+/// The trunk comes upright, critically damped.
+template <class T>
+void Behaviour<T>::move_trunk(double h) {
+  const double time = kTrunk * std::sqrt(unit_);
+  Vec3<double> acceleration = -turn_ / (time * time) - 2 / time * turn_rate_;
+  if (const double size = acceleration.norm(); size > kMostTrunk / unit_)
+    acceleration *= kMostTrunk / unit_ / size;
+  turn_acceleration_ = acceleration;
+  turn_ += h * turn_rate_ + h * h / 2 * acceleration;
+  turn_rate_ += h * acceleration;
+}
+
+/// The foot in the air goes to where the capture point will be.
+template <class T>
+void Behaviour<T>::move_swing(double h) {
+  swing_time_ += h;
+  const auto side = static_cast<std::size_t>(swing_);
+  if (swing_time_ > 0.8 * law_.step_time) return;  // it keeps its landing place
+  const Vec2 capture = plan_.capture_point(frequency_);
+  const Vec2 lands = capture_point_after(capture, frequency_, law_.step_time - swing_time_, support_);
+  const Vec3<double> ahead =
+      (foot_[1 - side].rotation * clip_ankle_[1 - side].rotation.conjugate()) * Vec3<double>::UnitX();
+  const Feet feet{{from_above(foot_[0].translation), from_above(foot_[1].translation)},
+                  std::atan2(ahead.y(), ahead.x())};
+  const Vec2 to = within_reach(feet, swing_, lands + clip_foot_[side], law_);
+  foot_[side].translation.x() = to.x();
+  foot_[side].translation.y() = to.y();
+}
+
+template <class T>
+void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
+  Stance stance;
+  stance.body = plan_.place;
+  stance.body_velocity = plan_.velocity;
+  stance.body_acceleration = plan_.acceleration;
+  for (int a = 0; a < 3; ++a) stance.turn[a] = {turn_[a], turn_rate_[a], turn_acceleration_[a]};
+  for (std::size_t side = 0; side < 2; ++side) {
+    stance.ankle[side] = still<double>(foot_[side].translation);
+    stance.foot[side] = foot_[side].rotation;
+    if (static_cast<int>(side) != swing_) continue;
+    const double time = law_.step_time;
+    const TimeJet<double> u{std::min(swing_time_ / time, 1.0), swing_time_ < time ? 1 / time : 0, 0};
+    const TimeJet<double> share =
+        u * u * u * (TimeJet<double>(10) - TimeJet<double>(15) * u + TimeJet<double>(6) * u * u);
+    const TimeJet<double> back = TimeJet<double>(1) - u, bump = u * back;
+    const TimeJet<double> up = TimeJet<double>(64 * law_.lift) * bump * bump * bump;
+    const Vec3<double> way = foot_[side].translation - lifted_.translation;
+    for (int a = 0; a < 3; ++a)
+      stance.ankle[side][a] = TimeJet<double>(lifted_.translation[a]) + way[a] * share;
+    stance.ankle[side][2] += up;
+    stance.foot[side] = lifted_.rotation.slerp(share.value, foot_[side].rotation);
+  }
+  // As high as the clip, but no higher than straight legs reach.
+  double lower = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const FootLeg<T>& leg = body_.legs[side];
+    const Vec3<double> hip =
+        value_of(model_[static_cast<std::size_t>(leg.upper)].translation).template cast<double>();
+    const Vec2 across =
+        from_above(value_of(stance.ankle[side])) - (from_above(hip) + plan_.place - clip_body_);
+    const double length = kStraight * body_.leg_length[side];
+    const double up = std::sqrt(std::max(length * length - across.squaredNorm(), 0.04 * length * length));
+    lower = std::min(lower, stance.ankle[side][2].value + up - hip.z());
+  }
+  const double time = kHeight * std::sqrt(unit_);
+  height_.acceleration =
+      std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -8.0, 12.0);
+  height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
+  height_.rate += h * height_.acceleration;
+  stance.height = height_;
+  take_stance<T>(body_, stance, jets, model_);
+}
+
+template <class T>
+bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
+  return swing_ < 0 && !fade_.running() && from_above(is.mass.velocity).norm() < kStill * std::sqrt(unit_) &&
+         (from_above(is.mass.place) - goal()).norm() < 2 * kSame * unit_ && turn_.norm() < 0.03;
+}
+
+/// The clip again, from where the feet stand now.
+template <class T>
+void Behaviour<T>::finish(Character<T>& character) {
+  const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation),
+             clip = clip_foot_[0] - clip_foot_[1];
+  Displacement further;
+  further.yaw = std::atan2(clip.x() * stands.y() - clip.y() * stands.x(), clip.dot(stands));
+  const Vec2 to = goal() - from_clip_, middle = clip_body_ - from_clip_,
+             from = from_above(further.turn() * Vec3<double>(middle.x(), middle.y(), 0));
+  further.x = to.x() - from.x();
+  further.y = to.y() - from.y();
+  character.displace(further);
+  character.set_help(-1, -1);
+  report_.state = BehaviourState::kClip;
+  fades_ = true;
+}
+
+template <class T>
+void Behaviour<T>::fall(Character<T>& character, double beyond) {
+  report_.state = BehaviourState::kFall;
+  report_.fell_beyond = beyond;
+  report_.time = 0;
+  rest_ = 0;
+  character.set_root_drive(RootDrive::kFree);
+}
+
+template <class T>
+void Behaviour<T>::let_go(Character<T>& character, double h) {
+  const double share = std::min(report_.time / std::max(settings_.let_go, 1e-9), 1.0);
+  if (report_.time < settings_.let_go + 2 * h)
+    character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
+  const double speed = character.report().momentum.norm() / body_.total_mass;
+  rest_ = speed < kLieStill * std::sqrt(unit_) ? rest_ + h : 0;
+  if (rest_ > kLie * std::sqrt(unit_)) report_.state = BehaviourState::kDown;
+}
+
+template <class T>
+void Behaviour<T>::knock_down(Character<T> character) {
+  fall(character, 0);
+}
+
+template <class T>
+void Behaviour<T>::stand(Character<T> character) {
+  character.set_strength(T(strength_));
+  character.set_root_drive(RootDrive::kGrounded);
+  character.set_help(-1, -1);
+  report_ = {};
+}
+
+template class Behaviour<float>;
+template class Behaviour<double>;
+
+}  // namespace sinew

@@ -1,0 +1,125 @@
+// A body that keeps its balance when it is pushed: it gives, steps, staggers or falls.
+//
+//     Behaviour<float> balance(asset.skeleton, {}, status);
+//     …each frame:
+//     sample(jets);                                  // what the game's animation wants at the end of the
+//     frame balance.update(world.character(hero), jets, dt);  // replaced where a behaviour acts
+//     world.character(hero).set_target(jets);
+//     world.step(dt);
+//
+// For a character whose root is RootDrive::kGrounded: as long as the ground can do what the animation asks of
+// it, nothing happens here, at the cost of one question. When it can't, the body first does what physics
+// makes of it for a reaction time; then a plan (balance_plan.h) moves the centre of mass over feet that press
+// where it helps, and puts a foot where the capture point will be when pressing alone does not reach. A push
+// that no step can catch is a fall: muscles let go, and `kDown` is told when the body lies still.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sinew/animation/inertialize_job.h"
+#include "sinew/behaviour/balance_plan.h"
+#include "sinew/behaviour/behaviour_settings.h"
+#include "sinew/behaviour/stance.h"
+#include "sinew/character/world.h"
+
+namespace sinew {
+
+enum class BehaviourState : std::uint8_t {
+  kClip,     ///< the animation, and nothing else
+  kPassive,  ///< pushed, and not reacting yet
+  kBalance,  ///< feet stand, the body is brought back over them
+  kStep,     ///< one foot is on its way
+  kFall,     ///< nothing is done any more
+  kDown,     ///< lies still: the host decides how it gets up
+};
+
+/// What it did, for whoever tells the player.
+struct BehaviourReport {
+  BehaviourState state = BehaviourState::kClip;
+  int steps = 0;             ///< since the push
+  double capture_depth = 0;  ///< m, of the capture point inside the standing soles; negative: outside
+  double time = 0;           ///< s since the push
+  double fell_beyond = 0;    ///< m that the capture point was beyond reach, where it fell
+};
+
+/// What the last step left of a body, in the frame in which targets are given.
+struct MeasuredBody {
+  MassMotion mass;
+  Transform<double> root;
+  std::array<Transform<double>, 2> foot;
+};
+
+template <class T>
+class Behaviour {
+ public:
+  /// Set-up: finds legs, soles and masses. Errors name what is missing: roles of thigh, shin, foot and toes.
+  Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status);
+
+  /// Before a step of h seconds, with what the animation wants at its end. Errors if the span has not one jet
+  /// per joint. No allocation. O(1) while nothing disturbs, else O(joints).
+  Status update(Character<T> character, std::span<JointJet<T>> jets, T h);
+  /// Falls now, whatever the balance says.
+  void knock_down(Character<T> character);
+  /// After it was down, or to give a behaviour up: the animation again, muscles as strong as they were. Where
+  /// it lies is the animation's to begin from.
+  void stand(Character<T> character);
+
+  const BehaviourReport& report() const { return report_; }
+  BehaviourState state() const { return report_.state; }
+  /// Of the body that was pushed, m and m/s.
+  const Pendulum& plan() const { return plan_; }
+
+ private:
+  MeasuredBody measure(const Character<T>& character);
+  void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
+  void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
+  void choose_support(const MeasuredBody& is);
+  void begin_step(const MeasuredBody& is);
+  void end_step(const MeasuredBody& is, std::span<const JointJet<T>> jets);
+  void move_plan(double h);
+  void move_trunk(double h);
+  void move_swing(double h);
+  void write_stance(std::span<JointJet<T>> jets, double h);
+  void fade(std::span<JointJet<T>> jets, T h);
+  void finish(Character<T>& character);
+  void fall(Character<T>& character, double beyond);
+  void let_go(Character<T>& character, double h);
+  bool may_finish(const MeasuredBody& is) const;
+  Vec2 goal() const;
+
+  BehaviourSettings settings_;
+  StandingBody<T> body_;
+  BalanceLaw law_;
+  double unit_ = 1, weight_ = 1;  ///< size and mass, of a human's
+  BehaviourReport report_;
+  Pendulum plan_;
+  double frequency_ = 3;                   ///< ω, 1/s
+  Sole support_;                           ///< that of the feet which stand
+  std::array<Transform<double>, 2> foot_;  ///< where they stand, or will
+  Vec2 from_clip_ = Vec2::Zero();          ///< the clip's centre of mass from the middle of its feet
+  std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
+  Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
+  std::array<Transform<double>, 2> clip_ankle_;
+  int swing_ = -1;
+  double swing_time_ = 0;
+  Transform<double> lifted_;  ///< where the foot that swings left the ground
+  Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
+               turn_acceleration_ = Vec3<double>::Zero();
+  TimeJet<double> height_{0.0};
+  Quat<double> root_before_ = Quat<double>::Identity();
+  bool measured_ = false;          ///< `root_before_` is that of the last frame
+  double strength_ = 1;            ///< before it fell
+  double rest_ = 0;                ///< s
+  std::vector<JointJet<T>> last_;  ///< [joint] what was asked last
+  bool fades_ = false;             ///< a fade has to begin in this frame
+  InertialState<T> fade_;
+  std::vector<T> fade_numbers_;
+  std::vector<MovingTransform<T>> model_;
+};
+
+extern template class Behaviour<float>;
+extern template class Behaviour<double>;
+
+}  // namespace sinew

@@ -1,0 +1,168 @@
+#include "sinew/behaviour/stance.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/model_motion_job.h"
+#include "sinew/effects/contact.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kLevel = 0.02;  ///< m over the lowest point of a foot at rest: what may stand
+constexpr int kRounds = 3;       ///< in which the root comes to where the centre of mass is wanted
+
+template <class T>
+MovingVector<T> cast(const MovingVector<double>& v) {
+  const auto of = [](const TimeJet<double>& x) {
+    return TimeJet<T>(static_cast<T>(x.value), static_cast<T>(x.rate), static_cast<T>(x.acceleration));
+  };
+  return {of(v.x()), of(v.y()), of(v.z())};
+}
+
+Transform<double> rest_of(const Skeleton& skeleton, int joint) {
+  Transform<double> rest;
+  for (int i = joint; i >= 0; i = skeleton.joints[static_cast<std::size_t>(i)].parent)
+    rest = skeleton.joints[static_cast<std::size_t>(i)].rest * rest;
+  return rest;
+}
+
+/// Points of a foot and its toes that are lowest at rest, in the foot's axes.
+template <class T>
+std::vector<Vec3<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
+  const Transform<double> at = rest_of(skeleton, foot);
+  std::vector<Vec3<double>> low;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Collider& collider : skeleton.colliders) {
+    if (collider.joint != foot && collider.joint != toes) continue;
+    std::vector<ContactPoint<double>> points;
+    append_contact_points<double>(collider, points);
+    for (const ContactPoint<double>& p : points) {
+      if (!p.meets_plane()) continue;
+      low.push_back(rest_of(skeleton, p.body) * p.local - Vec3<double>(0, 0, p.radius));
+      lowest = std::min(lowest, low.back().z());
+    }
+  }
+  std::vector<Vec3<T>> sole;
+  for (const Vec3<double>& p : low)
+    if (p.z() < lowest + kLevel) sole.push_back((at.inverse() * p).template cast<T>());
+  return sole;
+}
+
+/// Turns the foot to where it stands, whatever the leg above it does.
+template <class T>
+void set_foot(const StandingBody<T>& body, const FootLeg<T>& leg, const Quat<double>& foot,
+              std::span<JointJet<T>> jets) {
+  const auto joint = static_cast<std::size_t>(leg.foot);
+  const MovingTransform<T> above = model_motion<T>(jets, body.parents, body.parents[joint]);
+  const Quat<T> q = foot.cast<T>();
+  const Quat<TimeJet<T>> standing(TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z()));
+  set_rotation<T>(above.rotation.conjugate() * standing, jets[joint]);
+}
+
+}  // namespace
+
+template <class T>
+Status StandingBody<T>::find(const Skeleton& skeleton) {
+  for (const Joint& joint : skeleton.joints) {
+    parents.push_back(joint.parent);
+    mass.push_back(static_cast<T>(joint.mass));
+    center_of_mass.push_back(joint.center_of_mass.template cast<T>());
+    total_mass += joint.mass;
+  }
+  if (!(total_mass > 0)) return Status::error(Code::kInvalidArgument, "a body without mass");
+  for (T& m : mass) m /= static_cast<T>(total_mass);
+  double sole = std::numeric_limits<double>::infinity();
+  for (std::size_t side = 0; side < 2; ++side) {
+    FootLeg<T>& leg = legs[side];
+    if (Status status = find_foot_leg<T>(skeleton, side == 0 ? Role::kFootL : Role::kFootR, leg); !status)
+      return status;
+    soles[side] = sole_of<T>(skeleton, leg.foot, skeleton.find(side == 0 ? Role::kToesL : Role::kToesR));
+    if (soles[side].empty())
+      return Status::error(Code::kInvalidArgument, "a foot without colliders", leg.foot);
+    const Transform<double> hip = rest_of(skeleton, leg.upper), knee = rest_of(skeleton, leg.middle),
+                            ankle = rest_of(skeleton, leg.foot);
+    leg_length[side] =
+        (knee.translation - hip.translation).norm() + (ankle.translation - knee.translation).norm();
+    for (const Vec3<T>& p : soles[side])
+      sole = std::min(sole, (ankle * Vec3<double>(p.template cast<double>())).z());
+  }
+  height = skeleton.joints[0].rest.translation.z() - sole;
+  return {};
+}
+
+template <class T>
+MassMotion StandingBody<T>::mass_of(std::span<const Transform<T>> model) const {
+  MassMotion sum;
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    if (mass[i] > T(0)) sum.place += double(mass[i]) * (model[i] * center_of_mass[i]).template cast<double>();
+  return sum;
+}
+
+template <class T>
+MassMotion StandingBody<T>::mass_of(std::span<const JointJet<T>> jets,
+                                    std::span<MovingTransform<T>> model) const {
+  ModelMotionJob<T>{.parents = parents, .jets = jets, .model = model}.Run();
+  MassMotion sum;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    if (!(mass[i] > T(0))) continue;
+    const MovingVector<T> center = model[i] * still<T>(center_of_mass[i]);
+    sum.place += double(mass[i]) * value_of(center).template cast<double>();
+    sum.velocity += double(mass[i]) * rate_of(center).template cast<double>();
+  }
+  return sum;
+}
+
+template <class T>
+void StandingBody<T>::add_sole(int foot, const Transform<double>& place, Sole& sole) const {
+  for (const Vec3<T>& p : soles[static_cast<std::size_t>(foot)])
+    sole.add((place * Vec3<double>(p.template cast<double>())).template head<2>());
+}
+
+template <class T>
+void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<JointJet<T>> jets,
+                 std::span<MovingTransform<T>> model) {
+  const JointJet<T> root = jets[0];
+  std::array<std::array<JointJet<T>, 3>, 2> legs;
+  const auto leg_joint = [&](std::size_t side, std::size_t n) -> JointJet<T>& {
+    const FootLeg<T>& leg = body.legs[side];
+    return jets[static_cast<std::size_t>(n == 0 ? leg.upper : n == 1 ? leg.middle : leg.foot)];
+  };
+  for (std::size_t side = 0; side < 2; ++side)
+    for (std::size_t n = 0; n < 3; ++n) legs[side][n] = leg_joint(side, n);
+  MovingTransform<T> turned = moving_transform<T>(root);
+  const MovingVector<T> half = cast<T>(stance.turn) * TimeJet<T>(T(0.5));
+  turned.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z()) * turned.rotation;
+  JointJet<T> stands = joint_jet<T>(turned);
+  stands.translation.z() += static_cast<T>(stance.height.value);
+  stands.velocity.z() += static_cast<T>(stance.height.rate);
+  stands.acceleration.z() += static_cast<T>(stance.height.acceleration);
+  stands.acceleration.template head<2>() = stance.body_acceleration.cast<T>();
+  for (int round = 0; round < kRounds; ++round) {
+    const MassMotion is = body.mass_of(jets, model);
+    const Vec2 off = stance.body - is.place.head<2>(), slow = stance.body_velocity - is.velocity.head<2>();
+    stands.translation.template head<2>() = (jets[0].translation.template head<2>() + off.cast<T>()).eval();
+    stands.velocity.template head<2>() = (jets[0].velocity.template head<2>() + slow.cast<T>()).eval();
+    jets[0] = stands;
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (std::size_t n = 0; n < 3; ++n) leg_joint(side, n) = legs[side][n];
+      const FootLeg<T>& leg = body.legs[side];
+      TwoBoneJob<T> reach{body.parents, jets, leg.upper, leg.middle, leg.foot, cast<T>(stance.ankle[side])};
+      reach.pole = model_motion<T>(jets, body.parents, leg.upper).rotation * still<T>(leg.bend);
+      reach.hinge = leg.hinge;
+      reach.keep_end = false;
+      reach.Run();
+      set_foot<T>(body, leg, stance.foot[side], jets);
+    }
+  }
+}
+
+template struct StandingBody<float>;
+template struct StandingBody<double>;
+template void take_stance<float>(const StandingBody<float>&, const Stance&, std::span<JointJet<float>>,
+                                 std::span<MovingTransform<float>>);
+template void take_stance<double>(const StandingBody<double>&, const Stance&, std::span<JointJet<double>>,
+                                  std::span<MovingTransform<double>>);
+
+}  // namespace sinew

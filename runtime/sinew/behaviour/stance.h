@@ -1,0 +1,63 @@
+// A clip's pose with the body moved over feet that stand elsewhere. Internal to behaviours.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sinew/animation/foot_leg.h"
+#include "sinew/animation/moving_transform.h"
+#include "sinew/behaviour/sole.h"
+
+namespace sinew {
+
+/// Centre of mass and its velocity; m, m/s.
+struct MassMotion {
+  Vec3<double> place = Vec3<double>::Zero(), velocity = Vec3<double>::Zero();
+};
+
+/// The body that stands: what is asked of a skeleton once.
+template <class T>
+struct StandingBody {
+  std::vector<int> parents;                   ///< [joint]
+  std::vector<T> mass;                        ///< [joint] share of the whole
+  std::vector<Vec3<T>> center_of_mass;        ///< [joint] m, joint axes
+  std::array<FootLeg<T>, 2> legs;             ///< left, right
+  std::array<std::vector<Vec3<T>>, 2> soles;  ///< m, foot axes: where they may touch the ground
+  std::array<double, 2> leg_length;           ///< m, hip to ankle, straight
+  double total_mass = 0;                      ///< kg
+  double height = 0;                          ///< m, of the root's origin at rest over the soles
+
+  Status find(const Skeleton& skeleton);
+  /// Of a pose in model space (joint → world).
+  MassMotion mass_of(std::span<const Transform<T>> model) const;
+  /// Of a motion. `model` is room for the joints.
+  MassMotion mass_of(std::span<const JointJet<T>> jets, std::span<MovingTransform<T>> model) const;
+  /// Adds a foot at a place, m, to what may be pressed on.
+  void add_sole(int foot, const Transform<double>& place, Sole& sole) const;
+};
+
+/// What a stance asks for at an instant.
+struct Stance {
+  Vec2 body = Vec2::Zero(), body_velocity = Vec2::Zero(), body_acceleration = Vec2::Zero();  ///< of the mass
+  TimeJet<double> height{0.0};  ///< m, of the root over the clip's
+  MovingVector<double> turn =
+      still<double>(Vec3<double>::Zero());    ///< rad, of the root from the clip's, world axes
+  std::array<MovingVector<double>, 2> ankle;  ///< m
+  std::array<Quat<double>, 2> foot;           ///< foot → world
+};
+
+/// Bends the clip's motion to a stance: moves the root until the centre of mass is there, and the legs by
+/// TwoBoneJob. `model` is room for the joints. O(joints).
+template <class T>
+void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<JointJet<T>> jets,
+                 std::span<MovingTransform<T>> model);
+
+extern template struct StandingBody<float>;
+extern template struct StandingBody<double>;
+extern template void take_stance<float>(const StandingBody<float>&, const Stance&, std::span<JointJet<float>>,
+                                        std::span<MovingTransform<float>>);
+extern template void take_stance<double>(const StandingBody<double>&, const Stance&,
+                                         std::span<JointJet<double>>, std::span<MovingTransform<double>>);
+
+}  // namespace sinew

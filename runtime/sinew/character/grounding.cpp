@@ -1,0 +1,107 @@
+#include "sinew/character/grounding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/muscle/joint_coordinates.h"
+
+namespace sinew {
+namespace {
+
+// Of a human: what counts as standing where the animation wants it.
+constexpr double kHeight = 3e-3;    ///< m
+constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every joint
+constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
+constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
+constexpr double kRest = 0.2;       ///< s that it has to stand so
+
+/// The displacement that takes the animation's root under the body's: the turn about the vertical that leaves
+/// the least tilt.
+template <class T>
+Displacement towards(const Transform<T>& wanted, const Transform<T>& is) {
+  const Quat<double> off =
+      is.rotation.template cast<double>() * wanted.rotation.template cast<double>().conjugate();
+  Displacement d;
+  d.yaw = 2 * std::atan2(off.z(), off.w());
+  const Vec3<double> from = wanted.translation.template cast<double>();
+  const Vec3<double> to = is.translation.template cast<double>(), turned = d.turn() * from;
+  d.x = to.x() - turned.x();
+  d.y = to.y() - turned.y();
+  return d;
+}
+
+template <class T>
+bool within(const std::array<T, 6>& x, int first, int last, T most) {
+  return std::all_of(x.begin() + first, x.begin() + last, [&](T v) { return std::abs(v) < most; });
+}
+
+/// Whether all joints but the root are where the animation wants them.
+template <class T>
+bool joints_rest(const CharacterState<T>& s) {
+  const T time = s.tree.scale.time;
+  for (int i = 1; i < s.tree.bodies; ++i) {
+    const Deviation<T>& d = s.deviation[i];
+    if (d.on_animation && !d.released) continue;
+    if (d.released || !within(d.offset, 0, 6, T(kTurn)) || !within(d.rate, 0, 6, T(kTurnSpeed) / time))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class T>
+JointJet<T> displaced(const Displacement& by, const JointJet<T>& jet) {
+  if (!by.any()) return jet;
+  const Quat<double> turn = by.turn();
+  const Quat<T> rotation = turn.cast<T>();
+  JointJet<T> out = jet;  // angular velocities are in the child's axes
+  out.rotation = rotation * jet.rotation;
+  out.velocity = rotation * jet.velocity;
+  out.acceleration = rotation * jet.acceleration;
+  const Vec3<double> place = turn * jet.translation.template cast<double>() + Vec3<double>(by.x, by.y, 0);
+  out.translation = place.template cast<T>();
+  return out;
+}
+
+template <class T>
+void displace_target(CharacterState<T>& s, const Displacement& further) {
+  s.grounding.by = s.grounding.by.then(further);
+  s.target[0] = displaced(further, s.target[0]);
+  if (!s.target_stands) s.target_before[0] = displaced(further, s.target_before[0]);
+  Deviation<T>& d = s.deviation[0];
+  if (!s.floats) return;
+  d.offset = joint_offset_value<T>(s.tree, 0, {s.target[0].rotation, s.target[0].translation}, s.local[0]);
+  d.on_animation = false;
+  s.calm = false;
+}
+
+template <class T>
+void hand_back(CharacterState<T>& s, T h) {
+  Grounding<T>& g = s.grounding;
+  g.returns = false;
+  if (s.settings.root != RootDrive::kGrounded || !s.floats || s.is_prop) return;
+  const T time = s.tree.scale.time, unit = s.tree.scale.length;
+  const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
+  const Displacement further = towards<T>(wanted, s.local[0]);
+  const JointJet<T> there = displaced(further, s.target[0]);
+  const std::array<T, 6> left =
+      joint_offset_value<T>(s.tree, 0, {there.rotation, there.translation}, s.local[0]);
+  const std::array<T, 6>& rate = s.deviation[0].rate;
+  const bool rests = within(left, 0, 3, T(kHeight) * unit) && within(left, 3, 6, T(kTurn)) &&
+                     within(rate, 0, 3, T(kSpeed) * unit / time) &&
+                     within(rate, 3, 6, T(kTurnSpeed) / time) && joints_rest(s);
+  g.rest = rests ? g.rest + h : T(0);
+  if (g.rest < T(kRest) * time) return;
+  displace_target(s, further);
+  s.deviation[0].offset = left;
+  s.deviation[0].rate = {};
+  s.deviation[0].released = false;
+  g.returns = true;
+  s.settle_deviations();
+}
+
+SINEW_GROUNDING_INSTANCES(template, float)
+SINEW_GROUNDING_INSTANCES(template, double)
+
+}  // namespace sinew

@@ -1,0 +1,34 @@
+// A root that has nothing but the ground (RootDrive::kGrounded): when it goes back to its animation, and
+// where. Internal to the character layer.
+//
+// On its animation the check asks whether the ground can do it (ground_balance.h). Where it can't, the root
+// is solved for like a joint whose muscle is too weak. A body that comes to rest again stands where its feet
+// are, not where the animation would have them: it is taken as displaced, level and about the vertical, and
+// follows its animation from there. Only what is left of height and tilt goes the way back.
+#pragma once
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// A jet of the animation's root where the character has been displaced to.
+template <class T>
+JointJet<T> displaced(const Displacement& by, const JointJet<T>& jet);
+
+/// Takes a character's animation elsewhere, between steps.
+template <class T>
+void displace_target(CharacterState<T>& state, const Displacement& further);
+
+/// After a solved part of h seconds of a grounded character: whether it has stood as its animation wants it
+/// for long enough, and if so, that it is displaced.
+template <class T>
+void hand_back(CharacterState<T>& state, T h);
+
+#define SINEW_GROUNDING_INSTANCES(prefix, T)                                       \
+  prefix JointJet<T> displaced<T>(const Displacement& by, const JointJet<T>& jet); \
+  prefix void displace_target<T>(CharacterState<T>&, const Displacement&);         \
+  prefix void hand_back<T>(CharacterState<T>&, T);
+SINEW_GROUNDING_INSTANCES(extern template, float)
+SINEW_GROUNDING_INSTANCES(extern template, double)
+
+}  // namespace sinew
