@@ -18,11 +18,14 @@ constexpr double kHeight = 0.12;                         ///< s, in which the bo
 constexpr double kStraight = 0.985;                      ///< of a leg's length, that it reaches
 constexpr double kStill = 0.05;                          ///< m/s
 constexpr double kSame = 0.01;                           ///< m
-constexpr double kFallen = 0.75;                         ///< of the root's height
-constexpr double kOffPlan = 0.04, kOffPlanSpeed = 0.35;  ///< m, m/s: a plan that fails is made again
-constexpr double kKeepPlan = 0.05;                       ///< s at least
-constexpr double kLieStill = 0.1;                        ///< m/s
-constexpr double kLie = 0.5;                             ///< s
+constexpr double kFallen = 0.6;                          ///< of the root's height
+constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
+constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear nothing can't press
+constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
+constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
+constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
+constexpr double kLieStill = 0.1;                      ///< m/s
+constexpr double kLie = 0.5;                           ///< s
 
 Quat<double> upright(const Quat<double>& turned) {
   const double size = std::hypot(turned.w(), turned.z());
@@ -44,6 +47,7 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   if (!status) return;
   unit_ = std::max(body_.height / kHipHeight, 1e-6);
   weight_ = body_.total_mass / kMass;
+  forward_ = skeleton.joints[0].rest.rotation.conjugate() * Vec3<double>::UnitX();
   for (double* length : {&law_.margin, &law_.longest_step, &law_.apart, &law_.lift}) *length *= unit_;
   for (double* time : {&law_.step_time}) *time *= std::sqrt(unit_);
   law_.gain /= std::sqrt(unit_);
@@ -123,25 +127,17 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
   jets[0] = root;
 }
 
-/// Decides what to do in this frame, and moves the plan to its end.
+/// What the animation does in this frame.
 template <class T>
-void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> jets, T step) {
-  const auto h = static_cast<double>(step);
-  const MeasuredBody is = measure(character);
-  if (measured_)
-    turn_rate_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
-  else
-    turn_rate_.setZero();
-  const bool known = std::exchange(measured_, true);
-  root_before_ = is.root.rotation;
+void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
   const MassMotion clip = body_.mass_of(jets, model_);
   clip_velocity_ = from_above(clip.velocity);
   clip_body_ = from_above(clip.place);
   Vec2 middle = Vec2::Zero();
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
-    clip_ankle_[side].translation = value_of(ankle.translation).template cast<double>();
     const Quat<TimeJet<T>>& q = ankle.rotation;
+    clip_ankle_[side].translation = value_of(ankle.translation).template cast<double>();
     clip_ankle_[side].rotation =
         Quat<double>(double(q.w().value), double(q.x().value), double(q.y().value), double(q.z().value))
             .normalized();
@@ -149,45 +145,82 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     middle += from_above(clip_ankle_[side].translation) / 2;
   }
   from_clip_ = clip_body_ - middle;
+}
+
+/// Whether something has pushed the body off its animation.
+template <class T>
+bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) const {
+  const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
+             faster = from_above(is.mass.velocity) - clip_velocity_;
+  return off.norm() > kNoticed * unit_ || faster.norm() > kNoticedSpeed * std::sqrt(unit_);
+}
+
+/// Decides what to do in this frame, and moves the plan to its end.
+template <class T>
+void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> jets, T step) {
+  const auto h = static_cast<double>(step);
+  const MeasuredBody is = measure(character);
+  const bool known = std::exchange(measured_, true);
+  spin_ =
+      known ? Vec3<double>(log_of(is.root.rotation * root_before_.conjugate()) / h) : Vec3<double>::Zero();
+  root_before_ = is.root.rotation;
+  see_clip(jets);
   if (report_.state == BehaviourState::kClip) {
-    const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
-               faster = from_above(is.mass.velocity) - clip_velocity_;
-    if (off.norm() < kNoticed * unit_ && faster.norm() < kNoticedSpeed * std::sqrt(unit_)) return;
+    if (!is_pushed(is, h)) return;
     report_ = {.state = BehaviourState::kPassive};
     strength_ = double(character.strength());
     return;
   }
   if (is.root.translation.z() < kFallen * body_.height) return fall(character, 0);
   if (report_.state == BehaviourState::kPassive) {
-    if (report_.time < settings_.reaction || !known) return;
+    if (character.unknown()[0] == 0) return give_up(character);
+    if (report_.time < settings_.reaction) return;
     character.set_help(0, weight_ * unit_ * settings_.help_torque);
+    // Who walks goes on as the clip does, upright: its next step is the one that catches.
+    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return;
     begin_plan(is, jets);
   }
+  if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
              faster = from_above(is.mass.velocity) - plan_.velocity;
-  if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time)
-    end_step(is, jets);
-  else if (off.norm() > kOffPlan * unit_ || faster.norm() > kOffPlanSpeed * std::sqrt(unit_)) {
+  if (off.norm() > kOffPlan * unit_ || faster.norm() > kOffPlanSpeed * std::sqrt(unit_)) {
     plan_.place = from_above(is.mass.place);
     plan_.velocity = from_above(is.mass.velocity);
   }
-  if (report_.state == BehaviourState::kBalance) {
-    const Vec2 capture = plan_.capture_point(frequency_);
-    report_.capture_depth = support_.depth(capture);
-    if (report_.capture_depth < 0) {
-      if (out_of_reach(-report_.capture_depth, frequency_, settings_.most_steps - report_.steps, law_))
-        return fall(character, -report_.capture_depth);
-      begin_step(is);
-    } else if (may_finish(is)) {
-      return finish(character);
-    }
+  if (report_.state == BehaviourState::kBalance) keep_balance(character, is);
+  if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep) move_plan(h);
+}
+
+/// While both feet stand: a step if pressing does not reach, and else back to the animation.
+template <class T>
+void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is) {
+  const Vec2 capture = plan_.capture_point(frequency_);
+  const double speed = plan_.velocity.norm() / std::sqrt(unit_);
+  report_.capture_depth = support_.depth(capture);
+  if (report_.capture_depth < 0) {
+    home_ = -1;
+    const int left = settings_.most_steps - report_.steps;
+    if (out_of_reach(-report_.capture_depth, frequency_, left, law_))
+      return fall(character, -report_.capture_depth);
+    return begin_step(is);
   }
-  move_plan(h);
+  if (home_ >= 0) {
+    if (only_.depth(capture) > law_.margin && speed < kShifted) put_back(is);
+    return;
+  }
+  if (report_.capture_depth < 2 * law_.margin || speed > 2 * kStill) return;
+  home_ = misplaced();
+  if (home_ < 0) return may_finish(is) ? finish(character) : void();
+  only_ = {};
+  body_.add_sole(1 - home_, foot_[static_cast<std::size_t>(1 - home_)], only_);
+  only_.close();
 }
 
 template <class T>
 Vec2 Behaviour<T>::goal() const {
-  return from_above(foot_[0].translation + foot_[1].translation) / 2 + from_clip_;
+  if (home_ >= 0) return only_.middle();
+  const Vec3<double> off = to_feet().turn() * Vec3<double>(from_clip_.x(), from_clip_.y(), 0);
+  return from_above(foot_[0].translation + foot_[1].translation) / 2 + from_above(off);
 }
 
 /// Where the feet are now they stand, upright, at the clip's height.
@@ -209,11 +242,12 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   report_.state = BehaviourState::kBalance;
-  swing_ = -1;
+  swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
   frequency_ = std::sqrt(9.81 / std::max(is.mass.place.z(), 0.3 * unit_));
   const Quat<double> wanted = jets[0].rotation.template cast<double>();
   turn_ = log_of(is.root.rotation * wanted.conjugate());
+  turn_rate_ = spin_;
   turn_acceleration_.setZero();
   height_ = {is.root.translation.z() - double(jets[0].translation.z()), 0.0, 0.0};
   choose_support(is);
@@ -221,22 +255,42 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
 }
 
 template <class T>
+Feet Behaviour<T>::feet_now(const Transform<double>& root) const {
+  const Vec3<double> ahead = root.rotation * forward_;
+  return {{from_above(foot_[0].translation), from_above(foot_[1].translation)},
+          std::atan2(ahead.y(), ahead.x())};
+}
+
+template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
   report_.state = BehaviourState::kStep;
   ++report_.steps;
   const Vec2 capture = plan_.capture_point(frequency_);
-  const Vec2 facing = from_above(is.root.rotation * Vec3<double>::UnitX());
-  const Feet feet{{from_above(foot_[0].translation), from_above(foot_[1].translation)},
-                  std::atan2(facing.y(), facing.x())};
+  const Feet feet = feet_now(is.root);
   swing_ = stepping_foot(feet, capture, support_.middle(), law_);
   swing_time_ = 0;
   lifted_ = foot_[static_cast<std::size_t>(swing_)];
   choose_support(is);
 }
 
+/// The foot goes where the clip has it beside the other.
+template <class T>
+void Behaviour<T>::put_back(const MeasuredBody& is) {
+  report_.state = BehaviourState::kStep;
+  swing_ = home_;
+  swing_time_ = 0;
+  const auto side = static_cast<std::size_t>(swing_), stance = 1 - side;
+  lifted_ = foot_[side];
+  choose_support(is);
+  const Quat<double> turn = foot_[stance].rotation * clip_ankle_[stance].rotation.conjugate();
+  foot_[side].translation =
+      foot_[stance].translation + turn * (clip_ankle_[side].translation - clip_ankle_[stance].translation);
+  foot_[side].rotation = turn * clip_ankle_[side].rotation;
+}
+
 template <class T>
 void Behaviour<T>::end_step(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
-  swing_ = -1;
+  swing_ = home_ = -1;
   const Vec3<double> turn = turn_, rate = turn_rate_, acceleration = turn_acceleration_;
   const TimeJet<double> height = height_;
   begin_plan(is, jets);
@@ -248,8 +302,8 @@ void Behaviour<T>::end_step(const MeasuredBody& is, std::span<const JointJet<T>>
 
 template <class T>
 void Behaviour<T>::move_plan(double h) {
-  const Vec2 pressed =
-      press(plan_, frequency_, swing_ < 0 ? goal() : plan_.capture_point(frequency_), support_, law_);
+  const Vec2 pressed = press(
+      plan_, frequency_, swing_ < 0 || home_ >= 0 ? goal() : plan_.capture_point(frequency_), support_, law_);
   plan_.advance(pressed, frequency_, h);
   if (swing_ >= 0) move_swing(h);
   move_trunk(h);
@@ -259,7 +313,8 @@ void Behaviour<T>::move_plan(double h) {
 template <class T>
 void Behaviour<T>::move_trunk(double h) {
   const double time = kTrunk * std::sqrt(unit_);
-  Vec3<double> acceleration = -turn_ / (time * time) - 2 / time * turn_rate_;
+  const Vec3<double> off = turn_ - Vec3<double>(0, 0, to_feet().yaw);
+  Vec3<double> acceleration = -off / (time * time) - 2 / time * turn_rate_;
   if (const double size = acceleration.norm(); size > kMostTrunk / unit_)
     acceleration *= kMostTrunk / unit_ / size;
   turn_acceleration_ = acceleration;
@@ -272,14 +327,12 @@ template <class T>
 void Behaviour<T>::move_swing(double h) {
   swing_time_ += h;
   const auto side = static_cast<std::size_t>(swing_);
-  if (swing_time_ > 0.8 * law_.step_time) return;  // it keeps its landing place
+  if (home_ >= 0 && support_.depth(plan_.capture_point(frequency_)) < 0)
+    home_ = -1;                                                  // it has to catch the body
+  if (home_ >= 0 || swing_time_ > 0.8 * law_.step_time) return;  // it keeps its landing place
   const Vec2 capture = plan_.capture_point(frequency_);
   const Vec2 lands = capture_point_after(capture, frequency_, law_.step_time - swing_time_, support_);
-  const Vec3<double> ahead =
-      (foot_[1 - side].rotation * clip_ankle_[1 - side].rotation.conjugate()) * Vec3<double>::UnitX();
-  const Feet feet{{from_above(foot_[0].translation), from_above(foot_[1].translation)},
-                  std::atan2(ahead.y(), ahead.x())};
-  const Vec2 to = within_reach(feet, swing_, lands + clip_foot_[side], law_);
+  const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
   foot_[side].translation.x() = to.x();
   foot_[side].translation.y() = to.y();
 }
@@ -296,7 +349,8 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
     stance.foot[side] = foot_[side].rotation;
     if (static_cast<int>(side) != swing_) continue;
     const double time = law_.step_time;
-    const TimeJet<double> u{std::min(swing_time_ / time, 1.0), swing_time_ < time ? 1 / time : 0, 0};
+    const TimeJet<double> u{std::clamp(swing_time_ / time, 0.0, 1.0),
+                            swing_time_ > 0 && swing_time_ < time ? 1 / time : 0, 0};
     const TimeJet<double> share =
         u * u * u * (TimeJet<double>(10) - TimeJet<double>(15) * u + TimeJet<double>(6) * u * u);
     const TimeJet<double> back = TimeJet<double>(1) - u, bump = u * back;
@@ -321,7 +375,7 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
   }
   const double time = kHeight * std::sqrt(unit_);
   height_.acceleration =
-      std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -8.0, 12.0);
+      std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -kDrop, kRise);
   height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
   height_.rate += h * height_.acceleration;
   stance.height = height_;
@@ -330,25 +384,58 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
 
 template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
-  return swing_ < 0 && !fade_.running() && from_above(is.mass.velocity).norm() < kStill * std::sqrt(unit_) &&
-         (from_above(is.mass.place) - goal()).norm() < 2 * kSame * unit_ && turn_.norm() < 0.03;
+  return swing_ < 0 && !fade_.running() &&
+         from_above(is.mass.velocity).norm() < kStill / 2 * std::sqrt(unit_) &&
+         (from_above(is.mass.place) - goal()).norm() < kSame / 2 * unit_ &&
+         (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < 0.02;
+}
+
+/// The clip again, from where the feet stand now.
+/// What takes the clip's feet under those that stand.
+template <class T>
+Displacement Behaviour<T>::to_feet() const {
+  const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation),
+             clip = clip_foot_[0] - clip_foot_[1];
+  Displacement further;
+  further.yaw = std::atan2(clip.x() * stands.y() - clip.y() * stands.x(), clip.dot(stands));
+  const Vec2 middle = clip_body_ - from_clip_,
+             from = from_above(further.turn() * Vec3<double>(middle.x(), middle.y(), 0)),
+             to = from_above(foot_[0].translation + foot_[1].translation) / 2;
+  further.x = to.x() - from.x();
+  further.y = to.y() - from.y();
+  return further;
+}
+
+/// The foot that stands elsewhere than the clip has it by the other, and is better put back; -1: neither.
+template <class T>
+int Behaviour<T>::misplaced() const {
+  const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation);
+  const Vec2 clip = clip_foot_[0] - clip_foot_[1];
+  const auto yaw_of = [&](std::size_t side) {
+    return log_of(foot_[side].rotation * clip_ankle_[side].rotation.conjugate()).z();
+  };
+  const bool apart = std::abs(stands.norm() - clip.norm()) > kMisplaced * unit_;
+  const double line = to_feet().yaw;
+  if (!apart && std::abs(yaw_of(0) - line) < kMisturned && std::abs(yaw_of(1) - line) < kMisturned) return -1;
+  return (from_above(foot_[0].translation) - plan_.place).norm() >
+                 (from_above(foot_[1].translation) - plan_.place).norm()
+             ? 0
+             : 1;
 }
 
 /// The clip again, from where the feet stand now.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation),
-             clip = clip_foot_[0] - clip_foot_[1];
-  Displacement further;
-  further.yaw = std::atan2(clip.x() * stands.y() - clip.y() * stands.x(), clip.dot(stands));
-  const Vec2 to = goal() - from_clip_, middle = clip_body_ - from_clip_,
-             from = from_above(further.turn() * Vec3<double>(middle.x(), middle.y(), 0));
-  further.x = to.x() - from.x();
-  further.y = to.y() - from.y();
-  character.displace(further);
+  character.displace(to_feet());
+  give_up(character);
+  fades_ = true;
+}
+
+/// The animation again, where it is.
+template <class T>
+void Behaviour<T>::give_up(Character<T>& character) {
   character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;
-  fades_ = true;
 }
 
 template <class T>

@@ -74,9 +74,16 @@ class Behaviour {
  private:
   MeasuredBody measure(const Character<T>& character);
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
+  void see_clip(std::span<const JointJet<T>> jets);
+  bool is_pushed(const MeasuredBody& is, double h) const;
+  void keep_balance(Character<T>& character, const MeasuredBody& is);
+  void give_up(Character<T>& character);
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void choose_support(const MeasuredBody& is);
   void begin_step(const MeasuredBody& is);
+  void put_back(const MeasuredBody& is);
+  int misplaced() const;
+  Displacement to_feet() const;
   void end_step(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void move_plan(double h);
   void move_trunk(double h);
@@ -88,6 +95,7 @@ class Behaviour {
   void let_go(Character<T>& character, double h);
   bool may_finish(const MeasuredBody& is) const;
   Vec2 goal() const;
+  Feet feet_now(const Transform<double>& root) const;
 
   BehaviourSettings settings_;
   StandingBody<T> body_;
@@ -102,12 +110,14 @@ class Behaviour {
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
   std::array<Transform<double>, 2> clip_ankle_;
-  int swing_ = -1;
+  int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
+  Sole only_;                   ///< of the foot that stands while the other is put back
   double swing_time_ = 0;
   Transform<double> lifted_;  ///< where the foot that swings left the ground
   Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
-               turn_acceleration_ = Vec3<double>::Zero();
+               turn_acceleration_ = Vec3<double>::Zero(), spin_ = Vec3<double>::Zero();
   TimeJet<double> height_{0.0};
+  Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
   bool measured_ = false;          ///< `root_before_` is that of the last frame
   double strength_ = 1;            ///< before it fell
