@@ -182,7 +182,8 @@ class Character {
   const Displacement& displacement() const;
   /// The host has moved the character's place itself: targets are given there from now on.
   void take_displacement();
-  /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that.
+  /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that. For who
+  /// stands there already, within millimetres, as after a step; the rest goes the way back.
   void displace(const Displacement& further);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   void set_help(double force, double torque);

@@ -1,0 +1,128 @@
+// RootDrive::kGrounded: the clip is the answer until the root needs more than the ground can give.
+#include "pushed.h"
+
+namespace sinew {
+namespace {
+
+using fixtures::Pushed;
+
+TEST(Grounded, StandingAndWalkingArePlayedToTheBit) {
+  for (const char* name : {"stand", "walk"}) {
+    Pushed grounded(name), led(name, RootDrive::kKinematic);
+    for (int n = 0; n < 600; ++n) {
+      grounded.step();
+      led.step();
+      const auto a = grounded.character().model(), b = led.character().model();
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_EQ(a[i].translation, b[i].translation) << name << " frame " << n;
+        ASSERT_EQ(a[i].rotation.coeffs(), b[i].rotation.coeffs()) << name << " frame " << n;
+      }
+      // Metered: what an invisible hand did is at most what the settings allow it.
+      ASSERT_LE(grounded.character().report().help_force, std::sqrt(3.0) * 8 * 1.01);
+      ASSERT_LE(grounded.character().report().help_torque, std::sqrt(3.0) * 8 * 1.01);
+    }
+    EXPECT_EQ(grounded.solved, 0) << name;
+  }
+}
+
+TEST(Grounded, AStatueTopplesWhereThePendulumSays) {
+  // m·ω·d: 36 N·s ahead, 26 back, 31 to the side, for a body that never moves a joint.
+  const double ahead = 0, back = std::acos(-1.0), left = std::acos(0.0);
+  const auto falls = [](double impulse, double direction) {
+    Pushed statue("stand");
+    statue.run(0.3);
+    statue.push(impulse, direction);
+    statue.run(6);
+    return statue.root_height() < 0.6;
+  };
+  EXPECT_FALSE(falls(0.8 * 36, ahead));
+  EXPECT_TRUE(falls(1.25 * 36, ahead));
+  EXPECT_FALSE(falls(0.8 * 26, back));
+  EXPECT_TRUE(falls(1.35 * 26, back));
+  EXPECT_FALSE(falls(0.8 * 31, left));
+  EXPECT_TRUE(falls(1.25 * 31, left));
+}
+
+TEST(Grounded, ComesToRestAndIsPlayedFromWhereItStands) {
+  Pushed statue("stand");
+  statue.run(0.3);
+  statue.push(20, 0.4);
+  EXPECT_GT(statue.solved, 0);
+  statue.run(4);
+  const int before = statue.solved;
+  statue.run(1);
+  EXPECT_EQ(statue.solved, before) << "still solved";
+  // It stands where its feet came to rest: within centimetres, and told.
+  const Displacement by = statue.character().displacement();
+  EXPECT_LT(std::hypot(by.x, by.y), 0.05);
+  const Vec3<double> wanted = by.turn() * Vec3<double>(statue.jets[0].translation.cast<double>());
+  const Vec3<double> is = statue.character().position();
+  EXPECT_LT((is - Vec3<double>(wanted.x() + by.x, wanted.y() + by.y, wanted.z())).norm(), 1e-4);
+  statue.character().reset();
+  EXPECT_FALSE(statue.character().displacement().any());
+}
+
+TEST(Grounded, DisplacedItPlaysTheSameMotionElsewhere) {
+  Pushed moved("stand"), plain("stand");
+  moved.run(0.3);
+  moved.push(20, 0.4);
+  moved.run(5);
+  plain.frame = moved.frame;
+  const Displacement to = moved.character().displacement();
+  ASSERT_TRUE(to.any());
+  plain.sample();
+  plain.character().set_target(plain.jets);
+  plain.character().reset();
+  for (int n = 0; n < 60; ++n) {
+    moved.step();
+    plain.step();
+    const auto a = moved.character().model(), b = plain.character().model();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const Vec3<double> wanted =
+          to.turn() * Vec3<double>(b[i].translation.cast<double>()) + Vec3<double>(to.x, to.y, 0);
+      ASSERT_LT((a[i].translation.cast<double>() - wanted).norm(), 1e-5) << n;
+    }
+  }
+}
+
+TEST(Grounded, GoesOnFromASnapshotWithTheSameBits) {
+  Pushed statue("stand");
+  statue.run(0.3);
+  statue.push(20, 0.4);
+  for (const double later : {0.0, 1.3, 1.0}) {  // pushed, on its way back, displaced
+    statue.run(later);
+    std::vector<std::byte> kept(statue.world.snapshot_capacity());
+    kept.resize(statue.world.save(kept));
+    ASSERT_FALSE(kept.empty());
+    const int frame = statue.frame;
+    statue.run(0.5);
+    const std::vector<Transform<float>> first(statue.character().model().begin(),
+                                              statue.character().model().end());
+    ASSERT_TRUE(statue.world.restore(kept));
+    statue.frame = frame;
+    statue.run(0.5);
+    for (std::size_t i = 0; i < first.size(); ++i)
+      ASSERT_EQ(first[i].translation, statue.character().model()[i].translation) << later;
+  }
+}
+
+TEST(Grounded, WithoutMusclesItIsARagdoll) {
+  Pushed limp("stand");
+  limp.character().set_strength(0.f);
+  limp.run(2);
+  EXPECT_LT(limp.root_height(), 0.4);
+}
+
+TEST(Grounded, RefusesHelpThatIsNone) {
+  Asset asset;
+  ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset));
+  World<float> world{WorldSettings{}};
+  CharacterSettings settings;
+  settings.help_torque = std::nan("");
+  Status status;
+  EXPECT_EQ(world.add_character(asset.skeleton, settings, status), -1);
+  EXPECT_FALSE(status);
+}
+
+}  // namespace
+}  // namespace sinew
