@@ -24,6 +24,11 @@ Status check(const JointJet<T>& jet, int joint) {
   return {};
 }
 
+/// Of a handle that stands for nobody.
+Status nobody() {
+  return Status::error(Code::kInvalidArgument, "no such character");
+}
+
 template <class T>
 bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
   return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
@@ -33,6 +38,7 @@ bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
 
 template <class T>
 Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
+  if (!state_) return nobody();
   if (jets.size() != state_->target.size())
     return Status::error(Code::kInvalidArgument, "target needs one jet per joint of the skeleton");
   for (std::size_t i = 0; i < jets.size(); ++i)
@@ -46,12 +52,15 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
 }
 
 template <class T>
-void Character<T>::reset() {
+Status Character<T>::reset() {
+  if (!state_) return nobody();
   state_->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
 Status Character<T>::set_detail(const CharacterDetail& detail) {
+  if (!state_) return nobody();
   if (Status status = validate(detail); !status) return status;
   state_->detail = detail;
   return {};
@@ -59,11 +68,14 @@ Status Character<T>::set_detail(const CharacterDetail& detail) {
 
 template <class T>
 const CharacterDetail& Character<T>::detail() const {
+  static const CharacterDetail none;
+  if (!state_) return none;
   return state_->detail;
 }
 
 template <class T>
 Status Character<T>::set_strength(T strength) {
+  if (!state_) return nobody();
   if (std::isnan(strength) || strength < T(0))
     return Status::error(Code::kInvalidArgument, "strength must be ≥ 0");
   state_->settings.strength = double(strength);
@@ -74,6 +86,7 @@ Status Character<T>::set_strength(T strength) {
 
 template <class T>
 Status Character<T>::set_strength(int joint, T strength) {
+  if (!state_) return nobody();
   if (joint < 0 || joint >= state_->tree.bodies)
     return Status::error(Code::kInvalidArgument, "no such simulated joint", joint);
   if (std::isnan(strength) || strength < T(0))
@@ -90,6 +103,7 @@ Status Character<T>::set_strength(int joint, T strength) {
 
 template <class T>
 Status Character<T>::set_muscle_strength(int muscle, T strength) {
+  if (!state_) return nobody();
   if (muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size()))
     return Status::error(Code::kInvalidArgument, "no such muscle", muscle);
   if (std::isnan(strength) || strength < T(0))
@@ -101,6 +115,7 @@ Status Character<T>::set_muscle_strength(int muscle, T strength) {
 
 template <class T>
 Status Character<T>::set_group_strength(const char* group, T strength) {
+  if (!state_) return nobody();
   const std::vector<Muscle>& muscles = state_->skeleton.muscles;
   bool any = false;
   for (std::size_t m = 0; m < muscles.size(); ++m) {
@@ -113,6 +128,7 @@ Status Character<T>::set_group_strength(const char* group, T strength) {
 
 template <class T>
 T Character<T>::muscle_torque(int muscle) const {
+  if (!state_ || muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size())) return T(0);
   const Muscle& of = state_->skeleton.muscles[muscle];
   const int dof = state_->tree.first_dof[of.joint] + of.dof;
   const T torque = state_->torque[dof], all = state_->problem.law.limit(dof, torque);
@@ -122,10 +138,12 @@ T Character<T>::muscle_torque(int muscle) const {
 }
 
 template <class T>
-void Character<T>::set_root_drive(RootDrive drive) {
+Status Character<T>::set_root_drive(RootDrive drive) {
+  if (!state_) return nobody();
   state_->settings.root = drive;
   state_->refresh_limits();
   state_->levels.wake = true;
+  return {};
 }
 
 namespace {
@@ -149,6 +167,7 @@ Status push(CharacterState<T>& s, int joint, const Vec3<T>& point, const Vec3<T>
 
 template <class T>
 Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse) {
+  if (!state_) return nobody();
   if (!point.allFinite() || !impulse.allFinite())
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
   const Scale<T>& scale = state_->tree.scale;
@@ -159,6 +178,7 @@ Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T
 
 template <class T>
 Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force) {
+  if (!state_) return nobody();
   if (!point.allFinite() || !force.allFinite())
     return Status::error(Code::kNotFinite, "force is not finite", joint);
   const Scale<T>& scale = state_->tree.scale;
@@ -169,58 +189,70 @@ Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>&
 
 template <class T>
 const Skeleton& Character<T>::skeleton() const {
+  static const Skeleton none;
+  if (!state_) return none;
   return state_->skeleton;
 }
 
 template <class T>
 std::span<const Transform<T>> Character<T>::local() const {
+  if (!state_) return {};
   return state_->local;
 }
 
 template <class T>
 std::span<const Transform<T>> Character<T>::model() const {
+  if (!state_) return {};
   return state_->model();
 }
 
 template <class T>
 Vec3<double> Character<T>::position() const {
+  if (!state_) return Vec3<double>::Zero();
   return state_->history.place;
 }
 
 template <class T>
 std::span<const T> Character<T>::torque() const {
+  if (!state_) return {};
   return state_->torque;
 }
 
 template <class T>
 std::span<const T> Character<T>::load() const {
+  if (!state_) return {};
   state_->keep_loads();
   return state_->load;
 }
 
 template <class T>
 std::span<const T> Character<T>::limit() const {
+  if (!state_) return {};
   state_->keep_loads();
   return state_->limit;
 }
 
 template <class T>
 int Character<T>::first_dof(int joint) const {
+  if (!state_ || joint < 0 || joint >= state_->tree.bodies) return -1;
   return state_->tree.first_dof[joint];
 }
 
 template <class T>
 std::span<const std::uint8_t> Character<T>::unknown() const {
+  if (!state_) return {};
   return state_->unknown;
 }
 
 template <class T>
 bool Character<T>::on_animation() const {
-  return state_->undisturbed();
+  return state_ && state_->undisturbed();
 }
 
 template <class T>
 const CharacterReport& Character<T>::report() const {
+  static const CharacterReport none;
+  if (!state_) return none;
   state_->settle_totals();
   return state_->report;
 }

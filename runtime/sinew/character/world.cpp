@@ -225,45 +225,56 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   impl_->states.back()->refresh_limits();
   impl_->props.push_back(static_cast<int>(impl_->states.size()) - 1);
   const int index = static_cast<int>(impl_->props.size()) - 1;
-  set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
-           prop.angular_velocity.template cast<T>());
+  status = set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
+                    prop.angular_velocity.template cast<T>());
   return index;
 }
 
 template <class T>
-void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
-                        const Vec3<T>& angular_velocity) {
-  CharacterState<T>& s = *impl_->states[impl_->props[index]];
-  s.parked = false;
-  JointJet<T>& jet = s.target[0];
+Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
+                          const Vec3<T>& angular_velocity) {
+  CharacterState<T>* const s = impl_->prop(index);
+  if (!s) return no_such_prop(index);
+  s->parked = false;
+  JointJet<T>& jet = s->target[0];
   jet = {};
   jet.rotation = pose.rotation;
   jet.translation = pose.translation;
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
-  s.reset_to_target(Vec3<T>::Zero());
+  s->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
-void World<T>::park_prop(int index) {
-  impl_->park(*impl_->states[impl_->props[index]]);
+Status World<T>::park_prop(int index) {
+  CharacterState<T>* const s = impl_->prop(index);
+  if (!s) return no_such_prop(index);
+  impl_->park(*s);
+  return {};
 }
 
 template <class T>
-void World<T>::park_character(int index) {
-  impl_->park(*impl_->states[impl_->characters[index]]);
+Status World<T>::park_character(int index) {
+  CharacterState<T>* const s = impl_->character(index);
+  if (!s) return no_such_character(index);
+  impl_->park(*s);
+  return {};
 }
 
 template <class T>
-void World<T>::unpark_character(int index) {
-  CharacterState<T>& s = *impl_->states[impl_->characters[index]];
-  s.parked = false;
-  s.reset_to_target(Vec3<T>::Zero());
+Status World<T>::unpark_character(int index) {
+  CharacterState<T>* const s = impl_->character(index);
+  if (!s) return no_such_character(index);
+  s->parked = false;
+  s->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
 bool World<T>::parked(int index) const {
-  return impl_->states[impl_->characters[index]]->parked;
+  const CharacterState<T>* const s = impl_->character(index);
+  return s && s->parked;
 }
 
 template <class T>
@@ -309,7 +320,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
 
 template <class T>
 Character<T> World<T>::character(int index) {
-  return Character<T>(impl_->states[impl_->characters[index]].get());
+  return Character<T>(impl_->character(index));
 }
 
 template <class T>
@@ -324,17 +335,21 @@ int World<T>::prop_count() const {
 
 template <class T>
 Transform<T> World<T>::prop_pose(int index) const {
-  return impl_->states[impl_->props[index]]->model()[0];
+  CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->model()[0] : Transform<T>();
 }
 
 template <class T>
 Vec3<T> World<T>::prop_velocity(int index) const {
-  return impl_->states[impl_->props[index]]->history.velocity[0];
+  const CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->history.velocity[0] : Vec3<T>(Vec3<T>::Zero());
 }
 
 template <class T>
 const CharacterReport& World<T>::prop_report(int index) const {
-  return impl_->states[impl_->props[index]]->report;
+  static const CharacterReport none;
+  const CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->report : none;
 }
 
 /// Of the last step's contact forces, only those of sleepers still hold.
