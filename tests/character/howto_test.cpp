@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "character/scenes.h"
+#include "sinew/character/contact_events.h"
 #include "sinew/effects/wind.h"
 
 namespace sinew {
@@ -27,6 +28,18 @@ TEST(Readme, NamesOfNothingAreRefusedWithTheReasonsThatItGives) {
   ASSERT_EQ(log.lines.size(), 3u);
   EXPECT_EQ(log.lines[1], "no such character");
   EXPECT_EQ(log.lines[2], "the gust is over");
+}
+
+TEST(Readme, BallThatFallsIsHeard) {
+  World<float> world({});
+  Status added;
+  PropSettings ball;
+  ball.pose.translation = {0, 0, 1};
+  ASSERT_EQ(world.add_prop(ball, added), 0) << added.reason;
+  Log log;
+#include "contacts.inc"
+  EXPECT_TRUE(status.ok()) << status.reason;
+  EXPECT_EQ(log.lines, std::vector<std::string>{"thud"});
 }
 
 }  // namespace

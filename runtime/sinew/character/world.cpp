@@ -34,7 +34,10 @@ World<T>::World(const WorldSettings& settings, DeclareNothing /*nothing*/) : imp
   impl_->settings = settings;
   for (int n = 0; n < std::clamp(settings.workers, 1, kMostWorkers); ++n)
     impl_->workers.push_back(std::make_unique<typename Impl::Worker>());
-  for (const auto& worker : impl_->workers) worker->stepper.declare(impl_->plan);
+  for (std::size_t n = 0; n < impl_->workers.size(); ++n) {
+    impl_->workers[n]->number = n;
+    impl_->workers[n]->stepper.declare(impl_->plan);
+  }
 }
 
 template <class T>
@@ -84,6 +87,7 @@ WorldMemory World<T>::Impl::memory() const {
   for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   bytes.characters += rooms.all.colliders * sizeof(MovingCollider<T>);
+  if (reporter) bytes.characters += reporter->bytes();
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving +=
@@ -119,6 +123,7 @@ void World<T>::Impl::reserve() {
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
+  if (reporter) reporter->reserve(rooms.all.loaded, static_cast<int>(count), rooms.all.colliders);
 }
 
 /// What is around has changed: anybody may touch it.
@@ -219,6 +224,7 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
+  limp.layers = prop.layers;
   status = impl_->add(body, limp);
   if (!status) return -1;
   impl_->states.back()->is_prop = true;
@@ -294,18 +300,20 @@ void World<T>::Impl::park(CharacterState<T>& s) {
 }
 
 template <class T>
-Status World<T>::add_obstacle(const Collider& obstacle) {
+Status World<T>::add_obstacle(const Collider& obstacle, std::uint32_t layers) {
   if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
   if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->obstacles.push_back(obstacle);
+  impl_->obstacle_layers.push_back(layers);
   impl_->meet_surroundings();
   return {};
 }
 
 template <class T>
-Status World<T>::add_obstacle(const StaticShape& shape, double friction, double restitution) {
+Status World<T>::add_obstacle(const StaticShape& shape, double friction, double restitution,
+                              std::uint32_t layers) {
   if (!(friction >= 0) || !(restitution >= 0 && restitution <= 1))
     return Status::error(Code::kInvalidArgument,
                          "obstacle's friction must be ≥ 0, its restitution in [0, 1]");
@@ -314,6 +322,7 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
   if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->hosts.push_back({&shape, friction, restitution});
+  impl_->host_layers.push_back(layers);
   impl_->meet_surroundings();
   return {};
 }
@@ -393,6 +402,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     first_lagged.push_back(first_lagged.back() + room.loaded);
   }
   lagged_new.resize(first_lagged.back());
+  if (reporter) reporter->begin_step(islands.count());
   next_heavy = next_light = 0;
   parallel_for(static_cast<int>(workers.size()), work, this);
   keep_sleepers();
@@ -403,6 +413,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   }
   std::sort(lagged.begin(), lagged.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+  if (reporter) report_contacts();
   controller.update(states, settings.detail, h, report);
 }
 

@@ -45,6 +45,7 @@ struct CharacterSettings {
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;
+  std::uint32_t layers = 1;  ///< bits that queries (queries.h) choose by; collisions do not ask
 };
 
 /// What the last step did with one character.
@@ -90,6 +91,7 @@ struct PropSettings {
   Transform<double> pose;
   Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
+  std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
 };
 
 struct WorldSettings {
@@ -126,6 +128,8 @@ struct SnapshotField {
 };
 
 class StaticShape;
+template <class T>
+struct WorldInternals;
 
 template <class T>
 struct CharacterState;  // residual, history and solver state; world.cpp
@@ -220,9 +224,11 @@ class World {
   /// skeleton is copied. The character stands at its rest pose until a target is set and reset() called.
   int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
   int add_prop(const PropSettings& settings, Status& status);
-  Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
+  /// Static, world space (`joint` unused). `layers`: see CharacterSettings.
+  Status add_obstacle(const Collider& obstacle, std::uint32_t layers = 1);
   /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
-  Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0);
+  Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0,
+                      std::uint32_t layers = 1);
 
   /// Ties two frames together; returns the loop's index, or -1. What is open closes at a walking pace.
   int add_loop(const LoopSettings& settings, Status& status);
@@ -311,6 +317,7 @@ class World {
   SnapshotField snapshot_field(std::size_t byte) const;
 
  private:
+  friend struct WorldInternals<T>;  // contact_events.h, queries.h and debug_draw.h read it
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

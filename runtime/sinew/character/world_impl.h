@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 
+#include "sinew/character/contact_reporter.h"
 #include "sinew/character/couplings.h"
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
@@ -64,6 +65,8 @@ struct World<T>::Impl {
     std::vector<JointJet<T>> jets;
     ObstacleRoom<T> obstacle_room;
     TouchingSets<T> sets;
+    std::size_t number = 0;
+    ContactLog<T>* log = nullptr;  ///< of the island that it steps; null where nobody listens
   };
 
   WorldSettings settings;
@@ -81,7 +84,9 @@ struct World<T>::Impl {
   std::vector<Collider> obstacles;
   NeighbourGrid obstacle_grid;
   std::vector<HostObstacle> hosts;
-  std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
+  std::vector<std::uint32_t> obstacle_layers, host_layers;  ///< see CharacterSettings::layers
+  std::vector<LaggedForce<T>> lagged;                       ///< of the last step, by identity
+  std::unique_ptr<ContactReporter<T>> reporter;             ///< null: nobody listens
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
@@ -156,6 +161,9 @@ struct World<T>::Impl {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
   }
+  void log_contacts(int island, Worker& worker);
+  void report_contacts();
+  BodyRef name_of(const TouchingBody& body) const;
   static void work(void* context, int index);
   void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
@@ -170,6 +178,13 @@ struct World<T>::Impl {
   Status find(const Anchor& anchor, Place& out) const;
   Transform<double> frame_of(const Place& place) const;
   double weight_of(const Place& place) const;
+};
+
+/// For what belongs to worlds and is declared beside them.
+template <class T>
+struct WorldInternals {
+  using Impl = typename World<T>::Impl;
+  static Impl& of(const World<T>& world) { return *world.impl_; }
 };
 
 }  // namespace sinew
