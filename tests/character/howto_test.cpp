@@ -1,11 +1,13 @@
 // The code blocks of the character layer's README, as they stand there.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "character/scenes.h"
 #include "sinew/character/contact_events.h"
+#include "sinew/character/queries.h"
 #include "sinew/effects/wind.h"
 
 namespace sinew {
@@ -40,6 +42,21 @@ TEST(Readme, BallThatFallsIsHeard) {
 #include "contacts.inc"
   EXPECT_TRUE(status.ok()) << status.reason;
   EXPECT_EQ(log.lines, std::vector<std::string>{"thud"});
+}
+
+TEST(Readme, LookFindsTheCrateAndThereIsNoRoomBesideIt) {
+  World<float> world({});
+  Collider crate;
+  crate.shape = Shape::kBox;
+  crate.size = {0.5, 0.5, 0.5};
+  crate.local.translation = {4, 0, 0.5};
+  ASSERT_TRUE(world.add_obstacle(crate).ok());
+  const int hero = -1;
+  const Vec3<double> eye(0, 0, 0.7), look(1, 0, 0), feet(3.2, 0, 0);
+  Log log;
+#include "queries.inc"
+  EXPECT_TRUE(status.ok()) << status.reason;
+  EXPECT_EQ(log.lines, (std::vector<std::string>{"a crate in sight", "no room to stand"}));
 }
 
 }  // namespace
