@@ -7,6 +7,7 @@
 
 #include "character/scenes.h"
 #include "sinew/character/contact_events.h"
+#include "sinew/character/debug_draw.h"
 #include "sinew/character/queries.h"
 #include "sinew/effects/wind.h"
 
@@ -57,6 +58,17 @@ TEST(Readme, LookFindsTheCrateAndThereIsNoRoomBesideIt) {
 #include "queries.inc"
   EXPECT_TRUE(status.ok()) << status.reason;
   EXPECT_EQ(log.lines, (std::vector<std::string>{"a crate in sight", "no room to stand"}));
+}
+
+TEST(Readme, ViewShowsBonesAndSaysWhatTheStepDid) {
+  Playing<float> scene;
+  scene.step();
+  World<float>& world = scene.world;
+  Log log;
+#include "debug_draw.inc"
+  EXPECT_GE(view.lines, static_cast<int>(scene.skeleton.joints.size()) - 1);
+  ASSERT_EQ(log.lines.size(), 1u);
+  EXPECT_EQ(log.lines[0].rfind("character 0: on its animation", 0), 0u) << log.lines[0];
 }
 
 }  // namespace
