@@ -402,28 +402,63 @@ struct Turmoil : Reported<float> {
   }
 };
 
+/// Follows events and says where one is out of turn.
+struct Turns {
+  std::vector<std::pair<BodyRef, BodyRef>> touching;
+  int begins = 0, ends = 0;
+
+  bool in_turn(const ContactEvent& e) {
+    const auto found = std::find(touching.begin(), touching.end(), std::pair(e.a, e.b));
+    const bool right = (found == touching.end()) == (e.phase == ContactPhase::kBegin);
+    begins += e.phase == ContactPhase::kBegin;
+    ends += e.phase == ContactPhase::kEnd;
+    if (right && e.phase == ContactPhase::kBegin) touching.emplace_back(e.a, e.b);
+    if (right && e.phase == ContactPhase::kEnd) touching.erase(found);
+    return right;
+  }
+};
+
 TEST(ContactEventsOfATurmoil, EveryPairBeginsStaysAndEndsInTurn) {
   constexpr unsigned kSeed = 3;
   Turmoil scene(kSeed);
-  std::vector<std::pair<BodyRef, BodyRef>> touching;
-  int begins = 0, ends = 0;
+  Turns turns;
   for (int n = 0; n < 400; ++n)
     for (const ContactEvent& e : scene.turn(n)) {
-      const auto pair = std::pair(e.a, e.b);
-      const auto found = std::find(touching.begin(), touching.end(), pair);
-      ASSERT_EQ(found != touching.end(), e.phase != ContactPhase::kBegin)
-          << "step " << n << ", seed " << kSeed;
+      ASSERT_TRUE(turns.in_turn(e)) << "step " << n << ", seed " << kSeed;
       EXPECT_EQ(e.points == 0, e.phase == ContactPhase::kEnd);
       EXPECT_GE(e.impulse, 0);
       EXPECT_NEAR(e.normal.norm(), 1, 1e-6);
       EXPECT_EQ(e.kept, std::min(e.points, ContactEvent::kMostPoints));
-      begins += e.phase == ContactPhase::kBegin;
-      ends += e.phase == ContactPhase::kEnd;
-      if (e.phase == ContactPhase::kBegin) touching.push_back(pair);
-      if (e.phase == ContactPhase::kEnd) touching.erase(found);
     }
-  EXPECT_GT(begins, 40);
-  EXPECT_GT(ends, 20);
+  EXPECT_GT(turns.begins, 40);
+  EXPECT_GT(turns.ends, 20);
+}
+
+/// Two limp figures in each other: solves that find no pose freeze them where they are, with what they touch.
+TEST(ContactEventsOfATurmoil, GoOnInTurnThroughStepsThatAreFrozen) {
+  Reported<float> scene;
+  CharacterSettings limp;
+  limp.root = RootDrive::kFree;
+  limp.strength = 0;
+  Status status;
+  const Skeleton skeleton = fixtures::humanoid();
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_EQ(scene.world.add_character(skeleton, limp, status), n) << status.reason;
+    std::vector<JointJet<float>> jets = fixtures::idle<float>(skeleton, 0);
+    jets[0].translation += Vec3<float>(0.05f, 0.02f, 0) * float(n);
+    ASSERT_TRUE(scene.world.character(n).set_target(jets).ok());
+    ASSERT_TRUE(scene.world.character(n).reset().ok());
+  }
+  Turns turns;
+  int frozen = 0, touching = 0;
+  for (int n = 0; n < 120; ++n) {
+    const std::vector<ContactEvent> events = scene.step();
+    for (const ContactEvent& e : events) ASSERT_TRUE(turns.in_turn(e)) << "step " << n;
+    if (scene.world.character(0).report().held == 0) continue;
+    ++frozen;
+    touching += !turns.touching.empty();
+  }
+  EXPECT_EQ(touching, frozen);
 }
 
 TEST(ContactEventsOfATurmoil, AreTheSameForAnyNumberOfWorkers) {

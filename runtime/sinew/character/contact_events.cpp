@@ -71,7 +71,7 @@ void fill_event(std::span<LoggedContact<T>> points, ContactEvent& out) {
 
 template <class T>
 void ContactReporter<T>::reserve(int contacts, int islands, int colliders) {
-  const std::size_t most = static_cast<std::size_t>(contacts + colliders);
+  const std::size_t most = static_cast<std::size_t>(contacts) + static_cast<std::size_t>(colliders);
   if (most > contacts_.size()) contacts_.resize(most);
   for (auto* v : {&touching_, &touched_})
     if (most > v->capacity()) v->reserve(most);

@@ -19,14 +19,16 @@ namespace sinew {
 struct TouchingBody {
   int tree = -1, body = -1;
 
-  auto operator<=>(const TouchingBody&) const = default;
+  bool operator==(const TouchingBody&) const = default;
+  bool operator<(const TouchingBody& o) const { return tree != o.tree ? tree < o.tree : body < o.body; }
 };
 
 /// A pair of bodies, `a` the one that comes first; static ones always second.
 struct TouchingPair {
   TouchingBody a, b;
 
-  auto operator<=>(const TouchingPair&) const = default;
+  bool operator==(const TouchingPair&) const = default;
+  bool operator<(const TouchingPair& o) const { return a == o.a ? b < o.b : a < o.a; }
 };
 
 /// A point at which they touch.
