@@ -58,7 +58,7 @@ class Svg final : public sinew::DebugRenderer {
     const double right = std::cos(yaw) * p.y() - std::sin(yaw) * p.x();
     const double ahead = std::cos(yaw) * p.x() + std::sin(yaw) * p.y();
     const double up = std::cos(pitch) * p.z() - std::sin(pitch) * ahead;
-    return {kWidth / 2 + kPixels * right, kHeight * 0.85 - kPixels * up};
+    return {kWidth / 2.0 + kPixels * right, kHeight * 0.85 - kPixels * up};
   }
   static std::string rgb(sinew::DebugColor c) {
     return "rgb(" + std::to_string(c.r) + ',' + std::to_string(c.g) + ',' + std::to_string(c.b) + ')';

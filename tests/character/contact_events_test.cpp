@@ -461,6 +461,26 @@ TEST(ContactEventsOfATurmoil, GoOnInTurnThroughStepsThatAreFrozen) {
   EXPECT_EQ(touching, frozen);
 }
 
+TEST(ContactEventsOfATurmoil, GoOnFromWhatWasToldLastAfterASnapshotIsRestored) {
+  Turmoil scene(13);
+  Turns turns;
+  std::vector<std::byte> snapshot(scene.world.snapshot_capacity());
+  const auto play = [&](int from, int to) {
+    for (int n = from; n < to; ++n)
+      for (const ContactEvent& e : scene.turn(n)) ASSERT_TRUE(turns.in_turn(e)) << "step " << n;
+  };
+  play(0, 60);
+  snapshot.resize(scene.world.save(snapshot));
+  for (int round = 0; round < 3; ++round) {
+    play(60, 140);
+    const std::size_t told = turns.touching.size();
+    ASSERT_TRUE(scene.world.restore(snapshot).ok());
+    EXPECT_TRUE(scene.take().empty()) << "restoring tells nothing by itself";
+    EXPECT_EQ(turns.touching.size(), told);
+  }
+  play(60, 140);
+}
+
 TEST(ContactEventsOfATurmoil, AreTheSameForAnyNumberOfWorkers) {
   constexpr unsigned kSeed = 5;
   Turmoil alone(kSeed), together(kSeed, 4);

@@ -101,7 +101,8 @@ struct ContactReportSettings {
 /// no room (some 100 bytes for every contact that the world has room for). After World::restore() events go
 /// on from what was told last. A world that reports to nobody does nothing for it in its steps.
 template <class T>
-Status report_contacts(World<T>& world, ContactRing* ring, const ContactReportSettings& settings = {});
+[[nodiscard]] Status report_contacts(World<T>& world, ContactRing* ring,
+                                     const ContactReportSettings& settings = {});
 
 extern template Status report_contacts<float>(World<float>&, ContactRing*, const ContactReportSettings&);
 extern template Status report_contacts<double>(World<double>&, ContactRing*, const ContactReportSettings&);

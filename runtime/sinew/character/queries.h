@@ -70,12 +70,12 @@ struct QueryHit {
 /// distance 0; what it begins at and leaves not at all. Refuses what is not finite, a negative radius, and a
 /// cast that goes nowhere.
 template <class T>
-Status cast(const World<T>& world, const Cast& query, std::span<QueryHit> hits, int& count);
+[[nodiscard]] Status cast(const World<T>& world, const Cast& query, std::span<QueryHit> hits, int& count);
 
 /// Writes all colliders that the ball or capsule (or point) touches where it is into `hits`, deepest first,
 /// as many as it has room for; `count`: how many.
 template <class T>
-Status overlap(const World<T>& world, const Cast& query, std::span<QueryHit> hits, int& count);
+[[nodiscard]] Status overlap(const World<T>& world, const Cast& query, std::span<QueryHit> hits, int& count);
 
 #define SINEW_QUERY_INSTANCES(prefix, T)                                          \
   prefix Status cast<T>(const World<T>&, const Cast&, std::span<QueryHit>, int&); \
