@@ -276,6 +276,54 @@ TYPED_TEST(ContactEvents, SleepersKeepTheirPairsWithoutAWord) {
   EXPECT_EQ(woken[0].b, prop_ref(1));
 }
 
+TYPED_TEST(ContactEvents, ParticlesAreNamedByTheirNodes) {
+  Reported<TypeParam> scene;
+  ParticleBody beads;  // the first is fixed in the air, and so never touches anything
+  beads.radius = 0.02;
+  for (int n = 0; n < 3; ++n) {
+    beads.nodes.push_back({});
+    beads.nodes.back().position = {0.5 * n, 0, 0.1 + 0.1 * n};
+    beads.nodes.back().fixed = n == 0;
+  }
+  Status status;
+  ASSERT_EQ(scene.world.add_particles(beads, status), 0) << status.reason;
+  std::vector<BodyRef> begun;
+  for (int n = 0; n < 60; ++n)
+    for (const ContactEvent& e : scene.step())
+      if (e.phase == ContactPhase::kBegin) begun.push_back(e.a);
+  EXPECT_EQ(begun, (std::vector<BodyRef>{{BodyKind::kParticles, 0, 1}, {BodyKind::kParticles, 0, 2}}));
+}
+
+/// An arm that is thrown against its own body.
+TYPED_TEST(ContactEvents, WhatTouchesItselfIsAPairOfItsJoints) {
+  WorldSettings settings;
+  settings.ground = false;
+  settings.gravity.setZero();
+  Reported<TypeParam> scene(settings);
+  CharacterSettings limp;
+  limp.root = RootDrive::kFree;
+  limp.strength = 0;
+  limp.self_collision = true;
+  Status status;
+  const Skeleton skeleton = fixtures::humanoid();
+  ASSERT_EQ(scene.world.add_character(skeleton, limp, status), 0) << status.reason;
+  std::vector<JointJet<TypeParam>> jets = fixtures::idle<TypeParam>(skeleton, 0);
+  for (std::size_t i = 0; i < jets.size(); ++i)
+    if (skeleton.joints[i].name.find("thigh") != std::string::npos)
+      jets[i].omega = Vec3<TypeParam>(skeleton.joints[i].name.back() == 'l' ? 6 : -6, 0, 0);
+  ASSERT_TRUE(scene.world.character(0).set_target(jets).ok());
+  ASSERT_TRUE(scene.world.character(0).reset().ok());
+  int begins = 0;
+  for (int n = 0; n < 90; ++n)
+    for (const ContactEvent& e : scene.step()) {
+      EXPECT_EQ(e.a.kind, BodyKind::kCharacter);
+      EXPECT_EQ(e.b.kind, BodyKind::kCharacter);
+      EXPECT_LT(e.a.joint, e.b.joint);
+      begins += e.phase == ContactPhase::kBegin;
+    }
+  EXPECT_GT(begins, 0) << "the legs were to meet";
+}
+
 TYPED_TEST(ContactEvents, WhatIsParkedEndsItsPairs) {
   Reported<TypeParam> scene;
   scene.add(box_at({0, 0, 0.1}));
