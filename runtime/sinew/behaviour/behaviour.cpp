@@ -80,6 +80,7 @@ template <class T>
 Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets, T h) {
   if (jets.size() != last_.size())
     return Status::error(Code::kInvalidArgument, "a behaviour needs one jet per joint of its skeleton");
+  if (!character.valid()) return Status::error(Code::kInvalidArgument, "a behaviour needs a character");
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   if (!acts && character.unknown()[0] == 0) {
     measured_ = false;

@@ -25,6 +25,11 @@ Status check(const JointJet<T>& jet, int joint) {
   return {};
 }
 
+/// Of a handle that stands for nobody.
+Status nobody() {
+  return Status::error(Code::kInvalidArgument, "no such character");
+}
+
 template <class T>
 bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
   return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
@@ -34,6 +39,7 @@ bool same_pose(const JointJet<T>& a, const JointJet<T>& b) {
 
 template <class T>
 Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
+  if (!state_) return nobody();
   if (jets.size() != state_->target.size())
     return Status::error(Code::kInvalidArgument, "target needs one jet per joint of the skeleton");
   for (std::size_t i = 0; i < jets.size(); ++i)
@@ -51,15 +57,20 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
 }
 
 template <class T>
-void Character<T>::reset() {
-  if (const Displacement by = state_->grounding.by; by.any())
-    state_->target[0] = displaced(by.inverse(), state_->target[0]);
-  state_->grounding = {};
+Status Character<T>::reset() {
+  if (!state_) return nobody();
+  Grounding<T>& grounding = state_->grounding;
+  if (grounding.by.any()) state_->target[0] = displaced(grounding.by.inverse(), state_->target[0]);
+  grounding.by = {};
+  grounding.rest = T(0);
+  grounding.returns = false;
   state_->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
 Status Character<T>::set_detail(const CharacterDetail& detail) {
+  if (!state_) return nobody();
   if (Status status = validate(detail); !status) return status;
   state_->detail = detail;
   return {};
@@ -67,11 +78,14 @@ Status Character<T>::set_detail(const CharacterDetail& detail) {
 
 template <class T>
 const CharacterDetail& Character<T>::detail() const {
+  static const CharacterDetail none;
+  if (!state_) return none;
   return state_->detail;
 }
 
 template <class T>
 Status Character<T>::set_strength(T strength) {
+  if (!state_) return nobody();
   if (std::isnan(strength) || strength < T(0))
     return Status::error(Code::kInvalidArgument, "strength must be ≥ 0");
   state_->settings.strength = double(strength);
@@ -82,11 +96,12 @@ Status Character<T>::set_strength(T strength) {
 
 template <class T>
 T Character<T>::strength() const {
-  return T(state_->settings.strength);
+  return state_ ? T(state_->settings.strength) : T(0);
 }
 
 template <class T>
 Status Character<T>::set_strength(int joint, T strength) {
+  if (!state_) return nobody();
   if (joint < 0 || joint >= state_->tree.bodies)
     return Status::error(Code::kInvalidArgument, "no such simulated joint", joint);
   if (std::isnan(strength) || strength < T(0))
@@ -103,6 +118,7 @@ Status Character<T>::set_strength(int joint, T strength) {
 
 template <class T>
 Status Character<T>::set_muscle_strength(int muscle, T strength) {
+  if (!state_) return nobody();
   if (muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size()))
     return Status::error(Code::kInvalidArgument, "no such muscle", muscle);
   if (std::isnan(strength) || strength < T(0))
@@ -114,6 +130,7 @@ Status Character<T>::set_muscle_strength(int muscle, T strength) {
 
 template <class T>
 Status Character<T>::set_group_strength(const char* group, T strength) {
+  if (!state_) return nobody();
   const std::vector<Muscle>& muscles = state_->skeleton.muscles;
   bool any = false;
   for (std::size_t m = 0; m < muscles.size(); ++m) {
@@ -126,6 +143,7 @@ Status Character<T>::set_group_strength(const char* group, T strength) {
 
 template <class T>
 T Character<T>::muscle_torque(int muscle) const {
+  if (!state_ || muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size())) return T(0);
   const Muscle& of = state_->skeleton.muscles[muscle];
   const int dof = state_->tree.first_dof[of.joint] + of.dof;
   const T torque = state_->torque[dof], all = state_->problem.law.limit(dof, torque);
@@ -135,32 +153,43 @@ T Character<T>::muscle_torque(int muscle) const {
 }
 
 template <class T>
-void Character<T>::set_root_drive(RootDrive drive) {
+Status Character<T>::set_root_drive(RootDrive drive) {
+  if (!state_) return nobody();
   state_->settings.root = drive;
   state_->refresh_limits();
   state_->levels.wake = true;
+  return {};
 }
 
 template <class T>
-const Displacement& Character<T>::displacement() const {
-  return state_->grounding.by;
+Displacement Character<T>::displacement() const {
+  return state_ ? state_->grounding.by : Displacement{};
 }
 
 template <class T>
-void Character<T>::take_displacement() {
+Status Character<T>::take_displacement() {
+  if (!state_) return nobody();
   state_->grounding.by = {};
+  return {};
 }
 
 template <class T>
-void Character<T>::displace(const Displacement& further) {
+Status Character<T>::displace(const Displacement& further) {
+  if (!state_) return nobody();
+  if (!std::isfinite(further.x) || !std::isfinite(further.y) || !std::isfinite(further.yaw))
+    return Status::error(Code::kNotFinite, "displacement is not finite");
   displace_target(*state_, further);
+  return {};
 }
 
 template <class T>
-void Character<T>::set_help(double force, double torque) {
+Status Character<T>::set_help(double force, double torque) {
+  if (!state_) return nobody();
+  if (std::isnan(force) || std::isnan(torque)) return Status::error(Code::kNotFinite, "help is not a number");
   state_->grounding.help_force = force;
   state_->grounding.help_torque = torque;
   state_->refresh_limits();
+  return {};
 }
 
 namespace {
@@ -184,6 +213,7 @@ Status push(CharacterState<T>& s, int joint, const Vec3<T>& point, const Vec3<T>
 
 template <class T>
 Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T>& impulse) {
+  if (!state_) return nobody();
   if (!point.allFinite() || !impulse.allFinite())
     return Status::error(Code::kNotFinite, "impulse is not finite", joint);
   const Scale<T>& scale = state_->tree.scale;
@@ -194,6 +224,7 @@ Status Character<T>::apply_impulse(int joint, const Vec3<T>& point, const Vec3<T
 
 template <class T>
 Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force) {
+  if (!state_) return nobody();
   if (!point.allFinite() || !force.allFinite())
     return Status::error(Code::kNotFinite, "force is not finite", joint);
   const Scale<T>& scale = state_->tree.scale;
@@ -204,58 +235,70 @@ Status Character<T>::apply_force(int joint, const Vec3<T>& point, const Vec3<T>&
 
 template <class T>
 const Skeleton& Character<T>::skeleton() const {
+  static const Skeleton none;
+  if (!state_) return none;
   return state_->skeleton;
 }
 
 template <class T>
 std::span<const Transform<T>> Character<T>::local() const {
+  if (!state_) return {};
   return state_->local;
 }
 
 template <class T>
 std::span<const Transform<T>> Character<T>::model() const {
+  if (!state_) return {};
   return state_->model();
 }
 
 template <class T>
 Vec3<double> Character<T>::position() const {
+  if (!state_) return Vec3<double>::Zero();
   return state_->history.place;
 }
 
 template <class T>
 std::span<const T> Character<T>::torque() const {
+  if (!state_) return {};
   return state_->torque;
 }
 
 template <class T>
 std::span<const T> Character<T>::load() const {
+  if (!state_) return {};
   state_->keep_loads();
   return state_->load;
 }
 
 template <class T>
 std::span<const T> Character<T>::limit() const {
+  if (!state_) return {};
   state_->keep_loads();
   return state_->limit;
 }
 
 template <class T>
 int Character<T>::first_dof(int joint) const {
+  if (!state_ || joint < 0 || joint >= state_->tree.bodies) return -1;
   return state_->tree.first_dof[joint];
 }
 
 template <class T>
 std::span<const std::uint8_t> Character<T>::unknown() const {
+  if (!state_) return {};
   return state_->unknown;
 }
 
 template <class T>
 bool Character<T>::on_animation() const {
-  return state_->undisturbed();
+  return state_ && state_->undisturbed();
 }
 
 template <class T>
 const CharacterReport& Character<T>::report() const {
+  static const CharacterReport none;
+  if (!state_) return none;
   state_->settle_totals();
   return state_->report;
 }

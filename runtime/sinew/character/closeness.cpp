@@ -55,39 +55,14 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
   return m;
 }
 
-/// Distance of a sphere's or capsule's axis to a convex shape, by golden sections: along a line it has one
-/// minimum.
-template <class T>
-SignedDistance<T> axis_to_shape(const Transform<T>& pose, T half, const Transform<T>& other_pose,
-                                const Collider& other) {
-  const Mat3<T> to_other = other_pose.rotation.conjugate().toRotationMatrix();
-  const Vec3<T> center = to_other * (pose.translation - other_pose.translation),
-                axis = to_other * (pose.rotation * Vec3<T>(0, 0, half)), size = other.size.template cast<T>();
-  const auto at = [&](T along) { return signed_distance<T>(other.shape, size, center + along * axis); };
-  if (half == T(0)) return at(T(0));
-  T low = T(-1), high = T(1), left = high - T(kGolden) * (high - low),
-    right = low + T(kGolden) * (high - low);
-  T of_left = at(left).distance, of_right = at(right).distance;
-  for (int n = 0; n < kSections; ++n) {
-    if (of_left < of_right) {
-      high = right, right = left, of_right = of_left;
-      left = high - T(kGolden) * (high - low);
-      of_left = at(left).distance;
-    } else {
-      low = left, left = right, of_left = of_right;
-      right = low + T(kGolden) * (high - low);
-      of_right = at(right).distance;
-    }
-  }
-  return at((low + high) / 2);
-}
-
 /// Distance of a sphere or capsule to a convex shape, m, and the direction in which it leaves that.
 template <class T>
 SignedDistance<T> distance_to(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
   const Collider& c = *a.collider;
   const T half = c.shape == Shape::kCapsule ? T(c.size.z()) : T(0);
-  SignedDistance<T> d = axis_to_shape<T>(a.pose, half, b.pose, *b.collider);
+  T along = T(0);
+  SignedDistance<T> d = distance_of_axis<T>(a.pose.translation, a.pose.rotation * Vec3<T>(0, 0, half), b.pose,
+                                            *b.collider, kSections, along);
   d.distance -= T(c.size.x());
   d.normal = b.pose.rotation * d.normal;
   return d;
@@ -113,6 +88,33 @@ T swept_radius(const MovingCollider<T>& c, T h) {
 }
 
 }  // namespace
+
+template <class T>
+SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_axis, const Transform<T>& pose,
+                                   const Collider& shape, int sections, T& along) {
+  const Mat3<T> to_shape = pose.rotation.conjugate().toRotationMatrix();
+  const Vec3<T> center = to_shape * (middle - pose.translation), axis = to_shape * half_axis,
+                size = shape.size.template cast<T>();
+  const auto at = [&](T t) { return signed_distance<T>(shape.shape, size, center + t * axis); };
+  along = T(0);
+  if (half_axis.squaredNorm() == T(0)) return at(T(0));
+  T low = T(-1), high = T(1), left = high - T(kGolden) * (high - low),
+    right = low + T(kGolden) * (high - low);
+  T of_left = at(left).distance, of_right = at(right).distance;
+  for (int n = 0; n < sections; ++n) {
+    if (of_left < of_right) {
+      high = right, right = left, of_right = of_left;
+      left = high - T(kGolden) * (high - low);
+      of_left = at(left).distance;
+    } else {
+      low = left, left = right, of_left = of_right;
+      right = low + T(kGolden) * (high - low);
+      of_right = at(right).distance;
+    }
+  }
+  along = (low + high) / 2;
+  return at(along);
+}
 
 template <class T>
 SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {

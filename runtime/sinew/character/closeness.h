@@ -25,6 +25,14 @@ struct MovingCollider : PlacedCollider<T> {
   T any = T(0);                        ///< m, that it may move by in any direction besides
 };
 
+/// Distance of an axis (its middle, and from there to one of its ends, which may be the same place) to a
+/// collider's shape where that stands, m, and the direction in which it leaves that, in the shape's axes.
+/// `along`, in [−1, 1]: where on the axis. By golden sections, for along a line it has one minimum: each
+/// leaves 0.618 of the axis.
+template <class T>
+SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_axis, const Transform<T>& pose,
+                                   const Collider& shape, int sections, T& along);
+
 /// Distance of two colliders (m) and the direction in which a leaves b: exact to a thousandth of a capsule's
 /// length; of two boxes that are apart at most their distance, by the best of the axes that separate them.
 template <class T>
@@ -49,6 +57,8 @@ template <class T>
 bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit);
 
 #define SINEW_CLOSENESS_INSTANCES(prefix, T)                                                        \
+  prefix SignedDistance<T> distance_of_axis<T>(const Vec3<T>&, const Vec3<T>&, const Transform<T>&, \
+                                               const Collider&, int, T&);                           \
   prefix SignedDistance<T> distance_between<T>(const PlacedCollider<T>&, const PlacedCollider<T>&); \
   prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);             \
   prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T, T);         \

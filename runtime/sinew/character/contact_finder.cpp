@@ -16,7 +16,6 @@ namespace {
 constexpr double kMargin = 0.2, kMarginBetween = 0.1;
 constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face that a box stands on
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
-constexpr int kFirstHost = 0x4000;                   ///< of contact identities
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
 constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led

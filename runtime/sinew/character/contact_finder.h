@@ -36,6 +36,7 @@ constexpr int other_tree(std::uint64_t id) {
   return static_cast<int>((id >> 16) & 0xffff) - 1;
 }
 constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
+constexpr int kFirstHost = 0x4000;  ///< their numbers of the host's shapes begin here, obstacles' at 0
 
 constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
 constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one

@@ -451,8 +451,10 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (CharacterState<T>* s : states_)
     if (s->grounded()) hand_back<T>(*s, h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
+  if (log_) log_contacts(h);
   for (const auto& effect : effects_) {
     if (!may_bounce || !effect->change_speeds(trees_, contacts_, world_->gravity, h, budget_)) continue;
+    if (log_) log_bounces(*effect);
     for (CharacterState<T>* s : states_) s->report_totals(world_->gravity);
   }
   const bool tied = !couplings_.empty();

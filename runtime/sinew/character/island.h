@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/character/contact_log.h"
 #include "sinew/character/energy_ledger.h"
 #include "sinew/effects/island_effect.h"
 #include "sinew/optimizer/bossak.h"
@@ -31,6 +32,8 @@ class IslandStepper {
   void declare(std::unique_ptr<IslandEffect<T>> effect) { effects_.push_back(std::move(effect)); }
   void drop_last_effect() { effects_.pop_back(); }
 
+  /// Where the coming steps write what they find of contacts; null: nowhere.
+  void write_contacts_to(ContactLog<T>* log) { log_ = log; }
   /// Steps the given characters and props by h. `indices` are their numbers in the world (for contact
   /// identities), `couplings` what they are tied together with; `lagged` the normal forces of the last step,
   /// sorted by id; new ones are written to `lagged_out`, as many as it takes. `spent`: passes of the step's
@@ -112,6 +115,11 @@ class IslandStepper {
   void take_landing(T h);
   void lead_back(CharacterState<T>& state, int tree, T h);
   void take_back_landing();
+  void log_strikes();
+  void log_contacts(T h);
+  void log_bounces(const IslandEffect<T>& effect);
+  T impulse_of(const Contact<T>& contact, T h) const;
+  LoggedContact<T> logged_at_end(const Contact<T>& contact) const;
   void drop_trial(CharacterState<T>& state, int tree);
   void begin_ends();
   void take_over(Contact<T>& contact) const;
@@ -183,7 +191,8 @@ class IslandStepper {
   std::vector<T> parted_, shut_;                            ///< [contact] see drop_parted
   bool blow_ = false;                                       ///< what it parts still carries a force
   std::vector<Landing> kept_;                               ///< [body, the same] before it did
-  std::vector<Twist<T>> led_rates_;                         ///< [body]
+  ContactLog<T>* log_ = nullptr;
+  std::vector<Twist<T>> led_rates_;  ///< [body]
   EndVelocities<T> ends_;
   std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts
 };

@@ -142,6 +142,7 @@ void IslandStepper<T>::land(T h) {
   }
   landed_ = ends_.strike(h, T(kImpactSpeed));
   for (CharacterState<T>* s : states_) first_guess(*s, h);
+  if (landed_ && log_) log_strikes();
   if (landed_) take_landing(h);
 }
 
@@ -226,6 +227,7 @@ template <class T>
 void IslandStepper<T>::take_back_landing() {
   if (!landed_) return;
   landed_ = false;
+  if (log_) log_->take_back_strikes();
   auto kept = kept_.begin();
   int body = 0;
   for (CharacterState<T>* s : states_)

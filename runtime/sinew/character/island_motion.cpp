@@ -482,6 +482,7 @@ void IslandStepper<T>::press(T h) {
         ends_.add(static_cast<int>(n), row, T(kMostSteps) * h * row.slope(row.value));
   }
   ends_.press();
+  if (log_) ends_.for_each_pushed([&](std::uint64_t id, T impulse) { log_->push(id, impulse); });
 }
 
 #define SINEW_MOTION_INSTANCES(T)                                                                     \

@@ -34,7 +34,10 @@ World<T>::World(const WorldSettings& settings, DeclareNothing /*nothing*/) : imp
   impl_->settings = settings;
   for (int n = 0; n < std::clamp(settings.workers, 1, kMostWorkers); ++n)
     impl_->workers.push_back(std::make_unique<typename Impl::Worker>());
-  for (const auto& worker : impl_->workers) worker->stepper.declare(impl_->plan);
+  for (std::size_t n = 0; n < impl_->workers.size(); ++n) {
+    impl_->workers[n]->number = n;
+    impl_->workers[n]->stepper.declare(impl_->plan);
+  }
 }
 
 template <class T>
@@ -84,6 +87,7 @@ WorldMemory World<T>::Impl::memory() const {
   for (const auto& c : couplings.all()) bytes.characters += bytes_of(*c);
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   bytes.characters += rooms.all.colliders * sizeof(MovingCollider<T>);
+  if (reporter) bytes.characters += reporter->bytes();
   const auto [most, small] = rooms_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving +=
@@ -119,6 +123,7 @@ void World<T>::Impl::reserve() {
   controller.reserve(static_cast<int>(count));
   for (auto* v : {&large, &heavy, &light}) v->reserve(count);
   for (auto* v : {&first_lagged, &lagged_count}) v->reserve(count + 1);
+  if (reporter) reporter->reserve(rooms.all.loaded, static_cast<int>(count), rooms.all.colliders);
 }
 
 /// What is around has changed: anybody may touch it.
@@ -219,51 +224,63 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
+  limp.layers = prop.layers;
   status = impl_->add(body, limp);
   if (!status) return -1;
   impl_->states.back()->is_prop = true;
   impl_->states.back()->refresh_limits();
   impl_->props.push_back(static_cast<int>(impl_->states.size()) - 1);
   const int index = static_cast<int>(impl_->props.size()) - 1;
-  set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
-           prop.angular_velocity.template cast<T>());
+  status = set_prop(index, prop.pose.template cast<T>(), prop.velocity.template cast<T>(),
+                    prop.angular_velocity.template cast<T>());
   return index;
 }
 
 template <class T>
-void World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
-                        const Vec3<T>& angular_velocity) {
-  CharacterState<T>& s = *impl_->states[impl_->props[index]];
-  s.parked = false;
-  JointJet<T>& jet = s.target[0];
+Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
+                          const Vec3<T>& angular_velocity) {
+  CharacterState<T>* const s = impl_->prop(index);
+  if (!s) return no_such_prop(index);
+  s->parked = false;
+  JointJet<T>& jet = s->target[0];
   jet = {};
   jet.rotation = pose.rotation;
   jet.translation = pose.translation;
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
-  s.reset_to_target(Vec3<T>::Zero());
+  s->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
-void World<T>::park_prop(int index) {
-  impl_->park(*impl_->states[impl_->props[index]]);
+Status World<T>::park_prop(int index) {
+  CharacterState<T>* const s = impl_->prop(index);
+  if (!s) return no_such_prop(index);
+  impl_->park(*s);
+  return {};
 }
 
 template <class T>
-void World<T>::park_character(int index) {
-  impl_->park(*impl_->states[impl_->characters[index]]);
+Status World<T>::park_character(int index) {
+  CharacterState<T>* const s = impl_->character(index);
+  if (!s) return no_such_character(index);
+  impl_->park(*s);
+  return {};
 }
 
 template <class T>
-void World<T>::unpark_character(int index) {
-  CharacterState<T>& s = *impl_->states[impl_->characters[index]];
-  s.parked = false;
-  s.reset_to_target(Vec3<T>::Zero());
+Status World<T>::unpark_character(int index) {
+  CharacterState<T>* const s = impl_->character(index);
+  if (!s) return no_such_character(index);
+  s->parked = false;
+  s->reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
 bool World<T>::parked(int index) const {
-  return impl_->states[impl_->characters[index]]->parked;
+  const CharacterState<T>* const s = impl_->character(index);
+  return s && s->parked;
 }
 
 template <class T>
@@ -283,18 +300,20 @@ void World<T>::Impl::park(CharacterState<T>& s) {
 }
 
 template <class T>
-Status World<T>::add_obstacle(const Collider& obstacle) {
+Status World<T>::add_obstacle(const Collider& obstacle, std::uint32_t layers) {
   if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
       !obstacle.local.rotation.coeffs().allFinite())
     return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
   if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->obstacles.push_back(obstacle);
+  impl_->obstacle_layers.push_back(layers);
   impl_->meet_surroundings();
   return {};
 }
 
 template <class T>
-Status World<T>::add_obstacle(const StaticShape& shape, double friction, double restitution) {
+Status World<T>::add_obstacle(const StaticShape& shape, double friction, double restitution,
+                              std::uint32_t layers) {
   if (!(friction >= 0) || !(restitution >= 0 && restitution <= 1))
     return Status::error(Code::kInvalidArgument,
                          "obstacle's friction must be ≥ 0, its restitution in [0, 1]");
@@ -303,13 +322,14 @@ Status World<T>::add_obstacle(const StaticShape& shape, double friction, double 
     return Status::error(Code::kInvalidArgument, "obstacle's distance at the origin is no distance");
   if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->hosts.push_back({&shape, friction, restitution});
+  impl_->host_layers.push_back(layers);
   impl_->meet_surroundings();
   return {};
 }
 
 template <class T>
 Character<T> World<T>::character(int index) {
-  return Character<T>(impl_->states[impl_->characters[index]].get());
+  return Character<T>(impl_->character(index));
 }
 
 template <class T>
@@ -324,17 +344,21 @@ int World<T>::prop_count() const {
 
 template <class T>
 Transform<T> World<T>::prop_pose(int index) const {
-  return impl_->states[impl_->props[index]]->model()[0];
+  CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->model()[0] : Transform<T>();
 }
 
 template <class T>
 Vec3<T> World<T>::prop_velocity(int index) const {
-  return impl_->states[impl_->props[index]]->history.velocity[0];
+  const CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->history.velocity[0] : Vec3<T>(Vec3<T>::Zero());
 }
 
 template <class T>
 const CharacterReport& World<T>::prop_report(int index) const {
-  return impl_->states[impl_->props[index]]->report;
+  static const CharacterReport none;
+  const CharacterState<T>* const s = impl_->prop(index);
+  return s ? s->report : none;
 }
 
 /// Of the last step's contact forces, only those of sleepers still hold.
@@ -378,6 +402,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     first_lagged.push_back(first_lagged.back() + room.loaded);
   }
   lagged_new.resize(first_lagged.back());
+  if (reporter) reporter->begin_step(islands.count());
   next_heavy = next_light = 0;
   parallel_for(static_cast<int>(workers.size()), work, this);
   keep_sleepers();
@@ -388,6 +413,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   }
   std::sort(lagged.begin(), lagged.end(),
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
+  if (reporter) report_contacts();
   controller.update(states, settings.detail, h, report);
 }
 

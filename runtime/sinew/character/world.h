@@ -68,6 +68,7 @@ struct CharacterSettings {
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;
+  std::uint32_t layers = 1;  ///< bits that queries (queries.h) choose by; collisions do not ask
 };
 
 /// What the last step did with one character.
@@ -114,6 +115,7 @@ struct PropSettings {
   Transform<double> pose;
   Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
+  std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
 };
 
 struct WorldSettings {
@@ -150,21 +152,27 @@ struct SnapshotField {
 };
 
 class StaticShape;
+template <class T>
+struct WorldInternals;
 
 template <class T>
 struct CharacterState;  // residual, history and solver state; world.cpp
 
-/// Handle on one character of a world; cheap to copy, valid while the world lives.
+/// Handle on one character of a world; cheap to copy, valid while the world lives. That of an index which
+/// names nobody is null: what changes something answers kInvalidArgument, what reads gives zeros, identities
+/// and empty spans.
 template <class T>
 class Character {
  public:
   explicit Character(CharacterState<T>* state) : state_(state) {}
+  /// Whether it stands for a character.
+  bool valid() const { return state_ != nullptr; }
 
   /// What the animation wants at the end of the next step: local jets of all joints of the skeleton (see
   /// SamplingJob). NaN is refused and leaves the old target in place.
   Status set_target(std::span<const JointJet<T>> jets);
   /// Puts the character on the present target at once, with the target's velocity; forgets its history.
-  void reset();
+  Status reset();
   /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
   Status set_strength(T strength);
   T strength() const;
@@ -173,20 +181,21 @@ class Character {
   /// multiply it.
   Status set_muscle_strength(int muscle, T strength);
   Status set_group_strength(const char* group, T strength);
-  /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle.
+  /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle. 0 where there is none
+  /// such.
   T muscle_torque(int muscle) const;
-  void set_root_drive(RootDrive drive);
+  Status set_root_drive(RootDrive drive);
   /// Where a grounded character follows its animation since something moved it: what a host adds to its own
   /// place of the character, if it wants to. Targets are given as if nothing had happened; reset() forgets
   /// it.
-  const Displacement& displacement() const;
+  Displacement displacement() const;
   /// The host has moved the character's place itself: targets are given there from now on.
-  void take_displacement();
+  Status take_displacement();
   /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that. For who
   /// stands there already, within millimetres, as after a step; the rest goes the way back.
-  void displace(const Displacement& further);
+  Status displace(const Displacement& further);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
-  void set_help(double force, double torque);
+  Status set_help(double force, double torque);
   Status set_detail(const CharacterDetail& detail);
   const CharacterDetail& detail() const;
   /// A hit: impulse (N·s, world) at a world point on the body of a joint, at the beginning of the next step,
@@ -208,7 +217,7 @@ class Character {
   std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
                                      ///< three of an ellipsoidal limit
   std::span<const T> limit() const;  ///< of the direction in which it pulls now
-  int first_dof(int joint) const;    ///< index into the spans above; joint < body_count
+  int first_dof(int joint) const;    ///< index into the spans above; −1 unless 0 ≤ joint < body_count
   std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
   bool on_animation() const;                      ///< every joint is exactly where the clip wants it
   const CharacterReport& report() const;
@@ -220,6 +229,20 @@ class Character {
 /// Begins a world whose effects are declared one by one.
 struct DeclareNothing {};
 
+/// Names one effect that was added to a character or prop. Effects can be taken away, so it is counted over
+/// all worlds of a program: one whose effect is gone, or is another world's, finds nothing.
+struct EffectId {
+  std::uint32_t slot = 0;
+  std::uint32_t serial = 0;  ///< 0: none
+
+  bool operator==(const EffectId&) const = default;
+};
+
+/// Characters, props, loops and particle bodies are named by their index, in the order in which they were
+/// added, each kind by itself. They leave a world only with it (park_character() and park_prop() put them
+/// aside), so an index never comes to mean another one. A wrong one, such as the −1 of what could not be
+/// added, moves nothing: calls that change something answer kInvalidArgument with the index, those that read
+/// give zeros, identities, an empty report or a null Character.
 template <class T>
 class World {
  public:
@@ -237,20 +260,22 @@ class World {
   /// skeleton is copied. The character stands at its rest pose until a target is set and reset() called.
   int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
   int add_prop(const PropSettings& settings, Status& status);
-  Status add_obstacle(const Collider& obstacle);  ///< static, world space (joint unused)
+  /// Static, world space (`joint` unused). `layers`: see CharacterSettings.
+  Status add_obstacle(const Collider& obstacle, std::uint32_t layers = 1);
   /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
-  Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0);
+  Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0,
+                      std::uint32_t layers = 1);
 
   /// Ties two frames together; returns the loop's index, or -1. What is open closes at a walking pace.
   int add_loop(const LoopSettings& settings, Status& status);
   /// Opens a loop (it costs nothing then), or closes it again.
-  void set_loop(int index, bool closed);
+  Status set_loop(int index, bool closed);
   double loop_gap(int index) const;     ///< m, largest of its points, of what was open at first the rest
   Vec3<T> loop_force(int index) const;  ///< N, on side a, world axes
   /// A strand, cloth or soft tissue; returns its index, or -1. It starts at rest where its frame is now.
   int add_particles(const ParticleBody& body, Status& status);
   /// Puts a particle body back to rest in its frame (after a teleport), with its nodes at the given velocity.
-  void reset_particles(int index, const Vec3<T>& velocity = Vec3<T>::Zero());
+  Status reset_particles(int index, const Vec3<T>& velocity = Vec3<T>::Zero());
   Vec3<T> particle(int index, int node) const;           ///< world, m
   Vec3<T> particle_velocity(int index, int node) const;  ///< m/s; of fixed nodes 0
   const CharacterReport& particle_report(int index) const;
@@ -261,13 +286,19 @@ class World {
   int prop_count() const;
   Transform<T> prop_pose(int index) const;
   Vec3<T> prop_velocity(int index) const;
-  void set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
-                const Vec3<T>& angular_velocity);
+  /// Puts a prop there, moving so (m/s and rad/s, world); brings a parked one back.
+  Status set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
+                  const Vec3<T>& angular_velocity);
   /// Set-up: lets an effect act on a character or a prop; each needs its own. Refused with what the effect
-  /// says about its settings. The address stays good while the world lives and the effect is not taken away.
-  Status add_effect(int character, std::unique_ptr<Effect<T>> effect);
-  Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect);
-  void remove_effects(int character);
+  /// says about its settings. The address stays good while the world lives and the effect is not taken away;
+  /// `id`, where asked for, tells whether it was.
+  Status add_effect(int character, std::unique_ptr<Effect<T>> effect, EffectId* id = nullptr);
+  Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect, EffectId* id = nullptr);
+  /// Null where the effect was taken away, or never was this world's.
+  Effect<T>* effect(EffectId id) const;
+  Status remove_effect(EffectId id);
+  /// All of a character's.
+  Status remove_effects(int character);
   /// Set-up: an effect that acts on everybody, by its type: declare<Restitution>(),
   /// declare<ContinuousDetection>(); in a world that begins with nothing, declare<Muscles>() and the other
   /// standard ones, each before the first character is added. Again changes nothing.
@@ -282,12 +313,12 @@ class World {
   Status declare(DeclareTerm<T> term);
 
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
-  void park_prop(int index);
+  Status park_prop(int index);
   const CharacterReport& prop_report(int index) const;
   /// Takes a character out of the world, where it costs nothing and touches nobody, until it is brought back:
   /// onto its target then, as by reset().
-  void park_character(int index);
-  void unpark_character(int index);
+  Status park_character(int index);
+  Status unpark_character(int index);
   bool parked(int index) const;
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
@@ -322,6 +353,7 @@ class World {
   SnapshotField snapshot_field(std::size_t byte) const;
 
  private:
+  friend struct WorldInternals<T>;  // contact_events.h, queries.h and debug_draw.h read it
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 
+#include "sinew/character/contact_reporter.h"
 #include "sinew/character/couplings.h"
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
@@ -22,6 +23,22 @@ struct ParticleSet {
   int state = 0;
   Place place;
 };
+
+/// Where an effect that was added is found, and whose it is.
+template <class T>
+struct EffectSlot {
+  std::uint32_t serial = 0;  ///< 0: free
+  CharacterState<T>* owner = nullptr;
+  Effect<T>* effect = nullptr;
+};
+
+/// What calls answer where an index names nothing.
+inline Status no_such_character(int index) {
+  return Status::error(Code::kInvalidArgument, "no such character", index);
+}
+inline Status no_such_prop(int index) {
+  return Status::error(Code::kInvalidArgument, "no such prop", index);
+}
 
 template <class T>
 struct World<T>::Impl {
@@ -48,6 +65,8 @@ struct World<T>::Impl {
     std::vector<JointJet<T>> jets;
     ObstacleRoom<T> obstacle_room;
     TouchingSets<T> sets;
+    std::size_t number = 0;
+    ContactLog<T>* log = nullptr;  ///< of the island that it steps; null where nobody listens
   };
 
   WorldSettings settings;
@@ -61,10 +80,13 @@ struct World<T>::Impl {
   std::vector<std::span<std::byte>> games;  ///< their bytes are saved with the state
   std::vector<int> loops;                   ///< into couplings
   std::vector<ParticleSet> particles;
+  std::vector<EffectSlot<T>> effect_slots;
   std::vector<Collider> obstacles;
   NeighbourGrid obstacle_grid;
   std::vector<HostObstacle> hosts;
-  std::vector<LaggedForce<T>> lagged;  ///< of the last step, by identity
+  std::vector<std::uint32_t> obstacle_layers, host_layers;  ///< see CharacterSettings::layers
+  std::vector<LaggedForce<T>> lagged;                       ///< of the last step, by identity
+  std::unique_ptr<ContactReporter<T>> reporter;             ///< null: nobody listens
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
   SolveRooms rooms;
@@ -84,6 +106,26 @@ struct World<T>::Impl {
   WorldReport report;
   std::atomic<int> next_heavy{0}, next_light{0};
 
+  /// Null where an index names nothing.
+  CharacterState<T>* character(int index) const { return state_of(characters, index); }
+  CharacterState<T>* prop(int index) const { return state_of(props, index); }
+  CharacterState<T>* state_of(const std::vector<int>& list, int index) const {
+    const bool any = index >= 0 && index < static_cast<int>(list.size());
+    return any ? states[list[index]].get() : nullptr;
+  }
+  Coupling<T>* loop(int index) {
+    const bool any = index >= 0 && index < static_cast<int>(loops.size());
+    return any ? &couplings[loops[index]] : nullptr;
+  }
+  const ParticleSet* particle_set(int index) const {
+    const bool any = index >= 0 && index < static_cast<int>(particles.size());
+    return any ? &particles[index] : nullptr;
+  }
+  const EffectSlot<T>* slot_of(EffectId id) const {
+    const bool any = id.serial != 0 && id.slot < effect_slots.size();
+    return any && effect_slots[id.slot].serial == id.serial ? &effect_slots[id.slot] : nullptr;
+  }
+
   void declare(DeclareTerm<T> term);
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
   SolveRoom room_of_rig(const Rig<T>& rig) const;
@@ -96,7 +138,8 @@ struct World<T>::Impl {
   WorldMemory memory() const;
   void reserve();
   void meet_surroundings();
-  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect);
+  Status add_effect(CharacterState<T>& state, std::unique_ptr<Effect<T>> effect, EffectId* id);
+  void plan_effects_anew(CharacterState<T>& state);
   void park(CharacterState<T>& state);
   bool play_set(std::span<CharacterState<T>* const> members, Worker& worker);
   bool follow_set(std::span<CharacterState<T>* const> members, Worker& worker);
@@ -118,6 +161,9 @@ struct World<T>::Impl {
     return std::span(lagged_new)
         .subspan(first_lagged[island], first_lagged[island + 1] - first_lagged[island]);
   }
+  void log_contacts(int island, Worker& worker);
+  void report_contacts();
+  BodyRef name_of(const TouchingBody& body) const;
   static void work(void* context, int index);
   void keep_sleepers();
   void step_all(T step, const ParallelFor& parallel_for);
@@ -132,6 +178,13 @@ struct World<T>::Impl {
   Status find(const Anchor& anchor, Place& out) const;
   Transform<double> frame_of(const Place& place) const;
   double weight_of(const Place& place) const;
+};
+
+/// For what belongs to worlds and is declared beside them.
+template <class T>
+struct WorldInternals {
+  using Impl = typename World<T>::Impl;
+  static Impl& of(const World<T>& world) { return *world.impl_; }
 };
 
 }  // namespace sinew

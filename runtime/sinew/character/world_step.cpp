@@ -155,6 +155,7 @@ void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   catch_up(s, worker.jets);
+  log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
   s.levels.did = level_of(s);
@@ -167,6 +168,7 @@ template <class T>
 int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
                              std::span<Coupling<T>* const> ties, int spent, Worker& worker,
                              std::span<LaggedForce<T>> lagged_out) {
+  if (worker.log) worker.log->forget(indices);
   if (play_set(members, worker)) return 0;
   for (CharacterState<T>* s : members) catch_up(*s, worker.jets);
   const int count =
@@ -184,6 +186,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
+  log_contacts(island, worker);
   lagged_count[island] = 0;
   // Their ways are predicted by their histories, which must not depend on whether somebody has asked for
   // them.
@@ -250,8 +253,46 @@ void World<T>::Impl::work(void* context, int index) {
   while (!worker.unchecked.empty()) world.check_alike(worker, worker.unchecked[0]);
 }
 
-#define SINEW_STEP_INSTANCES(T)                            \
-  template void World<T>::Impl::step_island(int, Worker&); \
+/// Has the worker write the contacts of an island down, where somebody listens.
+template <class T>
+void World<T>::Impl::log_contacts(int island, Worker& worker) {
+  const int first = first_lagged[island], most = first_lagged[island + 1] - first;
+  worker.log = reporter ? reporter->open(worker.number, island, first, most) : nullptr;
+  worker.stepper.write_contacts_to(worker.log);
+}
+
+/// What the host calls a body that touches.
+template <class T>
+BodyRef World<T>::Impl::name_of(const TouchingBody& body) const {
+  if (body.tree < 0)
+    return body.body < 0            ? BodyRef{}
+           : body.body < kFirstHost ? BodyRef{BodyKind::kObstacle, body.body, 0}
+                                    : BodyRef{BodyKind::kShape, body.body - kFirstHost, 0};
+  const auto among = [&](const std::vector<int>& list) {
+    const auto found = std::lower_bound(list.begin(), list.end(), body.tree);
+    return found != list.end() && *found == body.tree ? static_cast<int>(found - list.begin()) : -1;
+  };
+  if (const int n = among(characters); n >= 0) return {BodyKind::kCharacter, n, body.body};
+  if (const int n = among(props); n >= 0) return {BodyKind::kProp, n, 0};
+  for (std::size_t n = 0; n < particles.size(); ++n) {
+    if (particles[n].state != body.tree) continue;
+    const std::vector<int>& bodies = particles[n].bodies;
+    const auto node = std::find(bodies.begin(), bodies.end(), body.body) - bodies.begin();
+    return {BodyKind::kParticles, static_cast<int>(n), static_cast<int>(node)};
+  }
+  return {};
+}
+
+template <class T>
+void World<T>::Impl::report_contacts() {
+  reporter->report(states, characters, islands, settings, first_lagged,
+                   [this](const TouchingBody& body) { return name_of(body); });
+}
+
+#define SINEW_STEP_INSTANCES(T)                                        \
+  template void World<T>::Impl::step_island(int, Worker&);             \
+  template void World<T>::Impl::report_contacts();                     \
+  template BodyRef World<T>::Impl::name_of(const TouchingBody&) const; \
   template void World<T>::Impl::work(void*, int);
 SINEW_STEP_INSTANCES(float)
 SINEW_STEP_INSTANCES(double)

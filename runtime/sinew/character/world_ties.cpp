@@ -5,6 +5,21 @@
 #include "sinew/optimizer/coupling_rows.h"
 
 namespace sinew {
+namespace {
+
+Status no_such_loop(int index) {
+  return Status::error(Code::kInvalidArgument, "no such loop", index);
+}
+
+Status no_such_particles(int index) {
+  return Status::error(Code::kInvalidArgument, "no such particle body", index);
+}
+
+bool has_node(const ParticleSet* set, int node) {
+  return set && node >= 0 && node < static_cast<int>(set->bodies.size());
+}
+
+}  // namespace
 
 template <class T>
 Status World<T>::Impl::find(const Anchor& anchor, Place& out) const {
@@ -81,21 +96,24 @@ int World<T>::add_loop(const LoopSettings& loop, Status& status) {
 }
 
 template <class T>
-void World<T>::set_loop(int index, bool closed) {
-  Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
-  loop.active = closed;
-  for (CouplingNode<T>& node : loop.nodes) {
+Status World<T>::set_loop(int index, bool closed) {
+  Coupling<T>* const loop = impl_->loop(index);
+  if (!loop) return no_such_loop(index);
+  loop->active = closed;
+  for (CouplingNode<T>& node : loop->nodes) {
     node.gradient.setZero();
     if (node.state >= 0) impl_->states[node.state]->levels.wake = true;
   }
+  return {};
 }
 
 template <class T>
 double World<T>::loop_gap(int index) const {
-  const Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
+  const Coupling<T>* const loop = impl_->loop(index);
+  if (!loop) return 0;
   double gap = 0;
-  for (const Stencil<T>& e : loop.stencils) {
-    const double open = double((reach(loop, e) - e.offset).norm() - e.length);
+  for (const Stencil<T>& e : loop->stencils) {
+    const double open = double((reach(*loop, e) - e.offset).norm() - e.length);
     gap = std::max(gap, e.only_pulls ? open : std::abs(open));
   }
   return gap;
@@ -103,9 +121,10 @@ double World<T>::loop_gap(int index) const {
 
 template <class T>
 Vec3<T> World<T>::loop_force(int index) const {
-  const Coupling<T>& loop = impl_->couplings[impl_->loops[index]];
+  const Coupling<T>* const loop = impl_->loop(index);
   Vec3<T> force = Vec3<T>::Zero();
-  for (std::size_t n = 0; n < loop.nodes.size(); n += 2) force -= loop.nodes[n].gradient;
+  if (!loop) return force;
+  for (std::size_t n = 0; n < loop->nodes.size(); n += 2) force -= loop->nodes[n].gradient;
   return force;
 }
 
@@ -145,7 +164,8 @@ int World<T>::add_particles(const ParticleBody& body, Status& status) {
 }
 
 template <class T>
-void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
+Status World<T>::reset_particles(int index, const Vec3<T>& velocity) {
+  if (!impl_->particle_set(index)) return no_such_particles(index);
   const ParticleSet& set = impl_->particles[index];
   CharacterState<T>& s = *impl_->states[set.state];
   const Transform<T> frame = impl_->frame_of(set.place).template cast<T>();
@@ -157,10 +177,12 @@ void World<T>::reset_particles(int index, const Vec3<T>& velocity) {
     jet.velocity = velocity;
   }
   s.reset_to_target(Vec3<T>::Zero());
+  return {};
 }
 
 template <class T>
 Vec3<T> World<T>::particle(int index, int node) const {
+  if (!has_node(impl_->particle_set(index), node)) return Vec3<T>::Zero();
   const ParticleSet& set = impl_->particles[index];
   if (set.bodies[node] >= 0) return impl_->states[set.state]->model()[set.bodies[node]].translation;
   return Vec3<double>(impl_->frame_of(set.place) * set.body.nodes[node].position).template cast<T>();
@@ -168,6 +190,7 @@ Vec3<T> World<T>::particle(int index, int node) const {
 
 template <class T>
 Vec3<T> World<T>::particle_velocity(int index, int node) const {
+  if (!has_node(impl_->particle_set(index), node)) return Vec3<T>::Zero();
   const ParticleSet& set = impl_->particles[index];
   if (set.bodies[node] < 0) return Vec3<T>::Zero();
   return impl_->states[set.state]->history.velocity[set.bodies[node]];
@@ -175,7 +198,9 @@ Vec3<T> World<T>::particle_velocity(int index, int node) const {
 
 template <class T>
 const CharacterReport& World<T>::particle_report(int index) const {
-  return impl_->states[impl_->particles[index].state]->report;
+  static const CharacterReport none;
+  const ParticleSet* const set = impl_->particle_set(index);
+  return set ? impl_->states[set->state]->report : none;
 }
 
 template <class T>
@@ -188,11 +213,11 @@ int World<T>::particles_count() const {
   template Transform<double> World<T>::Impl::frame_of(const Place&) const; \
   template double World<T>::Impl::weight_of(const Place&) const;           \
   template int World<T>::add_loop(const LoopSettings&, Status&);           \
-  template void World<T>::set_loop(int, bool);                             \
+  template Status World<T>::set_loop(int, bool);                           \
   template double World<T>::loop_gap(int) const;                           \
   template Vec3<T> World<T>::loop_force(int) const;                        \
   template int World<T>::add_particles(const ParticleBody&, Status&);      \
-  template void World<T>::reset_particles(int, const Vec3<T>&);            \
+  template Status World<T>::reset_particles(int, const Vec3<T>&);          \
   template Vec3<T> World<T>::particle(int, int) const;                     \
   template Vec3<T> World<T>::particle_velocity(int, int) const;            \
   template const CharacterReport& World<T>::particle_report(int) const;    \

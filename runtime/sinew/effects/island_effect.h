@@ -58,6 +58,8 @@ class IslandEffect {
                              const Vec3<double>& /*gravity*/, T /*h*/, double /*budget*/) {
     return false;
   }
+  /// N·s along its normal that this has given a contact.
+  virtual T pushed(const Contact<T>& /*contact*/) const { return T(0); }
 };
 
 /// Makes one of its type; what World::declare takes.

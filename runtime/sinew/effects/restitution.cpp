@@ -238,6 +238,7 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t k = 0; k < n; ++k) change_[k] += share * impulse_[i] * answers_[i * n + k];
+  for (T& given : impulse_) given *= share;
   for (std::size_t t = 0; t < trees.size(); ++t) {
     const IslandTree<T>& tree = trees[t];
     move(tree, first_[t]);
@@ -247,6 +248,13 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
     tree.steps_unchanged = kTrusted;
   }
   return true;
+}
+
+template <class T>
+T Restitution<T>::pushed(const Contact<T>& contact) const {
+  for (std::size_t i = 0; i < impacts_.size(); ++i)
+    if (impacts_[i].contact == &contact) return impulse_[3 * i];
+  return T(0);
 }
 
 template class Restitution<float>;

@@ -35,6 +35,7 @@ class Restitution final : public IslandEffect<T> {
   /// Costs three tree solves per bouncing contact.
   bool change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h,
                      double budget) override;
+  T pushed(const Contact<T>& contact) const override;
 
  private:
   static constexpr int kMost = 48;             ///< bouncing contacts of one step; more stay inelastic

@@ -289,6 +289,7 @@ template <class T>
 void EndVelocities<T>::add(const Contact<T>& c, T most, T cone, const Vec3<T>& rubbed) {
   Row* normal = add_point(c, c.point, c.normal);
   if (!normal) return;
+  normal->contact = c.id;
   normal->most = most;
   normal->friction = c.friction;
   normal->cone = cone;
@@ -555,6 +556,7 @@ bool EndVelocities<T>::strike(T h, T slow) {
           [&](Row& row) { most = row.gap > T(kTouches) * row.size ? most : std::max(most, press_row(row)); });
       if (most < T(kLeft)) break;
     }
+    for (Row& row : pressed_) row.struck += row.impulse;
     for (int u = 0; u < unknowns; ++u) late_[u] += now / h * (done_[u] - before_[u]);
   }
   spread();

@@ -72,6 +72,14 @@ class EndVelocities {
   void add(int tree, const JointRow<T>& row, T most);
   /// Impulses that see to that. O(those that act · the depth of their bodies).
   void press();
+  /// Calls visit(Contact::id, N·s) for all contacts that press() or strike() has pushed apart since begin().
+  template <class Visit>
+  void for_each_pushed(const Visit& visit) const {
+    for (const Row& row : pressed_) {
+      const T pushed = row.struck > T(0) ? row.struck : row.impulse;
+      if (row.contact != 0 && pushed > T(0)) visit(row.contact, pushed);
+    }
+  }
 
   /// A contact that may strike within a step that begins here, after its gap, at its speed and `drift` (m/s).
   void add_striking(const Contact<T>& contact, T drift);
@@ -105,6 +113,7 @@ class EndVelocities {
     ArticulatedParts<T> matrix;
   };
   struct Row {
+    std::uint64_t contact = 0;  ///< whose normal it is
     int tree[2] = {-1, -1};
     int entry[2] = {0, 0},
         count[2] = {0, 0};           ///< of a side in `rows_`: its tree's unknowns, to the last that acts
@@ -114,6 +123,7 @@ class EndVelocities {
     T unit = T(1);      ///< m/s or rad/s, by a human's: see Scale
     T mobility = T(0);  ///< 1/kg
     T impulse = T(0);   ///< N·s, N·m·s
+    T struck = T(0);    ///< the same of all strikes
     T least = T(0), most = T(0);  ///< of it
     T gap = T(0), drift = T(0);   ///< m, m/s or rad, rad/s; see add_striking()
     T size = T(1);                ///< m or rad, by a human's
