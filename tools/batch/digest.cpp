@@ -1,6 +1,8 @@
 #include "batch/digest.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 
 namespace sinew::batch {
@@ -9,8 +11,12 @@ namespace fs = std::filesystem;
 
 void Digest::add(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const unsigned char*>(data);
-  for (std::size_t k = 0; k < size; ++k) hash_ = (hash_ ^ bytes[k]) * 1099511628211ull;
-  hash_ = (hash_ ^ size) * 1099511628211ull;
+  for (std::size_t k = 0; k < size; k += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + k, std::min(sizeof word, size - k));
+    mix(word);
+  }
+  mix(size);
 }
 
 void Digest::add_file(const fs::path& path) {

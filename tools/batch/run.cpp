@@ -42,6 +42,7 @@ class Runner {
   const Plan& plan_;
   const Run& how_;
   std::vector<Unit> units_;
+  std::vector<bool> settled_;  ///< has a result, whose bytes were compared or made here
   std::map<std::size_t, Attempt> attempts_;
   Error fault_;  ///< of the whole
 };
@@ -49,6 +50,7 @@ class Runner {
 Error Runner::collect() {
   for (const int shard : shards_of_part(plan_, how_.part, how_.parts))
     if (Error error = read_shard(plan_, shard, units_)) return error;
+  settled_.assign(units_.size(), false);
   if (how_.again)
     for (const Unit& unit : units_)
       if (find_result(plan_, unit, false).state == "failed") drop_result(plan_, unit);
@@ -110,13 +112,15 @@ void Runner::finish(const Finished& process, RunCounts& out) {
   for (std::size_t at; (at = why.find(attempt.work.string())) != std::string::npos;)
     why.replace(at, attempt.work.string().size(), "OUTPUT");
   keep(unit, attempt.work, done ? "done" : "failed", why, seconds);
+  settled_[process.item] = true;
 }
 
 bool Runner::pass(RunCounts& out) {
   std::vector<std::size_t> left;
   std::map<std::string, std::size_t> keys;  // of equal units one is made
   for (std::size_t n = 0; n < units_.size() && !fault_; ++n) {
-    if (!find_result(plan_, units_[n], true).state.empty() || is_hopeless(units_[n])) continue;
+    settled_[n] = settled_[n] || !find_result(plan_, units_[n], true).state.empty() || is_hopeless(units_[n]);
+    if (settled_[n]) continue;
     if (keys.emplace(units_[n].key, n).second) left.push_back(n);
   }
   if (left.empty() || fault_) return false;
