@@ -29,6 +29,7 @@ for jobs in 1 2 4; do
     -v j=$jobs -v wall=$wall 'BEGIN {printf "-j %d: %d assets, %.2f s of processor time each; the batch itself adds %.1f %%; %.1f s by the clock\n", j, u, all / u, 100 * own / all, wall / 1000}'
 done
 echo "again, all there: $(processor "$sinew" batch run "$work/run1" -q)"
+echo "merge: $(processor "$sinew" batch merge "$work/run1" -q)"
 
 mkdir "$work/many"
 seq "$many" | awk -v folder="$work/many" '{
