@@ -130,7 +130,7 @@ std::string examples(const json& command) {
 
 std::string head(const std::string& name, const json& what) {
   return ".\\\" Made by `sinew man` from the definitions of the command line.\n.TH " + text(upper(name)) +
-         " 1 \"\" \"Sinew " + version() + "\" \"Sinew\"\n.SH NAME\n" + text(name) + " \\-\n" +
+         " 1 \"\" \"Sinew " + version() + "\" \"Sinew\"\n.SH NAME\n" + text(name) + " \\- " +
          text(folded(what["description"])) + "\n";
 }
 
