@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A batch on Slurm: a controller and two nodes on this machine's loopback, in a directory of their own. A node is killed with
-# its work in mid-run, then the controller; what is merged has to be the same bytes as that of one process on one machine.
+# A batch on Slurm: a controller and two nodes on this machine's loopback, in a directory of their own. A shard is
+# killed in mid-run, then a node with its work, then the controller; what is merged has to be the same bytes as that of one process on one machine.
 # Usage: SINEW_SLURM=1 tests/batch/slurm.sh SINEW. As root (slurmd starts tasks as their owner). Takes a minute, most of it
 # until Slurm misses its node: a nightly test. Ends with 77, skipped, where Slurm is not installed (apt-get install slurm-wlm munge)
 # or SINEW_SLURM is not set.
@@ -85,7 +85,7 @@ until_true() {  # until_true SECONDS WHAT COMMAND…
     if [ $SECONDS -ge $end ]; then
       echo "slurm: no $what within $seconds s" >&2
       squeue -r 2>&1 | tail -n 30 >&2 || true
-      tail -n 20 "$farm"/*.log >&2
+      tail -n 20 "$farm"/*.log "$farm"/run/slurm/*.log >&2
       exit 1
     fi
     sleep 0.2
@@ -134,6 +134,10 @@ echo "farm is up: $SECONDS s"
 "$sinew" batch submit "$farm/run"
 until_true 30 "running task on n2" sh -c '[ -n "$(squeue -h -r -o %N -t RUNNING | grep n2)" ]'
 sleep 0.5
+for shard in $(ps -e -o pid=,args= | awk -v run="batch run $farm/run" 'index($0, run) && !/awk/ {print $1}' | head -n 1); do
+  kill -9 "$shard" && echo "a shard killed: $SECONDS s"  # its task runs it again
+done
+sleep 0.3
 kill_node n2
 echo "node n2 killed: $SECONDS s"
 sleep 6  # the controller writes down within five seconds what it was given, and loses what it has not yet

@@ -9,7 +9,7 @@ namespace {
 using nlohmann::json;
 
 bool is_flag(const json& option) {
-  return option["value"] == "";
+  return option["value"].get<std::string>().empty();
 }
 
 bool is_positional(const json& option) {

@@ -4,17 +4,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "cli/batch.h"
-#include "cli/completion.h"
 #include "cli/convert_folder.h"
 #include "cli/definitions.h"
 #include "cli/evaluate.h"
 #include "cli/export.h"
 #include "cli/files.h"
 #include "cli/graph.h"
-#include "cli/man_page.h"
+#include "cli/manual.h"
 #include "cli/memory.h"
+#include "cli/render_folder.h"
 #include "cli/retarget.h"
 #include "cli/study_program.h"
 #include "cli/terminal.h"
@@ -331,10 +332,14 @@ struct RenderCommand {
   std::string input, output, scheme, telemetry_file;
   SourceOptions source;
   sinew::render::Options options;
-  bool demo = false, no_overlay = false, json_output = false;
+  bool demo = false, no_overlay = false, json_output = false, still = false;
   std::string size;
+  int jobs = 1;
 
-  Error run() {
+  /// `app`: the command, whose options a folder's renderings get.
+  Error run(const CLI::App& app) {
+    if (std::filesystem::is_directory(input)) return run_folder(app);
+    if (still) return {"--still is for folders; a single picture is -o NAME.png"};
     if (!size.empty() && std::sscanf(size.c_str(), "%dx%d", &options.width, &options.height) != 2)
       return {"--size is not WIDTHxHEIGHT"};
     options.overlay = !no_overlay;
@@ -355,6 +360,24 @@ struct RenderCommand {
   }
 
  private:
+  Error run_folder(const CLI::App& app) const {
+    cli::FolderRender folder{input, output, {}, jobs, still, json_output};
+    const std::set<std::string> own = {"--output", "--jobs", "--still", "--json", "--quiet", "--telemetry"};
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->count() == 0 || option->get_lnames().empty()) continue;
+      std::vector<std::string> words = {"--" + option->get_lnames()[0]};
+      if (own.count(words[0]) > 0) continue;
+      if (option->get_items_expected_max() > 0)
+        words.insert(words.end(), option->results().begin(), option->results().end());
+      folder.options.push_back(std::move(words));
+    }
+    int failed = 0;
+    if (Error error = cli::render_folder(folder, failed)) return error;
+    if (failed > 0)
+      return {std::to_string(failed) + (failed == 1 ? " file" : " files") + " could not be rendered"};
+    return {};
+  }
+
   Error render_scene(const sinew::scene::Scene& scene) {
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
@@ -454,59 +477,6 @@ struct ExportCommand {
   }
 };
 
-/// The command line told to shells and to man.
-struct DefinitionsCommand {
-  std::string shell, page, directory;
-  CLI::App *completion = nullptr, *man = nullptr;
-
-  void add(CLI::App& app) {
-    completion =
-        app.add_subcommand("completion",
-                           "completion of this command line in a shell\n"
-                           "Examples: source <(sinew completion bash)\n"
-                           "          sinew completion fish > ~/.config/fish/completions/sinew.fish");
-    completion->add_option("shell", shell, "whose script is printed")
-        ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-    man = app.add_subcommand("man",
-                             "manual pages, made from what --help says\n"
-                             "Examples: sinew man render | man -l -\n"
-                             "          sinew man -o out/man1");
-    man->add_option("page", page, "page that is printed: of a command")
-        ->type_name("COMMAND")
-        ->default_str("sinew");
-    man->add_option("-o,--output", directory, "all pages into a directory instead")->type_name("DIR");
-  }
-  bool parsed() const { return completion->parsed() || man->parsed(); }
-
-  /// Of this program and of the one that it becomes for studies.
-  static json described(const CLI::App& app) {
-    json all = cli::describe(app);
-    if (const json studies = cli::describe_study_program(); !studies.is_null()) cli::merge(all, studies);
-    return all;
-  }
-
-  Error run(const CLI::App& app) const {
-    const json all = described(app);
-    if (completion->parsed()) {
-      std::fputs(cli::completion(shell, all).c_str(), stdout);
-      return {};
-    }
-    const auto pages = cli::man_pages(all);
-    if (directory.empty()) {
-      const auto found = pages.find(page.empty() ? "sinew.1" : "sinew-" + page + ".1");
-      if (found == pages.end()) return {"there is no command '" + page + "'"};
-      std::fputs(found->second.c_str(), stdout);
-      return {};
-    }
-    std::error_code code;
-    std::filesystem::create_directories(directory, code);
-    for (const auto& [name, text] : pages)
-      if (Error error = cli::write_atomically(directory + "/" + name, text)) return error;
-    return {};
-  }
-};
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -586,10 +556,13 @@ int main(int argc, char** argv) try {
   s->footer("Mechanisms have options of their own: sinew simulate MECHANISM.json --help");
 
   RenderCommand render;
-  auto* r = app.add_subcommand(
-      "render", "turntable or scene video, headless\nExample: sinew render push.json -o push.mp4");
+  auto* r =
+      app.add_subcommand("render",
+                         "turntable or scene video, headless\nExamples: sinew render push.json -o push.mp4\n"
+                         "          sinew render art/characters --turntable -o out/turntables -j 4");
   r->add_option("input", render.input, "scene (.json), asset or source file")->required()->type_name("FILE");
-  r->add_option("-o,--output", render.output, ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence)")
+  r->add_option("-o,--output", render.output,
+                ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence); for a folder, a directory")
       ->required()
       ->type_name("FILE");
   r->add_option("--size", render.size, "pixels, even")->type_name("WIDTHxHEIGHT")->default_str("1280x720");
@@ -621,6 +594,10 @@ int main(int argc, char** argv) try {
   r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  r->add_option("-j,--jobs", render.jobs, "folders: renderings at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  r->add_flag("--still", render.still, "folders: a picture each instead of a video");
   r->add_option("--clip", render.options.clip, "assets: clip to play, by name")
       ->type_name("NAME")
       ->default_str("rest pose");
@@ -664,11 +641,11 @@ int main(int argc, char** argv) try {
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
 
-  DefinitionsCommand definitions;
-  definitions.add(app);
+  cli::ManualCommand manual;
+  manual.add(app);
   cli::complete_definitions(app);
   if (argc == 2 && std::string_view(argv[1]) == "--describe") {
-    std::puts(cli::json_text(DefinitionsCommand::described(app)).c_str());
+    std::puts(cli::json_text(cli::ManualCommand::described(app)).c_str());
     return 0;
   }
 
@@ -696,10 +673,10 @@ int main(int argc, char** argv) try {
     error = exporting.run();
   else if (b->parsed())
     error = batch.run();
-  else if (definitions.parsed())
-    error = definitions.run(app);
+  else if (manual.parsed())
+    error = manual.run(app);
   else
-    error = render.run();
+    error = render.run(*r);
   if (!error) return 0;
   cli::say_error(error.message);
   return b->parsed() ? batch.exit_code : 1;

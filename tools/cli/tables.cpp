@@ -45,7 +45,7 @@ Error TablesCommand::run() const {
     if (Error error = write_atomically(path, content)) return error;
   if (const std::string why = study::plot_chains(chains + ".csv", chains + ".png"); !why.empty())
     say_error(why);
-  const bool bold = styled("", Style::kBold, STDOUT_FILENO) != "";
+  const bool bold = !styled("", Style::kBold, STDOUT_FILENO).empty();
   if (json_output)
     std::puts(json_text(summary).c_str());
   else
