@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A batch on Slurm: a controller and two nodes on this machine's loopback, in a directory of their own. A shard is
-# killed in mid-run, then a node with its work, then the controller; what is merged has to be the same bytes as that of one process on one machine.
+# A batch on Slurm: a controller and two nodes on this machine's loopback, in a directory of their own. A shard is killed in
+# mid-run, then a node with its work, then the controller; what is merged has to be the same bytes as that of one process
+# on one machine.
 # Usage: SINEW_SLURM=1 tests/batch/slurm.sh SINEW. As root (slurmd starts tasks as their owner). Takes a minute, most of it
 # until Slurm misses its node: a nightly test. Ends with 77, skipped, where Slurm is not installed (apt-get install slurm-wlm munge)
 # or SINEW_SLURM is not set.
@@ -150,9 +151,15 @@ until_true 30 "controller" scontrol ping
 until_true 60 "dead node noticed" sh -c '[ -n "$(sinfo -h -n n2 -t down)" ]'
 squeue -r -o '%i %T %r %S' || true
 start n2 slurmd -D -N n2 -f "$SLURM_CONF"
-# Slurm holds what it has requeued for two minutes; a user in a hurry says:
+# What an administrator does who is in a hurry. Slurm holds what it has requeued for two minutes. And a controller that has
+# lost its last seconds starts a task anew that is running; its node refuses that ("already running"), and both are held.
 release() {
-  for job in $(squeue -h -r -o '%i %r' -t PENDING | awk '$2 == "BeginTime" {print $1}'); do scontrol update "jobid=$job" starttime=now || true; done
+  local job node
+  for job in $(squeue -h -r -o '%i %r' -t PENDING | awk '$2 == "BeginTime" {print $1}'); do
+    scontrol update "jobid=$job" starttime=now || true
+  done
+  for job in $(squeue -h -r -o '%i %r' -t PENDING | awk '/held/ {print $1}'); do scontrol release "$job" || true; done
+  for node in $(sinfo -h -N -o %n -t drained,draining,drng,drain); do scontrol update "nodename=$node" state=resume || true; done
 }
 finished() {
   release

@@ -56,7 +56,8 @@ TEST(Manners, EveryOptionSaysWhatItDoesAndWhatHoldsWithoutIt) {
     const std::string value = option["value"];
     const bool may_be_absent =
         value.empty() || value == "FILE" || value == "DIR" || option["required"] == true;
-    EXPECT_TRUE(may_be_absent || !option["default"].get<std::string>().empty()) << command.path << " " << name << ": no default";
+    EXPECT_TRUE(may_be_absent || !option["default"].get<std::string>().empty())
+        << command.path << " " << name << ": no default";
   });
   EXPECT_GT(counted, 150);
 }

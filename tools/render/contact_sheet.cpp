@@ -54,7 +54,7 @@ void draw_fault(const Pen& pen, const std::string& fault, double x, double y) {
     const std::size_t end = std::min(fault.find(' ', begin), fault.size());
     const std::string longer = line + (line.empty() ? "" : " ") + fault.substr(begin, end - begin);
     if (!line.empty() && pen.width(kText, longer) > kCell - 2 * kGap) {
-      pen.write(x + kGap, at, kText, line, pen.warm);
+      pen.write(x + kGap, at, kText, pen.fitted(kText, line, kCell - 2 * kGap), pen.warm);
       at += kLine;
       line = fault.substr(begin, end - begin);
     } else {
@@ -77,7 +77,8 @@ Image sheet_of(const SheetEntry* entries, std::size_t count) {
   pen.fill({0, 0, double(image.width), double(image.height)}, {0.07, 0.08, 0.10});
   for (int k = 0; k < static_cast<int>(count); ++k) {
     const SheetEntry& entry = entries[k];
-    const double x = kGap + k % columns * (kCell + kGap), y = kGap + k / columns * (kCell + kTitle + kGap);
+    const int row = k / columns, column = k % columns;
+    const double x = kGap + column * (kCell + kGap), y = kGap + row * (kCell + kTitle + kGap);
     if (!draw_picture(pen, entry.picture, x, y)) draw_fault(pen, entry.fault, x, y);
     pen.write(x, y + kCell + 0.7 * kTitle, kText, pen.fitted(kText, entry.title, kCell), pen.text);
   }
