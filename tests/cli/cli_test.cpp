@@ -202,5 +202,37 @@ TEST(Command, RendersAPictureOfAnAsset) {
   EXPECT_GT(fs::file_size(out), 5000u);  // a blank picture of this size takes well below 2 kB
 }
 
+TEST(Command, RendersAFolderWithAContactSheet) {
+  const std::string in = own_directory() + "gallery", out = own_directory() + "rendered";
+  fs::create_directories(in + "/sub");
+  fs::copy_file(kAsset, in + "/hero.sinew", fs::copy_options::overwrite_existing);
+  fs::copy_file(source_dir() + "/assets/mechanisms/README.md", in + "/sub/bad.glb",
+                fs::copy_options::overwrite_existing);
+  const std::string small = " --size 64x64 --quality fast --samples 1";
+  const Outcome stills = sinew("render " + in + " --still -j 2 --json -o " + out + small);
+  EXPECT_EQ(stills.code, 1) << stills.out;
+  EXPECT_NE(stills.out.find("1 file could not be rendered"), std::string::npos) << stills.out;
+  const json report = json::parse(stills.out.substr(0, stills.out.find('\n')));
+  EXPECT_EQ(report["files"][0]["output"], out + "/hero.png");
+  EXPECT_NE(report["files"][1]["error"].get<std::string>().find("bad.glb"), std::string::npos);
+  EXPECT_TRUE(fs::exists(out + "/hero.png"));
+  EXPECT_FALSE(fs::exists(out + "/sub/bad.png"));
+  // Two cells of 240 pixels side by side, a gap of 12 around them, 28 for a title: of the PNG's header,
+  // big-endian.
+  const std::string sheet = bytes_of(out + "/contact_sheet.png");
+  ASSERT_GT(sheet.size(), 1000u);
+  const auto at = [&](std::size_t k) {
+    return static_cast<unsigned char>(sheet[k]) << 8 | static_cast<unsigned char>(sheet[k + 1]);
+  };
+  EXPECT_EQ(at(18), 2 * 240 + 3 * 12);
+  EXPECT_EQ(at(22), 240 + 28 + 2 * 12);
+#ifdef SINEW_VIDEO
+  const Outcome videos = sinew("render " + in + " --turntable --frames 4 -o " + out + small);
+  EXPECT_EQ(videos.code, 1) << videos.out;
+  EXPECT_GT(fs::file_size(out + "/hero.mp4"), 500u);
+#endif
+  expect_refused("render " + kAsset + " --still -o " + out + "/x.png", "--still is for folders");
+}
+
 }  // namespace
 }  // namespace sinew::test

@@ -99,7 +99,7 @@ TEST(ExportCommand, BadInputIsNamedInOneLineAndNothingIsLeftBehind) {
 TEST(ExportCommand, HelpSaysEveryDefault) {
   const Outcome help = sinew("export --help");
   EXPECT_EQ(help.code, 0);
-  for (const char* words : {"=60", "=linear", "=skin", "default: all", "Examples", "Exit codes"})
+  for (const char* words : {"=60", "=linear", "=skin", "NAME=all", "Examples", "Exit codes"})
     EXPECT_NE(help.out.find(words), std::string::npos) << words << "\n" << help.out;
 }
 

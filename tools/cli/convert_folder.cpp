@@ -1,35 +1,29 @@
 #include "cli/convert_folder.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
-#include <regex>
 #include <set>
 #include <thread>
 
+#include "batch/digest.h"
+#include "batch/processes.h"
+#include "batch/sources.h"
 #include "cli/convert_page.h"
 #include "cli/files.h"
-
-extern char** environ;
+#include "cli/terminal.h"
 
 namespace sinew::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using batch::Digest;
+using batch::Finished;
 using convert::Error;
 using nlohmann::json;
 
@@ -41,81 +35,17 @@ struct Job {
   json report;
 };
 
-/// FNV-1a of 64 bits: tells changes, not attacks.
-class Digest {
- public:
-  void add(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t k = 0; k < size; ++k) hash_ = (hash_ ^ bytes[k]) * 1099511628211ull;
-    hash_ = (hash_ ^ size) * 1099511628211ull;
-  }
-  void add(const std::string& text) { add(text.data(), text.size()); }
-  void add_file(const fs::path& path) {
-    std::error_code code;
-    if (!fs::is_regular_file(path, code)) return add("missing");  // sources may name devices
-    std::ifstream file(path, std::ios::binary);
-    char block[1 << 16];
-    while (file.read(block, sizeof block) || file.gcount() > 0)
-      add(block, static_cast<std::size_t>(file.gcount()));
-  }
-  std::string text() const {
-    char out[17];
-    std::snprintf(out, sizeof out, "%016llx", static_cast<unsigned long long>(hash_));
-    return out;
-  }
-
- private:
-  std::uint64_t hash_ = 14695981039346656037ull;
-};
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-bool is_source(const fs::path& path) {
-  static const std::set<std::string> kEndings = {".glb", ".gltf", ".fbx", ".bvh", ".dae", ".urdf"};
-  return kEndings.count(lower(path.extension().string())) > 0;
-}
-
-/// Sources below a folder, with their places in it, in the order of their names.
-Error search(const fs::path& folder, std::map<fs::path, fs::path>& found) {
-  std::error_code code;
-  fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, code);
-  if (code) return {folder.string() + ": cannot be searched: " + code.message()};
-  for (; at != fs::recursive_directory_iterator(); at.increment(code)) {
-    if (code) return {folder.string() + ": cannot be searched: " + code.message()};
-    if (at->is_regular_file(code) && is_source(at->path()))
-      found[at->path()] = at->path().lexically_relative(folder);
-  }
-  return {};
-}
-
-/// The jobs of all inputs. Sources that differ by their endings alone keep these in their outputs' names.
+/// The jobs of all inputs.
 Error plan(const FolderConversion& what, std::vector<Job>& jobs) {
-  std::map<fs::path, fs::path> found;
-  std::error_code code;
-  for (const std::string& input : what.inputs) {
-    if (fs::is_directory(input, code)) {
-      if (Error error = search(input, found)) return error;
-    } else {
-      found[input] = fs::path(input).filename();
-    }
-  }
+  std::map<fs::path, fs::path> found, names;
+  for (const std::string& input : what.inputs)
+    if (Error error = batch::find_sources(input, batch::source_endings(), found)) return error;
   if (found.empty()) return {what.inputs[0] + ": no glTF, FBX, BVH, COLLADA or URDF file in it"};
-  std::map<fs::path, int> wanted;
-  for (const auto& [source, place] : found) ++wanted[fs::path(place).replace_extension()];
-  std::map<fs::path, fs::path> taken;
+  if (Error error = batch::name_outputs(found, ".sinew", names)) return error;
   const fs::path root = what.output;
-  for (const auto& [source, place] : found) {
-    fs::path name = fs::path(place).replace_extension();
-    if (wanted[name] > 1) name = place;
-    name += ".sinew";
-    if (const auto [other, fresh] = taken.emplace(name, source); !fresh)
-      return {source.string() + ": would become the same file as " + other->second.string()};
+  for (const auto& [source, name] : names)
     jobs.push_back(
         {source, root / name, root / ".sinew" / fs::path(name).replace_extension(".json"), "", "", {}});
-  }
   return {};
 }
 
@@ -166,57 +96,17 @@ bool is_up_to_date(Job& job, const FolderConversion& what, const std::string& pr
   return true;
 }
 
-/// A conversion that runs: its process, and where it writes to.
-struct Running {
-  std::size_t job = 0;
-  fs::path out, err;
-};
-
-std::string whole(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// Starts this program with other arguments; −1 where that is not possible.
-pid_t start(std::vector<std::string> arguments, const Running& to) {
-  arguments.insert(arguments.begin(), "sinew");
-  std::vector<char*> raw;
-  for (std::string& argument : arguments) raw.push_back(argument.data());
-  raw.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, to.out.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, to.err.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0600);
-  pid_t process = -1;
-  const int code = posix_spawn(&process, "/proc/self/exe", &actions, nullptr, raw.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  return code == 0 ? process : -1;
-}
-
 std::vector<std::string> conversion_of(const Job& job, const FolderConversion& what) {
   std::vector<std::string> arguments = {"convert", job.source.string(), "--json", "-o", job.output.string()};
   arguments.insert(arguments.end(), what.options.begin(), what.options.end());
   return arguments;
 }
 
-/// Why a conversion failed, in one line.
-std::string reason(int status, const std::string& err) {
-  if (status == -1) return "no process could be started for it";
-  if (WIFSIGNALED(status)) return "the converter was ended by signal " + std::to_string(WTERMSIG(status));
-  std::string line = err.substr(0, err.find('\n'));
-  if (line.rfind("sinew: ", 0) == 0) line.erase(0, 7);
-  return line.empty() ? "the converter ended with code " + std::to_string(WEXITSTATUS(status)) : line;
-}
-
-void finish(Job& job, const FolderConversion& what, const std::string& program, const Running& from,
-            int status) {
-  job.report = json::parse(whole(from.out), nullptr, false);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !job.report.is_object()) {
+void finish(Job& job, const FolderConversion& what, const std::string& program, const Finished& process) {
+  job.report = json::parse(batch::whole_file(process.out), nullptr, false);
+  if (!process.succeeded() || !job.report.is_object()) {
     job.state = "failed";
-    job.error = reason(status, whole(from.err));
+    job.error = batch::reason(process, "the converter");
     job.report = json::object();
   } else {
     job.state = "converted";
@@ -225,40 +115,8 @@ void finish(Job& job, const FolderConversion& what, const std::string& program, 
   }
 }
 
-/// Runs one process for each of `left`, `at_once` at a time: arguments(n) of it, and ended(n, where it wrote,
-/// status); status −1: it could not be started.
-template <class Arguments, class Ended>
-void run(const std::vector<std::size_t>& left, int at_once, const fs::path& scratch, const char* doing,
-         const Arguments& arguments, const Ended& ended) {
-  const auto progress = progress_line(doing);
-  std::map<pid_t, Running> running;
-  std::size_t next = 0;
-  int done = 0;
-  const auto finished = [&](const Running& of, int status) {
-    ended(of, status);
-    std::error_code code;
-    fs::remove(of.out, code);
-    fs::remove(of.err, code);
-    progress(++done, static_cast<int>(left.size()));
-  };
-  while (next < left.size() || !running.empty()) {
-    while (next < left.size() && running.size() < static_cast<std::size_t>(at_once)) {
-      const std::size_t n = left[next++];
-      const std::string name = std::to_string(getpid()) + "." + std::to_string(n);
-      const Running to{n, scratch / (name + ".out"), scratch / (name + ".err")};
-      const pid_t process = start(arguments(n), to);
-      if (process > 0)
-        running[process] = to;
-      else
-        finished(to, -1);
-    }
-    if (running.empty()) continue;
-    int status = 0;
-    const auto of = running.find(waitpid(-1, &status, 0));
-    if (of == running.end()) continue;  // interrupted
-    finished(of->second, status);
-    running.erase(of);
-  }
+batch::Processes processes(const FolderConversion& what, const char* doing) {
+  return {what.jobs, fs::path(what.output) / ".sinew", 0, doing};
 }
 
 fs::path still_of(const Job& job) {
@@ -274,29 +132,13 @@ void make_stills(const std::vector<Job>& jobs, const FolderConversion& what) {
     if (jobs[n].state != "failed" && (missing || made < fs::last_write_time(jobs[n].output, code)))
       left.push_back(n);
   }
-  run(
-      left, what.jobs, fs::path(what.output) / ".sinew", "drawing",
+  batch::run_processes(
+      processes(what, "drawing"), left,
       [&](std::size_t n) {
         return std::vector<std::string>{"render", jobs[n].output.string(),   "--size", "320x320",
                                         "-o",     still_of(jobs[n]).string()};
       },
-      [](const Running&, int) {});
-}
-
-/// Removes half-written files of processes that were killed: NAME.tmpPID, PID.N.out, PID.N.err.
-void clear_leftovers(const fs::path& directory) {
-  static const std::regex kHalf(R"((?:.*\.tmp(\d+))|(?:(\d+)\.\d+\.(?:out|err)))");
-  std::error_code code;
-  std::vector<fs::path> dead;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory, code)) {
-    std::smatch found;
-    const std::string name = entry.path().filename().string();
-    if (name.size() > 255 || !std::regex_match(name, found, kHalf)) continue;
-    const long process = std::strtol(found[found[1].matched ? 1 : 2].str().c_str(), nullptr, 10);
-    if (process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
-      dead.push_back(entry.path());
-  }
-  for (const fs::path& path : dead) fs::remove(path, code);
+      [](const Finished&) {});
 }
 
 Error make_directories(const std::vector<Job>& jobs, const fs::path& root) {
@@ -308,7 +150,7 @@ Error make_directories(const std::vector<Job>& jobs, const fs::path& root) {
     if (code || !fs::is_directory(path)) return {path.string() + ": cannot be made: " + code.message()};
   }
   if (Error error = check_writable((root / "x").string())) return error;
-  for (const fs::path& path : wanted) clear_leftovers(path);
+  for (const fs::path& path : wanted) batch::clear_leftovers(path);
   return {};
 }
 
@@ -324,15 +166,15 @@ json row_of(const Job& job) {
 
 void print(const Job& job) {
   if (job.state == "failed") {
-    std::printf("FAILED      %s\n", job.error.c_str());
+    say("%s      %s\n", styled("FAILED", Style::kRed, STDOUT_FILENO).c_str(), job.error.c_str());
     return;
   }
-  std::printf("%-11s %s", job.state.c_str(), job.output.c_str());
+  say("%-11s %s", job.state.c_str(), job.output.c_str());
   if (!job.report.empty())
-    std::printf(": joints %d, simulated %d, %.1f kg, clips %zu", job.report.value("joints", 0),
-                job.report.value("simulated_joints", 0), job.report.value("total_mass_kg", 0.0),
-                job.report.contains("clips") ? job.report["clips"].size() : 0);
-  std::printf("%s%s\n", job.error.empty() ? "" : "; its record: ", job.error.c_str());
+    say(": joints %d, simulated %d, %.1f kg, clips %zu", job.report.value("joints", 0),
+        job.report.value("simulated_joints", 0), job.report.value("total_mass_kg", 0.0),
+        job.report.contains("clips") ? job.report["clips"].size() : 0);
+  say("%s%s\n", job.error.empty() ? "" : "; its record: ", job.error.c_str());
 }
 
 /// Why sources could not be converted, by their keys: of a program that goes on.
@@ -362,10 +204,9 @@ Error convert_once(const FolderConversion& what, const std::string& program, std
   if (what.dry_run)
     for (const std::size_t n : left) jobs[n].state = "to convert";
   else
-    run(
-        left, what.jobs, fs::path(what.output) / ".sinew", "converting",
-        [&](std::size_t n) { return conversion_of(jobs[n], what); },
-        [&](const Running& of, int status) { finish(jobs[of.job], what, program, of, status); });
+    batch::run_processes(
+        processes(what, "converting"), left, [&](std::size_t n) { return conversion_of(jobs[n], what); },
+        [&](const Finished& process) { finish(jobs[process.item], what, program, process); });
   for (const std::size_t n : left)
     if (jobs[n].state == "failed") refused[key_of(jobs[n], what, program, json::array())] = jobs[n].error;
   return {};
@@ -386,9 +227,8 @@ json report_of(const std::vector<Job>& jobs) {
 
 /// As a page with pictures, if that is its name's ending; else as JSON.
 Error write_report(const std::vector<Job>& jobs, const FolderConversion& what, json report) {
-  if (lower(fs::path(what.report_file).extension().string()) != ".html")
-    return write_atomically(what.report_file,
-                            report.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  if (batch::lower(fs::path(what.report_file).extension().string()) != ".html")
+    return write_atomically(what.report_file, json_text(report, 2) + "\n");
   make_stills(jobs, what);
   const fs::path here = fs::absolute(what.report_file).parent_path();
   for (std::size_t n = 0; n < jobs.size(); ++n) {
@@ -405,13 +245,12 @@ Error write_report(const std::vector<Job>& jobs, const FolderConversion& what, j
 Error convert_folder(const FolderConversion& what, int& failed) {
   if (!what.report_file.empty())
     if (Error error = check_writable(what.report_file)) return error;
-  Digest program;
-  program.add_file("/proc/self/exe");
+  const std::string program = batch::digest_of_file("/proc/self/exe");
   Refusals refused;
   for (bool first = true;; first = false) {
     std::vector<Job> jobs;
     std::size_t fresh = 0;
-    if (Error error = convert_once(what, program.text(), jobs, fresh, refused)) return error;
+    if (Error error = convert_once(what, program, jobs, fresh, refused)) return error;
     const json report = report_of(jobs);
     failed = report["failed"];
     const bool news = first || fresh > 0;
@@ -421,10 +260,10 @@ Error convert_folder(const FolderConversion& what, int& failed) {
       for (const Job& job : jobs)
         if (first || job.state != "up to date") print(job);
       if (what.dry_run)
-        std::printf("%zu to convert, %zu up to date\n", fresh, jobs.size() - fresh);
+        say("%zu to convert, %zu up to date\n", fresh, jobs.size() - fresh);
       else
-        std::printf("%d converted, %d up to date, %d failed\n", report["converted"].get<int>(),
-                    report["up_to_date"].get<int>(), failed);
+        say("%d converted, %d up to date, %d failed\n", report["converted"].get<int>(),
+            report["up_to_date"].get<int>(), failed);
     }
     if (news && !what.report_file.empty())
       if (Error error = write_report(jobs, what, report)) return error;

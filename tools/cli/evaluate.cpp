@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "import/plain_words.h"
 #include "sinew/residual/dynamics.h"
 
 namespace sinew::cli {
@@ -142,7 +143,7 @@ convert::Error evaluate(const Skeleton& source, const json& state, bool fixed_ba
         }
       }
   } catch (const std::exception& e) {
-    return {e.what()};
+    return {import::plain_words(e)};
   }
   const DynamicsResult r = evaluate_dynamics(skeleton, states, gravity);
   if (!std::isfinite(r.kinetic_energy + r.potential_energy) || !r.inverse_dynamics.allFinite() ||

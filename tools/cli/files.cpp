@@ -10,6 +10,9 @@
 #include <fstream>
 #include <memory>
 
+#include "cli/terminal.h"
+#include "import/plain_words.h"
+
 namespace sinew::cli {
 
 convert::Error check_writable(const std::string& path) {
@@ -64,7 +67,7 @@ convert::Error read_json(const std::string& path, nlohmann::json& out) {
   try {
     out = nlohmann::json::parse(file, nullptr, true, true);
   } catch (const nlohmann::json::exception& e) {
-    return {path + ": not JSON: " + e.what()};
+    return {path + ": not JSON: " + import::plain_words(e)};
   }
   return {};
 }
@@ -80,17 +83,13 @@ std::function<void(int, int)> progress_line(const std::string& what) {
   return [=](int done, int total) {
     const auto now = Clock::now();
     const bool last = done >= total;
-    if (total <= 0 || done <= 0 || (last ? !(terminal && *shown) : now < *next)) return;
+    if (is_quiet() || total <= 0 || done <= 0 || (last ? !(terminal && *shown) : now < *next)) return;
     *next = now + pause;
     *shown = true;
     const double left = std::chrono::duration<double>(now - begin).count() * (total - done) / done;
     std::fprintf(stderr, "%s%s %d of %d, %.0f s left%s%s", terminal ? "\r" : "", what.c_str(), done, total,
                  std::ceil(left), terminal ? "\033[K" : "", terminal && !last ? "" : "\n");
   };
-}
-
-std::string json_text(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace sinew::cli

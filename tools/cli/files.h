@@ -23,10 +23,13 @@ convert::Error telemetry_format(const std::string& path, bool& as_json);
 convert::Error read_json(const std::string& path, nlohmann::json& out);
 
 /// "WHAT 210 of 900, 34 s left" on standard error: on a terminal one line that changes, from the
-/// second second on; elsewhere a line every ten seconds.
+/// second second on; elsewhere a line every ten seconds; with --quiet none.
 std::function<void(int, int)> progress_line(const std::string& what);
 
-/// One line of JSON; bytes of file names that are not UTF-8 become U+FFFD.
-std::string json_text(const nlohmann::json& json);
+/// JSON in one line, or indented; bytes of file names that are not UTF-8 become U+FFFD.
+template <class Json = nlohmann::json>
+std::string json_text(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 }  // namespace sinew::cli

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cli/files.h"
+#include "cli/terminal.h"
 #include "graph/certificate.h"
 #include "graph/compile.h"
 #include "graph/describe.h"
@@ -52,30 +53,38 @@ std::string order_text(int order) {
 void GraphCommand::add(CLI::App& app) {
   app.require_subcommand(1);
   const auto graph = [&](CLI::App* c) {
-    c->add_option("graph", input, "JSON or a compiled graph")->required();
+    c->add_option("graph", input, "JSON or a compiled graph")->required()->type_name("FILE");
   };
   check_ = app.add_subcommand("check", "faults, warnings, and where the motion is not smooth");
   graph(check_);
-  check_->add_option("--asset", asset, "asset or source file that its clips must be in");
+  check_->add_option("--asset", asset, "asset or source file that its clips must be in")->type_name("FILE");
   check_->add_flag("--strict", strict_, "a graph that is not smooth, or has warnings, is a fault");
-  check_->add_flag("--json", json_output);
+  check_->add_flag("--json", json_output, "what was found, on standard output as JSON");
   compile_ = app.add_subcommand("compile", "JSON to the file that games load");
   graph(compile_);
-  compile_->add_option("-o,--output", output, ".sgraph")->required();
+  compile_->add_option("-o,--output", output, "file to write (.sgraph)")->required()->type_name("FILE");
+  compile_->add_flag("--json", json_output, "what was written, on standard output as JSON");
   dot_ = app.add_subcommand(
       "dot", "a drawing for Graphviz\nExample: sinew graph dot hero.graph.json | dot -Tsvg > hero.svg");
   graph(dot_);
-  dot_->add_option("-o,--output", output, "standard output otherwise");
+  dot_->add_option("-o,--output", output, "file to write")->type_name("FILE")->default_str("standard output");
   trace_ = app.add_subcommand("trace", "plays a graph and writes what it does, frame by frame");
   graph(trace_);
-  trace_->add_option("--asset", asset, "asset or source file with its clips")->required();
-  trace_->add_option("--inputs", script,
-                     "JSON: [[seconds, \"parameter\", value], [seconds, \"trigger\"], …]");
-  trace_->add_option("--seconds", seconds, "how long (10)")->check(CLI::Range(0.0, 36000.0));
-  trace_->add_option("--rate", rate, "frames per second (60)")->check(CLI::Range(1.0, 10000.0));
-  trace_->add_option("--joint", joint,
-                     "whose acceleration is explained: by which nodes; the busiest otherwise");
-  trace_->add_option("-o,--output", output, "CSV; standard output otherwise");
+  trace_->add_option("--asset", asset, "asset or source file with its clips")->required()->type_name("FILE");
+  trace_->add_option("--inputs", script, "JSON: [[seconds, \"parameter\", value], [seconds, \"trigger\"], …]")
+      ->type_name("FILE");
+  trace_->add_option("--seconds", seconds, "how long")
+      ->check(CLI::Range(0.0, 36000.0))
+      ->capture_default_str();
+  trace_->add_option("--rate", rate, "frames per second")
+      ->check(CLI::Range(1.0, 10000.0))
+      ->capture_default_str();
+  trace_->add_option("--joint", joint, "whose acceleration is explained: by which nodes")
+      ->type_name("NAME")
+      ->default_str("the busiest");
+  trace_->add_option("-o,--output", output, "CSV to write")
+      ->type_name("FILE")
+      ->default_str("standard output");
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
 }
 
@@ -105,15 +114,14 @@ Error GraphCommand::check() const {
                               {"line", compiled.lines[std::size_t(loss.node)]},
                               {"what", order_text(loss.order)},
                               {"reason", loss.reason}});
-    std::puts(out.dump().c_str());
+    std::puts(json_text(out).c_str());
   } else {
-    for (const std::string& warning : compiled.warnings) std::printf("warning: %s\n", warning.c_str());
+    for (const std::string& warning : compiled.warnings) say("warning: %s\n", warning.c_str());
     for (const auto& loss : losses)
-      std::printf("%s:%d: %s: the %s may jump: %s\n", input.c_str(), compiled.lines[std::size_t(loss.node)],
-                  compiled.graph.nodes[std::size_t(loss.node)].name.c_str(), order_text(loss.order).c_str(),
-                  loss.reason.c_str());
-    std::printf(
-        "%s: %zu nodes, %zu parameters; %s\n", input.c_str(), compiled.graph.nodes.size(),
+      say("%s:%d: %s: the %s may jump: %s\n", input.c_str(), compiled.lines[std::size_t(loss.node)],
+          compiled.graph.nodes[std::size_t(loss.node)].name.c_str(), order_text(loss.order).c_str(),
+          loss.reason.c_str());
+    say("%s: %zu nodes, %zu parameters; %s\n", input.c_str(), compiled.graph.nodes.size(),
         compiled.graph.parameters.size(),
         losses.empty() ? "poses, velocities and accelerations are continuous" : "not smooth everywhere");
   }
@@ -125,11 +133,17 @@ Error GraphCommand::check() const {
 Error GraphCommand::compile() const {
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
-  for (const std::string& warning : compiled.warnings)
-    std::fprintf(stderr, "sinew: warning: %s\n", warning.c_str());
+  for (const std::string& warning : compiled.warnings) say_error("warning: " + warning);
   const std::vector<std::uint8_t> bytes = write_graph(compiled.graph);
   if (Error error = write_atomically(output, bytes.data(), bytes.size())) return error;
-  std::printf("%s: %zu nodes, %zu bytes\n", output.c_str(), compiled.graph.nodes.size(), bytes.size());
+  if (json_output)
+    std::puts(json_text(graph_tools::Json{{"output", output},
+                                          {"nodes", compiled.graph.nodes.size()},
+                                          {"bytes", bytes.size()},
+                                          {"warnings", compiled.warnings}})
+                  .c_str());
+  else
+    say("%s: %zu nodes, %zu bytes\n", output.c_str(), compiled.graph.nodes.size(), bytes.size());
   return {};
 }
 
@@ -167,7 +181,7 @@ Error GraphCommand::trace() {
   if (const Status status = graph_tools::trace_graph(graph, with, inputs, options, rows, end); !status)
     return {input + ": " + status.reason};
   if (json_output) {
-    std::puts(end.dump(2).c_str());
+    std::puts(json_text(end, 2).c_str());
     return {};
   }
   if (!output.empty()) return write_atomically(output, rows.str());

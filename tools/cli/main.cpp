@@ -4,16 +4,23 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 
+#include "cli/batch.h"
 #include "cli/convert_folder.h"
+#include "cli/definitions.h"
 #include "cli/evaluate.h"
 #include "cli/export.h"
 #include "cli/files.h"
 #include "cli/graph.h"
+#include "cli/manual.h"
 #include "cli/memory.h"
+#include "cli/render_folder.h"
 #include "cli/retarget.h"
 #include "cli/study_program.h"
+#include "cli/terminal.h"
 #include "convert/convert.h"
+#include "import/plain_words.h"
 #include "render/render.h"
 #include "retarget/retarget.h"
 #include "scene/presets.h"
@@ -33,11 +40,17 @@ struct SourceOptions {
   double unit = 0;
 
   void add(CLI::App& app) {
-    app.add_option("--options", options_file, "conversion options, JSON (see sinew convert --reference)");
+    app.add_option("--options", options_file, "conversion options, JSON (see sinew convert --reference)")
+        ->type_name("FILE");
     app.add_option("--clip-data", clip_data,
-                   "events, curves, markers and masks, JSON (else SOURCE.clips.json, where it is there)");
-    app.add_option("--unit", unit, "metres per unit of the source")->check(CLI::PositiveNumber);
-    app.add_option("--up", up, "up axis of the source")->check(CLI::IsMember({"x", "y", "z"}));
+                   "events, curves, markers and masks, JSON (else SOURCE.clips.json, where it is there)")
+        ->type_name("FILE");
+    app.add_option("--unit", unit, "metres per unit of the source")
+        ->check(CLI::PositiveNumber)
+        ->default_str("the file's");
+    app.add_option("--up", up, "up axis of the source")
+        ->check(CLI::IsMember({"x", "y", "z"}))
+        ->default_str("the file's");
   }
   /// The same again, for another process.
   std::vector<std::string> arguments() const {
@@ -88,14 +101,14 @@ struct ConvertCommand {
     const std::vector<std::uint8_t> bytes = sinew::write_asset(asset);
     if (Error error = cli::write_atomically(output, bytes.data(), bytes.size())) return error;
     if (!report_file.empty())
-      if (Error error = cli::write_atomically(report_file, report.dump(2) + "\n")) return error;
+      if (Error error = cli::write_atomically(report_file, cli::json_text(report, 2) + "\n")) return error;
     report["output"] = output;
     report["bytes"] = bytes.size();
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
-      std::printf("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
-                  bytes.size());
+      cli::say("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
+               bytes.size());
     return {};
   }
 
@@ -148,9 +161,9 @@ struct InfoCommand {
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
-      std::printf("%s%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(listed(report)).c_str(),
-                  events_text(asset).c_str(), asset.skeleton.colliders.size(), asset.meshes.size(),
-                  memory_text(memory).c_str());
+      cli::say("%s%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(listed(report)).c_str(),
+               events_text(asset).c_str(), asset.skeleton.colliders.size(), asset.meshes.size(),
+               memory_text(memory).c_str());
     return {};
   }
 
@@ -236,13 +249,18 @@ struct EvaluateCommand {
       if (Error error = cli::read_json(state_file, state)) return error;
     if (Error error = cli::evaluate(asset.skeleton, state, fixed_base, out))
       return {(state_file.empty() ? model : state_file) + ": " + error.message};
-    std::puts(out.dump().c_str());
+    std::puts(cli::json_text(out).c_str());
     return {};
   }
 };
 
-constexpr const char* kSchemes =
-    "scenes: bossak (the runtime's), or for comparison bdf1, bdf2, momentum, semi_implicit, forward_euler";
+void add_scheme(CLI::App& app, std::string& scheme) {
+  app.add_option("--scheme", scheme,
+                 "scenes: bossak (the runtime's), or for comparison bdf1, bdf2, momentum, semi_implicit, "
+                 "forward_euler")
+      ->type_name("NAME")
+      ->default_str("the scene's");
+}
 
 /// A scene file, stepped by another scheme than it asks for where one is named.
 Error load_scene(const std::string& file, const std::string& scheme, sinew::scene::Scene& scene) {
@@ -270,21 +288,20 @@ struct SimulateCommand {
             sinew::scene::run_scene(scene, recording, telemetry, cli::progress_line("simulate: frame")))
       return {scene_file + ": " + error.message};
     const json summary = sinew::scene::telemetry_summary(scene, telemetry);
-    if (Error error = cli::write_atomically(
-            output, as_json ? summary.dump(2) + "\n" : sinew::scene::telemetry_csv(scene, telemetry)))
+    if (Error error = cli::write_atomically(output, as_json ? cli::json_text(summary, 2) + "\n"
+                                                            : sinew::scene::telemetry_csv(scene, telemetry)))
       return error;
     if (plot) {
       const std::string png = std::filesystem::path(output).replace_extension(".png").string();
-      if (Error error = sinew::scene::plot_telemetry(output, telemetry, png))
-        std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+      if (Error error = sinew::scene::plot_telemetry(output, telemetry, png)) cli::say_error(error.message);
     }
     if (json_output)
-      std::puts(summary.dump().c_str());
+      std::puts(cli::json_text(summary).c_str());
     else
-      std::printf("%s: %d frames of playback (median %.1f us), %d solved (median %.1f us), %d unconverged\n",
-                  output.c_str(), summary["frames_playback"].get<int>(),
-                  summary["median_us_playback"].get<double>(), summary["frames_solved"].get<int>(),
-                  summary["median_us_solved"].get<double>(), summary["unconverged_steps"].get<int>());
+      cli::say("%s: %d frames of playback (median %.1f us), %d solved (median %.1f us), %d unconverged\n",
+               output.c_str(), summary["frames_playback"].get<int>(),
+               summary["median_us_playback"].get<double>(), summary["frames_solved"].get<int>(),
+               summary["median_us_solved"].get<double>(), summary["unconverged_steps"].get<int>());
     return {};
   }
 
@@ -304,10 +321,9 @@ struct SimulateCommand {
     if (error) return error;
     sinew::scene::set_accuracy(chosen, scene.frame_rate, scene.world.accuracy, scene.double_precision);
     if (!json_output)
-      std::printf("%d substeps, tolerance %g m, %s: measured within %.2g mm and %.2g degrees, %.3g us\n",
-                  scene.world.accuracy.substeps, chosen.accuracy.tolerance,
-                  chosen.double_precision ? "double" : "float", 1e3 * chosen.error, chosen.degrees,
-                  chosen.us);
+      cli::say("%d substeps, tolerance %g m, %s: measured within %.2g mm and %.2g degrees, %.3g us\n",
+               scene.world.accuracy.substeps, chosen.accuracy.tolerance,
+               chosen.double_precision ? "double" : "float", 1e3 * chosen.error, chosen.degrees, chosen.us);
     return {};
   }
 };
@@ -316,10 +332,14 @@ struct RenderCommand {
   std::string input, output, scheme, telemetry_file;
   SourceOptions source;
   sinew::render::Options options;
-  bool demo = false, no_overlay = false, json_output = false;
+  bool demo = false, no_overlay = false, json_output = false, still = false;
   std::string size;
+  int jobs = 1;
 
-  Error run() {
+  /// `app`: the command, whose options a folder's renderings get.
+  Error run(const CLI::App& app) {
+    if (std::filesystem::is_directory(input)) return run_folder(app);
+    if (still) return {"--still is for folders; a single picture is -o NAME.png"};
     if (!size.empty() && std::sscanf(size.c_str(), "%dx%d", &options.width, &options.height) != 2)
       return {"--size is not WIDTHxHEIGHT"};
     options.overlay = !no_overlay;
@@ -340,6 +360,24 @@ struct RenderCommand {
   }
 
  private:
+  Error run_folder(const CLI::App& app) const {
+    cli::FolderRender folder{input, output, {}, jobs, still, json_output};
+    const std::set<std::string> own = {"--output", "--jobs", "--still", "--json", "--quiet", "--telemetry"};
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->count() == 0 || option->get_lnames().empty()) continue;
+      std::vector<std::string> words = {"--" + option->get_lnames()[0]};
+      if (own.count(words[0]) > 0) continue;
+      if (option->get_items_expected_max() > 0)
+        words.insert(words.end(), option->results().begin(), option->results().end());
+      folder.options.push_back(std::move(words));
+    }
+    int failed = 0;
+    if (Error error = cli::render_folder(folder, failed)) return error;
+    if (failed > 0)
+      return {std::to_string(failed) + (failed == 1 ? " file" : " files") + " could not be rendered"};
+    return {};
+  }
+
   Error render_scene(const sinew::scene::Scene& scene) {
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
@@ -350,7 +388,7 @@ struct RenderCommand {
         return error;
       const std::string png = std::filesystem::path(telemetry_file).replace_extension(".png").string();
       if (Error error = sinew::scene::plot_telemetry(telemetry_file, telemetry, png))
-        std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+        cli::say_error(error.message);
     }
     if (Error error =
             sinew::render::render_recording(recording, options, output, cli::progress_line("render: frame")))
@@ -361,7 +399,7 @@ struct RenderCommand {
     if (json_output)
       std::puts(cli::json_text({{"output", output}}).c_str());
     else
-      std::printf("%s: %dx%d\n", output.c_str(), options.width, options.height);
+      cli::say("%s: %dx%d\n", output.c_str(), options.width, options.height);
     return {};
   }
 };
@@ -373,15 +411,21 @@ struct ExportCommand {
   bool json_output = false;
 
   void add(CLI::App& app) {
-    app.add_option("input", input, "asset or source file; or a scene (.json), which is played")->required();
+    app.add_option("input", input, "asset or source file; or a scene (.json), which is played")
+        ->required()
+        ->type_name("FILE");
     app.add_option(
            "-o,--output", what.output,
            "glTF: .glb, or .gltf in one file; a motion: .bvh; the physical body: .xml (MJCF) or .urdf")
-        ->required();
-    app.add_option("--clip", what.clips, "assets: a clip by name, or several (default: all; BVH holds one)")
-        ->allow_extra_args(false);
-    app.add_option("--character", what.character,
-                   "scenes: one character by name (default: all, with the scene's props)");
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--clip", what.clips, "assets: a clip by name, or several (BVH holds one)")
+        ->allow_extra_args(false)
+        ->type_name("NAME")
+        ->default_str("all");
+    app.add_option("--character", what.character, "scenes: one character by name, without the scene's props")
+        ->type_name("NAME")
+        ->default_str("all");
     app.add_option("--rate", what.rate, "keys per second of clips; a scene has one a step")
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str()
@@ -397,7 +441,6 @@ struct ExportCommand {
         ->each([this](const std::string&) { what.surface_asked = true; });
     app.add_flag("--json", json_output, "what was written, on standard output as JSON");
     source.add(app);
-    app.footer("Exit codes: 0 done, 1 bad input, 2 usage");
   }
 
   Error run() {
@@ -423,7 +466,7 @@ struct ExportCommand {
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
-      std::fputs(cli::export_text(report).c_str(), stdout);
+      cli::say("%s", cli::export_text(report).c_str());
     return {};
   }
 
@@ -441,8 +484,9 @@ int main(int argc, char** argv) try {
   CLI::App app{
       "Sinew: character animation that gives way to physics only where the muscles are too weak.\n"
       "Example: sinew convert hero.glb -o hero.sinew && sinew render hero.sinew --turntable -o hero.mp4"};
+  app.name("sinew");
   app.require_subcommand(1);
-  app.set_version_flag("--version", std::string("sinew ") + sinew::version());
+  app.set_version_flag("--version", std::string("sinew ") + sinew::version(), "which version this is");
   ConvertCommand convert;
   auto* c = app.add_subcommand(
       "convert",
@@ -451,15 +495,20 @@ int main(int argc, char** argv) try {
   auto* inputs =
       c->add_option("inputs", convert.inputs,
                     "glTF/GLB, FBX, BVH, COLLADA or URDF; mesh and clips may come from several. Or a "
-                    "folder, all of which is converted");
-  auto* out = c->add_option("-o,--output", convert.output, "asset to write; for a folder, a directory");
+                    "folder, all of which is converted")
+          ->type_name("FILE");
+  auto* out = c->add_option("-o,--output", convert.output, "asset to write; for a folder, a directory")
+                  ->type_name("FILE");
   c->add_flag("--each", convert.each, "every input is a character of its own");
-  c->add_option("-j,--jobs", convert.jobs, "folders: conversions at once (1)")->check(CLI::Range(1, 1024));
+  c->add_option("-j,--jobs", convert.jobs, "folders: conversions at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   auto* dry = c->add_flag("--dry-run", convert.dry_run, "folders: say what would be converted");
   c->add_flag("--again", convert.again, "folders: convert also what is up to date");
   c->add_flag("--watch", convert.watch, "folders: go on, and convert what changes")->excludes(dry);
   c->add_option("--report", convert.report_file,
-                "write the report as JSON; for a folder also as a page with pictures (.html)");
+                "write the report as JSON; for a folder also as a page with pictures (.html)")
+      ->type_name("FILE");
   c->add_flag("--retarget", convert.retarget, "clips for another skeleton are fitted to this one");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
   c->add_flag("--reference", convert.reference, "print all conversion options with defaults and comments");
@@ -468,16 +517,16 @@ int main(int argc, char** argv) try {
   InfoCommand info;
   auto* i =
       app.add_subcommand("info", "what is in a source file or asset\nExample: sinew info hero.sinew --json");
-  i->add_option("file", info.file)->required();
-  i->add_flag("--json", info.json_output);
+  i->add_option("file", info.file, "source file or asset")->required()->type_name("FILE");
+  i->add_flag("--json", info.json_output, "the same as JSON");
   info.source.add(*i);
 
   EvaluateCommand evaluate;
   auto* e = app.add_subcommand(
       "evaluate",
       "kinematics and dynamics at a state, as JSON\nExample: sinew evaluate robot.urdf --state s.json");
-  e->add_option("model", evaluate.model)->required();
-  e->add_option("--state", evaluate.state_file, "state, JSON (see tools/README.md)");
+  e->add_option("model", evaluate.model, "asset or source file")->required()->type_name("FILE");
+  e->add_option("--state", evaluate.state_file, "state, JSON (see tools/README.md)")->type_name("FILE");
   e->add_flag("--fixed-base", evaluate.fixed_base, "bolt the root to the world");
   e->add_flag_callback(
       "--json", [] {}, "output is always JSON");
@@ -486,45 +535,78 @@ int main(int argc, char** argv) try {
   SimulateCommand simulate;
   auto* s = app.add_subcommand(
       "simulate", "run a scene or a mechanism\nExample: sinew simulate push.json -o push.csv --plot");
-  s->add_option("scene", simulate.scene_file)->required();
-  s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")->required();
+  s->add_option("scene", simulate.scene_file, "scene or mechanism (.json)")->required()->type_name("FILE");
+  s->add_option("-o,--output", simulate.output, "telemetry: .csv, or .json for the summary")
+      ->required()
+      ->type_name("FILE");
   s->add_flag("--plot", simulate.plot, "draw the telemetry beside it (needs gnuplot)");
-  s->add_flag("--json", simulate.json_output);
-  s->add_option("--scheme", simulate.scheme, kSchemes);
-  auto* preset = s->add_option("--preset", simulate.preset, "crowd, game, cinematic or reference");
+  s->add_flag("--json", simulate.json_output, "the summary on standard output as JSON");
+  add_scheme(*s, simulate.scheme);
+  auto* preset = s->add_option("--preset", simulate.preset, "crowd, game, cinematic or reference")
+                     ->type_name("NAME")
+                     ->default_str("the scene's accuracy");
   auto* within = s->add_option("--max-error", simulate.max_error,
-                               "cheapest measured setting that stays within, such as 1cm or 2deg");
+                               "cheapest measured setting that stays within, such as 1cm or 2deg")
+                     ->default_str("none");
   auto* budget = s->add_option("--budget", simulate.budget,
-                               "most accurate measured setting per character and 1/60 s, such as 20us");
+                               "most accurate measured setting per character and 1/60 s, such as 20us")
+                     ->default_str("none");
   preset->excludes(within)->excludes(budget);
   within->excludes(budget);
   s->footer("Mechanisms have options of their own: sinew simulate MECHANISM.json --help");
 
   RenderCommand render;
-  auto* r = app.add_subcommand(
-      "render", "turntable or scene video, headless\nExample: sinew render push.json -o push.mp4");
-  r->add_option("input", render.input, "scene (.json), asset or source file")->required();
-  r->add_option("-o,--output", render.output, ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence)")
-      ->required();
-  r->add_option("--size", render.size, "WIDTHxHEIGHT, even (1280x720)");
-  r->add_option("--fps", render.options.fps)->check(CLI::Range(1.0, 240.0));
-  r->add_option("--samples", render.options.samples, "multisampling, 1 or 4")->check(CLI::IsMember({1, 4}));
+  auto* r =
+      app.add_subcommand("render",
+                         "turntable or scene video, headless\nExamples: sinew render push.json -o push.mp4\n"
+                         "          sinew render art/characters --turntable -o out/turntables -j 4");
+  r->add_option("input", render.input, "scene (.json), asset or source file")->required()->type_name("FILE");
+  r->add_option("-o,--output", render.output,
+                ".mp4, .webm, .gif or .png (frame_%04d.png for a sequence); for a folder, a directory")
+      ->required()
+      ->type_name("FILE");
+  r->add_option("--size", render.size, "pixels, even")->type_name("WIDTHxHEIGHT")->default_str("1280x720");
+  r->add_option("--fps", render.options.fps, "frames per second")
+      ->check(CLI::Range(1.0, 240.0))
+      ->capture_default_str();
+  r->add_option("--samples", render.options.samples, "multisampling: samples of a pixel")
+      ->check(CLI::IsMember({1, 4}))
+      ->capture_default_str();
   r->add_option("--quality", render.options.quality, "full (ambient occlusion, softer shadows) or fast")
-      ->check(CLI::IsMember({"full", "fast"}));
+      ->check(CLI::IsMember({"full", "fast"}))
+      ->capture_default_str();
   r->add_option("--start", render.options.start, "first moment shown, s; the moment of a single .png")
-      ->check(CLI::NonNegativeNumber);
-  r->add_option("--theme", render.options.theme)->check(CLI::IsMember({"dark", "light"}));
-  r->add_option("--background", render.options.background, "RRGGBB instead of the theme's sky");
-  r->add_option("--mode", render.options.mode)->check(CLI::IsMember({"skin", "xray", "shapes", "both"}));
-  r->add_flag("--turntable", render.options.turntable);
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  r->add_option("--theme", render.options.theme, "colours of sky, floor and figure")
+      ->check(CLI::IsMember({"dark", "light"}))
+      ->capture_default_str();
+  r->add_option("--background", render.options.background, "one colour instead of the sky")
+      ->type_name("RRGGBB")
+      ->default_str("the theme's sky");
+  r->add_option(
+       "--mode", render.options.mode,
+       "skin, xray (muscles by load in translucent skin), shapes (of the physical body), or both: skin "
+       "beside xray")
+      ->check(CLI::IsMember({"skin", "xray", "shapes", "both"}))
+      ->capture_default_str();
+  r->add_flag("--turntable", render.options.turntable, "assets: the camera goes round once");
   r->add_option("--frames", render.options.frames_per_revolution, "frames per revolution")
-      ->check(CLI::Range(1, 100000));
-  r->add_option("--clip", render.options.clip, "clip to play (assets)");
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  r->add_option("-j,--jobs", render.jobs, "folders: renderings at once")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  r->add_flag("--still", render.still, "folders: a picture each instead of a video");
+  r->add_option("--clip", render.options.clip, "assets: clip to play, by name")
+      ->type_name("NAME")
+      ->default_str("rest pose");
   r->add_flag("--demo", render.demo, "assets: the demo's story instead of a turntable");
-  r->add_option("--telemetry", render.telemetry_file, "scenes: also write the telemetry CSV and its plot");
-  r->add_flag("--no-overlay", render.no_overlay);
-  r->add_flag("--json", render.json_output);
-  r->add_option("--scheme", render.scheme, kSchemes);
+  r->add_option("--telemetry", render.telemetry_file, "scenes: also write the telemetry CSV and its plot")
+      ->type_name("FILE");
+  r->add_flag("--no-overlay", render.no_overlay, "no text and no curves over the picture");
+  r->add_flag("--json", render.json_output, "what was written, on standard output as JSON");
+  add_scheme(*r, render.scheme);
   render.source.add(*r);
 
   cli::GraphCommand graph;
@@ -548,8 +630,24 @@ int main(int argc, char** argv) try {
                                "Example: sinew retarget walk.fbx --to hero.sinew -o hero_walks.sinew");
   retarget.add(*t);
 
+  cli::BatchCommand batch;
+  auto* b = app.add_subcommand("batch",
+                               "many conversions, renderings and studies, on one machine or on Slurm\n"
+                               "Examples: sinew batch plan characters.json -o out/run\n"
+                               "          sinew batch run out/run -j 8\n"
+                               "          sinew batch merge out/run");
+  batch.add(*b);
+
   app.add_subcommand("study",
                      "the evidence, as tables, CSV and pictures\nExample: sinew study stability --quick");
+
+  cli::ManualCommand manual;
+  manual.add(app);
+  cli::complete_definitions(app);
+  if (argc == 2 && std::string_view(argv[1]) == "--describe") {
+    std::puts(cli::json_text(cli::ManualCommand::described(app)).c_str());
+    return 0;
+  }
 
   try {
     app.parse(argc, argv);
@@ -573,12 +671,16 @@ int main(int argc, char** argv) try {
     error = simulate.run();
   else if (x->parsed())
     error = exporting.run();
+  else if (b->parsed())
+    error = batch.run();
+  else if (manual.parsed())
+    error = manual.run(app);
   else
-    error = render.run();
+    error = render.run(*r);
   if (!error) return 0;
-  std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
-  return 1;
+  cli::say_error(error.message);
+  return b->parsed() ? batch.exit_code : 1;
 } catch (const std::exception& unexpected) {
-  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
+  cli::say_error(sinew::import::plain_words(unexpected));
   return 1;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/files.h"
+#include "cli/terminal.h"
 #include "retarget/retarget.h"
 
 namespace sinew::cli {
@@ -64,17 +65,23 @@ Error read_sources(const RetargetCommand& command, std::vector<std::pair<std::st
 }  // namespace
 
 void RetargetCommand::add(CLI::App& app) {
-  app.add_option("clips", clips, "assets or source files with clips")->required();
-  app.add_option("--from", from, "the character that the clips are for, where their files do not hold it");
-  app.add_option("--to", to, "the character that gets them: asset or source file")->required();
-  app.add_option("-o,--output", output, "asset to write: the character with the clips")->required();
-  app.add_option("--clip", names, "clips to take; all where none is named");
+  app.add_option("clips", clips, "assets or source files with clips")->required()->type_name("FILE");
+  app.add_option("--from", from, "the character that the clips are for, where their files do not hold it")
+      ->type_name("FILE");
+  app.add_option("--to", to, "the character that gets them: asset or source file")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("-o,--output", output, "asset to write: the character with the clips")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--clip", names, "clips to take, by name")->type_name("NAME")->default_str("all");
   app.add_option("--time", time, "keep, or froude: larger bodies move more slowly, as pendulums do")
-      ->check(CLI::IsMember({"keep", "froude"}));
-  app.add_option("--map", map_file, "joints whose names do not say what they are, JSON");
+      ->check(CLI::IsMember({"keep", "froude"}))
+      ->capture_default_str();
+  app.add_option("--map", map_file, "joints whose names do not say what they are, JSON")->type_name("FILE");
   app.add_flag("--keep-clips", keep, "the character's own clips stay beside them");
   app.add_flag("--no-plant", no_plant, "leave soles as high and as far as the proportions put them");
-  app.add_option("--report", report_file, "write the report as JSON");
+  app.add_option("--report", report_file, "write the report as JSON")->type_name("FILE");
   app.add_flag("--json", json, "report on standard output as JSON");
 }
 
@@ -102,18 +109,18 @@ Error RetargetCommand::run() const {
       return {path + " to " + to + ": " + error.message};
     options.keep_clips = true;
     report["source"] = path;
-    if (!json) std::printf("%s -> %s: %s", path.c_str(), to.c_str(), retarget::report_text(report).c_str());
+    if (!json) say("%s -> %s: %s", path.c_str(), to.c_str(), retarget::report_text(report).c_str());
     all.push_back(std::move(report));
   }
   const std::vector<std::uint8_t> bytes = write_asset(character);
   if (Error error = write_atomically(output, bytes.data(), bytes.size())) return error;
   const nlohmann::json report = {{"output", output}, {"target", to}, {"sources", all}};
   if (!report_file.empty())
-    if (Error error = write_atomically(report_file, report.dump(2) + "\n")) return error;
+    if (Error error = write_atomically(report_file, json_text(report, 2) + "\n")) return error;
   if (json)
     std::puts(json_text(report).c_str());
   else
-    std::printf("%s: %zu bytes\n", output.c_str(), bytes.size());
+    say("%s: %zu bytes\n", output.c_str(), bytes.size());
   return {};
 }
 

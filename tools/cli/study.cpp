@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "cli/files.h"
+#include "cli/terminal.h"
 #include "study/accuracy.h"
 #include "study/accuracy_dial.h"
 #include "study/effects.h"
@@ -28,21 +29,21 @@ convert::Error make_directory(const std::string& directory) {
 }
 
 void print_accuracy(const study::AccuracyResult& result) {
-  std::printf("%s\n", result.scene.title.c_str());
+  say("%s\n", result.scene.title.c_str());
   for (const study::Slope& s : result.slopes) {
-    std::printf("  order of %s %s: ", s.engine.c_str(), s.option.c_str());
-    if (s.found == 0) std::printf("none, all errors are below %s", study::length(study::kExact).c_str());
-    if (s.found != 0) std::printf("%.2f", s.found);
-    if (s.expected > 0) std::printf(" (theory %.0f)", s.expected);
-    std::puts("");
+    say("  order of %s %s: ", s.engine.c_str(), s.option.c_str());
+    if (s.found == 0) say("none, all errors are below %s", study::length(study::kExact).c_str());
+    if (s.found != 0) say("%.2f", s.found);
+    if (s.expected > 0) say(" (theory %.0f)", s.expected);
+    say("\n");
   }
   for (const study::AccuracyPoint& p : result.points)
     if (p.pareto) {
-      std::printf("  front: %s, %s off: %s", study::duration(p.us).c_str(), study::length(p.error).c_str(),
-                  p.label().c_str());
-      if (p.h > 0) std::printf(" 1/%.0f s", 1 / p.h);
-      std::printf(", tolerance %s, substeps %d, cap %d\n", study::length(p.accuracy.tolerance).c_str(),
-                  p.accuracy.substeps, p.accuracy.max_iterations);
+      say("  front: %s, %s off: %s", study::duration(p.us).c_str(), study::length(p.error).c_str(),
+          p.label().c_str());
+      if (p.h > 0) say(" 1/%.0f s", 1 / p.h);
+      say(", tolerance %s, substeps %d, cap %d\n", study::length(p.accuracy.tolerance).c_str(),
+          p.accuracy.substeps, p.accuracy.max_iterations);
     }
 }
 
@@ -80,11 +81,11 @@ std::vector<study::ReportPicture> drawn_maps(const std::string& directory) {
 
 convert::Error StabilityCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
-  if (!json_output) std::fputs(study::stability_table_head().c_str(), stdout);
+  if (!json_output) say("%s", study::stability_table_head().c_str());
   const auto print = [&](const study::StabilityResult& result) {
     if (json_output) return;
-    std::fputs(study::stability_table(result).c_str(), stdout);
-    if (!only.empty()) std::printf("%s\n", study::set_up_of(result.hard_case).c_str());
+    say("%s", study::stability_table(result).c_str());
+    if (!only.empty()) say("%s\n", study::set_up_of(result.hard_case).c_str());
     std::fflush(stdout);
   };
   const auto results =
@@ -96,10 +97,10 @@ convert::Error StabilityCommand::run() const {
   if (only.empty() && !json_output)
     if (convert::Error error = draw_maps(directory, quick)) return error;
   if (json_output)
-    std::puts(summary.dump().c_str());
+    std::puts(json_text(summary).c_str());
   else
-    std::printf("%d cases passed, %d failed; %s/stability.csv\n", summary["passed"].get<int>(),
-                summary["failed"].get<int>(), directory.c_str());
+    say("%d cases passed, %d failed; %s/stability.csv\n", summary["passed"].get<int>(),
+        summary["failed"].get<int>(), directory.c_str());
   return {};
 }
 
@@ -115,9 +116,9 @@ convert::Error AccuracyCommand::run_ensembles() const {
         if (convert::Error error = study::draw_ensembles(all, scene, hz, file)) return error;
       }
   if (json_output)
-    std::puts(json.dump().c_str());
+    std::puts(json_text(json).c_str());
   else
-    std::printf("%s%s/ensembles.json\n", study::ensembles_table(all).c_str(), directory.c_str());
+    say("%s%s/ensembles.json\n", study::ensembles_table(all).c_str(), directory.c_str());
   return {};
 }
 
@@ -148,15 +149,15 @@ convert::Error AccuracyCommand::write(const study::AccuracyReport& report) const
       if (convert::Error error = study::draw_accuracy(result, base + "_" + result.scene.name + ending))
         return error;
   if (json_output) {
-    std::puts(study::accuracy_json(report).dump().c_str());
+    std::puts(json_text(study::accuracy_json(report)).c_str());
     return {};
   }
   for (const study::AccuracyResult& result : report.results) print_accuracy(result);
-  std::puts("");
+  say("\n");
   for (const std::string& sentence :
        study::summary_sentences(study::summary_rows(report.results), report.crowds))
-    std::puts(sentence.c_str());
-  std::printf("%s.html\n", base.c_str());
+    say("%s\n", sentence.c_str());
+  say("%s.html\n", base.c_str());
   return {};
 }
 
@@ -179,8 +180,7 @@ convert::Error AccuracyCommand::run() {
     std::filesystem::remove(store, ignored);  // its times are no better
   }
   if (!only.empty()) {
-    if (machine.busy())
-      std::fprintf(stderr, "sinew: times are not to be relied on: %s\n", report.busy.c_str());
+    if (machine.busy()) say_error("times are not to be relied on: " + report.busy);
     return {};
   }
   const convert::Error error = study::store_presets(
@@ -202,17 +202,17 @@ convert::Error ScenesCommand::run() const {
     if (json_output)
       progress(static_cast<int>(results.size()), static_cast<int>(asked.size()));
     else
-      std::fputs(study::situation_table(results.back()).c_str(), stdout);
+      say("%s", study::situation_table(results.back()).c_str());
     std::fflush(stdout);
   }
   const nlohmann::json summary = study::situations_json(results);
   const std::string file = directory + (talk ? "/talk.json" : "/scenes.json");
   if (convert::Error error = write_atomically(file, summary.dump(1) + "\n")) return error;
   if (json_output)
-    std::puts(summary.dump().c_str());
+    std::puts(json_text(summary).c_str());
   else
-    std::printf("%d scenes passed, %d failed; %s\n", summary["passed"].get<int>(),
-                summary["failed"].get<int>(), file.c_str());
+    say("%d scenes passed, %d failed; %s\n", summary["passed"].get<int>(), summary["failed"].get<int>(),
+        file.c_str());
   return {};
 }
 
@@ -231,9 +231,9 @@ convert::Error EffectsCommand::run() const {
   for (const char* ending : {".svg", ".png"})
     if (convert::Error error = study::draw_effects(found, base + ending)) return error;
   if (json_output)
-    std::puts(study::effects_json(found).dump().c_str());
+    std::puts(json_text(study::effects_json(found)).c_str());
   else
-    std::printf("%s\n%s.png\n", study::effects_table(found).c_str(), base.c_str());
+    say("%s\n%s.png\n", study::effects_table(found).c_str(), base.c_str());
   return {};
 }
 

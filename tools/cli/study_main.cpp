@@ -2,9 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "cli/definitions.h"
+#include "cli/files.h"
 #include "cli/mechanism.h"
 #include "cli/study.h"
 #include "cli/tables.h"
+#include "cli/terminal.h"
+#include "import/plain_words.h"
 
 namespace {
 
@@ -17,19 +21,22 @@ struct MechanismCommand {
   sinew::mechanism::SimulateOptions options;
 
   void add(CLI::App& app) {
-    app.add_option("mechanism", file)->required();
+    app.add_option("mechanism", file, "mechanism (.json)")->required()->type_name("FILE");
     app.add_option("-o,--output", output, "coordinates and points: .csv, or .json for the summary")
-        ->required();
-    app.add_flag("--json", json_output);
+        ->required()
+        ->type_name("FILE");
+    app.add_flag("--json", json_output, "the summary on standard output as JSON");
     cli::add_mechanism_options(app, options);
   }
 };
 
 void add_options(CLI::App& app, cli::ScenesCommand& command) {
-  app.add_option("-o,--output", command.directory, "directory for the JSON file (out/study)");
-  app.add_option("--scene", command.only, "run one");
+  app.add_option("-o,--output", command.directory, "directory for the JSON file")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--scene", command.only, "run one, by its name")->type_name("NAME")->default_str("all");
   app.add_flag("--quick", command.quick, "shorter runs, fewer seeds");
-  app.add_flag("--json", command.json_output);
+  app.add_flag("--json", command.json_output, "results on standard output as JSON");
 }
 
 }  // namespace
@@ -49,10 +56,14 @@ int main(int argc, char** argv) try {
   study->require_subcommand(1);
   auto* hard = study->add_subcommand(
       "stability", "hard cases of the step\nExample: sinew study stability --quick -o out/study");
-  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures (out/study)");
-  hard->add_option("--case", stability.only, "run one case");
+  hard->add_option("-o,--output", stability.directory, "directory for CSV and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  hard->add_option("--case", stability.only, "run one case, by its name")
+      ->type_name("NAME")
+      ->default_str("all");
   hard->add_flag("--quick", stability.quick, "shorter runs, fewer seeds");
-  hard->add_flag("--json", stability.json_output);
+  hard->add_flag("--json", stability.json_output, "results on standard output as JSON");
   cli::TablesCommand tables;
   auto* paper = study->add_subcommand("tables",
                                       "formulations and integrators of the reference family\nExample: sinew "
@@ -61,13 +72,17 @@ int main(int argc, char** argv) try {
   cli::AccuracyCommand accuracy;
   auto* cost = study->add_subcommand(
       "accuracy", "what accuracy costs in time\nExample: sinew study accuracy --quick -o out/study");
-  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures (out/study)");
+  cost->add_option("-o,--output", accuracy.directory, "directory for report, CSV and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
   cost->add_option("--scene", accuracy.only,
-                   "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver");
+                   "tumbling, pendulum, collapse, drop, stack, tracking, running, lod or driver")
+      ->type_name("NAME")
+      ->default_str("all");
   cost->add_flag("--ensembles", accuracy.ensembles,
                  "mean energies of many limp falls instead: JSON, pictures");
   cost->add_flag("--quick", accuracy.quick, "fewer steps and repetitions");
-  cost->add_flag("--json", accuracy.json_output);
+  cost->add_flag("--json", accuracy.json_output, "results on standard output as JSON");
   cli::ScenesCommand scenes, talk_scenes;
   talk_scenes.talk = true;
   auto* ordinary = study->add_subcommand(
@@ -80,9 +95,17 @@ int main(int argc, char** argv) try {
   auto* each = study->add_subcommand(
       "effects",
       "what every effect costs, in instructions and time\nExample: sinew study effects -o out/study");
-  each->add_option("-o,--output", effects.directory, "directory for CSV and pictures (out/study)");
+  each->add_option("-o,--output", effects.directory, "directory for CSV and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
   each->add_flag("--quick", effects.quick, "fewer timed steps");
-  each->add_flag("--json", effects.json_output);
+  each->add_flag("--json", effects.json_output, "results on standard output as JSON");
+
+  cli::complete_definitions(app);
+  if (argc == 2 && std::string_view(argv[1]) == "--describe") {
+    std::puts(cli::json_text(cli::describe(app)).c_str());
+    return 0;
+  }
 
   try {
     app.parse(argc, argv);
@@ -105,9 +128,9 @@ int main(int argc, char** argv) try {
   else
     error = effects.run();
   if (!error) return 0;
-  std::fprintf(stderr, "sinew: %s\n", error.message.c_str());
+  cli::say_error(error.message);
   return cost->parsed() ? accuracy.exit_code : 1;
 } catch (const std::exception& unexpected) {
-  std::fprintf(stderr, "sinew: %s\n", unexpected.what());
+  cli::say_error(sinew::import::plain_words(unexpected));
   return 1;
 }

@@ -2,6 +2,8 @@
 // family. Who converts and renders builds and links neither.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 namespace sinew::cli {
 
 /// `sinew study …`, and `sinew simulate` of a mechanism.
@@ -10,5 +12,8 @@ bool is_for_study_program(int argc, char** argv);
 /// Becomes sinew-study, with the same arguments. Returns, with an exit code, only where that does not stand
 /// beside this program.
 int run_study_program(char** argv);
+
+/// What that program's command line is (see describe()); null where it does not stand beside this one.
+nlohmann::json describe_study_program();
 
 }  // namespace sinew::cli

@@ -16,6 +16,7 @@
 #include "convert/options.h"
 #include "convert/rig.h"
 #include "convert/urdf_body.h"
+#include "import/plain_words.h"
 
 namespace sinew::convert {
 namespace {
@@ -104,8 +105,7 @@ Error read_beside(const std::string& input, ClipData& data, nlohmann::json& repo
     if (Error error = data.read(nlohmann::json::parse(file, nullptr, true, true)))
       return in_file(path, error.message);
   } catch (const nlohmann::json::exception& e) {
-    const std::string what = e.what();  // "[json.exception.…] parse error at line …"
-    return in_file(path, what.substr(what.find("] ") + 2));
+    return in_file(path, "not JSON: " + import::plain_words(e));
   }
   report["notes"].push_back("clips also from " + std::filesystem::path(path).filename().string());
   return {};

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "convert/roles.h"
+#include "import/plain_words.h"
 
 namespace sinew::convert {
 namespace {
@@ -194,7 +195,7 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
       if (negative) return {"option '" + key + "' is negative"};
     }
   } catch (const nlohmann::json::exception& e) {
-    return {std::string("option has the wrong type: ") + e.what()};
+    return {std::string("option has the wrong type: ") + import::plain_words(e)};
   } catch (const BadOption& e) {
     return {e.what()};
   }

@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "import/plain_words.h"
+
 namespace sinew::graph_tools {
 namespace {
 
@@ -71,11 +73,10 @@ class LineNotes : public nlohmann::json_sax<Json> {
     return true;
   }
   bool end_array() override { return close(); }
-  bool parse_error(std::size_t, const std::string& token, const nlohmann::detail::exception& e) override {
-    std::string what =
-        e.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax …"
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
+    std::string what = import::plain_words(e);  // "line 1, column 2: syntax …"
     if (const auto colon = what.find(": "); colon != std::string::npos) what.erase(0, colon + 2);
-    throw Fault(line_, "is no JSON: " + what + (token.empty() ? "" : ""));
+    throw Fault(line_, "is no JSON: " + what);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "import/plain_words.h"
 #include "import/readers.h"
 
 namespace sinew::import {
@@ -216,8 +217,7 @@ GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLim
   } catch (const Json::parse_error& e) {
     throw std::runtime_error("its JSON is damaged at byte " + std::to_string(e.byte));
   } catch (const Json::exception& e) {
-    const std::string what = e.what();  // "[json.exception.…] cannot use …"
-    throw std::runtime_error("its glTF structure is wrong: " + what.substr(what.find("] ") + 2));
+    throw std::runtime_error("its glTF structure is wrong: " + plain_words(e));
   }
 }
 

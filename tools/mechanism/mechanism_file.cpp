@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "import/plain_words.h"
+
 namespace sinew::mechanism {
 namespace {
 
@@ -272,7 +274,7 @@ std::string from_json(const json& file, Mechanism& out) {
   try {
     read(file, out);
   } catch (const std::exception& e) {
-    return e.what();
+    return import::plain_words(e);
   }
   return multibody::fault_of(out);
 }
@@ -284,7 +286,7 @@ std::string load_mechanism(const std::string& path, Mechanism& out) {
   try {
     file = json::parse(stream, nullptr, true, true);
   } catch (const json::exception& e) {
-    return path + ": not JSON: " + e.what();
+    return path + ": not JSON: " + import::plain_words(e);
   }
   const std::string fault = from_json(file, out);
   return fault.empty() ? fault : path + ": " + fault;

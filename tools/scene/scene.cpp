@@ -12,6 +12,7 @@
 
 #include "convert/roles.h"
 #include "graph/compile.h"
+#include "import/plain_words.h"
 #include "scene/effect_registry.h"
 #include "scene/figure.h"
 #include "scene/presets.h"
@@ -423,10 +424,10 @@ convert::Error load_scene(const std::string& path, std::span<const EffectRow> re
   if (!file) return {path + ": file cannot be opened"};
   try {
     out = parse(json::parse(file, nullptr, true, true), std::filesystem::path(path).parent_path(), registry);
-  } catch (const json::exception& e) {
-    return {path + ": not JSON: " + e.what()};
+  } catch (const json::parse_error& e) {
+    return {path + ": not JSON: " + import::plain_words(e)};
   } catch (const std::exception& e) {
-    return {path + ": " + e.what()};
+    return {path + ": " + import::plain_words(e)};
   }
   return {};
 }
