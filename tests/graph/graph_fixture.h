@@ -90,6 +90,7 @@ struct GraphPlayer {
   std::vector<JointJet<T>> physical = jets;
   std::vector<EventHit> hits = std::vector<EventHit>(64);
   EventSink events{hits};
+  GraphGround<T> ground;
 
   explicit GraphPlayer(const Graph& played) : graph(played) {
     EXPECT_TRUE(start_graph<T>(graph, state).ok());
@@ -111,7 +112,7 @@ struct GraphPlayer {
   void step(double h) {
     events.count = events.lost = 0;
     const Status status =
-        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical}.Run();
+        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical, {}, {}, ground}.Run();
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   /// Name of the state of the machine of this name.

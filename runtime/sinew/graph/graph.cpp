@@ -39,7 +39,7 @@ struct Needs {
 /// How many registers further on than itself a node's k-th child is made.
 int base_of(const GraphNode& node, int k) {
   if (node.type == NodeType::kBlend) return k;
-  return node.type == NodeType::kMirror || (node.type == NodeType::kLayers && k == 0) ? 0 : 1;
+  return node.type == NodeType::kMachine || (node.type == NodeType::kLayers && k > 0) ? 1 : 0;
 }
 
 Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
@@ -83,7 +83,7 @@ std::size_t rounded(std::size_t bytes) {
 template <class T>
 GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
                       const std::vector<Graph::BoundMachine>& machines, int joints, int translated,
-                      std::size_t curves) {
+                      std::size_t curves, bool feet, std::size_t looks) {
   GraphLayout at;
   std::size_t end = rounded(sizeof(GraphHeader<T>));
   const auto place = [&](std::size_t bytes) {
@@ -104,6 +104,8 @@ GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
   at.offsets = place(offsets * inertial_numbers(joints, translated) * sizeof(T));
   at.curve_offsets = place(offsets * curves * sizeof(TimeJet<T>));
   at.left_poses = place(left * std::size_t(joints) * sizeof(JointJet<T>));
+  at.feet = place(feet ? sizeof(GraphFeetState<T>) : 0);
+  at.looks = place(looks * sizeof(GraphLookState<T>));
   at.bytes = end;
   return at;
 }
@@ -196,18 +198,80 @@ void Graph::bind_machine(int index) {
   machines_.push_back(machine);
 }
 
+Status Graph::bind_feet(int index, const Asset& asset) {
+  const auto find = [&](auto& legs) {
+    Status status = find_foot_leg(asset.skeleton, Role::kFootL, legs[0]);
+    return status ? find_foot_leg(asset.skeleton, Role::kFootR, legs[1]) : status;
+  };
+  Status status = find(feet_.legs_float.legs);
+  if (status) status = find(feet_.legs_double.legs);
+  if (!status) return bad(status.reason, index);
+  int left = feet_.legs_float.legs[0].upper, right = feet_.legs_float.legs[1].upper;
+  while (left != right) (left > right ? left : right) = parents_[std::size_t(std::max(left, right))];
+  if (left < 0) return bad("legs have no joint in common", index);
+  feet_.node = index;
+  feet_.pelvis = left;
+  for (const FootLeg<float>& leg : feet_.legs_float.legs) feet_.joints = std::max(feet_.joints, leg.foot + 1);
+  return {};
+}
+
+Status Graph::bind_look(int index, const Asset& asset) {
+  const GraphLook& in = node(index).look;
+  slots_[std::size_t(index)] = static_cast<int>(looks_.size());
+  BoundLook& look = looks_.emplace_back();
+  if (in.joints.empty()) {
+    Status status = find_look_chain(asset.skeleton, look.chain_float);
+    if (status) status = find_look_chain(asset.skeleton, look.chain_double);
+    return status ? status : bad(status.reason, index);
+  }
+  std::vector<int> joints;
+  const std::vector<double> shares(in.shares.begin(), in.shares.end());
+  for (const std::string& name : in.joints)
+    if (joints.push_back(asset.skeleton.find(name.c_str())); joints.back() < 0)
+      return bad("the asset has no joint of the look's names", index);
+  Status status = make_look_chain<float>(asset.skeleton, joints, shares, look.chain_float);
+  if (status) status = make_look_chain<double>(asset.skeleton, joints, shares, look.chain_double);
+  return status ? status : bad(status.reason, index);
+}
+
 void Graph::lay_out() {
   registers_ = most_needs(definition_).registers;
-  layouts_[0] =
-      layout_of<float>(definition_, clips_.size(), machines_, joint_count_, translated_, curve_slots_.size());
-  layouts_[1] = layout_of<double>(definition_, clips_.size(), machines_, joint_count_, translated_,
-                                  curve_slots_.size());
+  const auto layout = [&](auto number) {
+    return layout_of<decltype(number)>(definition_, clips_.size(), machines_, joint_count_, translated_,
+                                       curve_slots_.size(), feet_.node >= 0, looks_.size());
+  };
+  layouts_[0] = layout(0.f);
+  layouts_[1] = layout(0.0);
   hash_ = 14695981039346656037u;
   const auto mix = [&](std::uint64_t v) { hash_ = (hash_ ^ v) * 1099511628211u; };
   for (const std::uint8_t byte : write_graph(definition_)) mix(byte);
   mix(std::uint64_t(joint_count_));
   mix(curve_slots_.size());
   for (const GraphLayout& at : layouts_) mix(at.bytes);
+}
+
+Status Graph::bind_node(int index, const Asset& asset) {
+  switch (node(index).type) {
+    case NodeType::kClip:
+      return bind_clip(index, asset);
+    case NodeType::kBlend:
+      return bind_blend(index);
+    case NodeType::kLayers:
+      return bind_layers(index, asset);
+    case NodeType::kMachine:
+      bind_machine(index);
+      return {};
+    case NodeType::kFeet:
+      return bind_feet(index, asset);
+    case NodeType::kLook:
+      return bind_look(index, asset);
+    case NodeType::kEmpty:
+    case NodeType::kPhysical:
+    case NodeType::kMirror:
+    case NodeType::kTravel:
+      break;
+  }
+  return {};
 }
 
 Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph& out) {
@@ -225,28 +289,8 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
   for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
   graph.slots_.assign(definition.nodes.size(), -1);
   if (Status status = graph.bind_mirrors(asset); !status) return bad(status.reason, -1);
-  for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k) {
-    Status status;
-    switch (graph.node(k).type) {
-      case NodeType::kClip:
-        status = graph.bind_clip(k, asset);
-        break;
-      case NodeType::kBlend:
-        status = graph.bind_blend(k);
-        break;
-      case NodeType::kLayers:
-        status = graph.bind_layers(k, asset);
-        break;
-      case NodeType::kMachine:
-        graph.bind_machine(k);
-        break;
-      case NodeType::kEmpty:
-      case NodeType::kPhysical:
-      case NodeType::kMirror:
-        break;
-    }
-    if (!status) return status;
-  }
+  for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k)
+    if (Status status = graph.bind_node(k, asset); !status) return status;
   graph.lay_out();
   out = std::move(graph);
   return {};

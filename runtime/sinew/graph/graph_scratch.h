@@ -25,6 +25,9 @@ struct GraphTask {
     kOffset,       ///< what is left of it upon out
     kLeave,        ///< keeps `from` as the pose left behind
     kLeft,         ///< fades from the pose left behind to out
+    kTravel,       ///< out goes over the ground as parameters say; `index`: node
+    kFeet,         ///< of the whole pose, where the character stands; `index`: node, by one weight
+    kLook,         ///< likewise
   };
   Kind kind = Kind::kSample;
   bool at_change = false;  ///< at the instant of a change, before the frame

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "sinew/animation/foot_lock.h"
 #include "sinew/animation/inertialize_job.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/graph/graph.h"
 
 namespace sinew {
@@ -47,9 +49,10 @@ struct GraphClipState {
 /// How a machine goes from one state to the next.
 enum class GraphFade : std::uint32_t {
   kNone,
-  kOffset,     ///< what was different fades away
-  kLeft,       ///< the pose left behind does
-  kCrossfade,  ///< the old state still plays
+  kOffset,      ///< what was different fades away
+  kLeft,        ///< the pose left behind does
+  kCrossfade,   ///< the old state still plays
+  kSmoothstep,  ///< likewise, by a weight of third degree
 };
 
 template <class T>
@@ -70,6 +73,20 @@ struct GraphMachineState {
   bool fading() const { return fade != GraphFade::kNone || shown_elapsed < shown_duration; }
 };
 
+template <class T>
+struct GraphFeetState {
+  FootState<T> legs[2];
+  SmoothInput<T> drop, level;  ///< of FootPlacementJob; m, height of the ground under the character
+  T waited;                    ///< s, in which no legs were posed
+  std::uint32_t begun;         ///< the level is known
+};
+
+template <class T>
+struct GraphLookState {
+  LookState<T> look;
+  T waited;  ///< s, in which it was not posed
+};
+
 /// The block, taken apart. Offers what playing needs; games use GraphParameters.
 template <class T>
 class GraphBlock {
@@ -82,6 +99,8 @@ class GraphBlock {
   GraphGroupState& group(int k) { return place<GraphGroupState>(at_.groups)[k]; }
   GraphClipState& clip(int k) { return place<GraphClipState>(at_.clips)[k]; }
   GraphMachineState<T>& machine(int k) { return place<GraphMachineState<T>>(at_.machines)[k]; }
+  GraphFeetState<T>& feet() { return *place<GraphFeetState<T>>(at_.feet); }
+  GraphLookState<T>& look(int k) { return place<GraphLookState<T>>(at_.looks)[k]; }
   InertialState<T> offset(int k, T elapsed, T duration) {
     const std::size_t numbers = inertial_numbers(graph_.joint_count(), graph_.translated());
     return {{place<T>(at_.offsets) + std::size_t(k) * numbers, numbers},
