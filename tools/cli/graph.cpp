@@ -9,8 +9,10 @@
 #include "graph/certificate.h"
 #include "graph/compile.h"
 #include "graph/describe.h"
+#include "graph/dump.h"
 #include "graph/trace.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_recorder.h"
 
 namespace sinew::cli {
 namespace {
@@ -77,11 +79,21 @@ void GraphCommand::add(CLI::App& app) {
                      "whose acceleration is explained: by which nodes; the busiest otherwise");
   trace_->add_option("-o,--output", output, "CSV; standard output otherwise");
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
+  trace_->add_option("--record", recording, "file for the last frames, as GraphRecorder keeps them");
+  trace_->add_option("--frames", frames, "of that file (120)")->check(CLI::Range(1, 100000));
+  replay_ = app.add_subcommand(
+      "replay",
+      "plays the frames that a recorder kept again, and writes what they did as JSON; 'same': to the bit");
+  graph(replay_);
+  replay_->add_option("recording", recording, "of trace --record, or of a game")->required();
+  replay_->add_option("--asset", asset, "asset or source file with its clips")->required();
+  replay_->add_option("-o,--output", output, "standard output otherwise");
 }
 
 Error GraphCommand::run() {
   if (check_->parsed()) return check();
   if (compile_->parsed()) return compile();
+  if (replay_->parsed()) return replay();
   return dot_->parsed() ? dot() : trace();
 }
 
@@ -142,17 +154,37 @@ Error GraphCommand::dot() const {
   return {};
 }
 
-Error GraphCommand::trace() {
-  Compiled compiled;
+Error GraphCommand::bind(Asset& with, Compiled& compiled, Graph& graph) const {
   if (Error error = load(input, compiled)) return error;
-  Asset with;
   nlohmann::json report;
   if (Error error = convert::open_any(asset, {}, with, report)) return error;
   if (const std::string fault = graph_tools::bind_fault(compiled, input, with); !fault.empty())
     return {fault};
+  const Status status = Graph::bind(compiled.graph, with, graph);
+  return status ? Error{} : Error{input + ": " + status.reason};
+}
+
+Error GraphCommand::replay() const {
+  Compiled compiled;
+  Asset with;
   Graph graph;
-  if (const Status status = Graph::bind(compiled.graph, with, graph); !status)
-    return {input + ": " + status.reason};
+  if (Error error = bind(with, compiled, graph)) return error;
+  std::string file;
+  if (Error error = read_text(recording, file)) return error;
+  graph_tools::Json frames_of_file;
+  if (const std::string fault = graph_tools::dump_recording(graph, file, frames_of_file); !fault.empty())
+    return {recording + ": " + fault};
+  const std::string text = frames_of_file.dump(1) + "\n";
+  if (!output.empty()) return write_atomically(output, text);
+  std::fputs(text.c_str(), stdout);
+  return {};
+}
+
+Error GraphCommand::trace() {
+  Compiled compiled;
+  Asset with;
+  Graph graph;
+  if (Error error = bind(with, compiled, graph)) return error;
   graph_tools::InputScript inputs;
   if (!script.empty()) {
     std::string text;
@@ -162,10 +194,14 @@ Error GraphCommand::trace() {
   graph_tools::TraceOptions options{seconds, rate, -1};
   if (!joint.empty() && (options.joint = with.skeleton.find(joint.c_str())) < 0)
     return {asset + ": no joint '" + joint + "'"};
+  std::vector<std::byte> ring(recording.empty() ? 0 : GraphRecorder<float>::bytes_for(graph, frames));
+  if (!recording.empty()) options.recording = &ring;
   std::ostringstream rows;
   graph_tools::Json end;
   if (const Status status = graph_tools::trace_graph(graph, with, inputs, options, rows, end); !status)
     return {input + ": " + status.reason};
+  if (!recording.empty())
+    if (Error error = write_atomically(recording, graph_tools::recording_file(ring))) return error;
   if (json_output) {
     std::puts(end.dump(2).c_str());
     return {};
