@@ -11,6 +11,7 @@
 #include "graph/describe.h"
 #include "graph/dump.h"
 #include "graph/trace.h"
+#include "scene/graph_plot.h"
 #include "sinew/graph/graph_file.h"
 #include "sinew/graph/graph_recorder.h"
 
@@ -81,6 +82,10 @@ void GraphCommand::add(CLI::App& app) {
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
   trace_->add_option("--record", recording, "file for the last frames, as GraphRecorder keeps them");
   trace_->add_option("--frames", frames, "of that file (120)")->check(CLI::Range(1, 100000));
+  plot_ = app.add_subcommand(
+      "plot", "accelerations and loads over a scene, beside the same graph with smoothstep crossfades");
+  plot_->add_option("scene", input, "scene whose first character plays a graph")->required();
+  plot_->add_option("-o,--output", output, ".svg or .png")->required();
   replay_ = app.add_subcommand(
       "replay",
       "plays the frames that a recorder kept again, and writes what they did as JSON; 'same': to the bit");
@@ -94,6 +99,7 @@ Error GraphCommand::run() {
   if (check_->parsed()) return check();
   if (compile_->parsed()) return compile();
   if (replay_->parsed()) return replay();
+  if (plot_->parsed()) return plot();
   return dot_->parsed() ? dot() : trace();
 }
 
@@ -162,6 +168,17 @@ Error GraphCommand::bind(Asset& with, Compiled& compiled, Graph& graph) const {
     return {fault};
   const Status status = Graph::bind(compiled.graph, with, graph);
   return status ? Error{} : Error{input + ": " + status.reason};
+}
+
+Error GraphCommand::plot() const {
+  scene::Scene own, usual;
+  scene::AskedOf asked[2];
+  if (Error error = scene::load_scene(input, own)) return error;
+  if (Error error = scene::with_smoothsteps(own, usual)) return {input + ": " + error.message};
+  if (Error error = scene::run_asked(own, asked[0])) return {input + ": " + error.message};
+  if (Error error = scene::run_asked(usual, asked[1]))
+    return {input + ", with smoothsteps: " + error.message};
+  return scene::plot_asked(own, asked[0], asked[1], output);
 }
 
 Error GraphCommand::replay() const {

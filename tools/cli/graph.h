@@ -26,10 +26,12 @@ struct GraphCommand {
   convert::Error dot() const;
   convert::Error trace();
   convert::Error replay() const;
+  convert::Error plot() const;
   /// The graph of the command with its asset.
   convert::Error bind(Asset& with, graph_tools::Compiled& compiled, Graph& graph) const;
   bool strict_ = false;
-  CLI::App *check_ = nullptr, *compile_ = nullptr, *dot_ = nullptr, *trace_ = nullptr, *replay_ = nullptr;
+  CLI::App *check_ = nullptr, *compile_ = nullptr, *dot_ = nullptr, *trace_ = nullptr, *replay_ = nullptr,
+           *plot_ = nullptr;
 };
 
 }  // namespace sinew::cli

@@ -39,7 +39,7 @@ convert::Error Play<T>::add_all() {
     if (world_.add_character(c.asset->skeleton, settings, status) < 0)
       return {"character '" + c.name + "': " + status.reason};
     players_.emplace_back(c);
-    asked_.push_back({settings.strength, {}, settings.root, false});
+    asked_.push_back({settings.strength, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)
     if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
@@ -95,7 +95,11 @@ convert::Error Play<T>::drive(int c, double t) {
       spare_acceleration<T>(character, spare_);
       felt.spare_acceleration = spare_;
     }
-    Status status = character.set_target(players_[c].at(t, felt));
+    const std::vector<JointJet<T>>& jets = players_[c].at(t, felt);
+    asked.acceleration = 0;
+    for (const JointJet<T>& jet : jets)
+      asked.acceleration = std::max(asked.acceleration, double(jet.alpha.norm()));
+    Status status = character.set_target(jets);
     if (!players_[c].fault()) status = players_[c].fault();
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     asked.still = !players_[c].moves();
