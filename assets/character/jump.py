@@ -15,7 +15,7 @@ from make_character import Buffer
 from motion import ANKLE, BALL, NAMES, RATE, Motion, Y, smoothest, turn
 
 TAKE_OFF, LANDING, SECONDS = 0.55, 0.97, 1.75
-STAND, RISEN = 0.9545, 1.005  # m, of the pelvis: at ease, and when the toes leave the floor
+STAND, RISEN = 0.9545, 0.985  # m, of the pelvis: at ease, and when the toes leave the floor
 
 
 def times():
@@ -40,9 +40,8 @@ def pelvis_height(t):
 
 def feet(m, t, height):
     """Heels rise until the toes leave, hang down in flight, and come down after the balls."""
-    pitch = track(t, [(0, 0), (0.3, 0), (0.47, 14), (TAKE_OFF, 40), (0.70, 44), (0.88, 30), (LANDING, 18), (1.05, 2), (1.12, 0), (SECONDS, 0)])
-    pitch = np.where((t < 0.38) | (t > 1.12), 0, np.maximum(pitch, 0))
-    toes = np.where((t > TAKE_OFF) & (t < LANDING), 0.3, 1.0) * pitch
+    pitch = smoothest((t < 0.30) | (t > 1.16), np.zeros(len(t)), [(k * RATE, v) for k, v in ((0.44, 10), (TAKE_OFF, 38), (0.72, 44), (0.88, 28), (LANDING, 16))])
+    toes = track(t, [(0, 1), (0.45, 1), (TAKE_OFF, 0.9), (0.72, 0.35), (0.85, 0.35), (LANDING, 0.9), (1.1, 1), (SECONDS, 1)]) * pitch
     air = np.where((t > TAKE_OFF) & (t < LANDING), height - RISEN, 0)
     tuck = 0.05 * np.sin(np.pi * np.clip((t - TAKE_OFF) / (LANDING - TAKE_OFF), 0, 1)) ** 3
     a = np.radians(pitch)

@@ -178,6 +178,8 @@ Error GraphCommand::plot() const {
   if (Error error = scene::run_asked(own, asked[0])) return {input + ": " + error.message};
   if (Error error = scene::run_asked(usual, asked[1]))
     return {input + ", with smoothsteps: " + error.message};
+  std::printf("the graph: %s\nwith smoothsteps: %s\n", scene::summary_of(asked[0]).c_str(),
+              scene::summary_of(asked[1]).c_str());
   return scene::plot_asked(own, asked[0], asked[1], output);
 }
 

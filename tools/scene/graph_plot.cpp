@@ -90,6 +90,18 @@ convert::Error run_asked(const Scene& scene, AskedOf& out) {
   return {};
 }
 
+std::string summary_of(const AskedOf& asked) {
+  std::vector<double> sorted = asked.acceleration;
+  if (sorted.empty()) return "no frames";
+  std::sort(sorted.begin(), sorted.end());
+  const auto full =
+      std::count_if(asked.load.begin(), asked.load.end(), [](double load) { return load > 0.999; });
+  return fmt::format(
+      "greatest |q''| {:.0f} rad/s², 95 % of the frames below {:.0f}; a muscle at its limit in {:.0f} % of "
+      "them",
+      sorted.back(), sorted[sorted.size() * 95 / 100], 100.0 * double(full) / double(sorted.size()));
+}
+
 convert::Error plot_asked(const Scene& scene, const AskedOf& own, const AskedOf& usual,
                           const std::string& path) {
   Canvas canvas(path, kWide, kTop + 2 * kHigh + kGap + 40);
