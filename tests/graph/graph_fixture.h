@@ -24,7 +24,8 @@ inline Asset graph_asset() {
     Joint joint;
     joint.name = "joint" + std::to_string(j);
     joint.parent = j - 1;
-    joint.rest.translation = {0.01 * j, 0.02, 0.3};
+    // As random_clip() has them, to the bit: joints that clips do not move are where they rest.
+    joint.rest.translation = Vec3<float>(0.01f * float(j), 0.02f, 0.3f).cast<double>();
     asset.skeleton.joints.push_back(joint);
   }
   unsigned seed = 1;

@@ -4,6 +4,7 @@
 
 #include "sinew/animation/sampling_job.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_keep.h"
 #include "sinew/graph/graph_scratch.h"
 
 namespace sinew {
@@ -81,9 +82,7 @@ std::size_t rounded(std::size_t bytes) {
 }
 
 template <class T>
-GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
-                      const std::vector<Graph::BoundMachine>& machines, int joints, int translated,
-                      std::size_t curves, bool feet, std::size_t looks) {
+GraphLayout layout_of(const Graph& graph) {
   GraphLayout at;
   std::size_t end = rounded(sizeof(GraphHeader<T>));
   const auto place = [&](std::size_t bytes) {
@@ -91,21 +90,19 @@ GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
     end += rounded(bytes);
     return begin;
   };
-  const auto count = [&](int Graph::BoundMachine::*which) {
-    return std::size_t(
-        std::count_if(machines.begin(), machines.end(), [&](const auto& m) { return m.*which >= 0; }));
-  };
-  const std::size_t offsets = count(&Graph::BoundMachine::offset),
-                    left = count(&Graph::BoundMachine::left_pose);
-  at.parameters = place(graph.parameters.size() * sizeof(GraphParameterState<T>));
-  at.groups = place(graph.groups.size() * sizeof(GraphGroupState));
-  at.clips = place(clips * sizeof(GraphClipState));
-  at.machines = place(machines.size() * sizeof(GraphMachineState<T>));
-  at.offsets = place(offsets * inertial_numbers(joints, translated) * sizeof(T));
-  at.curve_offsets = place(offsets * curves * sizeof(TimeJet<T>));
-  at.left_poses = place(left * std::size_t(joints) * sizeof(JointJet<T>));
-  at.feet = place(feet ? sizeof(GraphFeetState<T>) : 0);
-  at.looks = place(looks * sizeof(GraphLookState<T>));
+  const auto offsets = std::size_t(std::count_if(graph.machines().begin(), graph.machines().end(),
+                                                 [](const auto& m) { return m.offset >= 0; }));
+  const auto times = std::size_t(
+      std::count_if(graph.clips().begin(), graph.clips().end(), [](const auto& c) { return c.time >= 0; }));
+  at.parameters = place(graph.definition().parameters.size() * sizeof(GraphParameterState<T>));
+  at.groups = place(graph.definition().groups.size() * sizeof(GraphGroupState));
+  at.clips = place(times * sizeof(TimeJet<double>));
+  at.fresh = place((graph.clips().size() + 7) / 8);
+  at.machines = place(graph.machines().size() * sizeof(GraphMachineState<T>));
+  at.offsets = place(offsets * rounded(kept_bytes<T>(graph.joint_count(), graph.translated())));
+  at.curve_offsets = place(offsets * std::size_t(graph.curve_count()) * sizeof(TimeJet<T>));
+  at.feet = place(graph.feet().node >= 0 ? sizeof(GraphFeetState<T>) : 0);
+  at.looks = place(graph.looks().size() * sizeof(GraphLookState<T>));
   at.bytes = end;
   return at;
 }
@@ -117,6 +114,9 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   const int found = asset.find_clip(in.clip);
   if (found < 0) return bad("the asset has no clip of this name", index);
   BoundClip bound{&asset.clips[std::size_t(found)], {}, index};
+  if (in.group < 0)
+    bound.time = static_cast<int>(
+        std::count_if(clips_.begin(), clips_.end(), [](const BoundClip& c) { return c.time >= 0; }));
   if (in.group >= 0) {
     if (!bound.clip->loops) return bad("a clip that does not loop cannot be synchronised", index);
     if (bound.clip->markers.empty()) return bad("a synchronised clip has no markers of its phase", index);
@@ -183,18 +183,12 @@ Status Graph::bind_blend(int index) {
 void Graph::bind_machine(int index) {
   const GraphNode& in = node(index);
   slots_[std::size_t(index)] = static_cast<int>(machines_.size());
-  const auto count = [&](int BoundMachine::*which) {
-    return static_cast<int>(std::count_if(machines_.begin(), machines_.end(),
-                                          [&](const BoundMachine& m) { return m.*which >= 0; }));
-  };
   BoundMachine machine;
   machine.node = index;
   machine.fades = has_empty_state(definition_, index);
   if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
-    machine.offset = count(&BoundMachine::offset);
-  if (std::any_of(in.transitions.begin(), in.transitions.end(),
-                  [](const GraphTransition& t) { return t.kind == TransitionKind::kDead; }))
-    machine.left_pose = count(&BoundMachine::left_pose);
+    machine.offset = static_cast<int>(
+        std::count_if(machines_.begin(), machines_.end(), [](const auto& m) { return m.offset >= 0; }));
   machines_.push_back(machine);
 }
 
@@ -236,12 +230,8 @@ Status Graph::bind_look(int index, const Asset& asset) {
 
 void Graph::lay_out() {
   registers_ = most_needs(definition_).registers;
-  const auto layout = [&](auto number) {
-    return layout_of<decltype(number)>(definition_, clips_.size(), machines_, joint_count_, translated_,
-                                       curve_slots_.size(), feet_.node >= 0, looks_.size());
-  };
-  layouts_[0] = layout(0.f);
-  layouts_[1] = layout(0.0);
+  layouts_[0] = layout_of<float>(*this);
+  layouts_[1] = layout_of<double>(*this);
   hash_ = 14695981039346656037u;
   const auto mix = [&](std::uint64_t v) { hash_ = (hash_ ^ v) * 1099511628211u; };
   for (const std::uint8_t byte : write_graph(definition_)) mix(byte);
@@ -325,6 +315,8 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
     }
   }
   rotations.resize(2 * joints);
+  offset.resize(inertial_numbers(graph.joint_count(), graph.translated()));
+  left.resize(joints);
   spare.resize(joints);
   tasks.resize(std::size_t(needs.tasks));
   weights.resize(std::size_t(needs.weights));

@@ -31,8 +31,8 @@ namespace sinew {
 
 /// Where in a character's block what stands, in bytes. All a multiple of 16.
 struct GraphLayout {
-  std::size_t parameters = 0, groups = 0, clips = 0, machines = 0, offsets = 0, curve_offsets = 0,
-              left_poses = 0, feet = 0, looks = 0, bytes = 0;
+  std::size_t parameters = 0, groups = 0, clips = 0, fresh = 0, machines = 0, offsets = 0, curve_offsets = 0,
+              feet = 0, looks = 0, bytes = 0;
 };
 
 /// Constant once bound. Refers to the asset's clips, which must stay where they are. The same definition may
@@ -59,6 +59,7 @@ class Graph {
     const Clip* clip = nullptr;
     PhaseMap map;  ///< of those in a group; of mirrored ones half a cycle on
     int node = 0;
+    int time = -1;  ///< which of the block's times it plays by; −1: by its group's phase
   };
   struct BoundLayer {
     int mask = -1;                            ///< of the asset
@@ -66,8 +67,7 @@ class Graph {
   };
   struct BoundMachine {
     int node = 0;
-    int offset = -1;     ///< which of the block's offsets its transitions use
-    int left_pose = -1;  ///< where the pose is kept that a kDead transition leaves
+    int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind
     bool fades = false;  ///< has an empty state
   };
   template <class T>

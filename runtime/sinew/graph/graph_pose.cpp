@@ -272,13 +272,17 @@ class Pose {
     return MeshAdditiveJob<T>{parents, below, upper, w, mask.empty() ? mask : mask.first(n), scratch}.Run();
   }
 
+  InertialState<T> offset_state(T elapsed, T duration) {
+    return {s_.offset, graph_.joint_count(), graph_.translated(), elapsed, duration};
+  }
   Status begin_offset(const GraphTask& task) {
     GraphMachineState<T>& m = block_.machine(task.index);
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     const GraphTransition& t = graph_.node(bound.node).transitions[std::size_t(task.layer)];
-    InertialState<T> state = block_.offset(bound.offset, T(0), m.duration);
+    InertialState<T> state = offset_state(T(0), m.duration);
     const Register &before = at(task.from), &after = at(task.out);
     if (Status status = begin_inertial<T>(before.jets, after.jets, m.duration, state); !status) return status;
+    keep_offset(state, block_.offset(bound.offset));
     for (std::size_t c = 0; c < before.curves.size(); ++c)
       block_.curve_offsets(bound.offset)[c] = before.curves[c] - after.curves[c];
     for (int k = 0; k < 3; ++k) {
@@ -302,8 +306,9 @@ class Pose {
     // A change overwrites the machine's times before what it did before is made.
     const T elapsed = task.at_change ? T(task.time.value) : m.elapsed,
             duration = task.at_change ? T(task.time.rate) : m.duration;
-    const InertialState<T> state = block_.offset(bound.offset, elapsed, duration);
+    InertialState<T> state = offset_state(elapsed, duration);
     if (!state.running()) return {};
+    recall_offset(block_.offset(bound.offset), state);
     const QuinticOffset<T> left = QuinticOffset<T>::at(elapsed, duration);
     Register& out = at(task.out);
     for (std::size_t c = 0; c < out.curves.size(); ++c)
@@ -319,15 +324,7 @@ class Pose {
   void leave(const GraphTask& task) {
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     const Register& from = at(task.from);
-    const std::span<JointJet<T>> left = block_.left_pose(bound.left_pose);
-    for (std::size_t j = 0; j < left.size(); ++j) {  // number by number: a block has no bytes of chance
-      left[j].rotation = from.jets[j].rotation;
-      left[j].omega = from.jets[j].omega;
-      left[j].alpha = from.jets[j].alpha;
-      left[j].translation = from.jets[j].translation;
-      left[j].velocity = from.jets[j].velocity;
-      left[j].acceleration = from.jets[j].acceleration;
-    }
+    keep_pose<T>(from.jets, s_.rest, graph_.translated(), block_.offset(bound.offset));
     std::copy(from.curves.begin(), from.curves.end(), block_.curve_offsets(bound.offset).begin());
     block_.machine(task.index).travel = from.travel;
   }
@@ -338,8 +335,9 @@ class Pose {
     const int to = task.out + 1;  // the new motion goes there, the old one takes its place
     copy(task.out, to, joints);
     Register& old = at(task.out);
-    const ExtrapolateJob<T> job{block_.left_pose(bound.left_pose).first(joints), elapsed, T(kSlowing),
-                                T(kLoss), jets(task.out, joints)};
+    const std::span<JointJet<T>> left(s_.left.data(), joints);
+    recall_pose<T>(block_.offset(bound.offset), s_.rest, graph_.translated(), left);
+    const ExtrapolateJob<T> job{left, elapsed, T(kSlowing), T(kLoss), jets(task.out, joints)};
     if (Status status = job.Run(); !status) return status;
     const DyingRate<T> dying = DyingRate<T>::at(elapsed, T(kSlowing), T(kLoss));
     for (int k = 0; k < 3; ++k) {

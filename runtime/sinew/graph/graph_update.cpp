@@ -203,7 +203,7 @@ void Update<T>::leave(int index) {
     const int clip = graph_.slot(index);
     const Clip& c = *graph_.clips()[std::size_t(clip)].clip;
     const ClipTime time = clip_time(graph_, block_, clip);
-    if (!events_ || block_.clip(clip).fresh != 0) return;
+    if (!events_ || block_.fresh(clip)) return;
     const int first = events_->count;
     end_events(c.events, double(c.duration), c.loops, time.value, time.rate < 0, *events_);
     for (int k = first; k < events_->count; ++k)
@@ -333,7 +333,7 @@ void Update<T>::advance(int index) {
     block_.group(node.group).active = 1;
     return;
   }
-  TimeJet<double>& played = block_.clip(slot).time;
+  TimeJet<double>& played = block_.time(graph_.clips()[std::size_t(slot)].time);
   s_.before[std::size_t(slot)] = played_time(*graph_.clips()[std::size_t(slot)].clip, played).value;
   // exact to h⁵, as a phase is
   const TimeJet<double> speed = clip_speed(graph_, block_, node);
@@ -495,9 +495,8 @@ void Update<T>::emit_machine(int index, int base, const TimeJet<T>& weight, bool
 
 template <class T>
 void Update<T>::report_clip(int slot) {
-  GraphClipState& clip = block_.clip(slot);
-  const bool starts = clip.fresh != 0;
-  clip.fresh = 0;
+  const bool starts = block_.fresh(slot);
+  if (starts) block_.set_fresh(slot, false);
   const float share = s_.shares[std::size_t(slot)];
   const Clip& c = *graph_.clips()[std::size_t(slot)].clip;
   if (share < 0 || c.events.empty()) return;
@@ -507,7 +506,7 @@ void Update<T>::report_clip(int slot) {
   const int group = graph_.node(bound.node).group;
   const double before =
       group < 0 ? s_.before[std::size_t(slot)] : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
-  const double now = group < 0 ? played_time(c, clip.time).value : s_.now[std::size_t(slot)];
+  const double now = group < 0 ? played_time(c, block_.time(bound.time)).value : s_.now[std::size_t(slot)];
   EventJob job{c.events, double(c.duration), c.loops, before, now, starts};
   job.step = static_cast<float>(h_);
   job.weight = share;
