@@ -24,6 +24,7 @@ Asset asset_of(int clips) {
     Joint joint;
     joint.name = "j" + std::to_string(j);
     joint.parent = j - 1;
+    joint.rest.translation = Vec3<float>(0.01f * float(j), 0.02f, 0.3f).cast<double>();  // as the clips'
     asset.skeleton.joints.push_back(joint);
   }
   for (int k = 0; k < clips; ++k) {

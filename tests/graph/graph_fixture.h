@@ -24,7 +24,8 @@ inline Asset graph_asset() {
     Joint joint;
     joint.name = "joint" + std::to_string(j);
     joint.parent = j - 1;
-    joint.rest.translation = {0.01 * j, 0.02, 0.3};
+    // As random_clip() has them, to the bit: joints that clips do not move are where they rest.
+    joint.rest.translation = Vec3<float>(0.01f * float(j), 0.02f, 0.3f).cast<double>();
     asset.skeleton.joints.push_back(joint);
   }
   unsigned seed = 1;
@@ -90,6 +91,7 @@ struct GraphPlayer {
   std::vector<JointJet<T>> physical = jets;
   std::vector<EventHit> hits = std::vector<EventHit>(64);
   EventSink events{hits};
+  GraphGround<T> ground;
 
   explicit GraphPlayer(const Graph& played) : graph(played) {
     EXPECT_TRUE(start_graph<T>(graph, state).ok());
@@ -111,7 +113,7 @@ struct GraphPlayer {
   void step(double h) {
     events.count = events.lost = 0;
     const Status status =
-        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical}.Run();
+        GraphStepJob<T>{&graph, state, T(h), &scratch, jets, &events, curves, physical, {}, {}, ground}.Run();
     EXPECT_TRUE(status.ok()) << status.reason;
   }
   /// Name of the state of the machine of this name.

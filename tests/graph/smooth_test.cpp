@@ -85,6 +85,42 @@ TEST(Graph, NothingThatAGameSetsMakesAPoseVelocityOrAccelerationJump) {
   EXPECT_LT(worst.acceleration, 1e-6);
 }
 
+// In single precision transitions begin with 16-bit shares of the greatest offset (graph_keep.h). What that
+// makes jump: at most 1/65534 of each kind of offset, a turn four times its parameter, and what turning axes
+// by it changes; offsets reach half a turn, some 30 rad/s and 1000 rad/s² here.
+TEST(Graph, InSinglePrecisionWhatTransitionsKeepIsOffByRoundingAlone) {
+  const Asset asset = fixtures::graph_asset();
+  Graph graph;
+  fixtures::bind_graph(fixtures::kSmoothGraph, asset, graph);
+  GraphPlayer<float> player(graph);
+  std::mt19937 random(7);
+  player.step(0);
+  Jump worst;
+  const auto doubles = [](const std::vector<JointJet<float>>& jets) {
+    std::vector<JointJet<double>> out(jets.size());
+    for (std::size_t j = 0; j < jets.size(); ++j)
+      out[j] = {jets[j].rotation.cast<double>(), jets[j].omega.cast<double>(),
+                jets[j].alpha.cast<double>(),    jets[j].translation.cast<double>(),
+                jets[j].velocity.cast<double>(), jets[j].acceleration.cast<double>()};
+    return out;
+  };
+  for (int k = 0; k < 4000; ++k) {
+    player.step(std::uniform_real_distribution<double>(1e-3, 0.04)(random));
+    const auto before = doubles(player.jets);
+    if (k % 3 == 0) play_at_random(player, random);
+    player.step(0);
+    const Jump jump = between(before, doubles(player.jets));
+    worst.pose = std::max(worst.pose, jump.pose);
+    worst.velocity = std::max(worst.velocity, jump.velocity);
+    worst.acceleration = std::max(worst.acceleration, jump.acceleration);
+  }
+  EXPECT_LT(worst.pose, 1e-4) << "rad, m";
+  EXPECT_LT(worst.velocity, 5e-3) << "rad/s, m/s";
+  EXPECT_LT(worst.acceleration, 0.1) << "rad/s²: a ten-thousandth of what motions have";
+  RecordProperty("acceleration", std::to_string(worst.acceleration));
+  std::printf("jumps: %.1e rad, %.1e rad/s, %.1e rad/s2\n", worst.pose, worst.velocity, worst.acceleration);
+}
+
 /// Derivatives of five poses that are h apart, at the middle one.
 struct Differences {
   Vec3<double> omega, alpha, velocity, acceleration;

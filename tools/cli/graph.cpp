@@ -10,8 +10,11 @@
 #include "graph/certificate.h"
 #include "graph/compile.h"
 #include "graph/describe.h"
+#include "graph/dump.h"
 #include "graph/trace.h"
+#include "scene/graph_plot.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_recorder.h"
 
 namespace sinew::cli {
 namespace {
@@ -86,11 +89,26 @@ void GraphCommand::add(CLI::App& app) {
       ->type_name("FILE")
       ->default_str("standard output");
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
+  trace_->add_option("--record", recording, "file for the last frames, as GraphRecorder keeps them");
+  trace_->add_option("--frames", frames, "of that file (120)")->check(CLI::Range(1, 100000));
+  plot_ = app.add_subcommand(
+      "plot", "accelerations and loads over a scene, beside the same graph with smoothstep crossfades");
+  plot_->add_option("scene", input, "scene whose first character plays a graph")->required();
+  plot_->add_option("-o,--output", output, ".svg or .png")->required();
+  replay_ = app.add_subcommand(
+      "replay",
+      "plays the frames that a recorder kept again, and writes what they did as JSON; 'same': to the bit");
+  graph(replay_);
+  replay_->add_option("recording", recording, "of trace --record, or of a game")->required();
+  replay_->add_option("--asset", asset, "asset or source file with its clips")->required();
+  replay_->add_option("-o,--output", output, "standard output otherwise");
 }
 
 Error GraphCommand::run() {
   if (check_->parsed()) return check();
   if (compile_->parsed()) return compile();
+  if (replay_->parsed()) return replay();
+  if (plot_->parsed()) return plot();
   return dot_->parsed() ? dot() : trace();
 }
 
@@ -156,17 +174,50 @@ Error GraphCommand::dot() const {
   return {};
 }
 
-Error GraphCommand::trace() {
-  Compiled compiled;
+Error GraphCommand::bind(Asset& with, Compiled& compiled, Graph& graph) const {
   if (Error error = load(input, compiled)) return error;
-  Asset with;
   nlohmann::json report;
   if (Error error = convert::open_any(asset, {}, with, report)) return error;
   if (const std::string fault = graph_tools::bind_fault(compiled, input, with); !fault.empty())
     return {fault};
+  const Status status = Graph::bind(compiled.graph, with, graph);
+  return status ? Error{} : Error{input + ": " + status.reason};
+}
+
+Error GraphCommand::plot() const {
+  scene::Scene own, usual;
+  scene::AskedOf asked[2];
+  if (Error error = scene::load_scene(input, own)) return error;
+  if (Error error = scene::with_smoothsteps(own, usual)) return {input + ": " + error.message};
+  if (Error error = scene::run_asked(own, asked[0])) return {input + ": " + error.message};
+  if (Error error = scene::run_asked(usual, asked[1]))
+    return {input + ", with smoothsteps: " + error.message};
+  std::printf("the graph: %s\nwith smoothsteps: %s\n", scene::summary_of(asked[0]).c_str(),
+              scene::summary_of(asked[1]).c_str());
+  return scene::plot_asked(own, asked[0], asked[1], output);
+}
+
+Error GraphCommand::replay() const {
+  Compiled compiled;
+  Asset with;
   Graph graph;
-  if (const Status status = Graph::bind(compiled.graph, with, graph); !status)
-    return {input + ": " + status.reason};
+  if (Error error = bind(with, compiled, graph)) return error;
+  std::string file;
+  if (Error error = read_text(recording, file)) return error;
+  graph_tools::Json frames_of_file;
+  if (const std::string fault = graph_tools::dump_recording(graph, file, frames_of_file); !fault.empty())
+    return {recording + ": " + fault};
+  const std::string text = frames_of_file.dump(1) + "\n";
+  if (!output.empty()) return write_atomically(output, text);
+  std::fputs(text.c_str(), stdout);
+  return {};
+}
+
+Error GraphCommand::trace() {
+  Compiled compiled;
+  Asset with;
+  Graph graph;
+  if (Error error = bind(with, compiled, graph)) return error;
   graph_tools::InputScript inputs;
   if (!script.empty()) {
     std::string text;
@@ -176,10 +227,14 @@ Error GraphCommand::trace() {
   graph_tools::TraceOptions options{seconds, rate, -1};
   if (!joint.empty() && (options.joint = with.skeleton.find(joint.c_str())) < 0)
     return {asset + ": no joint '" + joint + "'"};
+  std::vector<std::byte> ring(recording.empty() ? 0 : GraphRecorder<float>::bytes_for(graph, frames));
+  if (!recording.empty()) options.recording = &ring;
   std::ostringstream rows;
   graph_tools::Json end;
   if (const Status status = graph_tools::trace_graph(graph, with, inputs, options, rows, end); !status)
     return {input + ": " + status.reason};
+  if (!recording.empty())
+    if (Error error = write_atomically(recording, graph_tools::recording_file(ring))) return error;
   if (json_output) {
     std::puts(json_text(end, 2).c_str());
     return {};

@@ -5,12 +5,15 @@
 #include <string>
 
 #include "convert/convert.h"
+#include "graph/compile.h"
+#include "sinew/graph/graph.h"
 
 namespace sinew::cli {
 
 struct GraphCommand {
-  std::string input, output, asset, script, joint;
+  std::string input, output, asset, script, joint, recording;
   double seconds = 10, rate = 60;
+  int frames = 120;
   bool json_output = false;
 
   void add(CLI::App& app);
@@ -22,8 +25,13 @@ struct GraphCommand {
   convert::Error compile() const;
   convert::Error dot() const;
   convert::Error trace();
+  convert::Error replay() const;
+  convert::Error plot() const;
+  /// The graph of the command with its asset.
+  convert::Error bind(Asset& with, graph_tools::Compiled& compiled, Graph& graph) const;
   bool strict_ = false;
-  CLI::App *check_ = nullptr, *compile_ = nullptr, *dot_ = nullptr, *trace_ = nullptr;
+  CLI::App *check_ = nullptr, *compile_ = nullptr, *dot_ = nullptr, *trace_ = nullptr, *replay_ = nullptr,
+           *plot_ = nullptr;
 };
 
 }  // namespace sinew::cli

@@ -93,9 +93,13 @@ void Attribution::done(const GraphTask& task, std::span<const JointJet<float>> o
     case GraphTask::Kind::kOffset:
     case GraphTask::Kind::kLeft:
       return rest(machine(), jet.alpha, at);
+    case GraphTask::Kind::kFeet:
+    case GraphTask::Kind::kLook:
+      return rest(task.index, jet.alpha, at);
     case GraphTask::Kind::kKeep:
     case GraphTask::Kind::kBeginOffset:
     case GraphTask::Kind::kLeave:
+    case GraphTask::Kind::kTravel:
       return;
   }
 }

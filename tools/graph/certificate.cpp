@@ -5,7 +5,7 @@
 namespace sinew::graph_tools {
 namespace {
 
-constexpr int kNotThePose = -1, kNotTheVelocity = 0;  ///< what still is
+constexpr int kNotThePose = -1, kNotTheVelocity = 0, kNotTheAcceleration = 1;  ///< what still is
 
 class Certificate {
  public:
@@ -25,6 +25,9 @@ class Certificate {
       if (node.type == NodeType::kPhysical)
         lose(k, kNotThePose, "the physical pose is as the body is thrown about");
       if (node.type == NodeType::kMachine) machine(k, node);
+      if (node.type == NodeType::kTravel) travel(k, node.travel);
+      if (node.type == NodeType::kFeet) feet(k, node.feet);
+      if (node.type == NodeType::kLook) look(k, node.look);
     }
     return std::move(losses_);
   }
@@ -36,10 +39,34 @@ class Certificate {
     if (p.half_life > 0) return;
     lose(node, order, "parameter '" + p.name + "' is not filtered and " + what);
   }
+  void weight(int node, const GraphValue& v, const std::string& what) {
+    if (v.parameter >= 0) unfiltered(node, v.parameter, kNotThePose, what);
+  }
+  void travel(int index, const GraphTravel& in) {
+    for (const int parameter : in.parameters)
+      if (parameter >= 0) unfiltered(index, parameter, kNotTheVelocity, "is a velocity over the ground");
+    if (in.weight.parameter >= 0)
+      unfiltered(index, in.weight.parameter, kNotTheVelocity, "is the weight of such a velocity");
+  }
+  void feet(int index, const GraphFeet& in) {
+    weight(index, in.weight, "is the weight of feet");
+    if (in.level >= 0) unfiltered(index, in.level, kNotThePose, "is the height of the ground");
+    if (in.locks && in.settings.lock_time <= 0) lose(index, kNotThePose, "feet lock in no time");
+    if (in.locks && in.settings.release_time <= 0) lose(index, kNotThePose, "feet are let go in no time");
+  }
+  void look(int index, const GraphLook& in) {
+    weight(index, in.weight, "is the weight of a look");
+    if (in.settings.half_life > 0) return;  // which filters the angles itself
+    for (const int parameter : in.target)
+      unfiltered(index, parameter, kNotThePose, "is a target's place, and the look has no half_life");
+  }
   void machine(int index, const GraphNode& node) {
     bool offsets = false;
     for (const GraphTransition& t : node.transitions) {
       offsets |= t.kind == TransitionKind::kInertial;
+      if (t.kind == TransitionKind::kSmoothstep)
+        lose(index, kNotTheAcceleration,
+             "the transition to '" + node.states[std::size_t(t.to)].name + "' fades by a smoothstep");
       if (t.kind != TransitionKind::kCut && t.duration > 0) continue;
       const std::string from = t.from < 0 ? "any state" : "'" + node.states[std::size_t(t.from)].name + "'";
       lose(index, kNotThePose,

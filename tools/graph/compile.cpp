@@ -215,6 +215,10 @@ class Compiler {
     }
     if (v.is_string()) return named(place, place.text(), name, sync);
     if (!v.is_object()) place.fail("expected a clip's name or an object");
+    if (place.has("feet")) return feet(place, std::move(out));
+    if (place.has("look")) return look(place, std::move(out));
+    top_ = false;
+    if (place.has("travel")) return travel(place, std::move(out), sync);
     if (place.has("clip")) return clip(place, std::move(out), sync);
     if (place.has("blend")) return blend(place, std::move(out), sync);
     if (place.has("layers")) return layers(place, std::move(out));
@@ -230,7 +234,7 @@ class Compiler {
       out.type = NodeType::kPhysical;
       return add(std::move(out), place);
     }
-    place.fail("a node has one of: clip, blend, layers, states, mirror, physical");
+    place.fail("a node has one of: clip, blend, layers, states, mirror, travel, feet, look, physical");
   }
   int named(const Place& place, const std::string& wanted, const std::string& name, const std::string& sync) {
     for (const auto& [known, at] : named_) {
@@ -327,6 +331,98 @@ class Compiler {
     return add(std::move(out), place);
   }
 
+  int travel(const Place& place, GraphNode out, const std::string& sync) {
+    place.object({"travel", "forward", "left", "turn", "weight", "add"});
+    out.type = NodeType::kTravel;
+    out.children = {only_child(place.at("travel"), out.name, sync)};
+    static constexpr const char* kAxes[] = {"forward", "left", "turn"};
+    bool any = false;
+    for (int k = 0; k < 3; ++k) {
+      if (!place.has(kAxes[k])) continue;
+      out.travel.parameters[k] = float_parameter(place.at(kAxes[k]));
+      any = true;
+    }
+    if (!any) place.fail("a travel has one of: forward, left, turn");
+    if (place.has("weight")) out.travel.weight = value(place.at("weight"), 0, 1);
+    if (place.has("add")) out.travel.adds = place.at("add").flag();
+    return add(std::move(out), place);
+  }
+  int only_child(const Place& place, const std::string& name, const std::string& sync) {
+    const int child = node(place, name + "/0", sync);
+    if (graph_.nodes[std::size_t(child)].type == NodeType::kEmpty) place.fail("there is nothing here");
+    return child;
+  }
+  /// Feet and looks are of the whole pose.
+  void finisher(const Place& place, const GraphNode& out) {
+    if (!top_)
+      place.fail(std::string(out.type == NodeType::kFeet ? "feet are" : "a look is") +
+                 " of the whole pose: nothing but looks and feet may be above");
+    if (out.type == NodeType::kFeet && std::exchange(has_feet_, true)) place.fail("feet stand twice");
+  }
+  int feet(const Place& place, GraphNode out) {
+    place.object({"feet", "weight", "level", "lock", "lock_at", "release_at", "lock_time", "release_time",
+                  "half_life", "farthest", "steepest", "reach", "follow", "rise", "deepest", "lift"});
+    out.type = NodeType::kFeet;
+    finisher(place, out);
+    out.children = {only_child(place.at("feet"), out.name, "")};
+    GraphFeet& in = out.feet;
+    if (place.has("weight")) in.weight = value(place.at("weight"), 0, 1);
+    if (place.has("level")) in.level = float_parameter(place.at("level"));
+    if (place.has("lock")) in.locks = place.at("lock").flag();
+    FootSettings<float>& s = in.settings;
+    numbers(place, {{"lock_at", &s.lock_at},
+                    {"release_at", &s.release_at},
+                    {"lock_time", &s.lock_time},
+                    {"release_time", &s.release_time},
+                    {"half_life", &s.half_life},
+                    {"farthest", &s.farthest},
+                    {"steepest", &s.steepest},
+                    {"reach", &in.reach},
+                    {"follow", &in.follow},
+                    {"rise", &in.rise},
+                    {"deepest", &in.deepest},
+                    {"lift", &in.lift}});
+    return add(std::move(out), place);
+  }
+  int look(const Place& place, GraphNode out) {
+    place.object({"look", "at", "in", "weight", "joints", "yaw", "pitch_down", "pitch_up", "softness",
+                  "behind", "fastest", "least_time", "half_life"});
+    out.type = NodeType::kLook;
+    finisher(place, out);
+    out.children = {only_child(place.at("look"), out.name, "")};
+    GraphLook& in = out.look;
+    const Place at = place.at("at");
+    if (at.array().size() != 3) at.fail("a look is at three parameters: [x, y, z]");
+    for (std::size_t k = 0; k < 3; ++k) in.target[k] = float_parameter(at.at(k));
+    if (place.has("in")) in.in_world = place.at("in").choice<bool>({{"world", true}, {"character", false}});
+    if (place.has("weight")) in.weight = value(place.at("weight"), 0, 1);
+    if (place.has("joints")) {
+      const Place joints = place.at("joints");
+      if (joints.array().size() < 1 || joints.size() > 8) joints.fail("a look has from 1 to 8 joints");
+      for (std::size_t k = 0; k < joints.size(); ++k) {
+        const Place joint = joints.at(k);
+        if (joint.array().size() != 2) joint.fail("a joint of a look is [name, share]");
+        in.joints.push_back(joint.at(0).text());
+        in.shares.push_back(joint.at(1).number(1e-3, 1e3));
+      }
+    }
+    LookSettings<float>& s = in.settings;
+    numbers(place, {{"yaw", &s.yaw},
+                    {"pitch_down", &s.pitch_down},
+                    {"pitch_up", &s.pitch_up},
+                    {"softness", &s.softness},
+                    {"behind", &s.behind},
+                    {"fastest", &s.fastest},
+                    {"least_time", &s.least_time},
+                    {"half_life", &s.half_life}});
+    return add(std::move(out), place);
+  }
+  /// Those that are given; what is absurd about them the definition's own check says.
+  static void numbers(const Place& place, const std::vector<std::pair<const char*, float*>>& all) {
+    for (const auto& [key, number] : all)
+      if (place.has(key)) *number = place.at(key).number(0, kLongest);
+  }
+
   int machine(const Place& place, GraphNode out) {
     place.object({"states", "start", "transitions"});
     const bool may_be_empty = std::exchange(may_be_empty_, false);
@@ -373,7 +469,8 @@ class Compiler {
       t.kind = place.at("kind").choice<TransitionKind>({{"inertial", TransitionKind::kInertial},
                                                         {"dead", TransitionKind::kDead},
                                                         {"crossfade", TransitionKind::kCrossfade},
-                                                        {"cut", TransitionKind::kCut}});
+                                                        {"cut", TransitionKind::kCut},
+                                                        {"smoothstep", TransitionKind::kSmoothstep}});
     if (place.has("budget")) {
       if (t.kind != TransitionKind::kInertial)
         place.at("budget").fail("only inertial transitions have a budget");
@@ -470,6 +567,8 @@ class Compiler {
   std::vector<int> parameter_lines_;
   std::vector<bool> used_;
   int depth_ = 0;
+  bool top_ = true;  ///< nothing but looks and feet is above what is read
+  bool has_feet_ = false;
   bool may_be_empty_ = false;  ///< the node that is read next is a layer
 };
 

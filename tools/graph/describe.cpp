@@ -46,6 +46,15 @@ class Dot {
     if (n.type == NodeType::kEmpty) add("(nothing)");
     if (n.type == NodeType::kPhysical) add("(physical pose)");
     if (n.type == NodeType::kMirror) add("mirrored");
+    if (n.type == NodeType::kTravel) add("travel by " + names(n.travel.parameters));
+    if (n.type == NodeType::kFeet) add("feet on the ground");
+    if (n.type == NodeType::kLook) add("look at " + names(n.look.target));
+    return text;
+  }
+  std::string names(const int (&parameters)[3]) const {
+    std::string text;
+    for (const int k : parameters)
+      if (k >= 0) text += (text.empty() ? "" : ", ") + graph_.parameters[std::size_t(k)].name;
     return text;
   }
   void node(int index, const std::string& state, int depth) {
@@ -148,9 +157,23 @@ class Description {
     } else if (n.type == NodeType::kMachine) {
       machine(index, n, out);
     } else {
+      if (n.type == NodeType::kFeet) feet(out);
       for (const int child : n.children) out["children"].push_back(node(child));
     }
     return out;
+  }
+  void feet(Json& out) {
+    const GraphFeetState<float>& feet = block_.feet();
+    out["level"] = feet.level.x.value;
+    for (const int k : {0, 1}) {
+      const FootState<float>& leg = feet.legs[k];
+      static constexpr const char* kHolds[] = {"free", "toe", "heel"};
+      out["feet"].push_back({{"holds", kHolds[static_cast<int>(leg.hold)]},
+                             {"ground", leg.ground},
+                             {"point", leg.point},
+                             {"normal", leg.normal},
+                             {"lock", leg.lock}});
+    }
   }
   void machine(int index, const GraphNode& n, Json& out) {
     const GraphMachineState<float>& m = block_.machine(graph_.slot(index));

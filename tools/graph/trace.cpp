@@ -5,7 +5,7 @@
 
 #include "graph/attribution.h"
 #include "graph/describe.h"
-#include "sinew/graph/graph_step.h"
+#include "sinew/graph/graph_recorder.h"
 
 namespace sinew::graph_tools {
 
@@ -109,7 +109,7 @@ class Trace {
     Attribution attribution(graph_, scratch_, options_.joint);
     GraphStepJob<float> job{&graph_, state_, float(h), &scratch_, jets_, &events, {}, jets_};
     if (options_.joint >= 0) job.watch = attribution.watch();
-    if (Status status = job.Run(); !status) return status;
+    if (Status status = options_.recording ? recorder_.step(job) : job.Run(); !status) return status;
     GraphParameters<float> parameters(graph_, state_);
     rows_ << time;
     for (const Graph::BoundMachine& machine : graph_.machines())
@@ -146,6 +146,8 @@ class Trace {
   std::vector<std::byte> state_ = std::vector<std::byte>(graph_.state_bytes<float>());
   std::vector<JointJet<float>> jets_;
   std::vector<EventHit> hits_ = std::vector<EventHit>(256);
+  GraphRecorder<float> recorder_{
+      graph_, options_.recording ? std::span<std::byte>(*options_.recording) : std::span<std::byte>()};
 };
 
 }  // namespace

@@ -31,6 +31,7 @@ Status GraphMotion<T>::at(double t, const Felt<T>& felt, std::vector<JointJet<T>
   GraphStepJob<T> job{use_.graph.get(), state_, T(h), scratch_.get(), jets};
   job.physical = physical_;
   job.spare_acceleration = felt.spare_acceleration;
+  if (use_.ground) job.ground = use_.ground->for_graph<T>();
   time_ = t;
   return job.Run();
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graph/trace.h"
+#include "scene/ground.h"
 #include "sinew/graph/graph_step.h"
 
 namespace sinew::scene {
@@ -14,6 +15,7 @@ namespace sinew::scene {
 struct GraphUse {
   std::shared_ptr<const Graph> graph;
   graph_tools::InputScript inputs;
+  std::shared_ptr<const Ground> ground;  ///< for its feet; none: level
 };
 
 /// What the physical character says of itself.

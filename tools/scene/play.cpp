@@ -42,7 +42,7 @@ convert::Error Play<T>::add_all() {
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
-    asked_.push_back({settings.strength, {}, settings.root, false});
+    asked_.push_back({settings.strength, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)
     if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
@@ -104,6 +104,9 @@ convert::Error Play<T>::drive(int c, double t, double h) {
       behaviours_[c]->update(character, jets_, T(h));
       wanted = jets_;
     }
+    asked.acceleration = 0;
+    for (const JointJet<T>& jet : wanted)
+      asked.acceleration = std::max(asked.acceleration, double(jet.alpha.norm()));
     Status status = character.set_target(wanted);
     if (!players_[c].fault()) status = players_[c].fault();
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};

@@ -43,6 +43,8 @@ class Play {
   const std::vector<JointJet<T>>& start(int character) const { return starts_[character]; }
   /// Of a character that keeps its balance; null where it does not.
   const Behaviour<T>* behaviour(int character) const { return behaviours_[character].get(); }
+  /// rad/s²: the greatest of a joint, that the last prepare() has set as its target.
+  double asked_acceleration(int character) const { return asked_[std::size_t(character)].acceleration; }
   bool launched(int prop) const { return launched_[static_cast<std::size_t>(prop)]; }
 
  private:
@@ -51,7 +53,8 @@ class Play {
     double strength = -1;
     std::vector<double> groups;
     RootDrive root = RootDrive::kKinematic;
-    bool still = false;  ///< its target does not change any more
+    bool still = false;       ///< its target does not change any more
+    double acceleration = 0;  ///< rad/s²
   };
 
   convert::Error add_all();

@@ -132,6 +132,7 @@ class Runner {
       row.microseconds = microseconds;
       row.loaded_joint = made.most_loaded_joint;
       row.load = double(made.load[row.loaded_joint]);
+      row.asked = play_.asked_acceleration(static_cast<int>(n));
       row.torque = double(made.torque[row.loaded_joint]);
       row.limit = double(made.limit[row.loaded_joint]);
       const int plotted = s_.plotted_joint >= 0 && n == 0 ? s_.plotted_joint : row.loaded_joint;

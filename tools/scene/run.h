@@ -17,6 +17,7 @@ struct TelemetryRow {
   double microseconds = 0;  ///< of the whole world's step
   int loaded_joint = -1;
   double load = 0, torque = 0, limit = 0;
+  double asked = 0;  ///< rad/s², greatest angular acceleration that the animation asks of a joint
   double plotted_torque = 0, plotted_limit = 0;
   std::vector<float> loads;  ///< [simulated joint] largest |torque| / limit
 };

@@ -69,13 +69,23 @@ std::shared_ptr<const Asset> read_asset(const Reader& in, const std::filesystem:
     asset->skeleton = read_figure(in.at("figure"), in.inside("figure"));
     return asset;
   }
-  if (!in.at("asset").is_string()) fail(in.inside("asset"), "expected a file name");
-  std::filesystem::path path = in.at("asset").get<std::string>();
-  if (path.is_relative()) path = base / path;
+  const auto path_of = [&](const json& name) {
+    if (!name.is_string()) fail(in.inside("asset"), "expected a file name, or several");
+    const std::filesystem::path path = name.get<std::string>();
+    return (path.is_relative() ? base / path : path).string();
+  };
+  const json& files = in.at("asset");
+  const json options = in.has("options") ? in.at("options") : json();
   json report;
-  if (convert::Error error =
-          convert::open_any(path.string(), in.has("options") ? in.at("options") : json(), *asset, report))
-    fail(in.inside("asset"), error.message);
+  convert::Error error;
+  if (files.is_array()) {
+    std::vector<std::string> paths;
+    for (const json& name : files) paths.push_back(path_of(name));
+    error = convert::convert_files(paths, options, *asset, report);
+  } else {
+    error = convert::open_any(path_of(files), options, *asset, report);
+  }
+  if (error) fail(in.inside("asset"), error.message);
   return asset;
 }
 
@@ -215,6 +225,15 @@ SceneCharacter read_character(const json& value, const std::string& where,
   read_behaviour(in, c);
   c.asset = asset;
   return c;
+}
+
+/// To the feet of graphs.
+void give_ground(Scene& s) {
+  auto ground = std::make_shared<Ground>();
+  if (s.world.ground) ground->floor = s.world.ground_height;
+  ground->obstacles = s.obstacles;
+  for (SceneCharacter& c : s.characters)
+    if (c.graph.graph) c.graph.ground = ground;
 }
 
 /// Where the copies of an entry stand from it, m: the first at 0.
@@ -365,15 +384,19 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Reader o(obstacles[i], in.item("obstacles", i),
-                   {"shape", "size", "position", "yaw_deg", "friction"});
+                   {"shape", "size", "position", "yaw_deg", "rotation", "friction"});
     Collider c;
     c.shape = shape_of(o);
     c.size = size_of(o, c.size);
     c.local.translation = o.vector("position", Vec3<double>::Zero());
+    if (o.has("rotation") && o.has("yaw_deg")) fail(o.inside("rotation"), "there is yaw_deg too");
     c.local.rotation = Eigen::AngleAxisd(o.number("yaw_deg", 0) * kRadians, Vec3<double>::UnitZ());
+    if (o.has("rotation"))
+      c.local.rotation = rotation_exp<double>(o.vector("rotation", Vec3<double>::Zero()));
     c.friction = o.time("friction", 0.8);
     s.obstacles.push_back(c);
   }
+  give_ground(s);
   const json& pushes = in.list("pushes");
   for (std::size_t i = 0; i < pushes.size(); ++i)
     s.pushes.push_back(read_push(pushes[i], in.item("pushes", i), s));

@@ -1,6 +1,8 @@
 // The joints that share a look.
 #pragma once
 
+#include <span>
+
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -22,6 +24,16 @@ struct LookChain {
 template <class T>
 Status find_look_chain(const Skeleton& skeleton, LookChain<T>& out);
 
+/// The same of any joints, from the root outwards, one below the other; the last one is what looks. `shares`
+/// [joint] > 0, which need not add up to 1.
+template <class T>
+Status make_look_chain(const Skeleton& skeleton, std::span<const int> joints, std::span<const double> shares,
+                       LookChain<T>& out);
+
+extern template Status make_look_chain<float>(const Skeleton&, std::span<const int>, std::span<const double>,
+                                              LookChain<float>&);
+extern template Status make_look_chain<double>(const Skeleton&, std::span<const int>, std::span<const double>,
+                                               LookChain<double>&);
 extern template Status find_look_chain<float>(const Skeleton&, LookChain<float>&);
 extern template Status find_look_chain<double>(const Skeleton&, LookChain<double>&);
 

@@ -4,6 +4,7 @@
 
 #include "sinew/animation/sampling_job.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_keep.h"
 #include "sinew/graph/graph_scratch.h"
 
 namespace sinew {
@@ -39,7 +40,7 @@ struct Needs {
 /// How many registers further on than itself a node's k-th child is made.
 int base_of(const GraphNode& node, int k) {
   if (node.type == NodeType::kBlend) return k;
-  return node.type == NodeType::kMirror || (node.type == NodeType::kLayers && k == 0) ? 0 : 1;
+  return node.type == NodeType::kMachine || (node.type == NodeType::kLayers && k > 0) ? 1 : 0;
 }
 
 Needs needs_of(const GraphNode& node, const std::vector<Needs>& all) {
@@ -81,9 +82,7 @@ std::size_t rounded(std::size_t bytes) {
 }
 
 template <class T>
-GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
-                      const std::vector<Graph::BoundMachine>& machines, int joints, int translated,
-                      std::size_t curves) {
+GraphLayout layout_of(const Graph& graph) {
   GraphLayout at;
   std::size_t end = rounded(sizeof(GraphHeader<T>));
   const auto place = [&](std::size_t bytes) {
@@ -91,19 +90,19 @@ GraphLayout layout_of(const GraphDefinition& graph, std::size_t clips,
     end += rounded(bytes);
     return begin;
   };
-  const auto count = [&](int Graph::BoundMachine::*which) {
-    return std::size_t(
-        std::count_if(machines.begin(), machines.end(), [&](const auto& m) { return m.*which >= 0; }));
-  };
-  const std::size_t offsets = count(&Graph::BoundMachine::offset),
-                    left = count(&Graph::BoundMachine::left_pose);
-  at.parameters = place(graph.parameters.size() * sizeof(GraphParameterState<T>));
-  at.groups = place(graph.groups.size() * sizeof(GraphGroupState));
-  at.clips = place(clips * sizeof(GraphClipState));
-  at.machines = place(machines.size() * sizeof(GraphMachineState<T>));
-  at.offsets = place(offsets * inertial_numbers(joints, translated) * sizeof(T));
-  at.curve_offsets = place(offsets * curves * sizeof(TimeJet<T>));
-  at.left_poses = place(left * std::size_t(joints) * sizeof(JointJet<T>));
+  const auto offsets = std::size_t(std::count_if(graph.machines().begin(), graph.machines().end(),
+                                                 [](const auto& m) { return m.offset >= 0; }));
+  const auto times = std::size_t(
+      std::count_if(graph.clips().begin(), graph.clips().end(), [](const auto& c) { return c.time >= 0; }));
+  at.parameters = place(graph.definition().parameters.size() * sizeof(GraphParameterState<T>));
+  at.groups = place(graph.definition().groups.size() * sizeof(GraphGroupState));
+  at.clips = place(times * sizeof(TimeJet<double>));
+  at.fresh = place((graph.clips().size() + 7) / 8);
+  at.machines = place(graph.machines().size() * sizeof(GraphMachineState<T>));
+  at.offsets = place(offsets * rounded(kept_bytes<T>(graph.joint_count(), graph.translated())));
+  at.curve_offsets = place(offsets * std::size_t(graph.curve_count()) * sizeof(TimeJet<T>));
+  at.feet = place(graph.feet().node >= 0 ? sizeof(GraphFeetState<T>) : 0);
+  at.looks = place(graph.looks().size() * sizeof(GraphLookState<T>));
   at.bytes = end;
   return at;
 }
@@ -115,6 +114,9 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   const int found = asset.find_clip(in.clip);
   if (found < 0) return bad("the asset has no clip of this name", index);
   BoundClip bound{&asset.clips[std::size_t(found)], {}, index};
+  if (in.group < 0)
+    bound.time = static_cast<int>(
+        std::count_if(clips_.begin(), clips_.end(), [](const BoundClip& c) { return c.time >= 0; }));
   if (in.group >= 0) {
     if (!bound.clip->loops) return bad("a clip that does not loop cannot be synchronised", index);
     if (bound.clip->markers.empty()) return bad("a synchronised clip has no markers of its phase", index);
@@ -181,33 +183,85 @@ Status Graph::bind_blend(int index) {
 void Graph::bind_machine(int index) {
   const GraphNode& in = node(index);
   slots_[std::size_t(index)] = static_cast<int>(machines_.size());
-  const auto count = [&](int BoundMachine::*which) {
-    return static_cast<int>(std::count_if(machines_.begin(), machines_.end(),
-                                          [&](const BoundMachine& m) { return m.*which >= 0; }));
-  };
   BoundMachine machine;
   machine.node = index;
   machine.fades = has_empty_state(definition_, index);
   if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
-    machine.offset = count(&BoundMachine::offset);
-  if (std::any_of(in.transitions.begin(), in.transitions.end(),
-                  [](const GraphTransition& t) { return t.kind == TransitionKind::kDead; }))
-    machine.left_pose = count(&BoundMachine::left_pose);
+    machine.offset = static_cast<int>(
+        std::count_if(machines_.begin(), machines_.end(), [](const auto& m) { return m.offset >= 0; }));
   machines_.push_back(machine);
+}
+
+Status Graph::bind_feet(int index, const Asset& asset) {
+  const auto find = [&](auto& legs) {
+    Status status = find_foot_leg(asset.skeleton, Role::kFootL, legs[0]);
+    return status ? find_foot_leg(asset.skeleton, Role::kFootR, legs[1]) : status;
+  };
+  Status status = find(feet_.legs_float.legs);
+  if (status) status = find(feet_.legs_double.legs);
+  if (!status) return bad(status.reason, index);
+  int left = feet_.legs_float.legs[0].upper, right = feet_.legs_float.legs[1].upper;
+  while (left != right) (left > right ? left : right) = parents_[std::size_t(std::max(left, right))];
+  if (left < 0) return bad("legs have no joint in common", index);
+  feet_.node = index;
+  feet_.pelvis = left;
+  for (const FootLeg<float>& leg : feet_.legs_float.legs) feet_.joints = std::max(feet_.joints, leg.foot + 1);
+  return {};
+}
+
+Status Graph::bind_look(int index, const Asset& asset) {
+  const GraphLook& in = node(index).look;
+  slots_[std::size_t(index)] = static_cast<int>(looks_.size());
+  BoundLook& look = looks_.emplace_back();
+  if (in.joints.empty()) {
+    Status status = find_look_chain(asset.skeleton, look.chain_float);
+    if (status) status = find_look_chain(asset.skeleton, look.chain_double);
+    return status ? status : bad(status.reason, index);
+  }
+  std::vector<int> joints;
+  const std::vector<double> shares(in.shares.begin(), in.shares.end());
+  for (const std::string& name : in.joints)
+    if (joints.push_back(asset.skeleton.find(name.c_str())); joints.back() < 0)
+      return bad("the asset has no joint of the look's names", index);
+  Status status = make_look_chain<float>(asset.skeleton, joints, shares, look.chain_float);
+  if (status) status = make_look_chain<double>(asset.skeleton, joints, shares, look.chain_double);
+  return status ? status : bad(status.reason, index);
 }
 
 void Graph::lay_out() {
   registers_ = most_needs(definition_).registers;
-  layouts_[0] =
-      layout_of<float>(definition_, clips_.size(), machines_, joint_count_, translated_, curve_slots_.size());
-  layouts_[1] = layout_of<double>(definition_, clips_.size(), machines_, joint_count_, translated_,
-                                  curve_slots_.size());
+  layouts_[0] = layout_of<float>(*this);
+  layouts_[1] = layout_of<double>(*this);
   hash_ = 14695981039346656037u;
   const auto mix = [&](std::uint64_t v) { hash_ = (hash_ ^ v) * 1099511628211u; };
   for (const std::uint8_t byte : write_graph(definition_)) mix(byte);
   mix(std::uint64_t(joint_count_));
   mix(curve_slots_.size());
   for (const GraphLayout& at : layouts_) mix(at.bytes);
+}
+
+Status Graph::bind_node(int index, const Asset& asset) {
+  switch (node(index).type) {
+    case NodeType::kClip:
+      return bind_clip(index, asset);
+    case NodeType::kBlend:
+      return bind_blend(index);
+    case NodeType::kLayers:
+      return bind_layers(index, asset);
+    case NodeType::kMachine:
+      bind_machine(index);
+      return {};
+    case NodeType::kFeet:
+      return bind_feet(index, asset);
+    case NodeType::kLook:
+      return bind_look(index, asset);
+    case NodeType::kEmpty:
+    case NodeType::kPhysical:
+    case NodeType::kMirror:
+    case NodeType::kTravel:
+      break;
+  }
+  return {};
 }
 
 Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph& out) {
@@ -225,28 +279,8 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
   for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
   graph.slots_.assign(definition.nodes.size(), -1);
   if (Status status = graph.bind_mirrors(asset); !status) return bad(status.reason, -1);
-  for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k) {
-    Status status;
-    switch (graph.node(k).type) {
-      case NodeType::kClip:
-        status = graph.bind_clip(k, asset);
-        break;
-      case NodeType::kBlend:
-        status = graph.bind_blend(k);
-        break;
-      case NodeType::kLayers:
-        status = graph.bind_layers(k, asset);
-        break;
-      case NodeType::kMachine:
-        graph.bind_machine(k);
-        break;
-      case NodeType::kEmpty:
-      case NodeType::kPhysical:
-      case NodeType::kMirror:
-        break;
-    }
-    if (!status) return status;
-  }
+  for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k)
+    if (Status status = graph.bind_node(k, asset); !status) return status;
   graph.lay_out();
   out = std::move(graph);
   return {};
@@ -281,6 +315,8 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
     }
   }
   rotations.resize(2 * joints);
+  offset.resize(inertial_numbers(graph.joint_count(), graph.translated()));
+  left.resize(joints);
   spare.resize(joints);
   tasks.resize(std::size_t(needs.tasks));
   weights.resize(std::size_t(needs.weights));

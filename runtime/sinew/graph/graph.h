@@ -20,6 +20,8 @@
 #include <vector>
 
 #include "sinew/animation/blend_space.h"
+#include "sinew/animation/foot_leg.h"
+#include "sinew/animation/look_chain.h"
 #include "sinew/animation/mirror_job.h"
 #include "sinew/animation/phase_map.h"
 #include "sinew/graph/graph_definition.h"
@@ -29,8 +31,8 @@ namespace sinew {
 
 /// Where in a character's block what stands, in bytes. All a multiple of 16.
 struct GraphLayout {
-  std::size_t parameters = 0, groups = 0, clips = 0, machines = 0, offsets = 0, curve_offsets = 0,
-              left_poses = 0, bytes = 0;
+  std::size_t parameters = 0, groups = 0, clips = 0, fresh = 0, machines = 0, offsets = 0, curve_offsets = 0,
+              feet = 0, looks = 0, bytes = 0;
 };
 
 /// Constant once bound. Refers to the asset's clips, which must stay where they are. The same definition may
@@ -57,6 +59,7 @@ class Graph {
     const Clip* clip = nullptr;
     PhaseMap map;  ///< of those in a group; of mirrored ones half a cycle on
     int node = 0;
+    int time = -1;  ///< which of the block's times it plays by; −1: by its group's phase
   };
   struct BoundLayer {
     int mask = -1;                            ///< of the asset
@@ -64,9 +67,37 @@ class Graph {
   };
   struct BoundMachine {
     int node = 0;
-    int offset = -1;     ///< which of the block's offsets its transitions use
-    int left_pose = -1;  ///< where the pose is kept that a kDead transition leaves
+    int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind
     bool fades = false;  ///< has an empty state
+  };
+  template <class T>
+  struct Legs {
+    FootLeg<T> legs[2];  ///< left, right
+  };
+  struct BoundFeet {
+    int node = -1;    ///< none
+    int pelvis = -1;  ///< joint that carries both legs
+    int joints = 0;   ///< that have to be posed
+    Legs<float> legs_float;
+    Legs<double> legs_double;
+    template <class T>
+    std::span<const FootLeg<T>> legs() const {
+      if constexpr (sizeof(T) == sizeof(double))
+        return legs_double.legs;
+      else
+        return legs_float.legs;
+    }
+  };
+  struct BoundLook {
+    LookChain<float> chain_float;
+    LookChain<double> chain_double;
+    template <class T>
+    const LookChain<T>& chain() const {
+      if constexpr (sizeof(T) == sizeof(double))
+        return chain_double;
+      else
+        return chain_float;
+    }
   };
   template <class T>
   const GraphLayout& layout() const {
@@ -82,6 +113,8 @@ class Graph {
   const BoundLayer& layer(int node, int layer) const {
     return layers_[std::size_t(slot(node)) + std::size_t(layer)];
   }
+  const BoundFeet& feet() const { return feet_; }
+  const std::vector<BoundLook>& looks() const { return looks_; }
   const std::vector<JointMask>& masks() const { return masks_; }
   const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }
   const std::vector<int>& parents() const { return parents_; }
@@ -105,6 +138,9 @@ class Graph {
   Status bind_layers(int node, const Asset& asset);
   Status bind_blend(int node);
   void bind_machine(int node);
+  Status bind_feet(int node, const Asset& asset);
+  Status bind_look(int node, const Asset& asset);
+  Status bind_node(int node, const Asset& asset);
   void lay_out();
 
   GraphDefinition definition_;
@@ -114,6 +150,8 @@ class Graph {
   std::vector<BlendSpace> spaces_;
   std::vector<BoundLayer> layers_;
   std::vector<BoundMachine> machines_;
+  BoundFeet feet_;
+  std::vector<BoundLook> looks_;
   std::vector<JointMask> masks_;
   std::vector<CurveSlot> curve_slots_;
   std::vector<int> parents_;

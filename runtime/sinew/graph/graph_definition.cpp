@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/animation/blend_space.h"
+#include "sinew/animation/foot_placement_job.h"
 
 namespace sinew {
 namespace {
@@ -51,9 +52,13 @@ class Check {
       case NodeType::kMachine:
         return machine(node, index);
       case NodeType::kMirror:
-        return node.children.size() == 1 && !empty(node.children[0])
-                   ? Status{}
-                   : bad("a mirror has another number of children than one, or an empty one", index);
+        return one_child(node, index);
+      case NodeType::kTravel:
+        return travel(node, index);
+      case NodeType::kFeet:
+        return feet(node, index);
+      case NodeType::kLook:
+        return look(node, index);
       case NodeType::kEmpty:
       case NodeType::kPhysical:
         return node.children.empty() ? Status{} : bad("a pose has children", index);
@@ -62,6 +67,7 @@ class Check {
   }
   Status parents() const {
     std::vector<int> parents(graph_.nodes.size(), 0);
+    int feet = 0;
     for (const GraphNode& node : graph_.nodes)
       for (std::size_t k = 0; k < node.children.size(); ++k) {
         const int child = node.children[k];
@@ -70,6 +76,12 @@ class Check {
           return bad("a machine with an empty state is no layer", child);
       }
     const int root = static_cast<int>(graph_.nodes.size()) - 1;
+    for (int k = 0; k <= root; ++k) {
+      feet += graph_.nodes[std::size_t(k)].type == NodeType::kFeet;
+      if (finishes(k) && k != root && !below_finisher(k))
+        return bad("feet and looks are of the whole pose: nothing else may be above them", k);
+      if (feet > 1) return bad("a graph has one pair of feet", k);
+    }
     return has_empty_state(graph_, root) ? bad("a machine with an empty state is no layer", root) : Status{};
   }
 
@@ -80,6 +92,73 @@ class Check {
   }
   bool fine(const GraphValue& v) const {
     return std::isfinite(v.constant) && (v.parameter == -1 || is_float(v.parameter));
+  }
+  bool finishes(int node) const {
+    const NodeType type = graph_.nodes[std::size_t(node)].type;
+    return type == NodeType::kFeet || type == NodeType::kLook;
+  }
+  bool below_finisher(int node) const {
+    for (int k = node + 1; k < static_cast<int>(graph_.nodes.size()); ++k)
+      if (finishes(k) && graph_.nodes[std::size_t(k)].children.front() == node) return true;
+    return false;
+  }
+  bool is_weight(const GraphValue& v) const {
+    return fine(v) && (v.parameter >= 0 || within(v.constant, 0, 1));
+  }
+  Status one_child(const GraphNode& node, int index) const {
+    return node.children.size() == 1 && !empty(node.children[0])
+               ? Status{}
+               : bad("a node has another number of children than one, or an empty one", index);
+  }
+  Status travel(const GraphNode& node, int index) const {
+    if (Status status = one_child(node, index); !status) return status;
+    for (const int parameter : node.travel.parameters)
+      if (parameter != -1 && !is_float(parameter)) return bad("travel by what is no float parameter", index);
+    return is_weight(node.travel.weight) ? Status{} : bad("weight of a travel is no weight", index);
+  }
+  Status feet(const GraphNode& node, int index) const {
+    if (Status status = one_child(node, index); !status) return status;
+    const GraphFeet& feet = node.feet;
+    if (!is_weight(feet.weight)) return bad("weight of feet is no weight", index);
+    if (feet.level != -1 && !is_float(feet.level)) return bad("level is no float parameter", index);
+    if (!within(feet.lift, 1e-3f, kLongest)) return bad("lift is not a millisecond or more", index);
+    const int parents[] = {-1};
+    JointJet<float> jets[1];
+    FootPlacementJob<float> job;
+    job.parents = parents;
+    job.jets = jets;
+    job.settings = feet.settings;
+    job.reach = feet.reach;
+    job.follow = feet.follow;
+    job.rise = feet.rise;
+    job.deepest = feet.deepest;
+    const Status status = job.Validate();
+    return status ? Status{} : bad(status.reason, index);
+  }
+  Status look(const GraphNode& node, int index) const {
+    if (Status status = one_child(node, index); !status) return status;
+    const GraphLook& look = node.look;
+    if (!is_weight(look.weight)) return bad("weight of a look is no weight", index);
+    for (const int parameter : look.target)
+      if (!is_float(parameter)) return bad("target of a look is not three float parameters", index);
+    if (look.joints.size() != look.shares.size() || look.joints.size() > std::size_t(LookChain<float>::kMost))
+      return bad("joints of a look and their shares differ in number, or are more than eight", index);
+    for (const float share : look.shares)
+      if (!within(share, 1e-3f, 1e3f)) return bad("share of a look is not above 0", index);
+    const int parents[] = {-1};
+    JointJet<float> jets[1];
+    LookChain<float> chain;
+    chain.count = 1;
+    chain.shares[0] = 1;
+    LookState<float> state;
+    LookAtJob<float> job;
+    job.parents = parents;
+    job.jets = jets;
+    job.chain = &chain;
+    job.state = &state;
+    job.settings = look.settings;
+    const Status status = job.Validate();
+    return status ? Status{} : bad(status.reason, index);
   }
   bool empty(int node) const { return graph_.nodes[std::size_t(node)].type == NodeType::kEmpty; }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sinew/animation/foot_lock.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/skeleton/status.h"
 
 namespace sinew {
@@ -56,10 +58,11 @@ struct ConditionStep {
 };
 
 enum class TransitionKind : std::uint8_t {
-  kInertial,   ///< the new state alone, and what was different fades away (InertializeJob)
-  kDead,       ///< as kInertial from what the old motion goes on as without a source (ExtrapolateJob)
-  kCrossfade,  ///< both states play; one that interrupts a transition is kInertial
-  kCut,        ///< at once: the pose jumps
+  kInertial,    ///< the new state alone, and what was different fades away (InertializeJob)
+  kDead,        ///< as kInertial from what the old motion goes on as without a source (ExtrapolateJob)
+  kCrossfade,   ///< both states play; one that interrupts a transition is kInertial
+  kCut,         ///< at once: the pose jumps
+  kSmoothstep,  ///< kCrossfade by 3x² − 2x³, as is usual: accelerations jump. For comparison
 };
 
 enum class Interruption : std::uint8_t {
@@ -96,6 +99,10 @@ enum class NodeType : std::uint8_t {
   kEmpty,     ///< no pose: a state of a machine that is a layer, which then fades out
   kPhysical,  ///< the pose that the physical character has
   kMirror,    ///< children[0], left and right exchanged (MirrorJob)
+  kTravel,    ///< children[0], which goes over the ground as parameters say
+  // Of the whole pose where the character stands: only one another may be above them.
+  kFeet,  ///< children[0] with its feet on the ground (FootPlacementJob)
+  kLook,  ///< children[0] looking at something (LookAtJob)
 };
 
 enum class LayerMode : std::uint8_t { kOverride, kAdditive, kMeshAdditive };
@@ -106,6 +113,33 @@ struct GraphLayer {
   LayerMode mode = LayerMode::kOverride;
   std::string reference;     ///< additive: the clip whose pose is no difference; empty: rest
   float reference_time = 0;  ///< s
+};
+
+/// Root motion that a game's controller has a say in.
+struct GraphTravel {
+  int parameters[3] = {-1, -1, -1};  ///< m/s forwards, m/s to the left, rad/s; −1: as the clips go
+  bool adds = false;                 ///< to what the clips do, or in place of that
+  GraphValue weight;                 ///< 0 … 1
+};
+
+struct GraphFeet {
+  GraphValue weight;  ///< 0 … 1
+  /// m, height of the ground on which the character goes: the game's own. −1: the character is lifted as the
+  /// ground rises under it.
+  int level = -1;
+  bool locks = true;  ///< feet that bear stay where they are
+  FootSettings<float> settings;
+  float reach = 0.995f, follow = 0.5f, rise = 0.07f, deepest = 0.3f;  ///< see FootPlacementJob
+  float lift = 0.2f;  ///< s, half-life of the character's height over ground that rises
+};
+
+struct GraphLook {
+  GraphValue weight;                ///< 0 … 1
+  int target[3] = {-1, -1, -1};     ///< parameters, m
+  bool in_world = true;             ///< or ahead, to the left and above of where the character stands
+  std::vector<std::string> joints;  ///< from the root outwards; none: by their roles
+  std::vector<float> shares;        ///< of the turn
+  LookSettings<float> settings;
 };
 
 struct GraphNode {
@@ -126,6 +160,10 @@ struct GraphNode {
   std::vector<GraphState> states;            ///< kMachine
   std::vector<GraphTransition> transitions;  ///< kMachine: the first that may be taken is
   int start = 0;                             ///< kMachine: state
+
+  GraphTravel travel;  ///< kTravel
+  GraphFeet feet;      ///< kFeet
+  GraphLook look;      ///< kLook
 };
 
 struct GraphDefinition {

@@ -10,7 +10,7 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-constexpr int kGraphMajor = 1, kGraphMinor = 0;  ///< newer major versions are refused, minor ones add fields
+constexpr int kGraphMajor = 1, kGraphMinor = 1;  ///< newer major versions are refused, minor ones add fields
 constexpr int kMaxDepth = 16, kMaxTables = 200'000;
 
 Status bad(const char* reason, int index = -1) {
@@ -35,7 +35,7 @@ GraphValue unpack(const fb::GraphValue& v) {
 }
 
 Status unpack(const fb::GraphTransition& in, GraphTransition& out) {
-  if (in.kind() > static_cast<int>(TransitionKind::kCut) ||
+  if (in.kind() > static_cast<int>(TransitionKind::kSmoothstep) ||
       in.interrupt() > static_cast<int>(Interruption::kNever))
     return bad("unknown kind of transition");
   out.from = in.from();
@@ -54,8 +54,54 @@ Status unpack(const fb::GraphTransition& in, GraphTransition& out) {
   return {};
 }
 
+/// Up to three parameters.
+Status unpack(const flatbuffers::Vector<std::int16_t>* in, int index, int (&out)[3]) {
+  if (size_of(in) > 3) return bad("more than three parameters", index);
+  for (unsigned k = 0; k < size_of(in); ++k) out[k] = in->Get(k);
+  return {};
+}
+
+GraphFeet unpack(const fb::GraphFeet& in) {
+  const fb::FootNumbers& n = *in.numbers();
+  GraphFeet out;
+  out.weight = unpack(*in.weight());
+  out.level = in.level();
+  out.locks = in.locks();
+  out.settings = {n.lock_at(),   n.release_at(), n.lock_time(), n.release_time(),
+                  n.half_life(), n.farthest(),   n.steepest()};
+  out.reach = n.reach();
+  out.follow = n.follow();
+  out.rise = n.rise();
+  out.deepest = n.deepest();
+  out.lift = n.lift();
+  return out;
+}
+
+Status unpack(const fb::GraphLook& in, int index, GraphLook& out) {
+  const fb::LookNumbers& n = *in.numbers();
+  out.weight = unpack(*in.weight());
+  out.in_world = in.in_world();
+  for (unsigned k = 0; k < size_of(in.joints()); ++k) out.joints.push_back(in.joints()->Get(k)->str());
+  if (in.shares()) out.shares.assign(in.shares()->begin(), in.shares()->end());
+  out.settings = {n.yaw(),    n.pitch_down(), n.pitch_up(),   n.softness(),
+                  n.behind(), n.fastest(),    n.least_time(), n.half_life()};
+  return unpack(in.target(), index, out.target);
+}
+
+/// What only some types of nodes have.
+Status unpack_special(const fb::GraphNode& in, int index, GraphNode& out) {
+  if (in.travel()) {
+    out.travel.adds = in.travel()->adds();
+    out.travel.weight = unpack(*in.travel()->weight());
+    if (Status status = unpack(in.travel()->parameters(), index, out.travel.parameters); !status)
+      return status;
+  }
+  if (in.feet()) out.feet = unpack(*in.feet());
+  return in.look() ? unpack(*in.look(), index, out.look) : Status{};
+}
+
 Status unpack(const fb::GraphNode& in, int index, GraphNode& out) {
-  if (in.type() > static_cast<int>(NodeType::kMirror)) return bad("unknown type of node", index);
+  if (in.type() > static_cast<int>(NodeType::kLook)) return bad("unknown type of node", index);
   out.type = static_cast<NodeType>(in.type());
   out.name = in.name()->str();
   out.children = whole(in.children());
@@ -81,7 +127,7 @@ Status unpack(const fb::GraphNode& in, int index, GraphNode& out) {
       return status;
     }
   out.start = in.start();
-  return {};
+  return unpack_special(in, index, out);
 }
 
 Status unpack(const fb::GraphParameter& in, int index, GraphParameter& out) {
@@ -111,6 +157,31 @@ Offset<fb::GraphTransition> pack(FlatBufferBuilder& b, const GraphTransition& in
                                    static_cast<std::uint8_t>(in.interrupt), listed, in.entry);
 }
 
+Offset<fb::GraphTravel> pack(FlatBufferBuilder& b, const GraphTravel& in) {
+  const auto parameters = b.CreateVector(narrow({in.parameters, in.parameters + 3}));
+  const fb::GraphValue weight = pack(in.weight);
+  return fb::CreateGraphTravel(b, parameters, in.adds, &weight);
+}
+
+Offset<fb::GraphFeet> pack(FlatBufferBuilder& b, const GraphFeet& in) {
+  const fb::GraphValue weight = pack(in.weight);
+  const FootSettings<float>& s = in.settings;
+  const fb::FootNumbers numbers(s.lock_at, s.release_at, s.lock_time, s.release_time, s.half_life, s.farthest,
+                                s.steepest, in.reach, in.follow, in.rise, in.deepest, in.lift);
+  return fb::CreateGraphFeet(b, &weight, static_cast<std::int16_t>(in.level), in.locks, &numbers);
+}
+
+Offset<fb::GraphLook> pack(FlatBufferBuilder& b, const GraphLook& in) {
+  const fb::GraphValue weight = pack(in.weight);
+  const LookSettings<float>& s = in.settings;
+  const fb::LookNumbers numbers(s.yaw, s.pitch_down, s.pitch_up, s.softness, s.behind, s.fastest,
+                                s.least_time, s.half_life);
+  const auto target = b.CreateVector(narrow({in.target, in.target + 3}));
+  const auto joints = b.CreateVectorOfStrings(in.joints);
+  const auto shares = b.CreateVector(in.shares);
+  return fb::CreateGraphLook(b, &weight, target, in.in_world, joints, shares, &numbers);
+}
+
 Offset<fb::GraphNode> pack(FlatBufferBuilder& b, const GraphNode& in) {
   std::vector<Offset<fb::GraphLayer>> layers;
   for (const GraphLayer& layer : in.layers) {
@@ -133,9 +204,16 @@ Offset<fb::GraphNode> pack(FlatBufferBuilder& b, const GraphNode& in) {
   const auto state_list = b.CreateVector(states);
   const auto transition_list = b.CreateVector(transitions);
   const fb::GraphValue speed = pack(in.speed);
+  Offset<fb::GraphTravel> travel;
+  Offset<fb::GraphFeet> feet;
+  Offset<fb::GraphLook> look;
+  if (in.type == NodeType::kTravel) travel = pack(b, in.travel);
+  if (in.type == NodeType::kFeet) feet = pack(b, in.feet);
+  if (in.type == NodeType::kLook) look = pack(b, in.look);
   return fb::CreateGraphNode(b, static_cast<std::uint8_t>(in.type), name, children, clip, &speed,
                              static_cast<std::int16_t>(in.group), in.root_motion, parameters, points,
-                             layer_list, state_list, transition_list, static_cast<std::int16_t>(in.start));
+                             layer_list, state_list, transition_list, static_cast<std::int16_t>(in.start),
+                             travel, feet, look);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/root_motion.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/graph/graph_finish.h"
 
 namespace sinew {
 namespace {
@@ -60,17 +61,33 @@ class Pose {
       : job_(job), graph_(*job.graph), block_(graph_, job.state), s_(*job.scratch) {}
 
   Status run() {
-    for (int k = 0; k < s_.task_count; ++k) {
+    follow_ground<T>(graph_, block_, job_.ground, s_.h);
+    int k = 0;
+    for (; k < s_.task_count && !finishes(s_.tasks[std::size_t(k)]); ++k) {
       const GraphTask& task = s_.tasks[std::size_t(k)];
       const std::size_t joints = task.whole ? std::size_t(graph_.joint_count()) : job_.jets.size();
       if (Status status = carry_out(task, joints); !status) return status;
       if (job_.watch.task_done) job_.watch.task_done(job_.watch.tool, task, jets(task.out, joints));
     }
     travel();
-    return {};
+    Status first;  // the pose is whole whatever fails from here on
+    for (; k < s_.task_count; ++k)
+      if (Status status = finish(s_.tasks[std::size_t(k)]); first.ok()) first = status;
+    return first;
   }
 
  private:
+  static bool finishes(const GraphTask& task) {
+    return task.kind == GraphTask::Kind::kFeet || task.kind == GraphTask::Kind::kLook;
+  }
+  Status finish(const GraphTask& task) {
+    GraphFinish<T> pose{graph_, block_, s_, job_.jets, job_.ground, place_};
+    const Status status = task.kind == GraphTask::Kind::kFeet ? pose.place_feet(weight(task.weights))
+                                                              : pose.look(task.index, weight(task.weights));
+    if (job_.watch.task_done) job_.watch.task_done(job_.watch.tool, task, job_.jets);
+    return status;
+  }
+  TimeJet<T> level() { return graph_.feet().node < 0 ? TimeJet<T>(T(0)) : block_.feet().level.x; }
   Register& at(int k) { return s_.registers[std::size_t(k)]; }
   std::span<JointJet<T>> jets(int k, std::size_t joints) { return at(k).jets.first(joints); }
   const TimeJet<T>& weight(int k) const { return s_.weights[std::size_t(k)]; }
@@ -101,6 +118,12 @@ class Pose {
         return {};
       case GraphTask::Kind::kLeft:
         return left(task, joints);
+      case GraphTask::Kind::kTravel:
+        steer(task);
+        return {};
+      case GraphTask::Kind::kFeet:
+      case GraphTask::Kind::kLook:
+        break;  // finish()
     }
     return {};
   }
@@ -138,6 +161,10 @@ class Pose {
       block_.header().place[1] = double(place.y());
       block_.header().heading = double(heading);
     }
+    const TimeJet<T> height = level();  // which the character will be lifted by
+    out.jets[0].translation.z() -= height.value;
+    out.jets[0].velocity.z() -= height.rate;
+    out.jets[0].acceleration.z() -= height.acceleration;
     for (std::size_t k = 0; k < out.curves.size(); ++k)
       out.curves[k] = TimeJet<T>(T(graph_.curve_slots()[k].rest));
     return {};
@@ -190,6 +217,19 @@ class Pose {
     }
     return MirrorJob<T>{&graph_.template mirror<T>(), at(task.out).jets, jets(task.out, joints)}.Run();
   }
+  void steer(const GraphTask& task) {
+    const GraphTravel& in = graph_.node(task.index).travel;
+    const TimeJet<T>& w = weight(task.weights);
+    TravelVelocity<T>& travel = at(task.out).travel;
+    for (int k = 0; k < 3; ++k) {
+      if (in.parameters[k] < 0) continue;
+      const TimeJet<T>& asked = block_.parameter(in.parameters[k]).x;
+      const TimeJet<T> own(travel.velocity[k], travel.change[k], T(0));
+      const TimeJet<T> sum = own + w * (in.adds ? asked : asked - own);
+      travel.velocity[k] = sum.value;
+      travel.change[k] = sum.rate;
+    }
+  }
   Status layer(const GraphTask& task, std::size_t joints) {
     const GraphLayer& in = graph_.node(task.index).layers[std::size_t(task.layer)];
     const Graph::BoundLayer& bound = graph_.layer(task.index, task.layer);
@@ -232,13 +272,17 @@ class Pose {
     return MeshAdditiveJob<T>{parents, below, upper, w, mask.empty() ? mask : mask.first(n), scratch}.Run();
   }
 
+  InertialState<T> offset_state(T elapsed, T duration) {
+    return {s_.offset, graph_.joint_count(), graph_.translated(), elapsed, duration};
+  }
   Status begin_offset(const GraphTask& task) {
     GraphMachineState<T>& m = block_.machine(task.index);
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     const GraphTransition& t = graph_.node(bound.node).transitions[std::size_t(task.layer)];
-    InertialState<T> state = block_.offset(bound.offset, T(0), m.duration);
+    InertialState<T> state = offset_state(T(0), m.duration);
     const Register &before = at(task.from), &after = at(task.out);
     if (Status status = begin_inertial<T>(before.jets, after.jets, m.duration, state); !status) return status;
+    keep_offset(state, block_.offset(bound.offset));
     for (std::size_t c = 0; c < before.curves.size(); ++c)
       block_.curve_offsets(bound.offset)[c] = before.curves[c] - after.curves[c];
     for (int k = 0; k < 3; ++k) {
@@ -262,8 +306,9 @@ class Pose {
     // A change overwrites the machine's times before what it did before is made.
     const T elapsed = task.at_change ? T(task.time.value) : m.elapsed,
             duration = task.at_change ? T(task.time.rate) : m.duration;
-    const InertialState<T> state = block_.offset(bound.offset, elapsed, duration);
+    InertialState<T> state = offset_state(elapsed, duration);
     if (!state.running()) return {};
+    recall_offset(block_.offset(bound.offset), state);
     const QuinticOffset<T> left = QuinticOffset<T>::at(elapsed, duration);
     Register& out = at(task.out);
     for (std::size_t c = 0; c < out.curves.size(); ++c)
@@ -279,15 +324,7 @@ class Pose {
   void leave(const GraphTask& task) {
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
     const Register& from = at(task.from);
-    const std::span<JointJet<T>> left = block_.left_pose(bound.left_pose);
-    for (std::size_t j = 0; j < left.size(); ++j) {  // number by number: a block has no bytes of chance
-      left[j].rotation = from.jets[j].rotation;
-      left[j].omega = from.jets[j].omega;
-      left[j].alpha = from.jets[j].alpha;
-      left[j].translation = from.jets[j].translation;
-      left[j].velocity = from.jets[j].velocity;
-      left[j].acceleration = from.jets[j].acceleration;
-    }
+    keep_pose<T>(from.jets, s_.rest, graph_.translated(), block_.offset(bound.offset));
     std::copy(from.curves.begin(), from.curves.end(), block_.curve_offsets(bound.offset).begin());
     block_.machine(task.index).travel = from.travel;
   }
@@ -298,8 +335,9 @@ class Pose {
     const int to = task.out + 1;  // the new motion goes there, the old one takes its place
     copy(task.out, to, joints);
     Register& old = at(task.out);
-    const ExtrapolateJob<T> job{block_.left_pose(bound.left_pose).first(joints), elapsed, T(kSlowing),
-                                T(kLoss), jets(task.out, joints)};
+    const std::span<JointJet<T>> left(s_.left.data(), joints);
+    recall_pose<T>(block_.offset(bound.offset), s_.rest, graph_.translated(), left);
+    const ExtrapolateJob<T> job{left, elapsed, T(kSlowing), T(kLoss), jets(task.out, joints)};
     if (Status status = job.Run(); !status) return status;
     const DyingRate<T> dying = DyingRate<T>::at(elapsed, T(kSlowing), T(kLoss));
     for (int k = 0; k < 3; ++k) {
@@ -317,6 +355,7 @@ class Pose {
   const Graph& graph_;
   GraphBlock<T> block_;
   GraphScratch<T>& s_;
+  MovingTransform<T> place_;                  ///< where the character stands
   static constexpr double kLeastFade = 0.08;  ///< s
 };
 
@@ -350,10 +389,14 @@ void Pose<T>::travel() {
   travel.rotation = Quat<T>(T(std::cos(half)), T(0), T(0), T(std::sin(half)));
   travel.omega = {T(0), T(0), now.velocity[2]};
   travel.alpha = {T(0), T(0), now.change[2]};
-  travel.translation = {T(header.place[0]), T(header.place[1]), T(0)};
+  const TimeJet<T> height = level();
+  travel.translation = {T(header.place[0]), T(header.place[1]), height.value};
   travel.velocity = v1.cast<T>();
   travel.acceleration = a1.cast<T>();
-  job_.jets[0] = joint_jet<T>(moving_transform(travel) * moving_transform(job_.jets[0]));
+  travel.velocity.z() = height.rate;
+  travel.acceleration.z() = height.acceleration;
+  place_ = moving_transform(travel);
+  job_.jets[0] = joint_jet<T>(place_ * moving_transform(job_.jets[0]));
 }
 
 }  // namespace

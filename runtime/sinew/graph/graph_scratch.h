@@ -25,6 +25,9 @@ struct GraphTask {
     kOffset,       ///< what is left of it upon out
     kLeave,        ///< keeps `from` as the pose left behind
     kLeft,         ///< fades from the pose left behind to out
+    kTravel,       ///< out goes over the ground as parameters say; `index`: node
+    kFeet,         ///< of the whole pose, where the character stands; `index`: node, by one weight
+    kLook,         ///< likewise
   };
   Kind kind = Kind::kSample;
   bool at_change = false;  ///< at the instant of a change, before the frame
@@ -57,6 +60,8 @@ struct GraphScratch {
   std::vector<std::vector<JointJet<T>>> references;  ///< [layer][joint], of the additive ones
   std::vector<Transform<T>> rest;
   std::vector<Quat<TimeJet<T>>> rotations;  ///< two per joint
+  std::vector<T> offset;                    ///< of the transition that is carried out
+  std::vector<JointJet<T>> left;            ///< [joint] the pose left behind by it
   std::vector<T> spare;                     ///< [joint] rad/s²
 
   // Of one update:

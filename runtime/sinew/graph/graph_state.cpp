@@ -3,12 +3,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "sinew/graph/graph_finish.h"
 #include "sinew/graph/graph_walk.h"
 
 namespace sinew {
 namespace {
 
 constexpr double kMostValue = 1e6;  ///< of a parameter
+constexpr double kElsewhere = 1;    ///< m, beyond which feet are not where they were
 
 }  // namespace
 
@@ -36,6 +38,8 @@ Status start_graph(const Graph& graph, std::span<std::byte> state) {
     p.goal = parameters[k].type == ParameterType::kTrigger ? T(0) : T(parameters[k].value);
     p.x = TimeJet<T>(p.goal);
   }
+  if (graph.feet().node >= 0) begin_feet(block.feet());
+  for (std::size_t k = 0; k < graph.looks().size(); ++k) begin_look(block.look(static_cast<int>(k)));
   enter_node(graph, block, graph.root(), 0);
   return {};
 }
@@ -111,6 +115,8 @@ double GraphParameters<T>::heading() {
 
 template <class T>
 void GraphParameters<T>::put(const Vec3<double>& place, double heading) {
+  const double apart = std::hypot(place.x() - block_.header().place[0], place.y() - block_.header().place[1]);
+  if (graph_.feet().node >= 0 && apart > kElsewhere) begin_feet(block_.feet());
   block_.header().place[0] = place.x();
   block_.header().place[1] = place.y();
   block_.header().heading = heading;

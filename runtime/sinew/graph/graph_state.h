@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <span>
 
+#include "sinew/animation/foot_lock.h"
 #include "sinew/animation/inertialize_job.h"
+#include "sinew/animation/look_at_job.h"
 #include "sinew/graph/graph.h"
+#include "sinew/graph/graph_keep.h"
 
 namespace sinew {
 
@@ -39,17 +42,13 @@ struct GraphGroupState {
   std::uint64_t active;   ///< a clip of it plays
 };
 
-struct GraphClipState {
-  TimeJet<double> time;  ///< s played, which does not wrap; of unsynchronised clips
-  std::uint64_t fresh;   ///< entered, and not yet advanced
-};
-
 /// How a machine goes from one state to the next.
 enum class GraphFade : std::uint32_t {
   kNone,
-  kOffset,     ///< what was different fades away
-  kLeft,       ///< the pose left behind does
-  kCrossfade,  ///< the old state still plays
+  kOffset,      ///< what was different fades away
+  kLeft,        ///< the pose left behind does
+  kCrossfade,   ///< the old state still plays
+  kSmoothstep,  ///< likewise, by a weight of third degree
 };
 
 template <class T>
@@ -70,6 +69,20 @@ struct GraphMachineState {
   bool fading() const { return fade != GraphFade::kNone || shown_elapsed < shown_duration; }
 };
 
+template <class T>
+struct GraphFeetState {
+  FootState<T> legs[2];
+  SmoothInput<T> drop, level;  ///< of FootPlacementJob; m, height of the ground under the character
+  T waited;                    ///< s, in which no legs were posed
+  std::uint32_t begun;         ///< the level is known
+};
+
+template <class T>
+struct GraphLookState {
+  LookState<T> look;
+  T waited;  ///< s, in which it was not posed
+};
+
 /// The block, taken apart. Offers what playing needs; games use GraphParameters.
 template <class T>
 class GraphBlock {
@@ -80,23 +93,26 @@ class GraphBlock {
   GraphHeader<T>& header() { return *place<GraphHeader<T>>(0); }
   GraphParameterState<T>& parameter(int k) { return place<GraphParameterState<T>>(at_.parameters)[k]; }
   GraphGroupState& group(int k) { return place<GraphGroupState>(at_.groups)[k]; }
-  GraphClipState& clip(int k) { return place<GraphClipState>(at_.clips)[k]; }
+  /// s played, which does not wrap; of a clip that is not synchronised (BoundClip::time).
+  TimeJet<double>& time(int k) { return place<TimeJet<double>>(at_.clips)[k]; }
+  /// Of a clip: entered, and not yet advanced.
+  bool fresh(int clip) const { return (place<std::uint8_t>(at_.fresh)[clip / 8] >> (clip % 8) & 1) != 0; }
+  void set_fresh(int clip, bool fresh) {
+    std::uint8_t& bits = place<std::uint8_t>(at_.fresh)[clip / 8];
+    const int bit = 1 << (clip % 8);
+    bits = static_cast<std::uint8_t>(fresh ? bits | bit : bits & ~bit);
+  }
   GraphMachineState<T>& machine(int k) { return place<GraphMachineState<T>>(at_.machines)[k]; }
-  InertialState<T> offset(int k, T elapsed, T duration) {
-    const std::size_t numbers = inertial_numbers(graph_.joint_count(), graph_.translated());
-    return {{place<T>(at_.offsets) + std::size_t(k) * numbers, numbers},
-            graph_.joint_count(),
-            graph_.translated(),
-            elapsed,
-            duration};
+  GraphFeetState<T>& feet() { return *place<GraphFeetState<T>>(at_.feet); }
+  GraphLookState<T>& look(int k) { return place<GraphLookState<T>>(at_.looks)[k]; }
+  /// What a transition keeps (graph_keep.h).
+  std::span<std::byte> offset(int k) {
+    const std::size_t bytes = (kept_bytes<T>(graph_.joint_count(), graph_.translated()) + 15) / 16 * 16;
+    return {data_ + at_.offsets + std::size_t(k) * bytes, bytes};
   }
   std::span<TimeJet<T>> curve_offsets(int k) {
     const std::size_t count = std::size_t(graph_.curve_count());
     return {place<TimeJet<T>>(at_.curve_offsets) + std::size_t(k) * count, count};
-  }
-  std::span<JointJet<T>> left_pose(int k) {
-    const std::size_t count = std::size_t(graph_.joint_count());
-    return {place<JointJet<T>>(at_.left_poses) + std::size_t(k) * count, count};
   }
 
  private:

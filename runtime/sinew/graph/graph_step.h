@@ -24,6 +24,7 @@ struct GraphStepJob {
   std::span<const JointJet<T>> physical = {};  ///< as of GraphPoseJob
   std::span<const T> spare_acceleration = {};  ///< likewise
   GraphWatch<T> watch = {};                    ///< of the last part
+  GraphGround<T> ground = {};                  ///< for NodeType::kFeet
 
   Status Run() const {
     const int parts =
@@ -38,6 +39,7 @@ struct GraphStepJob {
           k == parts ? jets : jets.first(std::min<std::size_t>(1, jets.size()));
       GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical, spare_acceleration};
       if (k == parts) pose.watch = watch;
+      pose.ground = ground;
       if (Status status = pose.Run(); !status) return status;
     }
     return {};

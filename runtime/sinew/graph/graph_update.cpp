@@ -11,9 +11,13 @@
 namespace sinew {
 namespace {
 
+/// What is usual, for comparison.
 template <class T>
-bool nothing(const TimeJet<T>& weight) {
-  return weight.value == T(0) && weight.rate == T(0) && weight.acceleration == T(0);
+TimeJet<T> smoothstep(T elapsed, T duration) {
+  if (!(elapsed < duration)) return TimeJet<T>(T(1));
+  const T u = elapsed / duration;
+  return {u * u * (T(3) - T(2) * u), T(6) * u * (T(1) - u) / duration,
+          (T(6) - T(12) * u) / (duration * duration)};
 }
 
 constexpr int kMostHits = 64;  ///< of one clip in one frame
@@ -90,6 +94,8 @@ class Update {
   void emit_blend(int index, int base, const TimeJet<T>& weight, bool now);
   void emit_layers(int index, int base, const TimeJet<T>& weight, bool now);
   void emit_machine(int index, int base, const TimeJet<T>& weight, bool now);
+  void emit_single(typename GraphTask::Kind kind, const GraphValue& how_much, int index, int base,
+                   const TimeJet<T>& weight, bool now);
   GraphTask& task(typename GraphTask::Kind kind, int base, int index) {
     GraphTask& t = s_.tasks[std::size_t(s_.task_count++)];
     t = {};
@@ -103,9 +109,6 @@ class Update {
   int weight(const TimeJet<T>& w) {
     s_.weights[std::size_t(s_.weight_count)] = w;
     return s_.weight_count++;
-  }
-  TimeJet<T> value(const GraphValue& v) {
-    return v.parameter < 0 ? TimeJet<T>(T(v.constant)) : soft_step(block_.parameter(v.parameter).x);
   }
 
   void report(int node);
@@ -200,7 +203,7 @@ void Update<T>::leave(int index) {
     const int clip = graph_.slot(index);
     const Clip& c = *graph_.clips()[std::size_t(clip)].clip;
     const ClipTime time = clip_time(graph_, block_, clip);
-    if (!events_ || block_.clip(clip).fresh != 0) return;
+    if (!events_ || block_.fresh(clip)) return;
     const int first = events_->count;
     end_events(c.events, double(c.duration), c.loops, time.value, time.rate < 0, *events_);
     for (int k = first; k < events_->count; ++k)
@@ -235,8 +238,8 @@ void Update<T>::take(int index, int slot, const Choice& choice) {
   const bool visible = !nothing(shown(m));
   start_showing(m, T(1), duration);
   const bool again = choice.to == m.posed;
-  const bool crossfade =
-      t.kind == TransitionKind::kCrossfade && m.fade == GraphFade::kNone && visible && !again;
+  const bool crossfade = (t.kind == TransitionKind::kCrossfade || t.kind == TransitionKind::kSmoothstep) &&
+                         m.fade == GraphFade::kNone && visible && !again;
   const bool offset = t.kind != TransitionKind::kCut && visible && !crossfade;
   if (offset) {  // what it does up to this instant
     prelude_ = true;
@@ -252,10 +255,11 @@ void Update<T>::take(int index, int slot, const Choice& choice) {
   }
   m.source = crossfade ? m.posed : std::int16_t(-1);
   m.posed = static_cast<std::int16_t>(choice.to);
-  m.fade = crossfade                         ? GraphFade::kCrossfade
-           : !offset                         ? GraphFade::kNone
-           : t.kind == TransitionKind::kDead ? GraphFade::kLeft
-                                             : GraphFade::kOffset;
+  m.fade = !crossfade && !offset                           ? GraphFade::kNone
+           : !crossfade && t.kind == TransitionKind::kDead ? GraphFade::kLeft
+           : !crossfade                                    ? GraphFade::kOffset
+           : t.kind == TransitionKind::kSmoothstep         ? GraphFade::kSmoothstep
+                                                           : GraphFade::kCrossfade;
   m.elapsed = T(0);
   m.duration = duration;
   enter_node(graph_, block_, next, double(t.entry));
@@ -329,7 +333,7 @@ void Update<T>::advance(int index) {
     block_.group(node.group).active = 1;
     return;
   }
-  TimeJet<double>& played = block_.clip(slot).time;
+  TimeJet<double>& played = block_.time(graph_.clips()[std::size_t(slot)].time);
   s_.before[std::size_t(slot)] = played_time(*graph_.clips()[std::size_t(slot)].clip, played).value;
   // exact to h⁵, as a phase is
   const TimeJet<double> speed = clip_speed(graph_, block_, node);
@@ -388,7 +392,24 @@ void Update<T>::emit(int index, int base, const TimeJet<T>& weight, bool now) {
       emit(graph_.node(index).children.front(), base, weight, now);
       --mirrored_;
       task(GraphTask::Kind::kMirror, base, index);
+      return;
+    case NodeType::kTravel:
+      return emit_single(GraphTask::Kind::kTravel, graph_.node(index).travel.weight, index, base, weight,
+                         now);
+    case NodeType::kFeet:
+      return emit_single(GraphTask::Kind::kFeet, graph_.node(index).feet.weight, index, base, weight, now);
+    case NodeType::kLook:
+      return emit_single(GraphTask::Kind::kLook, graph_.node(index).look.weight, index, base, weight, now);
   }
+}
+
+/// A node that changes what its only child does, by a weight.
+template <class T>
+void Update<T>::emit_single(typename GraphTask::Kind kind, const GraphValue& how_much, int index, int base,
+                            const TimeJet<T>& weight, bool now) {
+  emit(graph_.node(index).children.front(), base, weight, now);
+  GraphTask& t = task(kind, base, index);
+  t.weights = this->weight(weight_of(block_, how_much));
 }
 
 template <class T>
@@ -441,7 +462,7 @@ void Update<T>::emit_layers(int index, int base, const TimeJet<T>& weight, bool 
   emit(node.children.front(), base, weight, now);
   for (std::size_t k = 0; k < node.layers.size(); ++k) {
     const int child = node.children[k + 1];
-    TimeJet<T> w = value(node.layers[k].weight);
+    TimeJet<T> w = weight_of(block_, node.layers[k].weight);
     if (graph_.node(child).type == NodeType::kMachine) w = w * shown(block_.machine(graph_.slot(child)));
     if (nothing(w)) continue;
     emit(child, base + 1, weight * w, now);
@@ -457,8 +478,9 @@ void Update<T>::emit_machine(int index, int base, const TimeJet<T>& weight, bool
   const int slot = graph_.slot(index);
   const GraphMachineState<T>& m = block_.machine(slot);
   const int pose = node.states[std::size_t(m.posed)].node;
-  if (m.fade == GraphFade::kCrossfade) {
-    const TimeJet<T> w = EaseWeight<T>::at(m.elapsed, m.duration);
+  if (m.fade == GraphFade::kCrossfade || m.fade == GraphFade::kSmoothstep) {
+    const TimeJet<T> w = m.fade == GraphFade::kCrossfade ? EaseWeight<T>::at(m.elapsed, m.duration)
+                                                         : smoothstep(m.elapsed, m.duration);
     emit(node.states[std::size_t(m.source)].node, base, weight * (TimeJet<T>(T(1)) - w), now);
     emit(pose, base + 1, weight * w, now);
     task(GraphTask::Kind::kCrossfade, base, slot).weights = this->weight(w);
@@ -473,9 +495,8 @@ void Update<T>::emit_machine(int index, int base, const TimeJet<T>& weight, bool
 
 template <class T>
 void Update<T>::report_clip(int slot) {
-  GraphClipState& clip = block_.clip(slot);
-  const bool starts = clip.fresh != 0;
-  clip.fresh = 0;
+  const bool starts = block_.fresh(slot);
+  if (starts) block_.set_fresh(slot, false);
   const float share = s_.shares[std::size_t(slot)];
   const Clip& c = *graph_.clips()[std::size_t(slot)].clip;
   if (share < 0 || c.events.empty()) return;
@@ -485,7 +506,7 @@ void Update<T>::report_clip(int slot) {
   const int group = graph_.node(bound.node).group;
   const double before =
       group < 0 ? s_.before[std::size_t(slot)] : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
-  const double now = group < 0 ? played_time(c, clip.time).value : s_.now[std::size_t(slot)];
+  const double now = group < 0 ? played_time(c, block_.time(bound.time)).value : s_.now[std::size_t(slot)];
   EventJob job{c.events, double(c.duration), c.loops, before, now, starts};
   job.step = static_cast<float>(h_);
   job.weight = share;

@@ -23,9 +23,9 @@ void enter_machine(const Graph& graph, GraphBlock<T>& block, const GraphNode& no
 template <class T>
 void enter_clip(const Graph& graph, GraphBlock<T>& block, const GraphNode& node, int slot, double entry) {
   const TimeJet<double> speed = clip_speed(graph, block, node);
-  GraphClipState& clip = block.clip(slot);
-  clip.time = {entry, speed.value, speed.rate};
-  clip.fresh = 1;
+  const int time = graph.clips()[std::size_t(slot)].time;
+  if (time >= 0) block.time(time) = {entry, speed.value, speed.rate};
+  block.set_fresh(slot, true);
   if (node.group < 0) return;
   GraphGroupState& group = block.group(node.group);
   if (group.active == 0) group.phase = TimeJet<double>(0.0);
@@ -69,7 +69,7 @@ ClipTime clip_time(const Graph& graph, GraphBlock<T>& block, int clip) {
   const Graph::BoundClip& bound = graph.clips()[std::size_t(clip)];
   const int group = graph.node(bound.node).group;
   return group >= 0 ? bound.map.at(block.group(group).phase)
-                    : played_time(*bound.clip, block.clip(clip).time);
+                    : played_time(*bound.clip, block.time(bound.time));
 }
 
 template <class T>
@@ -102,7 +102,7 @@ float remaining(const Graph& graph, GraphBlock<T>& block, int node) {
   if (bound.clip->loops) {
     time.value -= duration * std::floor(time.value / duration);
   } else {
-    time = block.clip(clip).time;
+    time = block.time(bound.time);
   }
   const double left = time.rate >= 0 ? std::max(0.0, duration - time.value) : std::max(0.0, time.value);
   return static_cast<float>(left / std::max(1e-6, std::abs(time.rate)));

@@ -29,6 +29,17 @@ TimeJet<T> soft_step(const TimeJet<T>& x) {
   return x * x * x * (TimeJet<T>(T(10)) - x * (TimeJet<T>(T(15)) - T(6) * x));
 }
 
+/// How much the game shows of something: a number, or a parameter between 0 and 1.
+template <class T>
+TimeJet<T> weight_of(GraphBlock<T>& block, const GraphValue& v) {
+  return v.parameter < 0 ? TimeJet<T>(T(v.constant)) : soft_step(block.parameter(v.parameter).x);
+}
+
+template <class T>
+bool nothing(const TimeJet<T>& weight) {
+  return weight.value == T(0) && weight.rate == T(0) && weight.acceleration == T(0);
+}
+
 /// How much of a machine's pose its layer shows, 0 … 1.
 template <class T>
 TimeJet<T> shown(const GraphMachineState<T>& machine);
