@@ -18,9 +18,29 @@ export SLURM_CONF=$farm/slurm.conf
 port=$((20000 + $$ % 20000))
 declare -A daemons
 
+kill_tree() {  # kill_tree PID: with all that it started
+  local child
+  for child in $(ps -o pid= --ppid "$1"); do kill_tree "$child"; done
+  kill -9 "$1" 2>/dev/null || true
+}
+
+kill_node() {  # kill_node NODE: its daemon and all that runs on it, as if its machine were switched off
+  local script step
+  kill -9 "${daemons[$1]}" 2>/dev/null || true
+  for script in $(ps -e -o pid=,args= | awk -v spool="$farm/$1/" 'index($0, spool) && !/awk/ {print $1}'); do
+    step=$(ps -o ppid= -p "$script" | tr -d ' ' || true)
+    if [ -n "$step" ] && ps -o args= -p "$step" | grep -q '^slurmstepd: '; then
+      kill_tree "$step"  # Slurm's own process for the task
+    else
+      kill_tree "$script"
+    fi
+  done
+}
+
 end() {
-  local pid
-  for pid in "${daemons[@]}"; do kill -9 "$pid" 2>/dev/null || true; done
+  local name
+  for name in n1 n2; do [ -z "${daemons[$name]:-}" ] || kill_node $name; done
+  for name in "${!daemons[@]}"; do kill -9 "${daemons[$name]}" 2>/dev/null || true; done
   sleep 0.5
   rm -rf "$farm"
 }
@@ -106,21 +126,6 @@ write_work() {  # 48 small sources, one of which is none
   {"render": ["art/walk1.bvh", "art/walk2.bvh"], "ending": ".png", "seconds": 1, "arguments": ["--size", "64x64"]},
   {"study": "talk --quick --scene torque_limit", "seconds": 1}]}
 END
-}
-
-kill_tree() {  # kill_tree PID: with all that it started
-  local child
-  for child in $(ps -o pid= --ppid "$1"); do kill_tree "$child"; done
-  kill -9 "$1" 2>/dev/null || true
-}
-
-kill_node() {  # kill_node NODE: its daemon and all that runs on it, as if its machine were switched off
-  local script step
-  kill -9 "${daemons[$1]}"
-  for script in $(ps -e -o pid=,args= | awk -v spool="$farm/$1/" 'index($0, spool) && !/awk/ {print $1}'); do
-    step=$(ps -o ppid= -p "$script" | tr -d ' ' || true)  # Slurm's own process for the task
-    [ -z "$step" ] || kill_tree "$step"
-  done
 }
 
 configure

@@ -157,7 +157,7 @@ TEST_F(Batch, PoisonIsIsolatedAfterABoundedNumberOfTries) {
   write("manifest.json",
         R"({"jobs": [{"study": "stability", "arguments": ["--quick"]}, {"convert": "art/walk2.bvh"}]})");
   const std::string hungry = planned("hungry");
-  EXPECT_EQ(sinew("batch run --cpu-limit 1 --tries 1 " + hungry).code, 1);
+  EXPECT_EQ(sinew("batch run --cpu-limit 2 --tries 1 " + hungry).code, 1);
   EXPECT_EQ(status(hungry)["done"], 1);
   EXPECT_EQ(status(hungry)["failures"][0]["name"], "study/stability");
 }
