@@ -328,6 +328,7 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
   phases.resize(graph.definition().groups.size());
   changes.resize(graph.machines().size());
   shares.resize(graph.clips().size());
+  hits.resize(kMostHits);
 }
 
 template <class T>
