@@ -45,7 +45,7 @@ std::optional<Entry> entry(const Collider& c, const Vec3<double>& from) {
 
 template <class T>
 bool Ground::below(const Vec3<T>& point, GroundHit<T>& hit) const {
-  const Vec3<double> from = point.template cast<double>();
+  const Vec3<double> from(double(point.x()), double(point.y()), double(point.z()));
   std::optional<Entry> highest;
   if (floor) highest = Entry{*floor, Vec3<double>::UnitZ()};
   for (const Collider& c : obstacles) {

@@ -197,15 +197,15 @@ Status Graph::bind_feet(int index, const Asset& asset) {
     Status status = find_foot_leg(asset.skeleton, Role::kFootL, legs[0]);
     return status ? find_foot_leg(asset.skeleton, Role::kFootR, legs[1]) : status;
   };
-  Status status = find(feet_.legs_float.legs);
-  if (status) status = find(feet_.legs_double.legs);
+  Status status = find(feet_.legs_float);
+  if (status) status = find(feet_.legs_double);
   if (!status) return bad(status.reason, index);
-  int left = feet_.legs_float.legs[0].upper, right = feet_.legs_float.legs[1].upper;
+  int left = feet_.legs_float[0].upper, right = feet_.legs_float[1].upper;
   while (left != right) (left > right ? left : right) = parents_[std::size_t(std::max(left, right))];
   if (left < 0) return bad("legs have no joint in common", index);
   feet_.node = index;
   feet_.pelvis = left;
-  for (const FootLeg<float>& leg : feet_.legs_float.legs) feet_.joints = std::max(feet_.joints, leg.foot + 1);
+  for (const FootLeg<float>& leg : feet_.legs_float) feet_.joints = std::max(feet_.joints, leg.foot + 1);
   return {};
 }
 
@@ -328,6 +328,7 @@ GraphScratch<T>::GraphScratch(const Graph& graph) : hash(graph.hash()) {
   phases.resize(graph.definition().groups.size());
   changes.resize(graph.machines().size());
   shares.resize(graph.clips().size());
+  hits.resize(kMostHits);
 }
 
 template <class T>

@@ -15,6 +15,7 @@
 //     character.set_target(jets);
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -70,22 +71,18 @@ class Graph {
     int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind
     bool fades = false;  ///< has an empty state
   };
-  template <class T>
-  struct Legs {
-    FootLeg<T> legs[2];  ///< left, right
-  };
   struct BoundFeet {
-    int node = -1;    ///< none
-    int pelvis = -1;  ///< joint that carries both legs
-    int joints = 0;   ///< that have to be posed
-    Legs<float> legs_float;
-    Legs<double> legs_double;
+    int node = -1;                             ///< none
+    int pelvis = -1;                           ///< joint that carries both legs
+    int joints = 0;                            ///< that have to be posed
+    std::array<FootLeg<float>, 2> legs_float;  ///< left, right
+    std::array<FootLeg<double>, 2> legs_double;
     template <class T>
     std::span<const FootLeg<T>> legs() const {
       if constexpr (sizeof(T) == sizeof(double))
-        return legs_double.legs;
+        return legs_double;
       else
-        return legs_float.legs;
+        return legs_float;
     }
   };
   struct BoundLook {

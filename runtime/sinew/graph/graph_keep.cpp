@@ -1,7 +1,6 @@
 #include "sinew/graph/graph_keep.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -19,48 +18,42 @@ using Kept = std::conditional_t<sizeof(T) == sizeof(double), double, std::int16_
 /// Of turns or shifts: a greatest number for values, rates and accelerations, and the numbers of each joint.
 template <class T>
 struct Part {
-  T* greatest;  ///< [3]
-  Kept<T>* numbers;
+  T* greatest;       ///< [3]
+  Kept<T>* numbers;  ///< [9][count]
+  int count;
 };
 template <class T>
-Part<T> part_of(std::byte* memory, int joints, int which) {
+Part<T> part_of(std::byte* memory, int joints, int which, int count) {
   T* scales = reinterpret_cast<T*>(memory);
   Kept<T>* numbers = reinterpret_cast<Kept<T>*>(scales + 6);
-  return {scales + 3 * which, numbers + std::size_t(which) * kNumbers * std::size_t(joints)};
+  return {scales + 3 * which, numbers + std::size_t(which) * kNumbers * std::size_t(joints), count};
 }
 
-template <class T>
-using Nine = std::array<T, kNumbers>;
-
-/// `at(joint)` gives the nine numbers of a joint, three of each kind.
+/// `at(joint, k)` gives the nine numbers of a joint, three of each kind.
 template <class T, class At>
-void keep(Part<T> part, int joints, const At& at) {
-  Kept<T>* number = part.numbers;
-  if constexpr (std::is_same_v<Kept<T>, double>) {
-    for (int j = 0; j < joints; ++j, number += kNumbers) {
-      const Nine<T> nine = at(j);
-      std::copy(nine.begin(), nine.end(), number);
-    }
-  } else {
-    T most[3] = {};
-    for (int j = 0; j < joints; ++j) {
-      const Nine<T> nine = at(j);
-      for (std::size_t k = 0; k < kNumbers; ++k) most[k / 3] = std::max(most[k / 3], std::abs(nine[k]));
-    }
-    std::copy(most, most + 3, part.greatest);
-    T shares[3];
-    for (int kind = 0; kind < 3; ++kind) shares[kind] = most[kind] > T(0) ? T(kMost) / most[kind] : T(0);
-    for (int j = 0; j < joints; ++j) {
-      const Nine<T> nine = at(j);
-      for (std::size_t k = 0; k < kNumbers; ++k)
-        *number++ =
-            static_cast<std::int16_t>(std::lrint(std::clamp(nine[k] * shares[k / 3], T(-kMost), T(kMost))));
+void keep(const Part<T>& part, const At& at) {
+  for (int k = 0; k < kNumbers; ++k) {
+    Kept<T>* number = part.numbers + k * part.count;
+    if constexpr (std::is_same_v<Kept<T>, double>) {
+      for (int j = 0; j < part.count; ++j) number[j] = at(j, k);
+    } else {
+      T& most = part.greatest[k / 3];
+      if (k % 3 == 0) {
+        most = 0;
+        for (int i = k; i < k + 3; ++i)
+          for (int j = 0; j < part.count; ++j) most = std::max(most, std::abs(at(j, i)));
+      }
+      const T scale = most > T(0) ? T(kMost) / most : T(0);
+      for (int j = 0; j < part.count; ++j) {
+        const T share = at(j, k) * scale;  // |share| ≤ kMost, but for its rounding
+        number[j] = static_cast<std::int16_t>(share + (share < T(0) ? T(-0.5) : T(0.5)));
+      }
     }
   }
 }
 template <class T>
 T recalled(const Part<T>& part, int joint, int k) {
-  const Kept<T> number = part.numbers[joint * kNumbers + k];
+  const Kept<T> number = part.numbers[k * part.count + joint];
   if constexpr (std::is_same_v<Kept<T>, double>)
     return number;
   else
@@ -73,27 +66,17 @@ T* lane(const InertialState<T>& offset, int which, int joint) {
   return begin + joint / kLanes * (kNumbers * kLanes) + joint % kLanes;
 }
 
-/// A joint's turn from rest as modified Rodrigues parameters, its spin and the change of that.
+/// Of a joint's turn from rest: modified Rodrigues parameters, spin and the change of that.
 template <class T>
-Nine<T> turn_of(const JointJet<T>& jet, const Transform<T>& rest) {
+T turn_of(const JointJet<T>& jet, const Transform<T>& rest, int k) {
+  if (k >= 3) return k < 6 ? jet.omega[k - 3] : jet.alpha[k - 6];
   const Quat<T> q = rest.rotation.conjugate() * jet.rotation;
-  const T scale = (q.w() < T(0) ? T(-1) : T(1)) / (T(1) + std::abs(q.w()));
-  Nine<T> out = {scale * q.x(), scale * q.y(), scale * q.z()};
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[3 + k] = jet.omega[int(k)];
-    out[6 + k] = jet.alpha[int(k)];
-  }
-  return out;
+  return (q.w() < T(0) ? T(-1) : T(1)) / (T(1) + std::abs(q.w())) * q.coeffs()[k];
 }
 template <class T>
-Nine<T> shift_of(const JointJet<T>& jet, const Transform<T>& rest) {
-  Nine<T> out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = jet.translation[int(k)] - rest.translation[int(k)];
-    out[3 + k] = jet.velocity[int(k)];
-    out[6 + k] = jet.acceleration[int(k)];
-  }
-  return out;
+T shift_of(const JointJet<T>& jet, const Transform<T>& rest, int k) {
+  if (k < 3) return jet.translation[k] - rest.translation[k];
+  return k < 6 ? jet.velocity[k - 3] : jet.acceleration[k - 6];
 }
 template <class T>
 Quat<T> rotation_of(const Vec3<T>& x) {
@@ -115,26 +98,25 @@ std::size_t kept_bytes(int joints, int translated) {
 template <class T>
 void keep_offset(const InertialState<T>& offset, std::span<std::byte> memory) {
   for (const int which : {0, 1})
-    keep(part_of<T>(memory.data(), offset.joints, which), which == 0 ? offset.joints : offset.translated,
-         [&](int j) {
-           Nine<T> out;
-           for (int k = 0; k < kNumbers; ++k) out[std::size_t(k)] = lane(offset, which, j)[k * kLanes];
-           return out;
+    keep(part_of<T>(memory.data(), offset.joints, which, which == 0 ? offset.joints : offset.translated),
+         [begin = lane(offset, which, 0)](int j, int k) {
+           const unsigned joint = unsigned(j), block = joint / kLanes;
+           return begin[block * (kNumbers * kLanes) + joint % kLanes + unsigned(k) * kLanes];
          });
 }
 
 template <class T>
 void recall_offset(std::span<const std::byte> memory, InertialState<T>& offset) {
   for (const int which : {0, 1}) {
-    const Part<T> part = part_of<T>(writable(memory), offset.joints, which);
     const int count = which == 0 ? offset.joints : offset.translated;
-    for (int j = 0; j < count; ++j) {
-      T* at = lane(offset, which, j);
-      for (int k = 0; k < kNumbers; ++k) at[k * kLanes] = recalled(part, j, k);
-    }
-    // The joints beside them in a register have none.
-    for (int j = count; j % kLanes != 0; ++j)
-      for (int k = 0; k < kNumbers; ++k) lane(offset, which, j)[k * kLanes] = T(0);
+    const Part<T> part = part_of<T>(writable(memory), offset.joints, which, count);
+    for (int k = 0; k < kNumbers; ++k)
+      for (int first = 0; first < count; first += kLanes) {
+        T* at = lane(offset, which, first) + k * kLanes;
+        const int used = std::min(kLanes, count - first);
+        for (int j = 0; j < used; ++j) at[j] = recalled(part, first + j, k);
+        std::fill(at + used, at + kLanes, T(0));  // the joints beside them in a register have none
+      }
   }
 }
 
@@ -142,18 +124,18 @@ template <class T>
 void keep_pose(std::span<const JointJet<T>> pose, std::span<const Transform<T>> rest, int translated,
                std::span<std::byte> memory) {
   const int joints = static_cast<int>(pose.size());
-  keep(part_of<T>(memory.data(), joints, 0), joints,
-       [&](int j) { return turn_of(pose[std::size_t(j)], rest[std::size_t(j)]); });
-  keep(part_of<T>(memory.data(), joints, 1), translated,
-       [&](int j) { return shift_of(pose[std::size_t(j)], rest[std::size_t(j)]); });
+  keep(part_of<T>(memory.data(), joints, 0, joints),
+       [&](int j, int k) { return turn_of(pose[std::size_t(j)], rest[std::size_t(j)], k); });
+  keep(part_of<T>(memory.data(), joints, 1, translated),
+       [&](int j, int k) { return shift_of(pose[std::size_t(j)], rest[std::size_t(j)], k); });
 }
 
 template <class T>
 void recall_pose(std::span<const std::byte> memory, std::span<const Transform<T>> rest, int translated,
                  std::span<JointJet<T>> pose) {
   const int joints = static_cast<int>(rest.size());
-  const Part<T> turns = part_of<T>(writable(memory), joints, 0),
-                shifts = part_of<T>(writable(memory), joints, 1);
+  const Part<T> turns = part_of<T>(writable(memory), joints, 0, joints),
+                shifts = part_of<T>(writable(memory), joints, 1, translated);
   for (int j = 0; j < static_cast<int>(pose.size()); ++j) {
     JointJet<T>& jet = pose[std::size_t(j)];
     const auto three = [j](const Part<T>& part, int k) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sinew/animation/clip_time.h"
+#include "sinew/animation/event_job.h"
 #include "sinew/animation/moving_transform.h"
 #include "sinew/graph/graph_state.h"
 
@@ -40,6 +41,7 @@ struct GraphTask {
 
 template <class T>
 struct GraphScratch {
+  static constexpr std::size_t kMostHits = 64;  ///< events of one clip in one frame
   /// Allocates; nothing after this does.
   explicit GraphScratch(const Graph& graph);
 
@@ -81,6 +83,7 @@ struct GraphScratch {
   std::vector<double> before;  ///< [clip] clip time at the last frame, of those not synchronised
   std::vector<double> now;     ///< [clip] and now, of those that are
   std::vector<double> phases;  ///< [group] at the last frame
+  std::vector<EventHit> hits;  ///< of one clip
   std::vector<float> shares;   ///< [clip] weight in this frame; < 0: not played
   T h = 0;
 };

@@ -20,8 +20,6 @@ TimeJet<T> smoothstep(T elapsed, T duration) {
           (T(6) - T(12) * u) / (duration * duration)};
 }
 
-constexpr int kMostHits = 64;  ///< of one clip in one frame
-
 /// Keeps the order of those at one time; takes no memory, as std::stable_sort does.
 void sort_by_time(std::span<EventHit> hits) {
   const auto earlier = [](const EventHit& a, const EventHit& b) { return a.seconds_ago > b.seconds_ago; };
@@ -500,7 +498,7 @@ void Update<T>::report_clip(int slot) {
   const float share = s_.shares[std::size_t(slot)];
   const Clip& c = *graph_.clips()[std::size_t(slot)].clip;
   if (share < 0 || c.events.empty()) return;
-  EventHit hits[kMostHits];  // conditions see events whether the game wants them or not
+  const std::span<EventHit> hits(s_.hits);  // conditions see events whether the game wants them or not
   EventSink sink{hits};
   const Graph::BoundClip& bound = graph_.clips()[std::size_t(slot)];
   const int group = graph_.node(bound.node).group;
@@ -513,8 +511,8 @@ void Update<T>::report_clip(int slot) {
   job.out = &sink;
   if (!job.Run() && events_) ++events_->lost;  // a thousand loops in a frame
   for (int k = 0; k < sink.count; ++k) {
-    block_.header().events |= graph_.event_bit(hits[k].event->name);
-    if (events_) events_->add(hits[k]);
+    block_.header().events |= graph_.event_bit(hits[std::size_t(k)].event->name);
+    if (events_) events_->add(hits[std::size_t(k)]);
   }
   if (events_) events_->lost += sink.lost;
 }
