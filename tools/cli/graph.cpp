@@ -89,19 +89,29 @@ void GraphCommand::add(CLI::App& app) {
       ->type_name("FILE")
       ->default_str("standard output");
   trace_->add_flag("--json", json_output, "the state at the end as JSON instead");
-  trace_->add_option("--record", recording, "file for the last frames, as GraphRecorder keeps them");
-  trace_->add_option("--frames", frames, "of that file (120)")->check(CLI::Range(1, 100000));
+  trace_->add_option("--record", recording, "file for the last frames, as GraphRecorder keeps them")
+      ->type_name("FILE");
+  trace_->add_option("--frames", frames, "frames of that file")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   plot_ = app.add_subcommand(
       "plot", "accelerations and loads over a scene, beside the same graph with smoothstep crossfades");
-  plot_->add_option("scene", input, "scene whose first character plays a graph")->required();
-  plot_->add_option("-o,--output", output, ".svg or .png")->required();
+  plot_->add_option("scene", input, "scene whose first character plays a graph")
+      ->required()
+      ->type_name("FILE");
+  plot_->add_option("-o,--output", output, "picture: .svg or .png")->required()->type_name("FILE");
+  plot_->add_flag("--json", json_output, "what was found, on standard output as JSON");
   replay_ = app.add_subcommand(
       "replay",
       "plays the frames that a recorder kept again, and writes what they did as JSON; 'same': to the bit");
   graph(replay_);
-  replay_->add_option("recording", recording, "of trace --record, or of a game")->required();
-  replay_->add_option("--asset", asset, "asset or source file with its clips")->required();
-  replay_->add_option("-o,--output", output, "standard output otherwise");
+  replay_->add_option("recording", recording, "of trace --record, or of a game")
+      ->required()
+      ->type_name("FILE");
+  replay_->add_option("--asset", asset, "asset or source file with its clips")->required()->type_name("FILE");
+  replay_->add_option("-o,--output", output, "JSON to write")
+      ->type_name("FILE")
+      ->default_str("standard output");
 }
 
 Error GraphCommand::run() {
@@ -192,8 +202,14 @@ Error GraphCommand::plot() const {
   if (Error error = scene::run_asked(own, asked[0])) return {input + ": " + error.message};
   if (Error error = scene::run_asked(usual, asked[1]))
     return {input + ", with smoothsteps: " + error.message};
-  std::printf("the graph: %s\nwith smoothsteps: %s\n", scene::summary_of(asked[0]).c_str(),
-              scene::summary_of(asked[1]).c_str());
+  if (json_output)
+    std::puts(json_text(nlohmann::json{{"output", output},
+                                       {"graph", scene::summary_of(asked[0])},
+                                       {"with_smoothsteps", scene::summary_of(asked[1])}})
+                  .c_str());
+  else
+    say("the graph: %s\nwith smoothsteps: %s\n", scene::summary_of(asked[0]).c_str(),
+        scene::summary_of(asked[1]).c_str());
   return scene::plot_asked(own, asked[0], asked[1], output);
 }
 
@@ -207,7 +223,7 @@ Error GraphCommand::replay() const {
   graph_tools::Json frames_of_file;
   if (const std::string fault = graph_tools::dump_recording(graph, file, frames_of_file); !fault.empty())
     return {recording + ": " + fault};
-  const std::string text = frames_of_file.dump(1) + "\n";
+  const std::string text = json_text(frames_of_file, 1) + "\n";
   if (!output.empty()) return write_atomically(output, text);
   std::fputs(text.c_str(), stdout);
   return {};
