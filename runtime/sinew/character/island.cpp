@@ -6,10 +6,10 @@
 
 #include "sinew/character/baking.h"
 #include "sinew/character/couplings.h"
-#include "sinew/character/grounding.h"
-#include "sinew/character/playback.h"
 #include "sinew/character/cut.h"
+#include "sinew/character/grounding.h"
 #include "sinew/character/levels.h"
+#include "sinew/character/playback.h"
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"

@@ -62,10 +62,13 @@ template <class T>
 /// about the common origin; `ground` is the floor's height from it. Nothing in flight. `room` [point]. T may
 /// be a pack of characters (pack.h). O(points).
 template <class T, class Put>
-[[gnu::always_inline]] inline void share_support_to(
-    const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation, std::span<const Vec3<T>> origin,
-    const T& ground, const SupportSettings& settings, std::span<StandingPoint<T>> room,
-    std::span<const Vec3<T>> force, std::span<const Vec3<T>> moment, Put put) {
+[[gnu::always_inline]] inline void share_support_to(const SupportPoints<Number<T>>& points,
+                                                    std::span<const Mat3<T>> rotation,
+                                                    std::span<const Vec3<T>> origin, const T& ground,
+                                                    const SupportSettings& settings,
+                                                    std::span<StandingPoint<T>> room,
+                                                    std::span<const Vec3<T>> force,
+                                                    std::span<const Vec3<T>> moment, Put put) {
   using std::sqrt;
   const int bodies = int(rotation.size());
   const Number<T> reach = Number<T>(settings.reach) * points.unit, area = points.unit * points.unit;
