@@ -19,6 +19,7 @@ constexpr double kStraight = 0.985;                      ///< of a leg's length,
 constexpr double kStill = 0.05;                          ///< m/s
 constexpr double kSame = 0.01;                           ///< m
 constexpr double kFallen = 0.6;                          ///< of the root's height
+constexpr double kUpright = 0.77;                        ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
 constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear nothing can't press
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
@@ -172,7 +173,9 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     strength_ = double(character.strength());
     return;
   }
-  if (is.root.translation.z() < kFallen * body_.height) return fall(character, 0);
+  const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
+  if (is.root.translation.z() < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
+    return fall(character, 0);
   if (report_.state == BehaviourState::kPassive) {
     if (character.unknown()[0] == 0) return give_up(character);
     if (report_.time < settings_.reaction) return;
