@@ -39,6 +39,13 @@ struct ScenesCommand {
   convert::Error run() const;
 };
 
+struct BehaviourCommand {
+  std::string directory = "out/study";
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 struct EffectsCommand {
   std::string directory = "out/study";
   bool quick = false, json_output = false;

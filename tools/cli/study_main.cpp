@@ -32,6 +32,12 @@ void add_options(CLI::App& app, cli::ScenesCommand& command) {
   app.add_flag("--json", command.json_output);
 }
 
+void add_options(CLI::App& app, cli::BehaviourCommand& command) {
+  app.add_option("-o,--output", command.directory, "directory for JSON and pictures (out/study)");
+  app.add_flag("--quick", command.quick, "4 directions, chest and 60 Hz only, 3 seeds");
+  app.add_flag("--json", command.json_output);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -76,6 +82,10 @@ int main(int argc, char** argv) try {
   auto* talk = study->add_subcommand(
       "talk", "the seed talk's scenes, judged from poses\nExample: sinew study talk --scene torque_limit");
   add_options(*talk, talk_scenes);
+  cli::BehaviourCommand behaviour;
+  auto* balance = study->add_subcommand(
+      "behaviour", "pushes beside what people bear\nExample: sinew study behaviour --quick -o out/study");
+  add_options(*balance, behaviour);
   cli::EffectsCommand effects;
   auto* each = study->add_subcommand(
       "effects",
@@ -102,6 +112,8 @@ int main(int argc, char** argv) try {
     error = scenes.run();
   else if (talk->parsed())
     error = talk_scenes.run();
+  else if (balance->parsed())
+    error = behaviour.run();
   else
     error = effects.run();
   if (!error) return 0;
