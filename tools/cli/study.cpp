@@ -219,10 +219,13 @@ convert::Error ScenesCommand::run() const {
 
 convert::Error BehaviourCommand::run() const {
   if (convert::Error error = make_directory(directory)) return error;
+  study::BehaviourPlan plan = quick ? study::BehaviourPlan::quick() : study::BehaviourPlan::full();
+  for (study::PushSweep& sweep : plan.sweeps) {
+    if (directions > 0) sweep.directions = directions;
+    if (seeds > 0) sweep.seeds = seeds;
+  }
   study::BehaviourResult result;
-  if (convert::Error error =
-          study::run_behaviour(study::BehaviourPlan::of(quick), progress_line("pushes"), result))
-    return error;
+  if (convert::Error error = study::run_behaviour(plan, progress_line("pushes"), result)) return error;
   const std::string summary = study::behaviour_json(result).dump();
   if (convert::Error error = write_atomically(directory + "/behaviour.json", summary + "\n")) return error;
   for (const char* ending : {".svg", ".png"})

@@ -41,6 +41,7 @@ struct ScenesCommand {
 
 struct BehaviourCommand {
   std::string directory = "out/study";
+  int directions = 0, seeds = 0;  ///< 0: as many as the form has
   bool quick = false, json_output = false;
 
   convert::Error run() const;

@@ -34,7 +34,11 @@ void add_options(CLI::App& app, cli::ScenesCommand& command) {
 
 void add_options(CLI::App& app, cli::BehaviourCommand& command) {
   app.add_option("-o,--output", command.directory, "directory for JSON and pictures (out/study)");
-  app.add_flag("--quick", command.quick, "4 directions, chest and 60 Hz only, 3 seeds");
+  app.add_option("--directions", command.directions, "of pushes, instead of 8 (--quick: 4)")
+      ->check(CLI::IsMember({2, 4, 8}));
+  app.add_option("--seeds", command.seeds, "of every push, instead of 10 (--quick: 3)")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--quick", command.quick, "4 directions, chest and 60 Hz only, 3 seeds, fewer impulses");
   app.add_flag("--json", command.json_output);
 }
 

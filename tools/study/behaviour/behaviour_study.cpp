@@ -50,9 +50,9 @@ void judge_map(const PushMap& map, Findings& findings) {
     findings.at_most("slip of a foot that stands (m)", d.slip, kMostSlip);
     findings.at_most("off the clip 5 s after a push without a step (m)", d.off_stay, kBack);
     findings.at_most("off the clip 5 s after a push with steps (m)", d.off_step, kBack);
-    findings.at_most("help without a step (N·m·s)", d.help_stay, 0);
-    findings.at_most("help with one step and back (N·m·s)", d.help_step, 0);
-    findings.at_most("help, peak (N·m)", d.help_peak, kMostHelp);
+    findings.at_most("help without a step (N m s)", d.help_stay, 0);
+    findings.at_most("help with one step and back (N m s)", d.help_step, 0);
+    findings.at_most("help, peak (N m)", d.help_peak, kMostHelp);
   }
   findings.at_most("steps that did not converge (share)", frames > 0 ? double(unconverged) / frames : 1,
                    kMostUnconverged);
@@ -126,7 +126,7 @@ std::string newtons(double value) {
 std::string map_table(const PushMap& map) {
   char line[300];
   std::string text = map.name + ": half of the pushes make it step, or fall (N·s; people in brackets)\n";
-  text += "    direction        steps from     falls from     slip    help N·m·s  peak N·m\n";
+  text += "    direction        steps from     falls from     slip    help N m s  peak N m\n";
   for (const PushDirection& d : map.directions) {
     std::snprintf(line, sizeof line, "    %-15s %4s (%3s)     %4s (%3s)   %6.0f mm %9.1f %9.0f\n",
                   d.name.c_str(), newtons(d.stay_step_50).c_str(), newtons(d.human.stay_step).c_str(),
@@ -154,13 +154,15 @@ std::string scene_table(const BehaviourScene& scene) {
 
 }  // namespace
 
-BehaviourPlan BehaviourPlan::of(bool quick) {
+BehaviourPlan BehaviourPlan::quick() {
   BehaviourPlan plan;
-  if (quick) {
-    plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
-    plan.phases = 2;
-    return plan;
-  }
+  plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
+  plan.phases = 2;
+  return plan;
+}
+
+BehaviourPlan BehaviourPlan::full() {
+  BehaviourPlan plan;
   const std::vector<double> ladder{5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 70, 80, 90, 100, 110, 120};
   for (const auto& [where, hz] :
        {std::pair{Role::kChest, 60.0}, {Role::kPelvis, 60}, {Role::kChest, 30}, {Role::kChest, 120}})

@@ -15,9 +15,10 @@ struct BehaviourPlan {
   double undisturbed = 60;  ///< s
   int phases = 4;           ///< of a walk, in which it is pushed
 
-  /// 8 directions, chest and pelvis, 10 seeds, chest also at 30 and 120 Hz; quick: 4 directions, chest, 3
-  /// seeds, 60 Hz.
-  static BehaviourPlan of(bool quick);
+  /// 8 directions, chest and pelvis, 10 seeds, chest also at 30 and 120 Hz.
+  static BehaviourPlan full();
+  /// 4 directions, chest, 3 seeds, 60 Hz, half of the impulses.
+  static BehaviourPlan quick();
 };
 
 struct BehaviourScene {

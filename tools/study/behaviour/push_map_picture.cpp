@@ -86,8 +86,7 @@ void draw_table(Canvas& canvas, const PushMap& map, double left, double top) {
 convert::Error draw_push_maps(const std::vector<PushMap>& maps, const std::string& file) {
   const double width = std::max(kPanel * double(maps.size()), 620.0) + 20;
   Canvas canvas(file, width, kTop + 2 * kRadius + 60 + kTable);
-  canvas.text("How hard a push of 0.1 s must be (N·s) until half of them make a standing body step, and fall",
-              20, 28, 16, 0, true);
+  canvas.text("Pushes of which half make a standing body step, or fall (N·s, 0.1 s)", 20, 28, 16, 0, true);
   canvas.text(
       "lines: measured; dashed: people (pendulum with human reactions); ring: more than the hardest push; "
       "up: ahead",
