@@ -67,8 +67,9 @@ std::vector<Vector3d> lowest_points(const audit::Solid& solid) {
   for (const double x : {-1.0, 1.0})
     for (const double y : {-1.0, 1.0})
       for (const double z : {-1.0, 1.0})
-        points.push_back(solid.pose * Vector3d(x * solid.half.x(), y * solid.half.y(), z * solid.half.z()) -
-                         solid.radius * Vector3d::UnitZ());
+        points.emplace_back(solid.pose *
+                                Vector3d(x * solid.half.x(), y * solid.half.y(), z * solid.half.z()) -
+                            solid.radius * Vector3d::UnitZ());
   return points;
 }
 

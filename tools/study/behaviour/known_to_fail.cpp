@@ -9,10 +9,10 @@ const char* behaviour_known_to_fail(const std::string& scene) {
     const char *name, *why;
   };
   static constexpr const char* kStand =
-      "it presses with soles that do not wait for a reaction, so it steps later than people, and sideways it "
-      "falls from less; in single support the foot slides; the trunk is kept up by help that a human's "
-      "ground "
-      "does not give, standing still too; some are not back 5 s after their steps";
+      "until it reacts it is as stiff as a statue, whose soles press at once, so it steps later than people; "
+      "sideways it falls from less; while one foot stands it slides; help keeps the trunk up, of who does "
+      "not "
+      "step too; some are not back 5 s later";
   static constexpr Known kKnown[] = {
       {"push_stand_chest_60_Hz", kStand},
       {"push_stand_pelvis_60_Hz", kStand},
@@ -20,8 +20,7 @@ const char* behaviour_known_to_fail(const std::string& scene) {
       {"push_stand_chest_120_Hz", kStand},
       {"push_while_walking", "the plan is for who stands: who walks goes on as the clip does"},
       {"rates",
-       "from where it falls differs by a fifth, backward by half: near the limit what a step catches is a "
-       "matter of millimetres"},
+       "what a step catches depends on the rate: where it falls differs by a fifth, backward by half"},
   };
   for (const Known& known : kKnown)
     if (scene == known.name) return known.why;
