@@ -10,6 +10,7 @@
 #include "cli/terminal.h"
 #include "study/accuracy.h"
 #include "study/accuracy_dial.h"
+#include "study/behaviour/behaviour_study.h"
 #include "study/effects.h"
 #include "study/ensembles.h"
 #include "study/maps.h"
@@ -213,6 +214,27 @@ convert::Error ScenesCommand::run() const {
   else
     say("%d scenes passed, %d failed; %s\n", summary["passed"].get<int>(), summary["failed"].get<int>(),
         file.c_str());
+  return {};
+}
+
+convert::Error BehaviourCommand::run() const {
+  if (convert::Error error = make_directory(directory)) return error;
+  study::BehaviourPlan plan = quick ? study::BehaviourPlan::quick() : study::BehaviourPlan::full();
+  for (study::PushSweep& sweep : plan.sweeps) {
+    if (directions > 0) sweep.directions = directions;
+    if (seeds > 0) sweep.seeds = seeds;
+  }
+  study::BehaviourResult result;
+  if (convert::Error error = study::run_behaviour(plan, progress_line("pushes"), result)) return error;
+  const std::string summary = study::behaviour_json(result).dump();
+  if (convert::Error error = write_atomically(directory + "/behaviour.json", summary + "\n")) return error;
+  for (const char* ending : {".svg", ".png"})
+    if (convert::Error error = study::draw_push_maps(result.maps, directory + "/push_map" + ending))
+      return error;
+  if (json_output)
+    std::puts(summary.c_str());
+  else
+    std::printf("%s%s/push_map.png\n", study::behaviour_table(result).c_str(), directory.c_str());
   return {};
 }
 

@@ -39,6 +39,14 @@ struct ScenesCommand {
   convert::Error run() const;
 };
 
+struct BehaviourCommand {
+  std::string directory = "out/study";
+  int directions = 0, seeds = 0;  ///< 0: as many as the form has
+  bool quick = false, json_output = false;
+
+  convert::Error run() const;
+};
+
 struct EffectsCommand {
   std::string directory = "out/study";
   bool quick = false, json_output = false;

@@ -39,6 +39,16 @@ void add_options(CLI::App& app, cli::ScenesCommand& command) {
   app.add_flag("--json", command.json_output, "results on standard output as JSON");
 }
 
+void add_options(CLI::App& app, cli::BehaviourCommand& command) {
+  app.add_option("-o,--output", command.directory, "directory for JSON and pictures (out/study)");
+  app.add_option("--directions", command.directions, "of pushes, instead of 8 (--quick: 4)")
+      ->check(CLI::IsMember({2, 4, 8}));
+  app.add_option("--seeds", command.seeds, "of every push, instead of 10 (--quick: 3)")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--quick", command.quick, "4 directions, chest and 60 Hz only, 3 seeds, fewer impulses");
+  app.add_flag("--json", command.json_output);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -91,6 +101,10 @@ int main(int argc, char** argv) try {
   auto* talk = study->add_subcommand(
       "talk", "the seed talk's scenes, judged from poses\nExample: sinew study talk --scene torque_limit");
   add_options(*talk, talk_scenes);
+  cli::BehaviourCommand behaviour;
+  auto* balance = study->add_subcommand(
+      "behaviour", "pushes beside what people bear\nExample: sinew study behaviour --quick -o out/study");
+  add_options(*balance, behaviour);
   cli::EffectsCommand effects;
   auto* each = study->add_subcommand(
       "effects",
@@ -125,6 +139,8 @@ int main(int argc, char** argv) try {
     error = scenes.run();
   else if (talk->parsed())
     error = talk_scenes.run();
+  else if (balance->parsed())
+    error = behaviour.run();
   else
     error = effects.run();
   if (!error) return 0;

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "scene/humanoid.h"
 #include "study/bodies.h"
+#include "study/on_all_processors.h"
 
 namespace sinew::study {
 namespace {
@@ -76,19 +75,6 @@ EnergyCurve curve_of(const std::vector<std::vector<double>>& runs) {
     curve.deviation.push_back(std::sqrt(squares / std::max(1.0, count - 1)));
   }
   return curve;
-}
-
-/// work(n) for n from 0 up to `count`, on all processors.
-template <class Work>
-void on_all_processors(int count, const Work& work) {
-  std::atomic<int> next{0};
-  const auto take = [&] {
-    for (int n; (n = next++) < count;) work(n);
-  };
-  std::vector<std::thread> others(std::max(1u, std::thread::hardware_concurrency()) - 1);
-  for (std::thread& thread : others) thread = std::thread(take);
-  take();
-  for (std::thread& thread : others) thread.join();
 }
 
 /// "bdf2 float": the last word where it is a scalar.
