@@ -137,7 +137,7 @@ TEST(ClipData, FaultsAreNamedWithTheWayToThem) {
           {R"({"masks": {"m": {"from": "tail"}}})", "mask 'm': there is no joint 'tail'"},
           {R"({"masks": {"m": {"weight": 1}}})", "masks.m reaches no joint"},
           {R"({"masks": {"m": {"joints": {"leg": 2}}}})", "masks.m.joints.leg is not within 0 and 1"},
-          {R"({"clips": )", "leg.clips.json: parse error"},
+          {R"({"clips": )", "leg.clips.json: not JSON: line 1"},
           {R"({"clips": {"kick": {"events": [{"name": "costarring", "time": 0}, {"name": "liquid", "time": 0}]}}})",
            "names of one number"}})
     EXPECT_THAT(Converted(leg(), c.data).error, HasSubstr(c.error)) << c.data;

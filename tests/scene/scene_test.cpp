@@ -323,6 +323,7 @@ TEST(SceneFile, EveryKnownKeyIsDocumentedAndEveryDocumentedKeyIsKnown) {
   EXPECT_EQ(known(R"({"x": 0})"), documented(""));
   EXPECT_EQ(known(R"({"accuracy": {"x": 0}})"), documented("accuracy"));
   EXPECT_EQ(known(R"({"baking": {"x": 0}})"), documented("baking"));
+  EXPECT_EQ(known("{" + hero + R"(, "behaviour": {"x": 0}}]})"), documented("characters[].behaviour"));
   EXPECT_EQ(known(R"({"characters": [{"x": 0}]})"), documented("characters"));
   auto clips = documented("characters[].clips");
   for (const char* name : {"get_up", "get_up_supine", "get_up_prone"})

@@ -40,13 +40,17 @@ void add_options(CLI::App& app, cli::ScenesCommand& command) {
 }
 
 void add_options(CLI::App& app, cli::BehaviourCommand& command) {
-  app.add_option("-o,--output", command.directory, "directory for JSON and pictures (out/study)");
-  app.add_option("--directions", command.directions, "of pushes, instead of 8 (--quick: 4)")
-      ->check(CLI::IsMember({2, 4, 8}));
-  app.add_option("--seeds", command.seeds, "of every push, instead of 10 (--quick: 3)")
-      ->check(CLI::Range(1, 1000));
+  app.add_option("-o,--output", command.directory, "directory for JSON and pictures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--directions", command.directions, "of pushes")
+      ->check(CLI::IsMember({2, 4, 8}))
+      ->default_str("8, with --quick 4");
+  app.add_option("--seeds", command.seeds, "of every push")
+      ->check(CLI::Range(1, 1000))
+      ->default_str("10, with --quick 3");
   app.add_flag("--quick", command.quick, "4 directions, chest and 60 Hz only, 3 seeds, fewer impulses");
-  app.add_flag("--json", command.json_output);
+  app.add_flag("--json", command.json_output, "results on standard output as JSON");
 }
 
 }  // namespace
