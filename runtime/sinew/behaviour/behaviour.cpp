@@ -50,7 +50,7 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   weight_ = body_.total_mass / kMass;
   forward_ = skeleton.joints[0].rest.rotation.conjugate() * Vec3<double>::UnitX();
   for (double* length : {&law_.margin, &law_.longest_step, &law_.apart, &law_.lift}) *length *= unit_;
-  for (double* time : {&law_.step_time}) *time *= std::sqrt(unit_);
+  law_.step_time *= std::sqrt(unit_);
   law_.gain /= std::sqrt(unit_);
   const std::size_t joints = skeleton.joints.size();
   last_.resize(joints);
@@ -84,13 +84,14 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   if (!character.valid()) return Status::error(Code::kInvalidArgument, "a behaviour needs a character");
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   if (!acts && character.unknown()[0] == 0) {
-    measured_ = false;
+    measured_ = asked_ = false;
     return {};
   }
   report_.time += double(h);
   switch (report_.state) {
     case BehaviourState::kFall:
     case BehaviourState::kDown:
+      if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
       let_go(character, double(h));
       std::copy(last_.begin(), last_.end(), jets.begin());
       return {};
@@ -106,6 +107,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
     write_stance(jets, double(h));
   fade(jets, h);
   std::copy(jets.begin(), jets.end(), last_.begin());
+  asked_ = true;
   return {};
 }
 
@@ -248,7 +250,7 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   report_.state = BehaviourState::kBalance;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
-  frequency_ = std::sqrt(9.81 / std::max(is.mass.place.z(), 0.3 * unit_));
+  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z(), 0.3 * unit_));
   const Quat<double> wanted = jets[0].rotation.template cast<double>();
   turn_ = log_of(is.root.rotation * wanted.conjugate());
   turn_rate_ = spin_;

@@ -56,6 +56,10 @@ class Behaviour {
  public:
   /// Set-up: finds legs, soles and masses. Errors name what is missing: roles of thigh, shin, foot and toes.
   Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status);
+  Behaviour(const Behaviour&) = delete;
+  Behaviour& operator=(const Behaviour&) = delete;
+  Behaviour(Behaviour&&) noexcept = default;
+  Behaviour& operator=(Behaviour&&) noexcept = default;
 
   /// Before a step of h seconds, with what the animation wants at its end. Errors if the span has not one jet
   /// per joint. No allocation. O(1) while nothing disturbs, else O(joints).
@@ -123,6 +127,7 @@ class Behaviour {
   double strength_ = 1;            ///< before it fell
   double rest_ = 0;                ///< s
   std::vector<JointJet<T>> last_;  ///< [joint] what was asked last
+  bool asked_ = false;             ///< in the last frame
   bool fades_ = false;             ///< a fade has to begin in this frame
   InertialState<T> fade_;
   std::vector<T> fade_numbers_;
