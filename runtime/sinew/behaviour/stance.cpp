@@ -56,7 +56,7 @@ void set_foot(const StandingBody<T>& body, const FootLeg<T>& leg, const Quat<dou
               std::span<JointJet<T>> jets) {
   const auto joint = static_cast<std::size_t>(leg.foot);
   const MovingTransform<T> above = model_motion<T>(jets, body.parents, body.parents[joint]);
-  const Quat<T> q = foot.cast<T>();
+  const Quat<T>& q = foot.cast<T>();
   const Quat<TimeJet<T>> standing(TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z()));
   set_rotation<T>(above.rotation.conjugate() * standing, jets[joint]);
 }

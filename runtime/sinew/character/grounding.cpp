@@ -54,7 +54,7 @@ template <class T>
 JointJet<T> displaced(const Displacement& by, const JointJet<T>& jet) {
   if (!by.any()) return jet;
   const Quat<double> turn = by.turn();
-  const Quat<T> rotation = turn.cast<T>();
+  const Quat<T>& rotation = turn.cast<T>();
   JointJet<T> out = jet;  // angular velocities are in the child's axes
   out.rotation = rotation * jet.rotation;
   out.velocity = rotation * jet.velocity;
