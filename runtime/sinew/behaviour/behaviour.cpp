@@ -181,7 +181,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (report_.state == BehaviourState::kPassive) {
     if (character.unknown()[0] == 0) return give_up(character);
     if (report_.time < settings_.reaction) return;
-    character.set_help(0, weight_ * unit_ * settings_.help_torque);
+    if (report_.time - h < settings_.reaction)  // the first time
+      character.set_help(0, weight_ * unit_ * settings_.help_torque);
     // Who walks goes on as the clip does, upright: its next step is the one that catches.
     if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return;
     begin_plan(is, jets);
