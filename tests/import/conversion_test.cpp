@@ -198,6 +198,34 @@ TEST_F(SharedAsset, WhatIsOddInAUrdfIsSaid) {
   EXPECT_TRUE(validate(humanoid.asset.skeleton).ok());
 }
 
+/// A foot with toes ahead of it along the source's x: Y up, so it faces Sinew's y as it stands.
+std::string sideways_foot() {
+  nlohmann::json gltf = import::test::skinned({0.5f, 0.5f, 0, 0}, {0});
+  gltf["nodes"][0]["name"] = "foot_l";
+  gltf["nodes"][1]["name"] = "toes_l";
+  gltf["nodes"][1]["translation"] = {0.5, 0, 0};
+  return gltf.dump();
+}
+
+TEST(Facing, IsFoundByTheToesOrGivenAndEndsAlongX) {
+  const Scratch scratch;
+  const std::string file = scratch.write("a.gltf", sideways_foot()).string();
+  const auto toes = [](const Converted& made) {  // seen from the foot, along the model's axes
+    const std::vector<Joint>& joints = made.asset.skeleton.joints;
+    return Vec3<double>(joints[0].rest.rotation * joints[1].rest.translation);
+  };
+  const Converted found = convert({file});
+  ASSERT_EQ(found.error, "");
+  EXPECT_TRUE(toes(found).isApprox(Vec3<double>(0.5, 0, 0), 1e-6)) << toes(found).transpose();
+  EXPECT_THAT(found, NotesSay("turned by -90 degrees about the vertical to face x, by its toes"));
+  const Converted as_it_was = convert({file}, {{"facing", "z"}});
+  EXPECT_TRUE(toes(as_it_was).isApprox(Vec3<double>(0, 0.5, 0), 1e-6)) << toes(as_it_was).transpose();
+  const Converted back = convert({file}, {{"facing", "-x"}});
+  EXPECT_TRUE(toes(back).isApprox(Vec3<double>(-0.5, 0, 0), 1e-6)) << toes(back).transpose();
+  EXPECT_THAT(convert({file}, {{"facing", "up"}}).error,
+              testing::HasSubstr("option 'facing' is not an axis"));
+}
+
 TEST(Conversion, FarPropDoesNotChangeTheUnit) {  // trap 34
   nlohmann::json gltf = import::test::kicking_leg();
   gltf["nodes"].push_back({{"name", "camera"}, {"translation", {1000, 0, 0}}});

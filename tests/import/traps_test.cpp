@@ -360,7 +360,9 @@ TEST(Urdf, PrimitiveShapesAndMeshesAreTold) {  // trap 49
   EXPECT_TRUE(link.shapes[0].collision);
   EXPECT_EQ(link.shapes[1].size, Vec3<double>(0.5, 1, 2));
   EXPECT_FALSE(link.shapes[1].collision);
-  EXPECT_EQ(link.mesh_count, 1);
+  ASSERT_EQ(link.meshes.size(), 1u);
+  EXPECT_EQ(link.meshes[0].file, "package://x/y.stl");
+  EXPECT_FALSE(link.meshes[0].collision);
 }
 
 TEST(Format, IsFoundByContentAndNotByExtension) {

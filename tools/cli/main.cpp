@@ -20,6 +20,7 @@
 #include "cli/study_program.h"
 #include "cli/terminal.h"
 #include "convert/convert.h"
+#include "convert/report_text.h"
 #include "import/plain_words.h"
 #include "render/render.h"
 #include "retarget/retarget.h"
@@ -36,8 +37,9 @@ namespace cli = sinew::cli;
 
 /// Inputs that several commands share.
 struct SourceOptions {
-  std::string options_file, clip_data, up;
+  std::string options_file, clip_data, up, facing;
   double unit = 0;
+  std::vector<std::string> packages;
 
   void add(CLI::App& app) {
     app.add_option("--options", options_file, "conversion options, JSON (see sinew convert --reference)")
@@ -51,6 +53,12 @@ struct SourceOptions {
     app.add_option("--up", up, "up axis of the source")
         ->check(CLI::IsMember({"x", "y", "z"}))
         ->default_str("the file's");
+    app.add_option("--facing", facing, "axis of the source that the character faces at rest")
+        ->check(CLI::IsMember({"x", "-x", "y", "-y", "z", "-z"}))
+        ->default_str("found by its joints");
+    app.add_option("--package", packages, "URDF: where a ROS package is, for meshes named package://NAME/…")
+        ->type_name("NAME=DIR")
+        ->default_str("looked for upwards");
   }
   /// The same again, for another process.
   std::vector<std::string> arguments() const {
@@ -58,7 +66,9 @@ struct SourceOptions {
     for (const auto& [name, value] :
          {std::pair("--options", options_file), std::pair("--clip-data", clip_data), std::pair("--up", up)})
       if (!value.empty()) all.insert(all.end(), {name, value});
+    if (!facing.empty()) all.push_back("--facing=" + facing);             // which may begin with a minus
     if (unit != 0) all.insert(all.end(), {"--unit", json(unit).dump()});  // all digits
+    for (const std::string& package : packages) all.insert(all.end(), {"--package", package});
     return all;
   }
   Error read(json& out) const {
@@ -69,6 +79,14 @@ struct SourceOptions {
       if (Error error = cli::read_json(clip_data, out["clip_data"])) return error;
     if (unit != 0) out["unit"] = unit;  // NaN too: refused by name
     if (!up.empty()) out["up"] = up;
+    if (!facing.empty()) out["facing"] = facing;
+    for (const std::string& package : packages) {
+      const std::size_t equals = package.find('=');
+      if (equals == std::string::npos || equals == 0 ||
+          !std::filesystem::is_directory(package.substr(equals + 1)))
+        return {"--package " + package + ": not NAME=DIRECTORY of a directory that is there"};
+      out["packages"][package.substr(0, equals)] = package.substr(equals + 1);
+    }
     return {};
   }
 };
@@ -78,7 +96,7 @@ struct ConvertCommand {
   std::string output, report_file;
   SourceOptions source;
   bool json_output = false, reference = false, each = false, dry_run = false, again = false, watch = false,
-       retarget = false;
+       retarget = false, verbose = false;
   int jobs = 1;
 
   Error run() const {
@@ -99,6 +117,7 @@ struct ConvertCommand {
             sinew::convert::convert_files(inputs, options, asset, report, sinew::retarget::add_retargeted))
       return error;
     const std::vector<std::uint8_t> bytes = sinew::write_asset(asset);
+    const auto detail = verbose ? sinew::convert::Detail::kWhole : sinew::convert::Detail::kFolded;
     if (Error error = cli::write_atomically(output, bytes.data(), bytes.size())) return error;
     if (!report_file.empty())
       if (Error error = cli::write_atomically(report_file, cli::json_text(report, 2) + "\n")) return error;
@@ -107,7 +126,7 @@ struct ConvertCommand {
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
-      cli::say("%s%s: %zu bytes\n", sinew::convert::report_text(report).c_str(), output.c_str(),
+      cli::say("%s%s: %zu bytes\n", sinew::convert::report_text(report, detail).c_str(), output.c_str(),
                bytes.size());
     return {};
   }
@@ -161,7 +180,8 @@ struct InfoCommand {
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
-      cli::say("%s%scolliders %zu, meshes %zu\n%s", sinew::convert::report_text(listed(report)).c_str(),
+      cli::say("%s%scolliders %zu, meshes %zu\n%s",
+               sinew::convert::report_text(listed(report), sinew::convert::Detail::kWhole).c_str(),
                events_text(asset).c_str(), asset.skeleton.colliders.size(), asset.meshes.size(),
                memory_text(memory).c_str());
     return {};
@@ -511,6 +531,7 @@ int main(int argc, char** argv) try {
       ->type_name("FILE");
   c->add_flag("--retarget", convert.retarget, "clips for another skeleton are fitted to this one");
   c->add_flag("--json", convert.json_output, "report on standard output as JSON");
+  c->add_flag("--verbose", convert.verbose, "the whole report: every clip and every note (else ten lines)");
   c->add_flag("--reference", convert.reference, "print all conversion options with defaults and comments");
   convert.source.add(*c);
 

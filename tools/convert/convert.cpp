@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,6 +15,7 @@
 #include "convert/options.h"
 #include "convert/rig.h"
 #include "convert/urdf_body.h"
+#include "import/link_meshes.h"
 #include "import/plain_words.h"
 
 namespace sinew::convert {
@@ -201,8 +201,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
   ClipData data;
   if (scenes[0].format == "urdf") {
     if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
-    if (Error error = build_urdf(scenes[0], options, asset.skeleton, report))
-      return in_file(inputs[0], error.message);
+    if (Error error = build_urdf(scenes[0], options, asset, report)) return in_file(inputs[0], error.message);
     if (Error error = override_masses(options, false, asset.skeleton))
       return in_file(inputs[0], error.message);
     if (Error error = gather(inputs, scenes, options, {}, data, report)) return error;
@@ -265,6 +264,7 @@ Error convert_files(const std::vector<std::string>& inputs, const nlohmann::json
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     std::string error;
     if (!import::read_source(inputs[i], {}, scenes[i], error)) return in_file(inputs[i], error);
+    if (scenes[i].format == "urdf") import::read_link_meshes(inputs[i], options.packages, {}, scenes[i]);
   }
   report = nlohmann::json::object();
   try {
@@ -290,58 +290,6 @@ Error open_any(const std::string& path, const nlohmann::json& options, Asset& ou
 
 std::string clip_data_beside(const std::string& input) {
   return std::filesystem::path(input).replace_extension(".clips.json").string();
-}
-
-std::string report_text(const nlohmann::json& r) {
-  std::string text;
-  char line[256];
-  std::snprintf(line, sizeof line, "%s (%s): %d joints, %d simulated, %d degrees of freedom, %.1f kg\n",
-                r.value("name", "").c_str(), r.value("format", "").c_str(), r.value("joints", 0),
-                r.value("simulated_joints", 0), r.value("dofs", 0), r.value("total_mass_kg", 0.0));
-  text += line;
-  if (r.contains("unit")) {
-    std::snprintf(line, sizeof line, "unit %g m (%s), up %s (%s), height %.2f m\n",
-                  r["unit"].value("meters_per_unit", 0.0), r["unit"].value("from", "").c_str(),
-                  r["up"].value("axis", "").c_str(), r["up"].value("from", "").c_str(),
-                  r.value("height_m", 0.0));
-    text += line;
-  }
-  const auto list = [&](const char* key, const char* title) {
-    if (!r.contains(key) || r[key].empty()) return;
-    text += title;
-    for (const auto& item : r[key]) text.append(" ").append(item.get<std::string>());
-    text += "\n";
-  };
-  list("control_joints", "control joints, no body:");
-  list("ride_along_joints", "ride along:");
-  list("masks", "masks:");
-  list("curves", "curves:");
-  if (r.contains("clips"))
-    for (const auto& c : r["clips"]) {
-      std::snprintf(
-          line, sizeof line, "clip %-24s %6.2f s%s, %s max %.3f mm, rms %.3f mm", c.value("name", "").c_str(),
-          c.value("duration_s", 0.0), c.value("loops", false) ? " loop" : "     ",
-          c.contains("bytes_per_joint_second") || c.contains("sole_lowest_mm") ? "error along the chain"
-                                                                               : "error at each joint",
-          c.value("max_error_mm", 0.0), c.value("rms_error_mm", 0.0));
-      text += line;
-      if (c.contains("bytes_per_joint_second")) {
-        std::snprintf(line, sizeof line, "; per joint and second %.1f bytes, %.1f in memory",
-                      c.value("bytes_per_joint_second", 0.0), c.value("memory_per_joint_second", 0.0));
-        text += line;
-        std::snprintf(line, sizeof line, "; torques within %.1f %% of the limits, rms %.2f %%",
-                      100 * c.value("largest_torque_error", 0.0), 100 * c.value("rms_torque_error", 0.0));
-        text += line;
-      }
-      for (const char* what : {"contacts", "events", "curves", "markers"})
-        if (const int count = c.value(what, 0); count > 0)
-          text += std::string("; ") + std::to_string(count) + " " +
-                  (count == 1 ? std::string(what, std::strlen(what) - 1) : what);
-      text += "\n";
-    }
-  if (r.contains("notes"))
-    for (const auto& n : r["notes"]) text += "note: " + n.get<std::string>() + "\n";
-  return text;
 }
 
 }  // namespace sinew::convert

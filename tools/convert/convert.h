@@ -39,9 +39,6 @@ std::string clip_data_beside(const std::string& input);
 /// ignore_comments).
 std::string reference_options();
 
-/// The report as text for a person.
-std::string report_text(const nlohmann::json& report);
-
 /// Loads a .sinew asset or converts a source file on the fly, by magic bytes. Used by info, evaluate and
 /// render.
 Error open_any(const std::string& path, const nlohmann::json& options, Asset& out, nlohmann::json& report);

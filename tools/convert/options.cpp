@@ -93,6 +93,9 @@ std::string reference_options() {
   "unit": 0,
   // Up axis of the source: "x", "y" or "z". "": what the file says, else the taller of y and z in the first frame.
   "up": "",
+  // Axis of the source that the character faces at rest: "x", "-x", "y", "-y", "z" or "-z". "": found by its toes,
+  // else by its left and right, where names tell them.
+  "facing": "",
   // Whose published strengths and segment masses: "male" or "female".
   "sex": "male",
   // Years; children are weaker per kg and slighter, the old are weaker. 0: an adult between 18 and 50.
@@ -116,6 +119,8 @@ std::string reference_options() {
   "simulate_fingers": false,
   // URDF: true lets the root link move freely; false bolts it to the world.
   "free_base": true,
+  // URDF: where ROS packages are, for meshes named package://NAME/…: { "NAME": "directory" } (sinew convert --package).
+  "packages": {},
   // Clips of files for another skeleton are fitted to this one instead of refused (sinew convert --retarget).
   "retarget": false,
   // true refuses what would otherwise be repaired and reported (broken inertias, massless links).
@@ -150,6 +155,8 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.unit = value.get<double>();
       else if (key == "up")
         o.up = value.get<std::string>();
+      else if (key == "facing")
+        o.facing = value.get<std::string>();
       else if (key == "total_mass")
         o.total_mass = value.get<double>();
       else if (key == "sex") {
@@ -170,6 +177,8 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
         o.simulate_fingers = value.get<bool>();
       else if (key == "free_base")
         o.free_base = value.get<bool>();
+      else if (key == "packages")
+        o.packages = value.get<import::Packages>();
       else if (key == "retarget")
         o.retarget = value.get<bool>();
       else if (key == "strict")
@@ -200,6 +209,10 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
     return {e.what()};
   }
   if (!o.up.empty() && o.up != "x" && o.up != "y" && o.up != "z") return {"option 'up' is not x, y or z"};
+  const bool signed_axis = o.facing.size() == 2 && o.facing[0] == '-';
+  if (!o.facing.empty() &&
+      ((!signed_axis && o.facing.size() != 1) || o.facing.back() < 'x' || o.facing.back() > 'z'))
+    return {"option 'facing' is not an axis: x, -x, y, -y, z or -z"};
   if (o.fit_degree != 3 && o.fit_degree != 5) return {"option 'fit_degree' is neither 3 nor 5"};
   if (o.fit_error_mm <= 0) return {"option 'fit_error_mm' is not positive"};
   out = o;

@@ -10,6 +10,7 @@
 #include "convert/clip_data.h"
 #include "convert/convert.h"
 #include "convert/human.h"
+#include "import/link_meshes.h"
 
 namespace sinew::convert {
 
@@ -26,6 +27,7 @@ struct JointOptions {
 struct Options {
   double unit = 0;                             ///< m per source unit; 0: from the file, else guessed
   std::string up;                              ///< "x", "y", "z"; empty: from the file, else guessed
+  std::string facing;                          ///< axis of the source that it faces: "z", "-x"; empty: found
   double total_mass = 0;                       ///< kg; 0: from the height
   Human human;                                 ///< whose published strengths and masses
   std::map<std::string, double> muscles;       ///< N·m per kg, replaces rows of `muscle_rows`
@@ -34,6 +36,7 @@ struct Options {
   double strength_margin = 1.5;                ///< muscles are at least this much stronger than the clips ask
   bool simulate_fingers = false;
   bool free_base = true;        ///< URDF: the root link may move
+  import::Packages packages;    ///< URDF: where ROS packages are, relative to the working directory
   bool retarget = false;        ///< fit clips of other skeletons to this one instead of refusing them
   bool strict = false;          ///< refuse instead of repairing
   double fit_error_mm = 1;      ///< of a skin point, along the chain

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include <set>
 
 #include "convert/roles.h"
+#include "convert/skin.h"
 
 namespace sinew::convert {
 namespace {
@@ -36,40 +38,14 @@ V interpolate(const std::vector<double>& times, const std::vector<V>& keys, doub
   }
 }
 
-/// Node transforms of a scene, at rest or at a time of a clip; scale and shear included.
-std::vector<Matrix> globals(const SourceScene& scene, const SourceClip* clip, double t) {
-  std::vector<const SourceChannel*> channel(scene.nodes.size(), nullptr);
-  if (clip)
-    for (const SourceChannel& c : clip->channels) channel[c.node] = &c;
-  std::vector<Matrix> world(scene.nodes.size());
-  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    Matrix local = scene.nodes[i].local;
-    if (const SourceChannel* c = channel[i]) {
-      Eigen::Vector3d position = local.block<3, 1>(0, 3);
-      Eigen::Matrix3d a = local.block<3, 3>(0, 0);
-      Eigen::Vector3d scale = a.colwise().norm();
-      if (a.determinant() < 0) scale[0] = -scale[0];
-      for (int k = 0; k < 3; ++k) a.col(k) /= std::abs(scale[k]) > 1e-12 ? scale[k] : 1;
-      Eigen::Quaterniond rotation(a);
-      position = interpolate(c->position_times, c->positions, t, position);
-      rotation = interpolate(c->rotation_times, c->rotations, t, rotation).normalized();
-      scale = interpolate(c->scale_times, c->scales, t, scale);
-      local.setIdentity();
-      local.block<3, 3>(0, 0) = rotation.toRotationMatrix() * scale.asDiagonal();
-      local.block<3, 1>(0, 3) = position;
-    }
-    world[i] = scene.nodes[i].parent < 0 ? local : Matrix(world[scene.nodes[i].parent] * local);
-  }
-  return world;
-}
-
-/// Source axes and unit → Sinew: metres, Z up, X forward for Y-up sources (which face +Z).
-Matrix basis(int up, double unit) {
+/// Source axes and unit → Sinew: metres, Z up, X forward for Y-up sources that face +Z, and those that face
+/// elsewhere `turned` about the vertical, rad.
+Matrix basis(int up, double unit, double turned = 0) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (up == 1) turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   if (up == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   Matrix m = Matrix::Identity();
-  m.block<3, 3>(0, 0) = unit * turn;
+  m.block<3, 3>(0, 0) = unit * Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()).toRotationMatrix() * turn;
   return m;
 }
 
@@ -85,6 +61,57 @@ Transform<double> rigid(const Matrix& m) {
   a.col(1) = (a.col(1) - a.col(0).dot(a.col(1)) * a.col(0)).normalized();
   a.col(2) = a.col(0).cross(a.col(1));
   return {Eigen::Quaterniond(a).normalized(), m.block<3, 1>(0, 3)};
+}
+
+/// Where the model faces by its joints at rest, as far as their names tell: from ankles to toes, else where
+/// right and left are; level, zero where neither is known. `to_model`: as basis() has it. `how` says which.
+Eigen::Vector3d facing_of(const SourceScene& scene, const std::vector<int>& nodes,
+                          const std::vector<Matrix>& world, const Matrix& to_model, const char*& how) {
+  constexpr std::array<std::pair<Role, Role>, 5> kSides{{{Role::kThighL, Role::kThighR},
+                                                         {Role::kShinL, Role::kShinR},
+                                                         {Role::kFootL, Role::kFootR},
+                                                         {Role::kUpperArmL, Role::kUpperArmR},
+                                                         {Role::kHandL, Role::kHandR}}};
+  std::map<Role, Eigen::Vector3d> place;
+  for (const int n : nodes)
+    if (const Role role = role_of_name(scene.nodes[n].name); role != Role::kNone)
+      place.emplace(role, (to_model * world[n]).block<3, 1>(0, 3));
+  const auto between = [&](Role from, Role to) {
+    const bool known = place.count(from) && place.count(to);
+    Eigen::Vector3d way = known ? Eigen::Vector3d(place.at(to) - place.at(from)) : Eigen::Vector3d::Zero();
+    way.z() = 0;
+    return way;
+  };
+  const Eigen::Vector3d toes = between(Role::kFootL, Role::kToesL) + between(Role::kFootR, Role::kToesR);
+  how = "its toes";
+  if (toes.norm() > 0) return toes.normalized();
+  Eigen::Vector3d left = Eigen::Vector3d::Zero();
+  for (const auto& [l, r] : kSides) left += between(r, l);
+  how = "its left and right";
+  return left.norm() > 0 ? Eigen::Vector3d(left.cross(Eigen::Vector3d::UnitZ()).normalized()) : left;
+}
+
+/// Turn about the vertical, rad, that makes a model face x: by the option, else whole quarters by what its
+/// skin's joints tell, since what is less is how it was posed.
+double turn_to_x(const SourceScene& scene, const std::vector<int>& nodes, const std::vector<Matrix>& world,
+                 const Matrix& to_model, const Options& options, nlohmann::json& report) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const char* how = "option";
+  Eigen::Vector3d facing = Eigen::Vector3d::Zero();
+  if (!options.facing.empty()) {
+    const int axis = options.facing.back() - 'x';
+    facing = to_model.block<3, 1>(0, axis) * (options.facing.front() == '-' ? -1 : 1);
+  } else if (!scene.meshes.empty()) {
+    facing = facing_of(scene, nodes, world, to_model, how);
+  }
+  facing.z() = 0;
+  if (!(facing.norm() > 0)) return 0;
+  const double turn = -kQuarter * std::round(std::atan2(facing.y(), facing.x()) / kQuarter);
+  report["facing"] = {{"turned_degrees", turn * 180 / std::numbers::pi}, {"from", how}};
+  if (turn != 0)
+    report["notes"].push_back("turned by " + std::to_string(std::lround(turn * 180 / std::numbers::pi)) +
+                              " degrees about the vertical to face x, by " + how + " (--facing)");
+  return turn;
 }
 
 std::string plain_name(const std::string& name) {
@@ -157,7 +184,7 @@ double choose_scale(double stated, double height, double widest, const char*& ho
 void choose_unit(const SourceScene& scene, const std::vector<int>& joints, const Options& options,
                  bool skinned, Rig& rig, nlohmann::json& report) {
   const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
-  const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
+  const std::vector<Matrix> world = node_transforms(scene, skinned ? nullptr : first, 0);
   std::vector<int> nodes = joints;
   if (scene.format == "bvh") {  // whose end sites are the top of the head and the tips of the toes
     nodes.resize(scene.nodes.size());
@@ -179,86 +206,6 @@ void choose_unit(const SourceScene& scene, const std::vector<int>& joints, const
   rig.height = raw * rig.unit;
   report["unit"] = {{"meters_per_unit", rig.unit}, {"from", how}};
   report["height_m"] = rig.height;
-}
-
-void bake_mesh(const import::SourceMesh& in, const SourceScene& scene, const std::vector<Matrix>& world,
-               const Matrix& to_model, const std::map<int, int>& joint_of_node, nlohmann::json& report,
-               Rig& rig) {
-  // What carries vertices without weights: the nearest joint above the mesh's node.
-  int carrier = in.node;
-  while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
-  if (carrier < 0 && in.bones.empty()) {
-    report["notes"].push_back("mesh '" + in.name + "' hangs on no joint; left out");
-    return;
-  }
-  const int carrier_joint = carrier >= 0 ? joint_of_node.at(carrier) : 0;
-  Mesh mesh;
-  mesh.name = in.name;
-  mesh.material = in.material;
-  mesh.indices = in.indices;
-  for (const auto& uv : in.uvs) mesh.uvs.insert(mesh.uvs.end(), {uv[0], uv[1]});
-  const std::size_t vertices = in.positions.size();
-  std::vector<std::vector<std::pair<float, int>>> influences(vertices);  // weight, index into in.bones
-  for (std::size_t b = 0; b < in.bones.size(); ++b)
-    for (const auto& [v, w] : in.bones[b].weights)
-      if (w > 0 && joint_of_node.count(in.bones[b].node)) influences[v].push_back({w, static_cast<int>(b)});
-  int repaired = 0, unweighted = 0, reduced = 0;
-  const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
-  for (std::size_t v = 0; v < vertices; ++v) {
-    auto& list = influences[v];
-    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
-      return a.first > b.first || (a.first == b.first && a.second < b.second);
-    });
-    if (list.size() > 4) {
-      list.resize(4);
-      ++reduced;
-    }
-    float sum = 0;
-    for (const auto& [w, b] : list) sum += w;
-    if (list.empty() && !in.bones.empty()) ++unweighted;
-    if (!list.empty() && std::abs(sum - 1) > 0.01f) ++repaired;
-    Matrix blend = Matrix::Zero();
-    for (auto& [w, b] : list) {
-      w /= sum;
-      blend += double(w) * world[in.bones[b].node] * in.bones[b].inverse_bind;
-    }
-    if (list.empty()) blend = mesh_world;
-    blend = to_model * blend;
-    const Eigen::Vector3d p(in.positions[v][0], in.positions[v][1], in.positions[v][2]);
-    const Eigen::Vector3d at = blend.block<3, 3>(0, 0) * p + blend.block<3, 1>(0, 3);
-    Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
-    if (!in.normals.empty()) {
-      const Eigen::Vector3d source(in.normals[v][0], in.normals[v][1], in.normals[v][2]);
-      const Eigen::Matrix3d a = blend.block<3, 3>(0, 0);
-      // Normals turn with the cofactor matrix, which also exists where the matrix cannot be inverted.
-      Eigen::Matrix3d cofactor;
-      cofactor << a.col(1).cross(a.col(2)), a.col(2).cross(a.col(0)), a.col(0).cross(a.col(1));
-      n = cofactor * source;
-      n = n.norm() > 1e-12 ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-    }
-    for (int k = 0; k < 3; ++k) mesh.positions.push_back(static_cast<float>(at[k]));
-    for (int k = 0; k < 3; ++k)
-      mesh.normals.push_back(n.allFinite() ? static_cast<float>(n[k]) : float(k == 2));
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool used = k < list.size();
-      const int joint = used ? joint_of_node.at(in.bones[list[k].second].node) : carrier_joint;
-      const float w = used ? list[k].first : (k == 0 && list.empty() ? 1.f : 0.f);
-      mesh.joints.push_back(static_cast<std::uint16_t>(joint));
-      mesh.weights.push_back(w);
-      rig.joints[joint].skin_weight += double(w);
-    }
-  }
-  const auto note = [&](int count, const char* what) {
-    if (count > 0)
-      report["notes"].push_back("mesh '" + in.name + "': " + std::to_string(count) + " vertices " + what);
-  };
-  note(repaired, "had weights that do not sum to 1; renormalised");
-  note(unweighted, "had no weights; they follow the mesh's node");
-  note(reduced, "had more than four influences; the four largest stay");
-  if (mesh_world.block<3, 3>(0, 0).determinant() < 0 && in.bones.empty())
-    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
-      std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
-  rig.meshes.push_back(std::move(mesh));
 }
 
 /// Joints other than the root whose distance to their parent changes by more than 1 mm over the motion, and
@@ -322,7 +269,7 @@ std::string fault_in_size(const Rig& rig) {
 /// kForeign: joints of the same names then mean other frames, and its clips would twist the character.
 std::string foreign_skeleton(const Rig& rig, const SourceScene& from, const std::vector<int>& nodes,
                              const Matrix& to_model) {
-  const std::vector<Matrix> world = globals(from, nullptr, 0);
+  const std::vector<Matrix> world = node_transforms(from, nullptr, 0);
   double furthest = kForeign;
   std::string fault;
   for (std::size_t j = 0; j < rig.joints.size(); ++j) {
@@ -365,7 +312,7 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
   if (scaled)
     report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
   for (int f = 0; f < frames; ++f) {
-    const std::vector<Matrix> world = globals(scene, &clip, f / motion.sample_rate);
+    const std::vector<Matrix> world = node_transforms(scene, &clip, f / motion.sample_rate);
     std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
     for (std::size_t j = 0; j < rig.joints.size(); ++j) {
       const int parent = rig.joints[j].parent;
@@ -396,6 +343,32 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
 
 }  // namespace
 
+std::vector<Matrix> node_transforms(const SourceScene& scene, const SourceClip* clip, double t) {
+  std::vector<const SourceChannel*> channel(scene.nodes.size(), nullptr);
+  if (clip)
+    for (const SourceChannel& c : clip->channels) channel[c.node] = &c;
+  std::vector<Matrix> world(scene.nodes.size());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    Matrix local = scene.nodes[i].local;
+    if (const SourceChannel* c = channel[i]) {
+      Eigen::Vector3d position = local.block<3, 1>(0, 3);
+      Eigen::Matrix3d a = local.block<3, 3>(0, 0);
+      Eigen::Vector3d scale = a.colwise().norm();
+      if (a.determinant() < 0) scale[0] = -scale[0];
+      for (int k = 0; k < 3; ++k) a.col(k) /= std::abs(scale[k]) > 1e-12 ? scale[k] : 1;
+      Eigen::Quaterniond rotation(a);
+      position = interpolate(c->position_times, c->positions, t, position);
+      rotation = interpolate(c->rotation_times, c->rotations, t, rotation).normalized();
+      scale = interpolate(c->scale_times, c->scales, t, scale);
+      local.setIdentity();
+      local.block<3, 3>(0, 0) = rotation.toRotationMatrix() * scale.asDiagonal();
+      local.block<3, 1>(0, 3) = position;
+    }
+    world[i] = scene.nodes[i].parent < 0 ? local : Matrix(world[scene.nodes[i].parent] * local);
+  }
+  return world;
+}
+
 Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, Rig& out,
                 nlohmann::json& report) {
   report["notes"] = nlohmann::json::array();
@@ -410,9 +383,10 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   Rig rig;
   const bool skinned = !scene.meshes.empty();
   choose_unit(scene, nodes, options, skinned, rig, report);
-  const Matrix to_model = basis(rig.up, rig.unit);
   const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
-  const std::vector<Matrix> world = globals(scene, skinned ? nullptr : first, 0);
+  const std::vector<Matrix> world = node_transforms(scene, skinned ? nullptr : first, 0);
+  rig.turned = turn_to_x(scene, nodes, world, basis(rig.up, rig.unit), options, report);
+  const Matrix to_model = basis(rig.up, rig.unit, rig.turned);
   std::map<int, int> joint_of_node;
   for (const int n : nodes) {
     Rig::Joint joint;
@@ -424,15 +398,14 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     joint_of_node[n] = static_cast<int>(rig.joints.size());
     rig.joints.push_back(joint);
   }
-  for (const import::SourceMaterial& m : scene.materials) {
-    Material material;
-    material.name = m.name;
-    std::copy(m.base_color.begin(), m.base_color.end(), material.base_color);
-    material.texture = m.texture;
-    rig.materials.push_back(std::move(material));
+  rig.materials = materials_of(scene);
+  for (const import::SourceMesh& source : scene.meshes) {
+    Mesh mesh;
+    if (!bake_mesh(source, scene, world, to_model, joint_of_node, report, mesh)) continue;
+    for (std::size_t k = 0; k < mesh.joints.size(); ++k)
+      rig.joints[mesh.joints[k]].skin_weight += double(mesh.weights[k]);
+    rig.meshes.push_back(std::move(mesh));
   }
-  for (const import::SourceMesh& mesh : scene.meshes)
-    bake_mesh(mesh, scene, world, to_model, joint_of_node, report, rig);
   // From the sole to the crown, where there is a skin.
   float low = 1e9f, high = -1e9f;
   for (const Mesh& mesh : rig.meshes)
@@ -459,7 +432,7 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
                 (from.format == "urdf" ? "a URDF takes no part in other characters"
                                        : "it has no joints: no skin, and no clip that moves a node")};
       choose_unit(from, other_nodes, options, !from.meshes.empty(), other, ignored);
-      to = basis(other.up, other.unit);
+      to = basis(other.up, other.unit, rig.turned);
       std::map<std::string, int> by_name;
       for (const int n : other_nodes) by_name.emplace(plain_name(from.nodes[n].original_name), n);
       int matched = 0;

@@ -41,8 +41,13 @@ struct Rig {
   std::vector<Motion> motions;
   double unit = 1;
   int up = 1;
+  double turned = 0;  ///< rad about the vertical, so that it faces x
   double height = 0;  ///< m, at rest or in the first frame
 };
+
+/// [node] transforms to the scene, at rest or (with a clip) t seconds into it; scale and shear included.
+std::vector<Eigen::Matrix4d> node_transforms(const import::SourceScene& scene, const import::SourceClip* clip,
+                                             double t);
 
 /// Builds the rig from the scene that carries the character; more scenes add clips (joints matched by name,
 /// prefixes up to ':' or '|' ignored). `report` gains "unit", "up", "height" and "notes".

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sinew/skeleton/principal_axes.h"
 #include "sinew/skeleton/rotation.h"
@@ -83,6 +84,29 @@ Collider fit_sole(const std::vector<Vec3<double>>& vertices, const Vec3<double>&
   c.local.rotation = rest.conjugate() * box;
   c.local.translation = c.local.rotation * ((low + high) / 2);
   return c;
+}
+
+Collider fit_part(const std::vector<Vec3<double>>& vertices, const Vec3<double>& bone) {
+  constexpr double kThinnest = 0.002;  // m, of a plate
+  Vec3<double> low = vertices.front(), high = low;
+  for (const Vec3<double>& v : vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  Collider box;
+  box.shape = Shape::kBox;
+  box.size = ((high - low) / 2).cwiseMax(kThinnest);
+  box.local.translation = (low + high) / 2;
+
+  Collider capsule = fit_capsule(vertices, bone, (high - low).norm());
+  const double half = capsule.size.z();
+  double radius = 0;
+  for (const Vec3<double>& v : vertices) {
+    const Vec3<double> at = capsule.local.inverse() * v;
+    radius = std::max(radius, (at - Vec3<double>::UnitZ() * std::clamp(at.z(), -half, half)).norm());
+  }
+  const double in_capsule = std::numbers::pi * radius * radius * (2 * half + 4 * radius / 3);
+  return in_capsule < 8 * box.size.prod() ? capsule : box;
 }
 
 }  // namespace sinew::convert

@@ -16,4 +16,8 @@ Collider fit_capsule(const std::vector<Vec3<double>>& vertices, const Vec3<doubl
 Collider fit_sole(const std::vector<Vec3<double>>& vertices, const Vec3<double>& bone,
                   const Quat<double>& rest, double height);
 
+/// A robot's part: the box along the axes of its frame, or a capsule, whichever holds all vertices in less
+/// space. `bone`: unit vector along the part. Needs at least two vertices.
+Collider fit_part(const std::vector<Vec3<double>>& vertices, const Vec3<double>& bone);
+
 }  // namespace sinew::convert

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "convert/body.h"
+#include "convert/shapes.h"
+#include "convert/urdf_skin.h"
 #include "sinew/skeleton/principal_axes.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -26,14 +28,29 @@ bool repair_inertia(Mat3<double>& inertia) {
   return true;
 }
 
+/// Unit vector to the link that hangs farthest from it; up where none does.
+Vec3<double> along(int index, const std::vector<SourceUrdfLink>& links) {
+  Vec3<double> farthest = Vec3<double>::Zero();
+  for (const SourceUrdfLink& child : links)
+    if (child.parent == index && child.origin.translation.norm() > farthest.norm())
+      farthest = child.origin.translation;
+  return farthest.norm() > 1e-9 ? Vec3<double>(farthest.normalized()) : Vec3<double>(Vec3<double>::UnitZ());
+}
+
+/// What a link collides with: its primitives; else a shape around its mesh; else capsules to the child
+/// joints, which show where the link is.
 void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceUrdfLink>& links,
-                Skeleton& out) {
+                const std::vector<Vec3<double>>& vertices, Skeleton& out) {
   bool collision = false;
   for (const auto& g : link.shapes) collision = collision || g.collision;
   for (const auto& g : link.shapes)
     if (g.collision == collision) out.colliders.push_back({index, g.shape, g.origin, g.size, 0.8});
   if (!link.shapes.empty()) return;
-  // No primitive: capsules to the child joints show where the link is.
+  if (vertices.size() > 1) {
+    out.colliders.push_back(fit_part(vertices, along(index, links)));
+    out.colliders.back().joint = index;
+    return;
+  }
   for (const SourceUrdfLink& child : links) {
     if (child.parent != index || child.origin.translation.norm() < 0.02) continue;
     Collider c;
@@ -49,7 +66,7 @@ void add_shapes(const SourceUrdfLink& link, int index, const std::vector<SourceU
 
 }  // namespace
 
-Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out,
+Error build_urdf(const import::SourceScene& scene, const Options& options, Asset& out,
                  nlohmann::json& report) {
   Skeleton s;
   s.name = scene.name;
@@ -62,6 +79,7 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
     if (scene.links[i].parent >= 0) subtree[scene.links[i].parent] += subtree[i];
   }
   if (subtree[0] <= 0) return {"no link has a mass"};
+  const std::vector<std::vector<Vec3<double>>> vertices = link_vertices(scene);
   const bool bolted = !options.free_base || scene.links[0].name == "world";
   for (int i = 0; i < count; ++i) {
     const SourceUrdfLink& link = scene.links[i];
@@ -113,15 +131,21 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Skele
     }
     if (i > 0 && dof_count(joint.type) > 0 && link.effort <= 0)
       note("joint '" + link.joint_name + "': no effort limit; taken from the mass it moves");
-    add_shapes(link, i, scene.links, s);
+    add_shapes(link, i, scene.links, vertices[static_cast<std::size_t>(i)], s);
     s.joints.push_back(joint);
   }
-  const auto has_only_meshes = [](const SourceUrdfLink& l) { return l.mesh_count > 0 && l.shapes.empty(); };
-  if (const auto n = std::count_if(scene.links.begin(), scene.links.end(), has_only_meshes); n > 0)
-    note(std::to_string(n) + " links have meshes only, which are not read; capsules along the links instead");
+  int bare = 0;
+  for (int i = 0; i < count; ++i) {
+    const SourceUrdfLink& link = scene.links[i];
+    bare += !link.meshes.empty() && link.shapes.empty() && vertices[static_cast<std::size_t>(i)].empty();
+  }
+  if (bare > 0)
+    note(std::to_string(bare) +
+         " links have meshes only, which are not there; capsules along the links instead");
   s.body_count = count;
   report["total_mass_kg"] = s.total_mass();
-  out = std::move(s);
+  out.skeleton = std::move(s);
+  add_urdf_skin(scene, report, out);
   return {};
 }
 

@@ -3,11 +3,13 @@
 
 #include "convert/options.h"
 #include "import/source_scene.h"
+#include "sinew/io/asset.h"
 
 namespace sinew::convert {
 
 /// Joint names are link names, `Joint::source_joint` the URDF joint. Inertials are kept to the last bit.
-Error build_urdf(const import::SourceScene& scene, const Options& options, Skeleton& out,
+/// Links that collide by meshes get a box or capsule around what they look like.
+Error build_urdf(const import::SourceScene& scene, const Options& options, Asset& out,
                  nlohmann::json& report);
 
 }  // namespace sinew::convert

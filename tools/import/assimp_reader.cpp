@@ -25,6 +25,8 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
     const bool wanted = (extension == "gltf" || extension == "glb") ? name.rfind("glTF2", 0) == 0
                         : extension == "fbx"                        ? name.find("FBX") != std::string::npos
                         : extension == "bvh"                        ? name.rfind("BVH", 0) == 0
+                        : extension == "stl"                        ? name.rfind("Stereolithography", 0) == 0
+                        : extension == "obj"                        ? name.rfind("Wavefront", 0) == 0
                                                                     : name.rfind("Collada", 0) == 0;
     if (!wanted) others.push_back(importer.GetImporter(i));
   }
@@ -44,10 +46,8 @@ std::vector<std::uint8_t> read_texture(ClosedWorld& files, const std::string& na
   throw std::runtime_error("assimp: " + message);
 }
 
-}  // namespace
-
-SourceScene read_with_assimp(const std::string& content, const std::string& format, const OpenFile& open_file,
-                             const ReadLimits& limits) {
+SourceScene read(const std::string& content, const std::string& format, const OpenFile& open_file,
+                 const ReadLimits& limits, bool part) {
   GltfDocument gltf;
   SceneBuilder::OriginalNames original_names;
   const bool is_gltf = format == "gltf" || format == "glb";
@@ -65,11 +65,13 @@ SourceScene read_with_assimp(const std::string& content, const std::string& form
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, format != "bvh");
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, part);
   // Validation on its own first: later steps crash on what it refuses. No step that joins vertices or limits
   // weights: those drop bones without weights.
   const aiScene* scene = importer.ReadFile(name, aiProcess_ValidateDataStructure);
+  const unsigned joined = part ? aiProcess_JoinIdenticalVertices : 0u;
   if (scene && scene->mNumMeshes > 0)
-    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals | joined);
   if (!scene) fail(importer.GetErrorString());
   if (!scene->mRootNode) throw std::runtime_error("it has no nodes");
   const auto texture = [files](const std::string& path) { return read_texture(*files, path); };
@@ -79,6 +81,18 @@ SourceScene read_with_assimp(const std::string& content, const std::string& form
   if (out.clips.size() == gltf.animation_extras.size())  // else some moved nothing
     for (std::size_t a = 0; a < out.clips.size(); ++a) out.clips[a].extras = gltf.animation_extras[a];
   return out;
+}
+
+}  // namespace
+
+SourceScene read_with_assimp(const std::string& content, const std::string& format, const OpenFile& open_file,
+                             const ReadLimits& limits) {
+  return read(content, format, open_file, limits, false);
+}
+
+SourceScene read_part(const std::string& content, const std::string& format, const OpenFile& open_file,
+                      const ReadLimits& limits) {
+  return read(content, format, open_file, limits, true);
 }
 
 }  // namespace sinew::import

@@ -66,14 +66,13 @@ bool serve_request(int socket, const std::function<int(const std::string&)>& ope
   return sent;
 }
 
-int open_beside(const std::filesystem::path& source, const std::string& name, std::uint64_t most) {
+int open_below(const std::filesystem::path& allowed, const std::string& name, std::uint64_t most) {
   const std::filesystem::path wanted(name);
   if (name.empty() || name.find('\0') != std::string::npos || wanted.is_absolute()) return -1;
   if (std::any_of(wanted.begin(), wanted.end(), [](const auto& part) { return part == ".."; })) return -1;
 
   std::error_code failed;
-  const auto parent = source.has_parent_path() ? source.parent_path() : std::filesystem::path(".");
-  const auto directory = std::filesystem::canonical(parent, failed);
+  const auto directory = std::filesystem::canonical(allowed, failed);
   if (failed) return -1;
   const auto target = std::filesystem::canonical(directory / wanted, failed);  // links resolved
   if (failed) return -1;
@@ -88,6 +87,10 @@ int open_beside(const std::filesystem::path& source, const std::string& name, st
     return descriptor;
   close(descriptor);
   return -1;
+}
+
+int open_beside(const std::filesystem::path& source, const std::string& name, std::uint64_t most) {
+  return open_below(source.has_parent_path() ? source.parent_path() : ".", name, most);
 }
 
 }  // namespace sinew::import

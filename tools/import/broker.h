@@ -15,9 +15,11 @@ int request_file(int socket, const std::string& name);
 /// the other end is gone or talks nonsense.
 bool serve_request(int socket, const std::function<int(const std::string&)>& open_file);
 
-/// Descriptor of the regular file `name` in the directory of `source` or below, or -1. Refuses absolute
-/// names,
-/// "..", links that lead out of the directory and files of more than `most` bytes.
+/// Descriptor of the regular file `name` in `directory` or below, or -1. Refuses absolute names, "..", links
+/// that lead out of the directory and files of more than `most` bytes.
+int open_below(const std::filesystem::path& directory, const std::string& name, std::uint64_t most);
+
+/// The same in the directory of the file `source`.
 int open_beside(const std::filesystem::path& source, const std::string& name, std::uint64_t most);
 
 }  // namespace sinew::import

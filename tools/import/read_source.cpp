@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMaxMessage = 400;
 
-/// One line that a terminal survives: messages may quote bytes of the file.
+}  // namespace
+
 std::string one_line(std::string message) {
   message = clean_text(message);
   if (message.size() > kMaxMessage) {
@@ -30,9 +31,7 @@ std::string one_line(std::string message) {
   return message;
 }
 
-/// The regular file at `path`, whole. Throws with one clause.
-std::string read_whole(const std::string& path, std::uint64_t most) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a FIFO must not block
+std::string read_whole(int file, std::uint64_t most) {
   if (file < 0) throw std::runtime_error("file cannot be opened");
   const std::unique_ptr<const int, void (*)(const int*)> closed(&file, [](const int* f) { ::close(*f); });
   struct stat info {};
@@ -42,8 +41,6 @@ std::string read_whole(const std::string& path, std::uint64_t most) {
   if (info.st_size == 0) throw std::runtime_error("file is empty");
   return read_descriptor(file, most);
 }
-
-}  // namespace
 
 std::string read_descriptor(int descriptor, std::uint64_t most) {
   struct stat info {};
@@ -63,7 +60,8 @@ std::string read_descriptor(int descriptor, std::uint64_t most) {
 bool read_source(const std::string& path, const ReadLimits& limits, SourceScene& out, std::string& error) {
   std::string content;
   try {
-    content = read_whole(path, limits.max_file_bytes);
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a FIFO must not block
+    content = read_whole(file, limits.max_file_bytes);
   } catch (const std::exception& e) {
     error = e.what();
     return false;

@@ -21,7 +21,17 @@ void check_json_nesting(std::string_view text);
 /// `open_file` gives descriptors of what the source refers to (.bin, textures).
 SourceScene read_with_assimp(const std::string& content, const std::string& format, const OpenFile& open_file,
                              const ReadLimits& limits);
+/// A part of a robot: also "stl" and "obj", which have no joints; equal vertices are joined. In a "dae", the
+/// up axis is ignored, as ROS ignores it.
+SourceScene read_part(const std::string& content, const std::string& format, const OpenFile& open_file,
+                      const ReadLimits& limits);
 SourceScene read_urdf(const std::string& content, const ReadLimits& limits);
+
+/// The regular file at a descriptor, which it closes, whole. Throws with one clause.
+std::string read_whole(int descriptor, std::uint64_t most);
+
+/// One line that a terminal survives: messages may quote bytes of the file.
+std::string one_line(std::string message);
 
 /// Whole content of an open file, from its beginning.
 std::string read_descriptor(int descriptor, std::uint64_t most);

@@ -113,6 +113,9 @@ std::string fault_in_link(const SourceUrdfLink& l) {
   for (const SourceUrdfLink::Geometry& g : l.shapes)
     if (!finite(g.origin) || !g.size.allFinite() || g.size.minCoeff() < 0)
       return link + "has a shape without a proper size";
+  for (const SourceUrdfLink::MeshReference& m : l.meshes)
+    if (!finite(m.origin) || !m.scale.allFinite() || !all_finite<4>({m.color}))
+      return link + "has a mesh with a place, scale or colour that is not finite";
   return {};
 }
 

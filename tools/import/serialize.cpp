@@ -113,13 +113,18 @@ const auto clip_io = [](auto& io, auto& c) {
          io.text(c.extras) && io.list(c.channels, channel_io);
 };
 
+const auto reference_io = [](auto& io, auto& m) {
+  return io.text(m.file) && transform(io, m.origin) && matrix(io, m.scale) && io.pod(m.color) &&
+         io.pod(m.collision);
+};
+
 const auto link_io = [](auto& io, auto& l) {
   return io.text(l.name) && io.text(l.joint_name) && io.pod(l.parent) && io.pod(l.type) &&
          transform(io, l.origin) && matrix(io, l.axis) && io.pod(l.has_inertial) && io.pod(l.mass) &&
          transform(io, l.inertial_origin) && matrix(io, l.inertia) && io.pod(l.has_limits) &&
          io.pod(l.lower) && io.pod(l.upper) && io.pod(l.effort) && io.pod(l.velocity) && io.pod(l.damping) &&
          io.pod(l.friction) && io.text(l.mimic_joint) && io.pod(l.mimic_multiplier) &&
-         io.pod(l.mimic_offset) && io.pod(l.mesh_count) && io.list(l.shapes, [](auto& i, auto& g) {
+         io.pod(l.mimic_offset) && io.list(l.meshes, reference_io) && io.list(l.shapes, [](auto& i, auto& g) {
            return i.pod(g.shape) && transform(i, g.origin) && matrix(i, g.size) && i.pod(g.collision);
          });
 };

@@ -81,16 +81,23 @@ struct SourceUrdfLink {
     Vec3<double> size = Vec3<double>::Zero();  ///< as Collider::size
     bool collision = true;
   };
-  std::vector<Geometry> shapes;  ///< primitives only; meshes are counted in `mesh_count`
-  int mesh_count = 0;
+  std::vector<Geometry> shapes;  ///< primitives only
+  struct MeshReference {
+    std::string file;  ///< as it stands in the URDF
+    Transform<double> origin;
+    Vec3<double> scale = Vec3<double>::Ones();
+    std::array<float, 4> color{0.8f, 0.8f, 0.8f, 1};  ///< linear, of the visual; a mesh's own goes before
+    bool collision = false;
+  };
+  std::vector<MeshReference> meshes;
 };
 
 struct SourceScene {
-  std::string format;          ///< "gltf", "fbx", "bvh", "collada", "urdf"
-  std::string name;            ///< from the file, or its stem
-  double meters_per_unit = 0;  ///< 0: the file does not say
-  int up_axis = -1;            ///< 0 X, 1 Y, 2 Z; -1: the file does not say
-  std::vector<SourceNode> nodes;
+  std::string format;             ///< "gltf", "fbx", "bvh", "collada", "urdf"
+  std::string name;               ///< from the file, or its stem
+  double meters_per_unit = 0;     ///< 0: the file does not say
+  int up_axis = -1;               ///< 0 X, 1 Y, 2 Z; -1: the file does not say
+  std::vector<SourceNode> nodes;  ///< of a URDF: its links, then what carries their meshes (read_link_meshes)
   std::vector<SourceMesh> meshes;
   std::vector<SourceMaterial> materials;
   std::vector<SourceClip> clips;

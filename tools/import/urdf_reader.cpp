@@ -75,11 +75,30 @@ void add_shape(const urdf::GeometrySharedPtr& geometry, const urdf::Pose& origin
                     std::max(0.0, cylinder->length / 2 - cylinder->radius)};
       break;
     }
-    case urdf::Geometry::MESH:
-      ++link.mesh_count;
+    case urdf::Geometry::MESH: {
+      const auto mesh = std::dynamic_pointer_cast<urdf::Mesh>(geometry);
+      link.meshes.push_back(
+          {clean_text(mesh->filename), shape.origin, {mesh->scale.x, mesh->scale.y, mesh->scale.z}});
+      link.meshes.back().collision = collision;
       return;
+    }
   }
   link.shapes.push_back(shape);
+}
+
+/// Colours of robots are those of a screen (sRGB, IEC 61966-2-1).
+std::array<float, 4> linear(const urdf::Color& c) {
+  const auto channel = [](float v) {
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  };
+  return {channel(c.r), channel(c.g), channel(c.b), c.a};
+}
+
+void add_visual(const urdf::Visual& visual, SourceUrdfLink& link) {
+  const std::size_t meshes = link.meshes.size();
+  add_shape(visual.geometry, visual.origin, false, link);
+  if (visual.material && link.meshes.size() > meshes)
+    link.meshes.back().color = linear(visual.material->color);
 }
 
 void read_joint(const urdf::Joint& joint, SourceUrdfLink& link) {
@@ -163,7 +182,7 @@ SourceScene read_urdf(const std::string& content, const ReadLimits& limits) {
     if (open.link->parent_joint) read_joint(*open.link->parent_joint, link);
     if (open.link->inertial) read_inertial(*open.link->inertial, link);
     for (const auto& c : open.link->collision_array) add_shape(c->geometry, c->origin, true, link);
-    for (const auto& v : open.link->visual_array) add_shape(v->geometry, v->origin, false, link);
+    for (const auto& v : open.link->visual_array) add_visual(*v, link);
     const int index = static_cast<int>(scene.links.size());
     scene.links.push_back(link);
     for (auto child = open.link->child_links.rbegin(); child != open.link->child_links.rend(); ++child)
