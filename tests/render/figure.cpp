@@ -68,6 +68,7 @@ scene::Recording swinging(const std::shared_ptr<const Asset>& asset, double seco
     }
     const float load = count > 0 ? float(n) / float(count) : 0;
     c.load.assign(s.joints.size(), load);
+    c.effort = c.load;
     c.torque.assign(s.joints.size(), 100 * load);
     c.limit.assign(s.joints.size(), 100);
     c.unknown_dofs = load < 0.5f ? 0 : 12;

@@ -32,7 +32,7 @@ double difference(const Image& a, const Image& b, double left, double top, doubl
 
 scene::Recording still(const std::shared_ptr<const Asset>& asset, float load = 0) {
   scene::Recording rec = swinging(asset, 0);
-  for (float& value : rec.frames[0].characters[0].load) value = load;
+  for (float& value : rec.frames[0].characters[0].effort) value = load;
   return rec;
 }
 

@@ -440,6 +440,15 @@ TEST(DemoScene, MotionCaptureIsOverloadedByTheBallFallsAndReturnsToItsClip) {
   EXPECT_GE(overloaded.size(), 2u) << "and what the arm hangs on";
   EXPECT_EQ(unknown(hit + 0.5), 0) << "then the clip goes on";
   EXPECT_LT(pelvis(7.5), 0.5f * pelvis(1)) << "it lies";
+  float load = 0, effort = 0;
+  for (const Frame& frame : recording.frames)
+    if (frame.time > 7 && frame.time < 7.5)
+      for (std::size_t j = 0; j < frame.characters[0].load.size(); ++j) {
+        load = std::max(load, frame.characters[0].load[j]);
+        effort = std::max(effort, frame.characters[0].effort[j]);
+      }
+  EXPECT_GT(load, 0.99f) << "muscles that have next to no strength are at their limit";
+  EXPECT_LT(effort, 0.1f) << "and look limp";
   EXPECT_GT(pelvis(11.5), 0.8f * pelvis(1)) << "it stands again";
   EXPECT_EQ(unknown(11.5), 0);
 }

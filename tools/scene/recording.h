@@ -13,7 +13,9 @@ namespace sinew::scene {
 /// One character in one frame.
 struct CharacterFrame {
   std::vector<Transform<float>> model;  ///< [joint] joint → world
-  std::vector<float> load;    ///< [joint] largest |residual| / limit over the joint's DOFs; 1 = saturated
+  std::vector<float> load;  ///< [joint] largest |residual| / limit over the joint's DOFs; 1 = saturated
+  std::vector<float>
+      effort;  ///< [joint] the same of the limit at full strength, fading over 0.1 s: what colours show
   std::vector<float> torque;  ///< [joint] of the most loaded DOF, N·m
   std::vector<float> limit;   ///< [joint] of that DOF and direction, N·m
   int unknown_dofs = 0;       ///< DOFs handed to the optimizer in this frame (0 = playback)

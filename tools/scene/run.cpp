@@ -94,6 +94,51 @@ class Runner {
       }
   }
 
+  /// What a joint's muscle could do at full strength in the direction in which it pulls, N·m.
+  static T full_limit(const Skeleton& skeleton, int joint, int axis, T torque) {
+    const bool plus = torque > T(0);
+    const DofLimits& own = skeleton.joints[joint].dofs[axis];
+    double limit = plus ? own.torque_plus : own.torque_minus;
+    for (const Muscle& muscle : skeleton.muscles)
+      if (muscle.joint == joint && muscle.dof == axis)
+        limit += plus ? muscle.torque_plus : muscle.torque_minus;
+    return T(limit);
+  }
+
+  void record_muscles(const Character<T>& c, CharacterFrame& made) const {
+    const Skeleton& skeleton = c.skeleton();
+    made.load.assign(skeleton.joints.size(), 0);
+    made.torque = made.limit = made.effort = made.load;
+    for (int i = 0; i < skeleton.body_count; ++i) {
+      const int dofs = dof_count(skeleton.joints[i].type);
+      if (skeleton.joints[i].type == JointType::kFree || dofs == 0) continue;
+      int most = c.first_dof(i);  // the axis that is closest to its limit speaks for the joint
+      for (int k = 1; k < dofs; ++k)
+        if (c.load()[c.first_dof(i) + k] > c.load()[most]) most = c.first_dof(i) + k;
+      made.load[i] = float(c.load()[most]);
+      made.limit[i] = float(c.limit()[most]);
+      // Hinges show their sign, ball joints the size.
+      made.torque[i] = dofs == 1 ? float(c.torque()[most]) : std::abs(float(c.torque()[most]));
+      const T full = full_limit(skeleton, i, most - c.first_dof(i), c.torque()[most]);
+      if (!std::isfinite(full) || !(full > T(0))) continue;
+      const T limit = c.limit()[most];
+      made.effort[i] = std::isfinite(limit) ? made.load[i] * float(limit / full)
+                                            : float(std::abs(c.torque()[most]) / full);
+    }
+    for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i) {
+      made.load[i] = made.load[skeleton.joints[i].parent];
+      made.effort[i] = made.effort[skeleton.joints[i].parent];
+    }
+  }
+
+  /// Colours rise at once and fade: an effort of one frame is seen, and one that comes and goes does not
+  /// flicker.
+  void calm(const std::vector<float>& before, std::vector<float>& now) const {
+    constexpr double kFade = 0.1;  // s
+    const auto left = static_cast<float>(std::exp(-1 / (s_.frame_rate * kFade)));
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] = std::max(now[i], left * before[i]);
+  }
+
   void record(double t, double microseconds) {
     Frame frame;
     frame.time = t;
@@ -103,21 +148,8 @@ class Runner {
       const Skeleton& skeleton = c.skeleton();
       CharacterFrame made;
       for (const Transform<T>& x : c.model()) made.model.push_back(x.template cast<float>());
-      made.load.assign(skeleton.joints.size(), 0);
-      made.torque = made.limit = made.load;
-      for (int i = 0; i < skeleton.body_count; ++i) {
-        const int dofs = dof_count(skeleton.joints[i].type);
-        if (skeleton.joints[i].type == JointType::kFree || dofs == 0) continue;
-        int most = c.first_dof(i);  // the axis that is closest to its limit speaks for the joint
-        for (int k = 1; k < dofs; ++k)
-          if (c.load()[c.first_dof(i) + k] > c.load()[most]) most = c.first_dof(i) + k;
-        made.load[i] = float(c.load()[most]);
-        made.limit[i] = float(c.limit()[most]);
-        // Hinges show their sign, ball joints the size.
-        made.torque[i] = dofs == 1 ? float(c.torque()[most]) : std::abs(float(c.torque()[most]));
-      }
-      for (std::size_t i = skeleton.body_count; i < skeleton.joints.size(); ++i)
-        made.load[i] = made.load[skeleton.joints[i].parent];
+      record_muscles(c, made);
+      if (!recording_.frames.empty()) calm(recording_.frames.back().characters[n].effort, made.effort);
       made.most_loaded_joint = static_cast<int>(
           std::max_element(made.load.begin(), made.load.begin() + skeleton.body_count) - made.load.begin());
       made.unknown_dofs = c.report().unknown_dofs;
