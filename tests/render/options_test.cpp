@@ -33,6 +33,8 @@ TEST(Options, BadOnesAreRefusedInOneLineThatNamesThem) {
       {[](Options& o) { o.mode = "wire"; }, "wire"},
       {[](Options& o) { o.background = "red"; }, "red"},
       {[](Options& o) { o.background = "12345g"; }, "12345g"},
+      {[](Options& o) { o.pass = "beauty"; }, "beauty"},
+      {[](Options& o) { o.pass = "depth", o.mode = "xray"; }, "depth"},
       {[](Options& o) { o.fps = 0; }, "fps"},
       {[](Options& o) { o.fps = std::nan(""); }, "fps"},
       {[](Options& o) { o.start = -1; }, "start"},
@@ -53,6 +55,18 @@ TEST(Options, OutputsThatCannotBeWrittenAreRefused) {
     EXPECT_NE(refusal(o, own_file(name)).find(name), std::string::npos) << name;
   EXPECT_NE(refusal(o, "/no/such/directory/x.png").find("/no/such/directory/x.png"), std::string::npos);
   EXPECT_NE(refusal(o, "/proc/x.png").find("/proc/x.png"), std::string::npos);
+  EXPECT_EQ(own_files(), "");
+}
+
+TEST(Options, PassesAndTransparentPicturesAreNoVideos) {
+  Options o = small_options();
+  o.transparent = true;
+  EXPECT_NE(refusal(o, own_file("x.mp4")).find("passes and transparent pictures are .png"),
+            std::string::npos);
+  o.transparent = false;
+  o.pass = "id";
+  EXPECT_NE(refusal(o, own_file("x.gif")).find("passes and transparent pictures are .png"),
+            std::string::npos);
   EXPECT_EQ(own_files(), "");
 }
 

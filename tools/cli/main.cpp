@@ -376,7 +376,9 @@ struct RenderCommand {
     if (Error error =
             sinew::render::render_asset(asset, options, output, cli::progress_line("render: frame")))
       return error;
-    return done();
+    sinew::scene::Recording one;
+    one.characters = {asset};
+    return done(one);
   }
 
  private:
@@ -387,8 +389,10 @@ struct RenderCommand {
       if (option->count() == 0 || option->get_lnames().empty()) continue;
       std::vector<std::string> words = {"--" + option->get_lnames()[0]};
       if (own.count(words[0]) > 0) continue;
-      if (option->get_items_expected_max() > 0)
-        words.insert(words.end(), option->results().begin(), option->results().end());
+      for (const std::string& value : option->results())
+        if (option->get_items_expected_max() > 0) words.push_back(value);
+      if (words.size() == 2 && words[1].front() == '-')
+        words = {words[0] + "=" + words[1]};  // "-x", no option
       folder.options.push_back(std::move(words));
     }
     int failed = 0;
@@ -413,11 +417,15 @@ struct RenderCommand {
     if (Error error =
             sinew::render::render_recording(recording, options, output, cli::progress_line("render: frame")))
       return error;
-    return done();
+    return done(recording);
   }
-  Error done() const {
+  Error done(const sinew::scene::Recording& recording) const {
+    json made = {{"output", output}};
+    if (options.pass == "id")
+      for (const auto& [name, color] : sinew::render::id_colors(recording))
+        made["ids"].push_back({{"name", name}, {"color", color}});
     if (json_output)
-      std::puts(cli::json_text({{"output", output}}).c_str());
+      std::puts(cli::json_text(made).c_str());
     else
       cli::say("%s: %dx%d\n", output.c_str(), options.width, options.height);
     return {};
@@ -605,6 +613,13 @@ int main(int argc, char** argv) try {
   r->add_option("--background", render.options.background, "one colour instead of the sky")
       ->type_name("RRGGBB")
       ->default_str("the theme's sky");
+  r->add_flag("--transparent", render.options.transparent, ".png: neither sky nor floor, with alpha");
+  r->add_option(
+       "--pass", render.options.pass,
+       "color, or as .png: depth (16-bit grey, mm; 65535: nothing), normal (world axes, -1 to 1 as 0 to "
+       "255), id (a colour for each thing, listed by --json)")
+      ->check(CLI::IsMember({"color", "depth", "normal", "id"}))
+      ->capture_default_str();
   r->add_option(
        "--mode", render.options.mode,
        "skin, xray (muscles by load in translucent skin), shapes (of the physical body), or both: skin "

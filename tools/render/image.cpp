@@ -3,6 +3,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -54,6 +55,17 @@ bool decode_jpeg(const std::vector<std::uint8_t>& bytes, int& width, int& height
   return true;
 }
 
+/// A row of pixels in PNG's order.
+void write_row(const std::uint8_t* bgra, std::size_t width, Channels channels, std::uint8_t* out) {
+  for (const std::uint8_t* end = bgra + 4 * width; bgra != end; bgra += 4) {
+    const int alpha = channels == Channels::kColorAlpha ? bgra[3] : 255;
+    const int last = channels == Channels::kNumber ? 1 : 0;  // red and green only
+    for (int k = 2; k >= last; --k)
+      *out++ = static_cast<std::uint8_t>(alpha == 0 ? 0 : std::min(255, (bgra[k] * 255 + alpha / 2) / alpha));
+    if (channels == Channels::kColorAlpha) *out++ = static_cast<std::uint8_t>(alpha);
+  }
+}
+
 }  // namespace
 
 bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& height,
@@ -77,7 +89,7 @@ bool decode_image(const std::vector<std::uint8_t>& bytes, int& width, int& heigh
 convert::Error write_png(const Image& image, const std::string& path, const std::string& name) {
   FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return {name + ": cannot be written"};
-  std::vector<std::uint8_t> row(std::size_t(image.width) * 3);
+  std::vector<std::uint8_t> row(std::size_t(image.width) * 4);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info || setjmp(png_jmpbuf(png)) != 0) {
@@ -86,19 +98,20 @@ convert::Error write_png(const Image& image, const std::string& path, const std:
     return {name + ": cannot be written"};
   }
   png_init_io(png, file);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  const bool number = image.channels == Channels::kNumber;
+  const int kind = number
+                       ? PNG_COLOR_TYPE_GRAY
+                       : (image.channels == Channels::kColorAlpha ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
+               number ? 16 : 8, kind, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  if (!number) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_compression_level(png, 3);
   png_set_filter(png, 0, PNG_FILTER_SUB);
   png_write_info(png, info);
   for (int y = 0; y < image.height; ++y) {
     const std::uint8_t* from = &image.pixels[std::size_t(y) * std::size_t(image.width) * 4];
-    for (std::size_t x = 0; x < std::size_t(image.width); ++x) {
-      row[3 * x] = from[4 * x + 2];
-      row[3 * x + 1] = from[4 * x + 1];
-      row[3 * x + 2] = from[4 * x];
-    }
+    write_row(from, std::size_t(image.width), image.channels, row.data());
     png_write_row(png, row.data());
   }
   png_write_end(png, info);

@@ -1,8 +1,10 @@
 #include "render/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <condition_variable>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -43,6 +45,11 @@ std::string fault(const Options& o, const std::filesystem::path& output) {
   if (!o.background.empty() && !parse_color(o.background))
     return "background '" + o.background + "' is not a colour RRGGBB";
   if (!one_of(o.mode, {"skin", "xray", "shapes", "both"})) return "unknown mode '" + o.mode + "'";
+  if (!one_of(o.pass, {"color", "depth", "normal", "id"})) return "unknown pass '" + o.pass + "'";
+  if (o.pass != "color" && !one_of(o.mode, {"skin", "shapes"}))
+    return "pass " + o.pass + " is of mode skin or shapes";
+  if ((o.transparent || o.pass != "color") && output.extension() != ".png")
+    return "passes and transparent pictures are .png";
   if (!(o.fps >= 1 && o.fps <= 240)) return "fps is not between 1 and 240";
   if (!(o.start >= 0)) return "start is not a time from 0 s on";
   if (o.frames_per_revolution < 1) return "frames per revolution are not positive";
@@ -60,16 +67,51 @@ Error check(const Options& o, const std::string& output) {
   return found.empty() ? Error{} : Error{output + ": " + found};
 }
 
-void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look look, Geometry& out) {
+/// Colours that differ from each other and from black, the same for the same number.
+std::array<std::uint8_t, 3> id_color(std::size_t number) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double hue = std::fmod(kGolden * double(number), 1), value = 1 - 0.15 * double(number / 7 % 4);
+  std::array<std::uint8_t, 3> bytes{};
+  for (std::size_t k = 0; k < 3; ++k) {  // of the wheel red, green, blue
+    const double off = std::abs(std::fmod(6 * hue + 4 - 2 * double(k) + 5, 6) - 3);
+    bytes[k] =
+        static_cast<std::uint8_t>(std::lround(255 * value * (0.2 + 0.8 * std::clamp(off - 1, 0.0, 1.0))));
+  }
+  return bytes;
+}
+
+/// Paints what was appended from a vertex on in the colour of a number, so that no texture changes it.
+void paint_id(std::size_t number, std::size_t first, Geometry& out) {
+  const std::array<std::uint8_t, 3> color = id_color(number);
+  for (std::size_t v = first; v < out.vertices.size(); ++v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float root = float(color[k]) / 255;  // the surface holds square roots
+      out.vertices[v].color[k] = root * root;
+    }
+    out.vertices[v].glow = 1;
+  }
+}
+
+void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look look, bool ids,
+                  Geometry& out) {
   const Vec3<float> ball(0.50f, 0.17f, 0.07f), wall(0.30f, 0.33f, 0.38f);
   out.clear();
+  std::size_t number = 0;
+  const auto append = [&](const auto& add) {
+    const std::size_t first = out.vertices.size();
+    add();
+    if (ids) paint_id(number, first, out);
+    ++number;
+  };
   for (std::size_t c = 0; c < rec.characters.size(); ++c)
-    append_character(*rec.characters[c], frame.characters[c], look, out);
+    append([&] { append_character(*rec.characters[c], frame.characters[c], look, out); });
   for (std::size_t p = 0; p < rec.props.size(); ++p)
-    if (frame.props[p].world.translation.z() > -100)  // parked below until it is launched
-      append_shape(rec.props[p].shape, rec.props[p].size, frame.props[p].world, ball, out);
+    append([&] {
+      if (frame.props[p].world.translation.z() > -100)  // parked below until it is launched
+        append_shape(rec.props[p].shape, rec.props[p].size, frame.props[p].world, ball, out);
+    });
   for (const Collider& c : rec.obstacles)
-    append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), wall, out);
+    append([&] { append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), wall, out); });
 }
 
 /// A thin dark line between two pictures.
@@ -95,7 +137,13 @@ class Painter {
                        o.samples,
                        o.theme == "dark",
                        o.quality == "full",
-                       parse_color(o.background)};
+                       parse_color(o.background),
+                       o.transparent,
+                       o.pass == "depth"    ? Pass::kDepth
+                       : o.pass == "normal" ? Pass::kNormal
+                       : o.pass == "id"     ? Pass::kId
+                                            : Pass::kPicture};
+    out->ids_ = stage.pass == Pass::kId;
     out->aspect_ = float(stage.width) / float(stage.height);
     if (out->looks_.size() == 2 && clear) out->shift_ = 0.5f;
     out->width_ = o.width;
@@ -110,17 +158,18 @@ class Painter {
   void paint(const scene::Recording& rec, const scene::Frame& frame, const View& view, float ground,
              Image& out) {
     if (looks_.size() == 1) {
-      append_frame(rec, frame, looks_[0], geometry_);
+      append_frame(rec, frame, looks_[0], ids_, geometry_);
       stage_->draw(geometry_, view, ground, out);
       return;
     }
     for (std::size_t part = 0; part < looks_.size(); ++part) {
-      append_frame(rec, frame, looks_[part], geometry_);
+      append_frame(rec, frame, looks_[part], ids_, geometry_);
       View own = view;
       own.shift = part == 0 ? shift_ : -shift_;
       stage_->draw(geometry_, own, ground, part_);
       out.width = width_;
       out.height = part_.height;
+      out.channels = part_.channels;
       const std::size_t row = std::size_t(width_) * 4, piece = std::size_t(part_.width) * 4;
       out.pixels.resize(row * std::size_t(out.height));
       for (std::size_t y = 0; y < std::size_t(out.height); ++y)
@@ -132,6 +181,7 @@ class Painter {
  private:
   Painter() = default;
   std::vector<Look> looks_;
+  bool ids_ = false;  ///< colours say who it is
   std::unique_ptr<Stage> stage_;
   float aspect_ = 1, shift_ = 0;
   int width_ = 0;
@@ -262,6 +312,21 @@ scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const C
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> id_colors(const scene::Recording& rec) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto add = [&](std::string name) {
+    const auto [red, green, blue] = id_color(all.size());
+    char text[8];
+    std::snprintf(text, sizeof text, "%02x%02x%02x", red, green, blue);
+    all.emplace_back(std::move(name), text);
+  };
+  for (std::size_t c = 0; c < rec.characters.size(); ++c)
+    add(c < rec.names.size() ? rec.names[c] : rec.characters[c]->skeleton.name);
+  for (const scene::Prop& prop : rec.props) add(prop.name);
+  for (std::size_t o = 0; o < rec.obstacles.size(); ++o) add("obstacle " + std::to_string(o));
+  return all;
+}
+
 Error render_recording(const scene::Recording& rec, const Options& o, const std::string& output,
                        const std::function<void(int, int)>& progress) {
   if (Error error = check(o, output)) return error;
@@ -279,7 +344,7 @@ Error render_recording(const scene::Recording& rec, const Options& o, const std:
   const auto draw = [&](Painter& by, int n, Image& image) {
     const std::size_t at = picked[static_cast<std::size_t>(n)];
     by.paint(rec, rec.frames[at], views[at], ground, image);
-    if (o.overlay) draw_overlay(rec, at, o.theme == "dark", image);
+    if (o.overlay && o.pass == "color") draw_overlay(rec, at, o.theme == "dark", image);
   };
   error = Workshop(*sink, static_cast<int>(picked.size()), draw, progress).run(*painter, o, o.overlay);
   return error ? error : sink->finish();
@@ -307,7 +372,7 @@ Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& o, 
   const auto draw = [&](Painter& by, int n, Image& image) {
     const auto at = static_cast<std::size_t>(n);
     by.paint(rec, rec.frames[at], views[at], ground, image);
-    if (o.overlay) draw_title(*asset, o.theme == "dark", image);
+    if (o.overlay && o.pass == "color") draw_title(*asset, o.theme == "dark", image);
   };
   error = Workshop(*sink, total, draw, progress).run(*painter, o, false);
   return error ? error : sink->finish();

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "convert/convert.h"
 #include "scene/recording.h"
@@ -18,6 +20,10 @@ struct Options {
   std::string background;        ///< RRGGBB, sRGB: one colour instead of the theme's sky; empty: the sky
   std::string mode = "skin";     ///< skin | xray: muscles coloured by load in translucent skin | shapes |
                                  ///< both: skin on the left, xray on the right
+  bool transparent = false;      ///< .png: neither sky nor floor, with alpha
+  std::string pass = "color";    ///< color | .png without an overlay: depth (16-bit grey, mm along the view;
+                               ///< 65535: nothing) | normal (in the world's axes, −1 … 1 as 0 … 255) | id (a
+                               ///< colour for each thing: id_colors), the last two with alpha
   bool overlay = true;
   double start = 0;        ///< s: scenes begin here; the moment of a single picture
   bool turntable = false;  ///< assets: the camera goes round
@@ -35,5 +41,8 @@ convert::Error render_recording(const scene::Recording& recording, const Options
 /// revolution while the clip plays).
 convert::Error render_asset(const std::shared_ptr<const Asset>& asset, const Options& options,
                             const std::string& output, const std::function<void(int, int)>& progress);
+
+/// Name and colour RRGGBB of each character, prop and obstacle in pictures of pass "id".
+std::vector<std::pair<std::string, std::string>> id_colors(const scene::Recording& recording);
 
 }  // namespace sinew::render

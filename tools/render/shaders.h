@@ -1,7 +1,7 @@
 // Shader sources. Every shader tone-maps its own output, so that buffers can stay 8 bits.
-// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, TEXTURED, UNSHADOWED): llvmpipe runs both
-// sides of an `if`. Lengths are in metres times `unit`, the figure's size in adults of 1.75 m: a beetle is
-// lit like a man.
+// Variants are made by #define (OCCLUSION, SHADOW_TAPS, SAMPLES, TEXTURED, UNSHADOWED, COLOR_KIND: flat where
+// colours are ids): llvmpipe runs both sides of an `if`. Lengths are in metres times `unit`, the figure's
+// size in adults of 1.75 m: a beetle is lit like a man.
 #pragma once
 
 namespace sinew::render {
@@ -30,6 +30,17 @@ float shadow(vec3 p, vec3 n, float softness) {
   }
   vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(s.xy - 0.5));
   return mix(1.0, sum / float(SHADOW_TAPS), edge.x * edge.y);
+}
+vec3 unfold(vec2 f) {
+  vec3 m = vec3(f, 1.0 - abs(f.x) - abs(f.y));
+  float back = max(-m.z, 0.0);
+  m.xy -= back * vec2(m.x < 0.0 ? -1.0 : 1.0, m.y < 0.0 ? -1.0 : 1.0);
+  return normalize(m);
+}
+uniform vec2 near_far; // m
+float distance_of(float depth) { // along the view, m, of a value of the depth map
+  return 2.0 * near_far.x * near_far.y /
+         (near_far.y + near_far.x - (depth * 2.0 - 1.0) * (near_far.y - near_far.x));
 }
 uniform float vignetting;
 float vignette() {
@@ -66,7 +77,7 @@ layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 color;
 centroid out vec3 p, n;
 centroid out vec2 t;
-centroid out vec4 c;
+COLOR_KIND out vec4 c;
 void main() { p = position; n = normal; t = uv; c = color; gl_Position = view_projection * vec4(position, 1.0); }
 )";
 
@@ -75,7 +86,7 @@ void main() { p = position; n = normal; t = uv; c = color; gl_Position = view_pr
 inline constexpr const char* kSurfaceFragment = R"(
 centroid in vec3 n;
 centroid in vec2 t;
-centroid in vec4 c;
+COLOR_KIND in vec4 c;
 uniform sampler2D albedo_map;
 layout(location = 0) out vec4 surface; // square root of the albedo, for 8 bits; share of stress
 layout(location = 1) out vec2 folded; // normal, octahedral
@@ -99,7 +110,6 @@ void main() {
 inline constexpr const char* kFigureFragment = R"(
 uniform sampler2DMS surface_map, normal_map, distance_map;
 uniform mat4 from_clip;
-uniform vec2 near_far; // m
 out vec4 result;
 vec3 light(vec3 p, vec3 m, vec4 s, float away) {
   vec3 v = normalize(eye - p), albedo = s.rgb * s.rgb;
@@ -116,12 +126,6 @@ vec3 light(vec3 p, vec3 m, vec4 s, float away) {
   vec3 sum = albedo * (key_color * lit + ambient) + key_color * gloss + rim;
   return tone(sum + albedo * s.a * s.a * 0.35); // what is saturated glows
 }
-vec3 unfold(vec2 f) {
-  vec3 m = vec3(f, 1.0 - abs(f.x) - abs(f.y));
-  float back = max(-m.z, 0.0);
-  m.xy -= back * vec2(m.x < 0.0 ? -1.0 : 1.0, m.y < 0.0 ? -1.0 : 1.0);
-  return normalize(m);
-}
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   vec2 folded[SAMPLES];
@@ -135,8 +139,7 @@ void main() {
   for (int k = 0;; ++k) {
     float away[SAMPLES], nearest = near_far.y;
     for (int i = 0; i < SAMPLES; ++i) {
-      float d = texelFetch(distance_map, here, i).r * 2.0 - 1.0;
-      away[i] = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x));
+      away[i] = distance_of(texelFetch(distance_map, here, i).r);
       if (folded[i].x < 2.0 && away[i] > from) nearest = min(nearest, away[i]);
     }
     float limit = nearest + 0.015 * unit, count = 0.0, far = 0.0;
@@ -164,10 +167,29 @@ void main() {
 }
 )";
 
+/// One sample of what the figure is: its distance (DEPTH), its normal (NORMAL) or its colour.
+inline constexpr const char* kDataFragment = R"(
+uniform sampler2DMS surface_map, normal_map, distance_map;
+out vec4 result;
+void main() {
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  vec2 folded = texelFetch(normal_map, here, 0).rg;
+  if (!(folded.x < 2.0)) discard;
+#if defined(DEPTH)
+  float mm = min(floor(distance_of(texelFetch(distance_map, here, 0).r) * 1000.0 + 0.5), 65534.0);
+  result = vec4(floor(mm / 256.0) / 255.0, mod(mm, 256.0) / 255.0, 0.0, 1.0);
+#elif defined(NORMAL)
+  result = vec4(unfold(folded) * 0.5 + 0.5, 1.0);
+#else
+  result = vec4(texelFetch(surface_map, here, 0).rgb, 1.0);
+#endif
+}
+)";
+
 /// Skin around muscles: clear where one looks straight through, an outline at the rim.
 inline constexpr const char* kShellFragment = R"(
 centroid in vec3 p, n;
-centroid in vec4 c;
+COLOR_KIND in vec4 c;
 out vec4 result;
 void main() {
   vec3 v = normalize(eye - p), m = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
@@ -259,15 +281,13 @@ void main() {
 inline constexpr const char* kDistanceFragment = R"(
 uniform sampler2DMS distance_map;
 uniform mat4 from_clip;
-uniform vec2 near_far; // m
 out float result;
 void main() {
   vec2 at = 2.0 * gl_FragCoord.xy;
-  float d = texelFetch(distance_map, min(ivec2(at), ivec2(viewport) - 1), 0).r * 2.0 - 1.0;
+  float away = distance_of(texelFetch(distance_map, min(ivec2(at), ivec2(viewport) - 1), 0).r);
   vec4 end = from_clip * vec4(at / viewport * 2.0 - 1.0, 1.0, 1.0);
   float down = (ground - eye.z) / (end.z / end.w - eye.z); // share of the view ray to the floor
-  result = min(2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - d * (near_far.y - near_far.x)),
-               near_far.y * (down > 0.0 ? down : 1.0));
+  result = min(away, near_far.y * (down > 0.0 ? down : 1.0));
 }
 )";
 

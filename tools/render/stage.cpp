@@ -100,7 +100,8 @@ GLuint Stage::program(const char* vertex, const char* fragment, const std::strin
   const GLuint made = gl.CreateProgram();
   const std::string head = "#version 330 core\n#define SHADOW_TAPS " +
                            std::string(options_.fine ? "16" : "6") + "\n#define SAMPLES " +
-                           std::to_string(options_.samples) + "\n" + defines;
+                           std::to_string(options_.samples) + "\n#define COLOR_KIND " +
+                           (options_.pass == Pass::kId ? "flat" : "centroid") + "\n" + defines;
   for (const auto& [kind, source] :
        {std::pair<GLenum, const char*>{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
     const GLuint shader = gl.CreateShader(kind);
@@ -157,6 +158,13 @@ bool Stage::set_up(std::string& error) {
     obscurance_ = program(kScreenVertex, kObscuranceFragment, "", error);
     blur_ = program(kScreenVertex, kBlurFragment, "", error);
     if (!distance_ || !obscurance_ || !blur_) return false;
+  }
+  if (options_.pass != Pass::kPicture) {
+    const char* defines = options_.pass == Pass::kDepth    ? "#define DEPTH\n"
+                          : options_.pass == Pass::kNormal ? "#define NORMAL\n"
+                                                           : "";
+    data_ = program(kScreenVertex, kDataFragment, defines, error);
+    if (!data_) return false;
   }
   set_up_vertices();
   if (!set_up_shadow() || (options_.fine && !set_up_occlusion()) || !set_up_picture() || !set_up_figure()) {
@@ -443,6 +451,17 @@ void Stage::draw_background(const Matrices& m, const View& view, float ground, c
   draw_strip(regions.shadow);
 }
 
+void Stage::draw_data(const Matrices& m, const View& view, float ground, const std::vector<Area>& areas) {
+  const Gl& gl = context_->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+  gl.Viewport(0, 0, options_.width, options_.height);
+  const float none = options_.pass == Pass::kDepth ? 1.f : 0.f;
+  gl.ClearColor(none, none, none, none);
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  use(data_, m, view, ground);
+  draw_strip(areas);
+}
+
 void Stage::draw_triangles(const Draw& d) {
   const Gl& gl = context_->gl();
   if (d.closed) gl.Enable(GL_CULL_FACE);
@@ -492,9 +511,32 @@ void Stage::read(Image& out) {
   gl.ReadPixels(0, 0, width, height, GL_BGRA, GL_UNSIGNED_BYTE, bottom_up_.data());
   out.width = width;
   out.height = height;
+  out.channels = options_.pass == Pass::kDepth                             ? Channels::kNumber
+                 : options_.transparent || options_.pass != Pass::kPicture ? Channels::kColorAlpha
+                                                                           : Channels::kColor;
   out.pixels.resize(bottom_up_.size());
   for (std::size_t y = 0; y < std::size_t(height); ++y)
     std::memcpy(&out.pixels[y * row], &bottom_up_[(std::size_t(height) - 1 - y) * row], row);
+}
+
+void Stage::draw_picture(const Geometry& geometry, const Matrices& m, const View& view, float ground,
+                         const Regions& regions) {
+  const Gl& gl = context_->gl();
+  const auto has = [&](bool shell) {
+    return std::any_of(geometry.draws.begin(), geometry.draws.end(),
+                       [&](const Draw& d) { return d.skin_shell == shell; });
+  };
+  if (options_.fine) draw_occlusion(m, view, ground, regions.near);
+  if (options_.transparent) {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, picture_target_);
+    gl.Viewport(0, 0, options_.width, options_.height);
+    gl.ClearColor(0, 0, 0, 0);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+  } else {
+    draw_background(m, view, ground, regions);
+  }
+  if (has(false)) light_figure(m, view, ground, regions.figure);
+  if (has(true)) draw_shells(geometry, m, view, ground, regions.figure);
 }
 
 void Stage::draw(const Geometry& geometry, const View& view, float ground, Image& out) {
@@ -511,18 +553,14 @@ void Stage::draw(const Geometry& geometry, const View& view, float ground, Image
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER,
                 static_cast<GLsizeiptr>(geometry.indices.size() * sizeof(std::uint32_t)),
                 geometry.indices.data(), GL_STREAM_DRAW);
-  const auto has = [&](bool shell) {
-    return std::any_of(geometry.draws.begin(), geometry.draws.end(),
-                       [&](const Draw& d) { return d.skin_shell == shell; });
-  };
   gl.Enable(GL_DEPTH_TEST);
-  draw_shadow(geometry, m);
+  if (options_.pass == Pass::kPicture) draw_shadow(geometry, m);
   draw_surface(geometry, m, view, ground, regions);
   gl.Disable(GL_DEPTH_TEST);
-  if (options_.fine) draw_occlusion(m, view, ground, regions.near);
-  draw_background(m, view, ground, regions);
-  if (has(false)) light_figure(m, view, ground, regions.figure);
-  if (has(true)) draw_shells(geometry, m, view, ground, regions.figure);
+  if (options_.pass == Pass::kPicture)
+    draw_picture(geometry, m, view, ground, regions);
+  else
+    draw_data(m, view, ground, regions.figure);
   read(out);
 }
 
