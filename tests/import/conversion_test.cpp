@@ -71,6 +71,12 @@ TEST_F(SharedAsset, ClipsOfOneLibraryGetOneUnit) {  // traps 1 and 4: three BVH,
     EXPECT_DOUBLE_EQ(convert_shared({name}).unit, kCmuUnit / 100) << name;
 }
 
+TEST_F(SharedAsset, WhatOnlyCarriesTheFigureIsNoPartOfIt) {
+  const Converted runner = convert_shared({"fbx/cmu_09_11_run.fbx"});
+  EXPECT_EQ(runner.asset.skeleton.joints[0].name, "Hips");
+  EXPECT_THAT(runner, NotesSay("'09_11' only carries the figure about; left out"));
+}
+
 TEST_F(SharedAsset, FoxInCentimetresIsAFox) {  // trap 1: glTF means metres, the file has 79 of them
   const Converted fox = convert_shared({"gltf/fox.glb"});
   EXPECT_EQ(fox.unit, 0.01);

@@ -156,6 +156,39 @@ double extent(const std::vector<Matrix>& world, const std::vector<int>& nodes, i
   return high - low;
 }
 
+/// How far a node travels in its parent over all clips, in units: along the axis on which it travels most.
+double travel(const SourceScene& scene, int node) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+  for (const SourceClip& clip : scene.clips)
+    for (const SourceChannel& channel : clip.channels)
+      for (const Eigen::Vector3d& at : channel.positions) {
+        if (channel.node != node) continue;
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+      }
+  return std::max(0.0, (high - low).maxCoeff());
+}
+
+/// Leaves out roots that only carry the figure about, as motion capture in FBX has them: without a skin, no
+/// body part by name, over a single joint that travels farther in them than the figure is large.
+void drop_carriers(const SourceScene& scene, std::vector<int>& nodes, nlohmann::json& report) {
+  if (!scene.meshes.empty()) return;
+  const SourceClip* first = scene.clips.empty() ? nullptr : &scene.clips.front();
+  const std::vector<Matrix> world = node_transforms(scene, first, 0);
+  while (nodes.size() > 1 && role_of_name(scene.nodes[nodes[0]].name) == Role::kNone) {
+    const auto on_root = [&](int n) { return scene.nodes[n].parent == nodes[0]; };
+    const std::vector<int> others(nodes.begin() + 1, nodes.end());
+    double size = 0;
+    for (int axis = 0; axis < 3; ++axis) size = std::max(size, extent(world, others, axis));
+    const Eigen::Matrix3d scale = world[nodes[0]].block<3, 3>(0, 0);
+    if (std::count_if(others.begin(), others.end(), on_root) != 1 || !on_root(others[0]) ||
+        travel(scene, others[0]) * scale.col(0).norm() < size)
+      return;
+    report["notes"].push_back("'" + scene.nodes[nodes[0]].name + "' only carries the figure about; left out");
+    nodes = others;
+  }
+}
+
 /// Metres per unit that make sense of a height (and a widest extent) in units; `stated`: what the file says,
 /// or 0. `how` says where it comes from.
 double choose_scale(double stated, double height, double widest, const char*& how) {
@@ -377,8 +410,9 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     if (!scenes[s].meshes.empty()) main = s;
   if (main == scenes.size()) main = 0;
   const SourceScene& scene = scenes[main];
-  const std::vector<int> nodes = joint_nodes(scene);
+  std::vector<int> nodes = joint_nodes(scene);
   if (nodes.empty()) return {"it has no joints: no skin, and no clip that moves a node"};
+  drop_carriers(scene, nodes, report);
 
   Rig rig;
   const bool skinned = !scene.meshes.empty();
