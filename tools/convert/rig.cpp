@@ -182,7 +182,7 @@ void drop_carriers(const SourceScene& scene, std::vector<int>& nodes, nlohmann::
     for (int axis = 0; axis < 3; ++axis) size = std::max(size, extent(world, others, axis));
     const Eigen::Matrix3d scale = world[nodes[0]].block<3, 3>(0, 0);
     if (std::count_if(others.begin(), others.end(), on_root) != 1 || !on_root(others[0]) ||
-        travel(scene, others[0]) * scale.col(0).norm() < size)
+        travel(scene, others[0]) * scale.col(0).norm() <= size)
       return;
     report["notes"].push_back("'" + scene.nodes[nodes[0]].name + "' only carries the figure about; left out");
     nodes = others;
