@@ -10,7 +10,6 @@
 namespace sinew::render {
 namespace {
 
-using fixtures::own_file;
 using fixtures::picture;
 using fixtures::small_options;
 

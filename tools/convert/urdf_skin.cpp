@@ -113,8 +113,8 @@ void add_urdf_skin(const import::SourceScene& scene, nlohmann::json& report, Ass
   }
   asset.materials = materials_of(scene);
   for (std::size_t i = 0; i < scene.links.size(); ++i) {
-    const Transform<double> rest(Quat<double>(world[i].block<3, 3>(0, 0)).normalized(),
-                                 world[i].block<3, 1>(0, 3));
+    const Transform<double> rest{Quat<double>(world[i].block<3, 3>(0, 0)).normalized(),
+                                 world[i].block<3, 1>(0, 3)};
     asset.inverse_bind.push_back(rest.inverse().cast<float>());
   }
 }
