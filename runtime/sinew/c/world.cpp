@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
@@ -72,6 +73,13 @@ void list_settings(auto& c, auto& s, auto&& f) {
 
 constexpr auto kSettings = [](auto& c, auto& s, auto&& f) { list_settings(c, s, f); };
 
+/// Those in single precision, under the names that are documented: kCrowdPreset is another name of
+/// kGamePreset.
+constexpr std::pair<const char*, const Accuracy*> kPresets[] = {
+    {kCinematicPreset.name, &kCinematicPreset.accuracy},
+    {kGamePreset.name, &kGamePreset.accuracy},
+    {"crowd", &kCrowdPreset.accuracy}};
+
 sinew_status read_world_settings(const sinew_world_settings* from, Settings& to) {
   const sinew_status status = read_settings(from, to, kSettings);
   if (status != SINEW_OK || !from) return status;
@@ -120,12 +128,11 @@ sinew_status sinew_world_settings_init(sinew_world_settings* settings) {
 sinew_status sinew_world_settings_use_preset(sinew_world_settings* settings, const char* preset) {
   if (!settings || !preset) return fail(SINEW_INVALID_ARGUMENT, kNull);
   if (const sinew_status status = check_size(settings); status != SINEW_OK) return status;
-  for (const AccuracyPreset& p : {kCinematicPreset, kGamePreset, kCrowdPreset}) {
-    const bool crowd = std::strcmp(preset, "crowd") == 0 && &p == &kCrowdPreset;
-    if (std::strcmp(preset, p.name) != 0 && !crowd) continue;
+  for (const auto& [name, accuracy] : kPresets) {
+    if (std::strcmp(preset, name) != 0) continue;
     sinew_world_settings all{};
     std::memcpy(&all, settings, settings->size);
-    list_accuracy(all, p.accuracy, ToC{});
+    list_accuracy(all, *accuracy, ToC{});
     write_sized(all, settings);
     return SINEW_OK;
   }
