@@ -384,7 +384,7 @@ class Sequence {
   sinew_status query() {
     sinew_query q = settings(sinew_query_init);
     for (int k = 0; k < 3; ++k) {
-      q.from[k] = number(-2, 2);
+      q.origin[k] = number(-2, 2);
       q.motion[k] = number(-5, 5);
       if (below(3) == 0) q.half_axis[k] = number(-0.5, 0.5);
     }

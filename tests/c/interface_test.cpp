@@ -192,7 +192,7 @@ TEST(CInterface, CallsFromASecondThreadAreRefusedWhileOneRuns) {
   sinew_status from_thread = SINEW_OK;
   std::string reason;
   sinew_query query = initialised(sinew_query_init);
-  query.from[2] = 2;
+  query.origin[2] = 2;
   query.motion[2] = -4;
   struct Host {
     const CScene& scene;

@@ -225,8 +225,8 @@ TEST(CInterfaceSameBits, EventsAndCastsTellOfABallThatFalls) {
   }
   EXPECT_TRUE(landed);
   sinew_query ray = initialised(sinew_query_init);
-  ray.from[0] = 3;
-  ray.from[2] = 2;
+  ray.origin[0] = 3;
+  ray.origin[2] = 2;
   ray.motion[2] = -4;
   sinew_hit hits[2];
   std::int32_t count = 0;

@@ -16,7 +16,7 @@ constexpr int kMostHits = 256;  ///< that a call tells at most; they lie on its 
 
 constexpr auto kQuery = [](auto& c, auto& s, auto&& f) {
   f("", c.layers, s.filter.layers);
-  f("a query's place must be within 1e9 m", c.from, s.from, -1e9, 1e9);
+  f("a query's place must be within 1e9 m", c.origin, s.from, -1e9, 1e9);
   f("a query's motion must be within 1e9 m", c.motion, s.motion, -1e9, 1e9);
   f("half_axis must be within 1e6 m", c.half_axis, s.half_axis, -1e6, 1e6);
   f("radius must be 0 to 1e6 m", c.radius, s.radius, 0, 1e6);

@@ -693,7 +693,7 @@ typedef int32_t (*sinew_accept)(void* context, const sinew_body* body);
 typedef struct sinew_query {
   uint32_t size;
   uint32_t layers;      ///< meets only what has one of these bits
-  double from[3];       ///< m, world, of its middle
+  double origin[3];     ///< m, world, of its middle
   double motion[3];     ///< m, world: direction times length; an overlap ignores it
   double half_axis[3];  ///< m, of a capsule: from its middle to one end of its axis
   double radius;        ///< m; 0: a ray
