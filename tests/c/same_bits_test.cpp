@@ -82,6 +82,17 @@ TEST(CInterfaceSameBits, SampleInCGoesTheWayOfTheSameRunInCpp) {
   EXPECT_NE(printed.find(wanted), std::string::npos) << printed << "wanted: " << wanted;
 }
 
+#ifdef SINEW_PYTHON
+TEST(CInterfaceSameBits, SampleInPythonGoesTheWayOfTheSameRunInCpp) {
+  int most = 0;
+  const std::string wanted = hash_line(sample_in_cpp(180, most));
+  const std::string printed =
+      output_of("PYTHONPATH=" + binary_dir() + "/python " SINEW_PYTHON " " + source_dir() +
+                "/samples/python/sample.py " + fixtures::sample_asset());
+  EXPECT_NE(printed.find(wanted), std::string::npos) << printed << "wanted: " << wanted;
+}
+#endif
+
 TEST(CInterfaceSameBits, DefaultsAreThoseOfCpp) {
   const sinew_world_settings c = initialised(sinew_world_settings_init);
   const WorldSettings cpp;

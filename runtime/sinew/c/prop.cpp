@@ -131,8 +131,8 @@ sinew_status sinew_prop_get_state(sinew_prop prop, sinew_transform* pose, float*
 sinew_status sinew_prop_set_state(sinew_prop prop, const sinew_transform* pose, const float* velocity,
                                   const float* angular_velocity) {
   if (!pose || !velocity || !angular_velocity) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  if (const sinew_status s = check_state(*pose, velocity, angular_velocity); s != SINEW_OK) return s;
   return with_prop(prop, [&](OwnedWorld& w, int index) {
+    if (const sinew_status s = check_state(*pose, velocity, angular_velocity); s != SINEW_OK) return s;
     const Transform<float> to{Quat<float>(pose->rotation), Eigen::Map<const Vec3<float>>(pose->translation)};
     return answer(w.world.set_prop(index, to, Eigen::Map<const Vec3<float>>(velocity),
                                    Eigen::Map<const Vec3<float>>(angular_velocity)));
