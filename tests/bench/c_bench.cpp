@@ -42,7 +42,9 @@ double time_of(int character, int frame) {
 void measure_cpp(const char* path, int repetitions) {
   sinew::Asset asset;
   if (!sinew::load_asset(path, asset)) std::exit(1);
-  sinew::World<float> world({});
+  sinew::WorldSettings settings;
+  settings.body_contact = false;  // all walk in the same place
+  sinew::World<float> world(settings);
   sinew::Status status;
   for (int n = 0; n < kCharacters; ++n) (void)world.add_character(asset.skeleton, {}, status);
   std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
@@ -66,7 +68,11 @@ struct CWorld {
   std::vector<sinew_play> plays;
 
   explicit CWorld(const char* path) {
-    if (sinew_asset_load(path, &asset) != SINEW_OK || sinew_world_create(nullptr, &world) != SINEW_OK)
+    sinew_world_settings settings{};
+    settings.size = sizeof settings;
+    (void)sinew_world_settings_init(&settings);
+    settings.body_contact = 0;
+    if (sinew_asset_load(path, &asset) != SINEW_OK || sinew_world_create(&settings, &world) != SINEW_OK)
       std::exit(1);
     for (int n = 0; n < kCharacters; ++n) {
       plays.push_back({0, asset, 0, 0, 0, 1, 0});

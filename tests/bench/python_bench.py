@@ -10,7 +10,7 @@ CHARACTERS, FRAMES = 100, 20
 
 def main():
     repetitions = int(sys.argv[2]) if len(sys.argv) > 2 else 7
-    with sinew.Asset(sys.argv[1]) as asset, sinew.World() as world:
+    with sinew.Asset(sys.argv[1]) as asset, sinew.World(body_contact=False) as world:
         characters = [world.add_character(asset) for _ in range(CHARACTERS)]
         plays = sinew.Plays(characters, asset)
         begin = 0.01 * numpy.arange(CHARACTERS)

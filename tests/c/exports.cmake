@@ -1,9 +1,10 @@
 # Compares the names that LIBRARY exports (NM -D) with those that HEADER declares.
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^ \n]+\n" exported "${listing}")
 list(TRANSFORM exported STRIP)
 file(READ ${HEADER} text)
-string(REGEX MATCHALL "SINEW_API [a-z_ *]*sinew_[a-z_]+\\(|SINEW_API [a-z_]+ [a-z_]+\\(|SINEW_API const char\\* [a-z_]+\\(" declared "${text}")
+string(REGEX MATCHALL "SINEW_API [a-z0-9_ *]+ \\*?sinew_[a-z_]+\\(|SINEW_API [a-z0-9_ *]+sinew_[a-z_]+\\(" declared "${text}")
 list(TRANSFORM declared REPLACE "^.*[ *]([a-z_]+)\\($" "\\1")
 list(LENGTH declared count)
 if(count LESS 60)
