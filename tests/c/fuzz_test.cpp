@@ -264,7 +264,7 @@ class Sequence {
     const sinew_play plays[2] = {
         {handle(people_), handle(assets_), index(3), 0, number(-1, 10), number(0, 2), number(-1, 1)},
         {handle(people_), handle(assets_), 0, 0, number(0, 3), 1, 0}};
-    return sinew_play_clips(or_null(plays), rarely() ? index(3) - 1 : 1 + below(2));
+    return sinew_play_clips(or_null(plays), rarely() ? -below(3) : 1 + below(2));
   }
   sinew_status target() {
     std::vector<sinew_jet> jets(128);
