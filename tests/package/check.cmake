@@ -14,14 +14,16 @@ file(WRITE ${WORK}/embedding.cpp "${program}")
 configure_file(${ASSET} ${WORK}/hero.sinew COPYONLY)
 set(sanitize "")
 if(FLAGS)
-  set(sanitize -DCMAKE_CXX_FLAGS=-fsanitize=address,undefined)
+  set(sanitize -DCMAKE_CXX_FLAGS=-fsanitize=address,undefined -DCMAKE_C_FLAGS=-fsanitize=address,undefined)
 endif()
 foreach(command
     "${CMAKE_COMMAND};--install;${BUILD};--prefix;${WORK}/prefix"
     "${CMAKE_COMMAND};-G;Ninja;-S;${OUTSIDE};-B;${WORK}/build;-DCMAKE_PREFIX_PATH=${WORK}/prefix;-DCMAKE_BUILD_TYPE=Release;-DEMBEDDING=${WORK}/embedding.cpp;${sanitize}"
     "${CMAKE_COMMAND};--build;${WORK}/build"
     "${WORK}/build/outside"
-    "${WORK}/build/embedding")
+    "${WORK}/build/embedding"
+    "${WORK}/build/outside_c;${ASSET}"
+    "${WORK}/build/outside_pkg_config;${ASSET}")
   execute_process(COMMAND ${command} WORKING_DIRECTORY ${WORK} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
   if(NOT code EQUAL 0)
     message(FATAL_ERROR "${command}\n${out}\n${err}")

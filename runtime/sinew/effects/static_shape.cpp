@@ -15,10 +15,11 @@ void catmull_rom(double t, std::array<double, 4>& weight, std::array<double, 4>&
   slope = {-0.5 + t * (2 - 1.5 * t), t * (-5 + 4.5 * t), 0.5 + t * (4 - 4.5 * t), t * (-1 + 1.5 * t)};
 }
 
-/// Cell and position in it; beyond the grid the last cell's edge.
+/// Cell and position in it; beyond the grid the last cell's edge. A trial step of a solve may ask for NaN:
+/// `t` is it then.
 long cell(double grid, long count, double& t) {
   const double inside = std::clamp(grid, 0.0, double(count - 1));
-  const long index = std::min(static_cast<long>(inside), std::max(count - 2, 0L));
+  const long index = inside > 0 ? std::min(static_cast<long>(inside), std::max(count - 2, 0L)) : 0;
   t = inside - double(index);
   return index;
 }

@@ -1,0 +1,18 @@
+// BodyRef for the C interface.
+#pragma once
+
+#include "sinew/c/sinew.h"
+#include "sinew/character/body_ref.h"
+
+namespace sinew::c {
+
+static_assert(int(BodyKind::kGround) == SINEW_BODY_GROUND &&
+              int(BodyKind::kObstacle) == SINEW_BODY_OBSTACLE && int(BodyKind::kShape) == SINEW_BODY_SHAPE &&
+              int(BodyKind::kCharacter) == SINEW_BODY_CHARACTER && int(BodyKind::kProp) == SINEW_BODY_PROP &&
+              int(BodyKind::kParticles) == SINEW_BODY_PARTICLES);
+
+inline sinew_body body_of(const BodyRef& body) {
+  return {static_cast<sinew_body_kind>(body.kind), body.index, body.joint};
+}
+
+}  // namespace sinew::c

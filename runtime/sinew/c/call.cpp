@@ -1,0 +1,61 @@
+#include "sinew/c/call.h"
+
+#include <array>
+
+#include "sinew/skeleton/version.h"
+
+namespace sinew::c {
+namespace {
+
+struct Failure {
+  const char* reason = "";
+  int index = -1;
+};
+
+constinit thread_local Failure last;
+
+constexpr std::array kNames{"SINEW_OK",           "SINEW_INVALID_ARGUMENT", "SINEW_NOT_FINITE",
+                            "SINEW_OUT_OF_RANGE", "SINEW_BAD_FILE",         "SINEW_BAD_VERSION",
+                            "SINEW_IO",           "SINEW_BAD_HANDLE",       "SINEW_BUSY",
+                            "SINEW_NO_MEMORY",    "SINEW_NOT_FOUND",        "SINEW_TOO_SMALL",
+                            "SINEW_BROKEN"};
+static_assert(kNames.size() == SINEW_BROKEN + 1);
+
+static_assert(int(Code::kOk) == SINEW_OK && int(Code::kInvalidArgument) == SINEW_INVALID_ARGUMENT &&
+              int(Code::kNotFinite) == SINEW_NOT_FINITE && int(Code::kOutOfRange) == SINEW_OUT_OF_RANGE &&
+              int(Code::kBadFile) == SINEW_BAD_FILE && int(Code::kBadVersion) == SINEW_BAD_VERSION &&
+              int(Code::kIo) == SINEW_IO);
+
+}  // namespace
+
+sinew_status fail(sinew_status status, const char* reason, int index) noexcept {
+  last = {reason, index};
+  return status;
+}
+
+sinew_status answer(const Status& status) noexcept {
+  return status ? SINEW_OK : fail(static_cast<sinew_status>(status.code), status.reason, status.index);
+}
+
+sinew_status refuse(std::uint64_t handle, Kind kind) noexcept {
+  return fail(SINEW_BAD_HANDLE, why_not(handle, kind));
+}
+
+}  // namespace sinew::c
+
+const char* sinew_version(void) {
+  return sinew::version();
+}
+
+const char* sinew_status_name(sinew_status status) {
+  return status >= SINEW_OK && status <= SINEW_BROKEN ? sinew::c::kNames[std::size_t(status)]
+                                                      : "unknown status";
+}
+
+const char* sinew_last_reason(void) {
+  return sinew::c::last.reason;
+}
+
+int32_t sinew_last_index(void) {
+  return sinew::c::last.index;
+}

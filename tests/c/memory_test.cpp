@@ -1,0 +1,134 @@
+// Set-up calls of the C interface that find no memory: each answers with a status, nothing crosses the
+// border, nothing leaks that destroying does not give back.
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+#include "c/scene.h"
+
+namespace {
+
+/// Allocations until one fails; negative: none does.
+thread_local long left = -1;
+std::atomic<long> live{0};
+
+void* take(std::size_t bytes, std::size_t alignment) {
+  if (left == 0) throw std::bad_alloc();
+  if (left > 0) --left;
+  void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (!memory) throw std::bad_alloc();
+  ++live;
+  return memory;
+}
+
+void give_back(void* memory) {
+  if (memory) --live;
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return take(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return take(bytes, std::size_t(alignment));
+}
+void operator delete(void* memory) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  give_back(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  give_back(memory);
+}
+
+namespace sinew {
+namespace {
+
+/// Lets the n-th allocation of set_up() fail for n = 0, 1, 2, … until it passes. Returns how many failed.
+template <class SetUp>
+int fail_each_allocation(SetUp&& set_up) {
+  for (int n = 0; n < 20000; ++n) {
+    left = n;
+    const sinew_status status = set_up();
+    const bool passed = left > 0;
+    left = -1;
+    if (passed) {
+      EXPECT_EQ(status, SINEW_OK) << sinew_last_reason();
+      return n;
+    }
+    EXPECT_TRUE(status == SINEW_NO_MEMORY || status == SINEW_OK) << sinew_status_name(status);
+  }
+  ADD_FAILURE() << "does not end";
+  return 0;
+}
+
+TEST(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
+  const std::string path = fixtures::sample_asset();
+  const long before = live;
+  const int failures = fail_each_allocation([&] {
+    sinew_asset asset = 0;
+    const sinew_status status = sinew_asset_load(path.c_str(), &asset);
+    if (status == SINEW_OK) {
+      EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
+    }
+    return status;
+  });
+  EXPECT_GT(failures, 10);
+  EXPECT_EQ(live, before);
+}
+
+TEST(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
+  sinew_asset asset = 0;
+  ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
+  const long before = live;
+  const int failures = fail_each_allocation([&] {
+    sinew_world world = 0;
+    sinew_status status = sinew_world_create(nullptr, &world);
+    if (status != SINEW_OK) return status;
+    sinew_character hero = 0;
+    status = sinew_world_add_character(world, asset, nullptr, &hero);
+    if (status == SINEW_OK) {
+      sinew_prop ball = 0;
+      status = sinew_world_add_prop(world, nullptr, &ball);
+    }
+    if (status != SINEW_OK) {
+      EXPECT_EQ(sinew_world_step(world, 0.01f), SINEW_BROKEN);
+    }
+    EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
+    return status;
+  });
+  EXPECT_GT(failures, 10);
+  EXPECT_EQ(live, before);
+  EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
+}
+
+TEST(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
+  fixtures::CScene scene;
+  for (int frame = 0; frame < 10; ++frame) {
+    scene.play(frame / 60.0);
+    scene.step();
+  }
+  left = 0;  // the next allocation fails
+  for (int frame = 10; frame < 60; ++frame) {
+    scene.play(frame / 60.0);
+    const double point[3] = {0, 0, 1}, push[3] = {0, 80, 0};
+    if (frame == 20) {
+      EXPECT_EQ(sinew_character_apply_impulse(scene.hero, 1, point, push), SINEW_OK);
+    }
+    scene.step();
+    sinew_view view{};
+    EXPECT_EQ(sinew_character_get_view(scene.hero, SINEW_VIEW_MODEL, &view), SINEW_OK);
+    EXPECT_EQ(scene.report().held, 0);
+  }
+  left = -1;
+}
+
+}  // namespace
+}  // namespace sinew
