@@ -57,6 +57,7 @@ sinew::scene::CharacterFrame frame_of(const sinew::Population& people, int n, in
   frame.load.assign(frame.model.size(), level >= sinew::Level::kFull      ? 1.f
                                         : level == sinew::Level::kPartial ? 0.75f
                                                                           : 0.f);
+  frame.effort = frame.load;
   frame.torque.assign(frame.model.size(), 0);
   frame.limit.assign(frame.model.size(), 0);
   return frame;

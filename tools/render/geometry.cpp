@@ -31,7 +31,7 @@ void append_sticks(const Skeleton& s, const scene::CharacterFrame& frame, Geomet
 void append_shapes(const Skeleton& s, const scene::CharacterFrame& frame, Geometry& out) {
   for (const Collider& c : s.colliders) {
     const auto joint = static_cast<std::size_t>(c.joint);
-    const float load = frame.effort[joint], glow = glow_of(load);
+    const float load = frame.effort_of(joint), glow = glow_of(load);
     append_shape(c.shape, c.size.cast<float>(), frame.model[joint] * c.local.cast<float>(),
                  (1 - glow) * kClay + glow * stress_color(load), out);
   }
@@ -74,7 +74,7 @@ void append_mesh(const Asset& asset, const Mesh& mesh, const Palette& palette,
       const std::uint16_t j = mesh.joints[4 * v + k];
       r += w * palette.turn[j];
       t += w * palette.shift[j];
-      load += w * frame.effort[j];
+      load += w * frame.effort_of(j);
     }
     const Vec3<float> p =
         r * Vec3<float>(mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]) + t;

@@ -122,7 +122,7 @@ void append_strands(const Skeleton& s, const std::vector<Transform<float>>& rest
         return Vec3<float>(frame.model[k] * (rest[k].inverse() * place));
       };
       append_spindle(at(from, strand.from_offset), at(to, strand.to_offset), strand.radius * height,
-                     moves >= 0 ? frame.effort[static_cast<std::size_t>(moves)] : 0, out);
+                     moves >= 0 ? frame.effort_of(static_cast<std::size_t>(moves)) : 0, out);
     }
 }
 
@@ -161,7 +161,7 @@ void append_bones(const Skeleton& s, const std::vector<Transform<float>>& rest,
     for (const float angle : {0.25f * kPi, -0.45f * kPi, 0.9f * kPi}) {
       const Vec3<float> side = (std::cos(angle) * front + std::sin(angle) * left) * (0.5f * flesh);
       append_spindle(a + side + 0.03f * length * along, b + 0.5f * side - 0.04f * length * along,
-                     0.52f * flesh, frame.effort[i], out);
+                     0.52f * flesh, frame.effort_of(i), out);
     }
     const Role role = s.joints[p].role;
     if (role != Role::kUpperArmL && role != Role::kUpperArmR) continue;
@@ -170,7 +170,7 @@ void append_bones(const Skeleton& s, const std::vector<Transform<float>>& rest,
     Vec3<float> over = frame.model[p].rotation * (rest[p].rotation.conjugate() * outward);
     over = (over - over.dot(along) * along).normalized();
     append_spindle(a + 0.35f * flesh * over - 0.20f * length * along,
-                   a + 0.55f * flesh * over + 0.58f * length * along, 0.62f * flesh, frame.effort[p], out);
+                   a + 0.55f * flesh * over + 0.58f * length * along, 0.62f * flesh, frame.effort_of(p), out);
   }
 }
 
@@ -215,7 +215,7 @@ void append_muscles(const Asset& asset, const scene::CharacterFrame& frame, Geom
     const Role role = s.joints[joint].role;
     const bool foot = role == Role::kFootL || role == Role::kFootR;
     if (c.joint >= s.body_count || (role != Role::kNone && carries[joint] && !foot)) continue;
-    append_part(c, role, frame.model[joint] * c.local.cast<float>(), frame.effort[joint], out);
+    append_part(c, role, frame.model[joint] * c.local.cast<float>(), frame.effort_of(joint), out);
   }
   out.close_draw(first, {.closed = true});
 }

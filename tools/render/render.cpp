@@ -296,7 +296,6 @@ scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const C
     if (clip) SamplingJob<float>{clip, time, jets}.Run();
     scene::CharacterFrame pose;
     pose.load.assign(s.joints.size(), 0);
-    pose.effort = pose.load;
     for (std::size_t i = 0; i < jets.size(); ++i) {
       const Transform<float> local{jets[i].rotation, jets[i].translation};
       const int parent = s.joints[i].parent;

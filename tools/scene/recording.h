@@ -24,6 +24,9 @@ struct CharacterFrame {
   int most_loaded_joint = -1;
   float strength = 1;
   bool root_free = false;
+
+  /// What colours show of a joint; 0 where nobody filled `effort`.
+  float effort_of(std::size_t joint) const { return joint < effort.size() ? effort[joint] : 0; }
 };
 
 struct PropFrame {
