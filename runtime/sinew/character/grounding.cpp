@@ -42,10 +42,23 @@ bool joints_rest(const CharacterState<T>& s) {
   for (int i = 1; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && !d.released) continue;
-    if (d.released || !within(d.offset, 0, 6, T(kTurn)) || !within(d.rate, 0, 6, T(kTurnSpeed) / time))
+    if ((d.released && !s.joint_has_tone(i)) || !within(d.offset, 0, 6, T(kTurn)) ||
+        !within(d.rate, 0, 6, T(kTurnSpeed) / time))
       return false;
   }
   return true;
+}
+
+/// Muscles with a tone let go of what is left of a character that nothing acts on: it goes the way back.
+template <class T>
+void lead_home(CharacterState<T>& s, T h) {
+  Grounding<T>& g = s.grounding;
+  g.rest = !s.acted_on && joints_rest(s) ? g.rest + h : T(0);
+  if (g.rest < T(kRest) * s.tree.scale.time) return;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    if (s.joint_has_tone(i)) s.deviation[i].released = false;
+  g.returns = true;
+  s.settle_deviations();
 }
 
 }  // namespace
@@ -80,7 +93,8 @@ template <class T>
 void hand_back(CharacterState<T>& s, T h) {
   Grounding<T>& g = s.grounding;
   g.returns = false;
-  if (s.settings.root != RootDrive::kGrounded || !s.floats || s.is_prop) return;
+  if (!s.grounded()) return lead_home(s, h);
+  if (!s.floats) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
   const Displacement further = towards<T>(wanted, s.local[0]);

@@ -10,6 +10,7 @@
 #include "sinew/character/grounding.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/playback.h"
+#include "sinew/character/tone.h"
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
@@ -21,7 +22,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
+constexpr double kCertified = 0.9;     ///< of the limit: below, a joint at its target leaves the unknowns
+constexpr double kBearsNothing = 0.5;  ///< of what releases a joint with a tone
 constexpr int kReleaseRounds = 8;
 constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see excess()
 constexpr int kTightenRounds = 6;
@@ -141,8 +143,10 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
-    if (!s.baked[i] || s.joint_is_driven(i))
-      s.deviation[i].released = free && !(missed < T(4) * p.kink_width && load < T(kCertified));
+    // With a tone it has to be next to its animation, which update_deviation() asks.
+    const bool met = s.joint_has_tone(i) ? tone_load<T>(s, i, s.torque) < T(kBearsNothing)
+                                         : missed < T(4) * p.kink_width && load < T(kCertified);
+    if (!s.baked[i] || s.joint_is_driven(i)) s.deviation[i].released = free && !met;
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
   }
   if (!falls) {
@@ -301,6 +305,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time),
                       height_of_floor<T>(world, settings_.common_origin.z()), h);
+    choose_tone(*s, h);
     choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
@@ -449,7 +454,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   advance_all(h);
   stop_lost();
   for (CharacterState<T>* s : states_)
-    if (s->grounded()) hand_back<T>(*s, h);
+    if (s->grounded() || s->problem.law.present.tone) hand_back<T>(*s, h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {
