@@ -11,6 +11,7 @@ namespace {
 // Of a human: what counts as standing where the animation wants it.
 constexpr double kHeight = 3e-3;    ///< m
 constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every joint
+constexpr double kGivenWay = 0.05;  ///< rad, of joints with a tone: what bears settles that far off
 constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
@@ -42,7 +43,8 @@ bool joints_rest(const CharacterState<T>& s) {
   for (int i = 1; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && !d.released) continue;
-    if ((d.released && !s.joint_has_tone(i)) || !within(d.offset, 0, 6, T(kTurn)) ||
+    const bool tone = s.joint_has_tone(i);
+    if ((d.released && !tone) || !within(d.offset, 0, 6, T(tone ? kGivenWay : kTurn)) ||
         !within(d.rate, 0, 6, T(kTurnSpeed) / time))
       return false;
   }

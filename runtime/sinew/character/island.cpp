@@ -71,6 +71,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   radius_.reserve(room.trees);
   driven_.reserve(room.trees);
   lasts_.reserve(room.trees);
+  bears_.reserve(room.bodies);
   loose_.reserve(room.dofs);
   for (auto* v : {&jumps_, &late_jumps_}) v->reserve(room.bodies);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
@@ -93,7 +94,7 @@ std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
       EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
       room.bodies *
-          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>)) +
+          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>) + 1) +
       (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
@@ -378,6 +379,27 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
+/// Which joints of a tree whose root is where its animation has it bear on the ground, through what may stand
+/// there, and on nothing else.
+template <class T>
+std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
+  constexpr std::uint8_t kBears = 1, kElse = 2;
+  const CharacterState<T>& s = *states_[tree];
+  bears_.assign(s.tree.bodies, s.tree.dof_count(0) > 0 && s.problem.free[0] ? kElse : 0);
+  if (!s.problem.law.present.tone) return bears_;
+  const std::vector<int>& first = s.rig->support.first;
+  for (const Contact<T>& c : contacts_) {
+    if (!c.acts()) continue;
+    const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
+    if (c.tree_a == tree) bears_[c.body_a] |= c.tree_b < 0 && stands(c.body_a) ? kBears : kElse;
+    if (c.tree_b == tree) bears_[c.body_b] |= kElse;
+  }
+  for (int i = s.tree.bodies - 1; i > 0; --i)
+    if (const int parent = s.tree.parent[i]; parent >= 0) bears_[parent] |= bears_[i];
+  for (std::uint8_t& bears : bears_) bears = bears == kBears;
+  return bears_;
+}
+
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
@@ -388,8 +410,9 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
   for (int round = 1;; ++round) {
     if (may_split && !total.converged && passes_left_ > 0) return total;
     bool released = false;
-    for (CharacterState<T>* s : states_) {
-      released = release_overloaded(*s, h) || released;
+    for (std::size_t n = 0; n < states_.size(); ++n) {
+      CharacterState<T>* const s = states_[n];
+      released = release_overloaded(*s, find_bearing(static_cast<int>(n)), h) || released;
       released = release_baked(*s, world_->detail, settings_) || released;
     }
     if (!released || round == kReleaseRounds) return total;

@@ -117,6 +117,9 @@ void begin_tone(CharacterState<T>& s, const WorldSettings& world, const StepPlan
   s.acted_on = !has_plain_check(s);
   if (s.acted_on) {
     s.acted_on = asks_for_more(s, world, plan, h, room, kLittle);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      if (tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
+    s.settle_deviations();
     return;
   }
   check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,

@@ -27,7 +27,7 @@ template <class T>
 bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
 /// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
-/// with the ground's share; and whether pushes or effects ask for more. Ends a way back. O(bodies).
+/// with the ground's share; and which are to give way to pushes and effects. Ends a way back. O(bodies).
 template <class T>
 void begin_tone(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
                 const CheckRoom<T>& room);

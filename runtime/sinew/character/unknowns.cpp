@@ -31,7 +31,7 @@ void choose_unknowns(CharacterState<T>& s) {
 }
 
 template <class T>
-bool release_overloaded(CharacterState<T>& s, T h) {
+bool release_overloaded(CharacterState<T>& s, std::span<const std::uint8_t> bears, T h) {
   if (s.levels.allowed < Level::kPartial) return false;
   const T emphasis = emphasis_of(s.problem, h);
   bool any = false;
@@ -43,7 +43,8 @@ bool release_overloaded(CharacterState<T>& s, T h) {
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
       load = std::max(load, s.problem.law.load(s.tree, i, dof, s.torque));
-    if (load <= T(1) && !(s.joint_has_tone(i) && tone_load<T>(s, i, s.torque) > T(1))) continue;
+    const bool gives_way = s.joint_has_tone(i) && !bears[i] && tone_load<T>(s, i, s.torque) > T(1);
+    if (load <= T(1) && !gives_way) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
   }
