@@ -11,10 +11,14 @@ namespace {
 // Of a human: what counts as standing where the animation wants it.
 constexpr double kHeight = 3e-3;    ///< m
 constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every joint
-constexpr double kGivenWay = 0.05;  ///< rad, of joints with a tone: what bears settles that far off
 constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
+// Of joints with a tone: near its animation the way back goes on with the speed that there is; what bears may
+// have settled further off.
+constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
+constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
+constexpr double kHome = 0.1;                                 ///< s
 
 /// The displacement that takes the animation's root under the body's: the turn about the vertical that leaves
 /// the least tilt.
@@ -43,9 +47,14 @@ bool joints_rest(const CharacterState<T>& s) {
   for (int i = 1; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && !d.released) continue;
-    const bool tone = s.joint_has_tone(i);
-    if ((d.released && !tone) || !within(d.offset, 0, 6, T(tone ? kGivenWay : kTurn)) ||
-        !within(d.rate, 0, 6, T(kTurnSpeed) / time))
+    if (s.joint_has_tone(i)) {
+      const bool near = within(d.offset, 0, 6, T(kGivenWay));
+      if (!within(d.offset, 0, 6, T(kSettled)) ||
+          !within(d.rate, 0, 6, T(near ? kGivenWaySpeed : kSettledSpeed) / time))
+        return false;
+      continue;
+    }
+    if (d.released || !within(d.offset, 0, 6, T(kTurn)) || !within(d.rate, 0, 6, T(kTurnSpeed) / time))
       return false;
   }
   return true;
@@ -56,7 +65,7 @@ template <class T>
 void lead_home(CharacterState<T>& s, T h) {
   Grounding<T>& g = s.grounding;
   g.rest = !s.acted_on && joints_rest(s) ? g.rest + h : T(0);
-  if (g.rest < T(kRest) * s.tree.scale.time) return;
+  if (g.rest < T(kHome) * s.tree.scale.time) return;
   for (int i = 0; i < s.tree.bodies; ++i)
     if (s.joint_has_tone(i)) s.deviation[i].released = false;
   g.returns = true;

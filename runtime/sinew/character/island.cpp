@@ -306,7 +306,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time),
                       height_of_floor<T>(world, settings_.common_origin.z()), h);
-    choose_tone(*s, h);
+    choose_tone<T>(*s, settings_.gravity, h);
     choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);

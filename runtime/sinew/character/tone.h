@@ -17,11 +17,13 @@ template <class T>
 void keep_feed_forward(CharacterState<T>& state);
 
 /// Slope and neutral place of every toned muscle for a part of h seconds that begins at `problem.start`,
-/// whose kinematics the problem holds. A spring that pulls as where the step ends takes as much energy as a
-/// damper of kh/2 would, so that much of d is left out, as far as there is any: what is left is the midpoint
-/// rule, of second order. O(bodies).
+/// whose kinematics the problem holds. What stands on a joint topples it by more, the further it leans: where
+/// muscles hold it up, their stiffness comes on top of that (Gershgorin's bound of what weights do to a chain
+/// of joints). A spring that pulls as where the step ends takes as much energy as a damper of kh/2 would, so
+/// that much of d is left out, as far as there is any: what is left is the midpoint rule, of second order.
+/// O(bodies · depth).
 template <class T>
-void choose_tone(CharacterState<T>& state, T h);
+void choose_tone(CharacterState<T>& state, const Vec3<T>& gravity, T h);
 
 /// How much a joint's torques [dof] differ from what its animation asks for by itself, where 1 is what
 /// releases it. 0 of what has no tone.
@@ -34,7 +36,7 @@ bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T
 
 #define SINEW_TONE_INSTANCES(prefix, T)                                     \
   prefix void keep_feed_forward<T>(CharacterState<T>&);                     \
-  prefix void choose_tone<T>(CharacterState<T>&, T);                        \
+  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T);        \
   prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>); \
   prefix bool overloads_tone<T>(const CharacterState<T>&, std::span<const T>, T);
 SINEW_TONE_INSTANCES(extern template, float)

@@ -30,7 +30,7 @@ constexpr double kLeastJudged = 5, kMostJudged = 40;  ///< N·s
 constexpr HitPlace kPlaces[] = {{"chest", Role::kChest},
                                 {"shoulder", Role::kChest, Role::kUpperArmL},
                                 {"head", Role::kHead},
-                                {"thigh", Role::kThighL}};
+                                {"thigh", Role::kThighL, Role::kNone, 1}};
 constexpr Tone kTones[] = {Tone::kRelaxed, Tone::kAlert, Tone::kBraced};
 
 const char* name_of(Tone tone) {
@@ -55,7 +55,7 @@ scene::Scene hit_scene(const HitPlace& place, Tone tone, double hz, double impul
   push.time = kHitAt;
   push.joint = s.characters[0].asset->skeleton.find(place.role);
   push.point = struck_at(s.characters[0].asset->skeleton, place);
-  push.impulse = {-impulse, 0, 0};
+  push.impulse = {place.ahead * impulse, 0, 0};
   s.pushes.push_back(push);
   return s;
 }
@@ -254,7 +254,8 @@ nlohmann::json hits_json(const std::vector<Hit>& hits) {
 std::string hits_table(const std::vector<Hit>& hits) {
   if (hits.empty()) return "";
   std::string text =
-      "hits from ahead on who stands: peak (deg) at (s), back within 5 deg (s), overshoot (%)\n";
+      "hits on who stands, from ahead, thighs from behind: peak (deg) at (s), back within 5 deg (s), "
+      "overshoot (%)\n";
   char line[200];
   for (const Hit& hit : hits) {
     std::snprintf(line, sizeof line,

@@ -19,12 +19,13 @@ struct HitPlace {
   const char* name;
   Role role;
   Role at_joint = Role::kNone;
+  double ahead = -1;  ///< direction of the hit; 1: from behind, as a knee gives way
 };
 
 struct Hit {
   const char* place = "";
   Tone tone = Tone::kAlert;
-  double hz = 60, impulse = 0;  ///< N·s, from ahead, in one step
+  double hz = 60, impulse = 0;  ///< N·s, in one step
   double peak = 0;              ///< rad that it turns from where the animation has it
   double peak_time = 0;         ///< s after the hit
   double back = 0;              ///< s after the hit, from which on it stays within 5°
