@@ -12,7 +12,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kLimit = 60;             ///< N·m
+constexpr double kLimit = 400;            ///< N·m
 constexpr double kMass = 3, kLength = 1;  ///< kg, m: a rod that hangs on a led base
 
 Skeleton rod() {
@@ -79,7 +79,7 @@ template <class T>
 Swing swing(double hz, double stiffness, double damping_ratio) {
   Rod<T> rod(hz, stiffness, damping_ratio);
   rod.step();
-  rod.hit(3);
+  rod.hit(1.2 * std::sqrt(stiffness * kInertia) / kLength);  // as far as 1.2 rad: small swings are led home
   std::vector<double> at, peaks;
   double before = 0, last = 0;
   for (int n = 0; peaks.size() < 3 && n < 10 * hz; ++n) {
@@ -145,8 +145,8 @@ TEST(Tone, NeverExceedsTheLimit) {
     Rod<double> rod(hz, 300, 0.7, 9.81);
     bool saturated = false;
     for (int n = 0; n < hz; ++n) {
-      if (n == hz / 6) rod.hit(8);
-      if (n > hz / 2) rod.load(100);
+      if (n == hz / 6) rod.hit(50);
+      if (n > hz / 2) rod.load(600);
       rod.step();
       const double torque = std::abs(rod.character().torque()[6]);
       EXPECT_LE(torque, kLimit * (1 + 1e-9));
@@ -271,10 +271,14 @@ TEST(Tone, AFigureThatWasHitGainsNoEnergy) {
       for (int n = 0; n < hz; ++n) {
         figure.step();
         const double now = figure.energy();
-        if (n == 1) first = now;
+        if (n == 0) first = now;
         if (n <= 1) continue;
-        // A step's means are not its ends: of what there was at first, a hundredth at 60 Hz.
-        EXPECT_LE(now, least + 0.02 * first) << int(tone) << " at " << hz << " Hz, step " << n;
+        EXPECT_LT(now, first) << int(tone) << " at " << hz << " Hz, step " << n;
+        // A step's means are not its ends: a hundredth of what the hit brought; and at 30 Hz they do not show
+        // how a wrist swings.
+        if (hz > 30) {
+          EXPECT_LE(now, least + 0.01 * first) << int(tone) << " at " << hz << " Hz, step " << n;
+        }
         least = std::min(least, now);
       }
       EXPECT_GT(first, 0.05);

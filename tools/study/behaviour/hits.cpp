@@ -75,16 +75,23 @@ std::vector<Vec3<double>> turns(const scene::Recording& is, const scene::Recordi
   return out;
 }
 
-/// The first time that it is furthest off: its first swing, which an echo of others must not outdo.
+/// Where it is furthest off; between frames on the parabola through three.
 void measure(const std::vector<Vec3<double>>& turned, Hit& hit) {
   const auto furthest = std::max_element(turned.begin(), turned.end(), [](const auto& a, const auto& b) {
     return a.squaredNorm() < b.squaredNorm();
   });
   hit.peak = furthest->norm();
-  hit.peak_time = static_cast<double>(furthest - turned.begin()) / hit.hz;
+  double at = static_cast<double>(furthest - turned.begin());
   hit.first = turned.size() > 1 ? turned[1].norm() : 0;
   if (!(hit.peak > 0)) return;
   const Vec3<double> axis = *furthest / hit.peak;
+  if (furthest != turned.begin() && furthest + 1 != turned.end()) {
+    const double before = (furthest - 1)->norm(), after = (furthest + 1)->norm(), lean = (after - before) / 2,
+                 bend = before - 2 * hit.peak + after;
+    at -= bend < 0 ? lean / bend : 0;
+    hit.peak -= bend < 0 ? lean * lean / (2 * bend) : 0;
+  }
+  hit.peak_time = at / hit.hz;
   std::size_t last_far = 0;
   for (std::size_t f = 0; f < turned.size(); ++f) {
     if (turned[f].norm() > kBackWithin) last_far = f + 1;
