@@ -379,24 +379,26 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
-/// Which joints of a tree whose root is where its animation has it bear on the ground, through what may stand
-/// there, and on nothing else.
+/// Which joints of a tree nothing but its animation and the ground moves: its root is led, no joint above is
+/// an unknown, and what they carry touches nothing but the floor, with what may stand there.
 template <class T>
 std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
-  constexpr std::uint8_t kBears = 1, kElse = 2;
   const CharacterState<T>& s = *states_[tree];
-  bears_.assign(s.tree.bodies, s.tree.dof_count(0) > 0 && s.problem.free[0] ? kElse : 0);
+  bears_.assign(s.tree.bodies, 1);
   if (!s.problem.law.present.tone) return bears_;
   const std::vector<int>& first = s.rig->support.first;
   for (const Contact<T>& c : contacts_) {
     if (!c.acts()) continue;
     const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
-    if (c.tree_a == tree) bears_[c.body_a] |= c.tree_b < 0 && stands(c.body_a) ? kBears : kElse;
-    if (c.tree_b == tree) bears_[c.body_b] |= kElse;
+    if (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))) bears_[c.body_a] = 0;
+    if (c.tree_b == tree) bears_[c.body_b] = 0;
   }
   for (int i = s.tree.bodies - 1; i > 0; --i)
-    if (const int parent = s.tree.parent[i]; parent >= 0) bears_[parent] |= bears_[i];
-  for (std::uint8_t& bears : bears_) bears = bears == kBears;
+    if (const int parent = s.tree.parent[i]; parent >= 0 && !bears_[i]) bears_[parent] = 0;
+  const auto is_free = [&](int i) { return s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]]; };
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int j = s.tree.parent[i]; j >= 0 && bears_[i]; j = s.tree.parent[j])
+      if (is_free(j)) bears_[i] = 0;
   return bears_;
 }
 

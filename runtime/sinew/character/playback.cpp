@@ -78,6 +78,20 @@ bool asks_for_more(CharacterState<T>& s, const WorldSettings& world, const StepP
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
 }
 
+/// Whether pushes and effects reach a joint. Under a root that is led, what pushes elsewhere does not, though
+/// the check has the ground bear it.
+template <class T>
+bool feels_pushes(const CharacterState<T>& s, int joint) {
+  if (!s.root_is_kinematic() || !s.problem.effects.empty()) return true;
+  const auto beyond = [&](const ExternalForce<T>& push) {
+    int i = push.body;
+    while (i > joint) i = s.tree.parent[i];
+    return i == joint;
+  };
+  return std::any_of(s.forces.begin(), s.forces.end(), beyond) ||
+         std::any_of(s.impulses.begin(), s.impulses.end(), beyond);
+}
+
 /// Velocity of the root's centre of mass, m/s.
 template <class T>
 Vec3<T> root_velocity(const Tree<T>& tree, const JointJet<T>& jet) {
@@ -118,7 +132,7 @@ void begin_tone(CharacterState<T>& s, const WorldSettings& world, const StepPlan
   if (s.acted_on) {
     s.acted_on = asks_for_more(s, world, plan, h, room, kLittle);
     for (int i = 0; i < s.tree.bodies; ++i)
-      if (tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
+      if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
     s.settle_deviations();
     return;
   }

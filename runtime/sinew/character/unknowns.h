@@ -15,9 +15,9 @@ template <class T>
 void choose_unknowns(CharacterState<T>& state);
 
 /// Hands joints whose needed torque (`problem.gradient`) exceeds their muscles' limit to the solve; and those
-/// with a tone where it differs from what their animation asks for by itself, unless they bear on the ground
-/// alone
-/// (`bears` [body]): it shares a weight among feet otherwise than a check does. True if there were any.
+/// with a tone where it differs from what their animation asks for by itself, unless nothing but that and the
+/// ground moves them (`bears` [body]): contacts share a weight among feet otherwise than a check does. True
+/// if there were any.
 template <class T>
 bool release_overloaded(CharacterState<T>& state, std::span<const std::uint8_t> bears, T h);
 
