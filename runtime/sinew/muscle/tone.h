@@ -4,7 +4,7 @@
 //
 // s is the joint's offset from the animation at the end of a step, ṡ how fast that changes, τ_ff the torque
 // that the clip asks for by itself: who is not disturbed is exactly on it. A rigid muscle (k → ∞) is as stiff
-// as its limit allows: a blow below it moves nothing. The row is in joint_rows.h (RowKind::kTone), what a
+// as its limit allows: a load below it moves nothing. The row is in joint_rows.h (RowKind::kTone), what a
 // step makes of k and ζ in ../character/tone.h.
 #pragma once
 
