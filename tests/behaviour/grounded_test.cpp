@@ -25,6 +25,46 @@ TEST(Grounded, StandingAndWalkingArePlayedToTheBit) {
   }
 }
 
+TEST(Toned, StandingAndWalkingArePlayedToTheBit) {
+  for (const char* name : {"stand", "walk"})
+    for (const RootDrive root : {RootDrive::kKinematic, RootDrive::kGrounded}) {
+      Pushed toned(name, root), rigid(name, RootDrive::kKinematic);
+      ASSERT_TRUE(toned.character().set_tone(Tone::kAlert));
+      for (int n = 0; n < 180; ++n) {
+        toned.step();
+        rigid.step();
+        const auto a = toned.character().model(), b = rigid.character().model();
+        for (std::size_t i = 0; i < a.size(); ++i) {
+          ASSERT_EQ(a[i].translation, b[i].translation) << name << " frame " << n;
+          ASSERT_EQ(a[i].rotation.coeffs(), b[i].rotation.coeffs()) << name << " frame " << n;
+        }
+      }
+      EXPECT_EQ(toned.solved, 0) << name;
+    }
+}
+
+TEST(Toned, APushMovesALedBodyWhichIsPlayedAgainSoon) {
+  for (const char* name : {"stand", "walk"}) {
+    Pushed toned(name, RootDrive::kKinematic), led(name, RootDrive::kKinematic);
+    ASSERT_TRUE(toned.character().set_tone(Tone::kAlert));
+    toned.run(0.3);
+    led.run(0.3);
+    toned.push(15, 0.4);
+    led.run(0.1);
+    EXPECT_GT(toned.solved, 0);
+    const auto chest = static_cast<std::size_t>(toned.asset.skeleton.find(Role::kChest));
+    EXPECT_GT(
+        toned.character().model()[chest].rotation.angularDistance(led.character().model()[chest].rotation),
+        0.01f)
+        << name;
+    toned.run(2);
+    const int before = toned.solved;
+    toned.run(0.5);
+    EXPECT_EQ(toned.solved, before) << name << ": still solved 2 s later";
+    EXPECT_TRUE(toned.character().on_animation());
+  }
+}
+
 TEST(Grounded, AStatueTopplesWhereThePendulumSays) {
   // m·ω·d: 36 N·s ahead, 26 back, 31 to the side, for a body that never moves a joint.
   const double ahead = 0, back = std::acos(-1.0), left = std::acos(0.0);

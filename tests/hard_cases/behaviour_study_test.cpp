@@ -146,6 +146,7 @@ const BehaviourResult& small_study() {
     BehaviourPlan plan;
     plan.sweeps = {{Role::kChest, 60, 2, {15, 50, 120}, 1}};
     plan.phases = 1;
+    plan.hits = {{5, 20, 40}, {60}};
     BehaviourResult made;
     if (const convert::Error error = run_behaviour(plan, nullptr, made)) ADD_FAILURE() << error.message;
     return made;
@@ -161,12 +162,16 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
     return names;
   };
   using Names = std::set<std::string>;
-  EXPECT_EQ(keys(json), (Names{"push_map", "scenes"}));
+  EXPECT_EQ(keys(json), (Names{"hits", "push_map", "scenes"}));
   ASSERT_EQ(json["push_map"].size(), 2u);
   for (const auto& d : json["push_map"])
     EXPECT_EQ(keys(d), (Names{"scene", "direction", "stay_step_50", "step_fall_50", "human_stay_step",
                               "human_step_fall"}));
-  ASSERT_EQ(json["scenes"].size(), 4u);
+  ASSERT_EQ(json["hits"].size(), 4u * 3 * 3);
+  for (const auto& hit : json["hits"])
+    EXPECT_EQ(keys(hit), (Names{"place", "tone", "hz", "impulse", "peak_deg", "peak_s", "back_s", "overshoot",
+                                "unknowns_after_1_s"}));
+  ASSERT_EQ(json["scenes"].size(), 7u);
   for (const auto& scene : json["scenes"]) {
     EXPECT_EQ(keys(scene), (Names{"name", "passed", "criteria"}));
     EXPECT_FALSE(scene["criteria"].empty()) << scene["name"];
@@ -180,6 +185,25 @@ TEST(BehaviourStudy, ASmallPushIsStoodAHardOneFells) {
     EXPECT_EQ(d.runs.front()[0], 1) << d.name << ": 15 N·s";
     EXPECT_EQ(d.runs.back()[2], 1) << d.name << ": 120 N·s";
   }
+}
+
+TEST(Hits, TurnAnAlertTrunkAsPeoplesDo) {
+  double last = 0;
+  for (const Hit& hit : small_study().hits) {
+    if (std::string(hit.place) != "chest" || hit.tone != Tone::kAlert) continue;
+    EXPECT_GT(hit.peak, last);  // the harder, the further
+    last = hit.peak;
+    EXPECT_GT(hit.first, 1e-4) << "moves in the frame of the hit";
+    EXPECT_GT(hit.peak_time, 0.06);
+    EXPECT_LT(hit.peak_time, 0.2);
+    EXPECT_LT(hit.back, 0.9);
+    EXPECT_LT(hit.overshoot, 0.4);
+    if (hit.impulse > 10) {
+      EXPECT_GT(hit.peak, 2 * std::numbers::pi / 180);
+    }
+    EXPECT_LT(hit.peak, 25 * std::numbers::pi / 180);
+  }
+  EXPECT_GT(last, 0);
 }
 
 class BehaviourScenes : public testing::TestWithParam<const char*> {};
@@ -198,7 +222,7 @@ TEST_P(BehaviourScenes, PassOrAreKnownToFail) {
 
 INSTANTIATE_TEST_SUITE_P(All, BehaviourScenes,
                          testing::Values("stand_60_s", "walk_60_s", "push_stand_chest_60_Hz",
-                                         "push_while_walking"),
+                                         "push_while_walking", "hits_relaxed", "hits_alert", "hits_braced"),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace

@@ -22,8 +22,17 @@ JointRow<double> stiff(RowKind kind) {
   return row;
 }
 
+/// Reaches its limits at −0.004 and 0.01.
+JointRow<double> toned(double minus, double plus) {
+  JointRow<double> row = kink(minus, plus);
+  row.kind = RowKind::kTone;
+  row.stiffness = 5000;
+  return row;
+}
+
 std::vector<JointRow<double>> all_rows() {
-  return {kink(30, 80), kink(0, 50), kink(50, 0), stiff(RowKind::kSpring), stiff(RowKind::kOneSided)};
+  return {kink(30, 80),    kink(0, 50), kink(50, 0), stiff(RowKind::kSpring), stiff(RowKind::kOneSided),
+          toned(50, 20.5), toned(50, 0)};
 }
 
 // Between the points at which the curvature jumps: 0 and ± the width.
@@ -59,6 +68,24 @@ TEST(Muscle, PullsWithExactlyItsLimitOffTheTarget) {
   EXPECT_EQ(-row.slope(0.3), -30);  // beyond the target: pulled back by the negative side
   EXPECT_EQ(-row.slope(-0.3), 80);  // short of it: pulled on by the positive side
   EXPECT_EQ(row.slope(0), 0);
+}
+
+TEST(Muscle, WithAToneIsASpringUpToExactlyItsLimit) {
+  const JointRow<double> row = toned(50, 20);
+  EXPECT_EQ(row.slope(0), 0);
+  EXPECT_EQ(row.slope(0.002), 10);
+  EXPECT_EQ(row.slope(0.3), 50);
+  EXPECT_EQ(row.slope(-0.3), -20);
+  EXPECT_EQ(row.curvature(0.002), 5000);
+  EXPECT_EQ(row.curvature(0.3), 0);
+  // As steep as a kink over its width, it is the kink.
+  JointRow<double> steep = toned(30, 30);
+  steep.stiffness = 30 / 0.01;
+  const JointRow<double> rigid = kink(30, 30);
+  for (const double s : kPlaces) {
+    EXPECT_DOUBLE_EQ(steep.energy(s), rigid.energy(s));
+    EXPECT_DOUBLE_EQ(steep.slope(s), rigid.slope(s));
+  }
 }
 
 TEST(JointLimit, DoesNothingWithinRange) {

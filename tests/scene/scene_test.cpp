@@ -99,6 +99,32 @@ TEST(Scene, AGridCopiesWhatItIsPartOf) {
   }
 }
 
+TEST(Scene, TonesAreReadAndWhatIsNoneIsRefused) {
+  const auto load = [](const std::string& keys, Scene& out) {
+    return load_scene(
+        written("tone.json", R"({"characters": [{"figure": {"kind": "humanoid"}, )" + keys + "}]}"), out);
+  };
+  Scene scene;
+  ASSERT_FALSE(load(R"("tone": [[0, "alert"], [2, "braced"]], "group_tone": [{"joint": "upperarm_l",
+                       "tone": "relaxed"}])",
+                    scene));
+  ASSERT_EQ(scene.characters[0].tone.size(), 2u);
+  EXPECT_EQ(scene.characters[0].tone[1].second, Tone::kBraced);
+  ASSERT_EQ(scene.characters[0].part_tones.size(), 1u);
+  EXPECT_EQ(scene.characters[0].part_tones[0].tone[0].second, Tone::kRelaxed);
+  const std::pair<const char*, const char*> bad[] = {
+      {R"("tone": "floppy")", "characters[0].tone"},
+      {R"("tone": 3)", "characters[0].tone"},
+      {R"("group_tone": [{"tone": "alert"}])", "characters[0].group_tone[0]"},
+      {R"("group_tone": [{"joint": "tail", "tone": "alert"}])", "characters[0].group_tone[0].joint"},
+      {R"("group_tone": [{"group": "tail", "tone": "alert"}])", "characters[0].group_tone[0].group"}};
+  for (const auto& [keys, where] : bad) {
+    Scene unused;
+    const convert::Error error = load(keys, unused);
+    EXPECT_NE(error.message.find(where), std::string::npos) << keys << ": " << error.message;
+  }
+}
+
 TEST(Scene, UndisturbedPlaybackIsTheClip) {
   const Result r = run(R"(, "clips": [{"clip": "walk"}])");
   const Asset& asset = *r.scene.characters[0].asset;

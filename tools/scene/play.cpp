@@ -23,6 +23,7 @@ convert::Error Play<T>::set_up() {
     character.set_detail(detail);
     for (const auto& [joint, factor] : s_.characters[c].group_strength)
       character.set_strength(joint, T(asked_[c].groups.emplace_back(ramp_at(factor, 0))));
+    set_tones(static_cast<int>(c), 0);
   }
   for (int p = 0; p < world_.particles_count(); ++p) world_.reset_particles(p);
   return {};
@@ -42,7 +43,7 @@ convert::Error Play<T>::add_all() {
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
-    asked_.push_back({settings.strength, {}, settings.root});
+    asked_.push_back({settings.strength, {}, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)
     if (status = world_.add_obstacle(o); !status) return {std::string("obstacle: ") + status.reason};
@@ -117,9 +118,30 @@ convert::Error Play<T>::drive(int c, double t, double h) {
   for (std::size_t g = 0; g < source.group_strength.size(); ++g)
     if (const double factor = ramp_at(source.group_strength[g].second, t); factor != asked.groups[g])
       character.set_strength(source.group_strength[g].first, T(asked.groups[g] = factor));
+  set_tones(c, t);
   if (const RootDrive root = value_at(source.root, t, RootDrive::kKinematic); root != asked.root)
     character.set_root_drive(asked.root = root);
   return {};
+}
+
+/// Where one has changed, all anew: parts come after what they are parts of.
+template <class T>
+void Play<T>::set_tones(int c, double t) {
+  const SceneCharacter& source = s_.characters[static_cast<std::size_t>(c)];
+  std::vector<Tone> tones{value_at(source.tone, t, Tone::kRigid)};
+  for (const PartTone& part : source.part_tones) tones.push_back(value_at(part.tone, t, Tone::kRigid));
+  std::vector<Tone>& asked = asked_[static_cast<std::size_t>(c)].tones;
+  if (tones == asked) return;
+  asked = tones;
+  Character<T> character = world_.character(c);
+  character.set_tone(tones[0]);
+  for (std::size_t n = 0; n < source.part_tones.size(); ++n) {
+    const PartTone& part = source.part_tones[n];
+    if (part.joint < 0)
+      character.set_group_tone(part.group.c_str(), tones[n + 1]);
+    else
+      character.set_tone(part.joint, tones[n + 1]);
+  }
 }
 
 template <class T>

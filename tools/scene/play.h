@@ -52,6 +52,7 @@ class Play {
   struct Asked {
     double strength = -1;
     std::vector<double> groups;
+    std::vector<Tone> tones;  ///< of all, then of its parts
     RootDrive root = RootDrive::kKinematic;
     bool still = false;       ///< its target does not change any more
     double acceleration = 0;  ///< rad/s²
@@ -60,6 +61,7 @@ class Play {
   convert::Error add_all();
   convert::Error add_effects();
   convert::Error drive(int character, double t, double h);
+  void set_tones(int character, double t);
   void launch(double t);
   Vec3<double> target_of(const SceneProp& prop, double t);
   void aim(const SceneProp& prop, double t, Vec3<double>& from, Vec3<double>& velocity);

@@ -36,6 +36,13 @@ RootDrive drive_of(const json& v, const std::string& where) {
   fail(where, "root drive is kinematic, assisted, grounded or free");
 }
 
+Tone tone_of(const json& v, const std::string& where) {
+  Tone tone = Tone::kRigid;
+  const Status status = tone_named(v.is_string() ? v.get<std::string>().c_str() : "", tone);
+  if (!status) fail(where, status.reason);
+  return tone;
+}
+
 double strength_of(const json& v, const std::string& where) {
   const double s = Reader::number_of(v, where);
   if (s < 0) fail(where, "strength must not be negative");
@@ -166,6 +173,25 @@ void read_behaviour(const Reader& in, SceneCharacter& c) {
   c.behaviour = settings;
 }
 
+/// `tone`, and over it those of the parts in `group_tone`.
+void read_tone(const Reader& in, const Skeleton& skeleton, SceneCharacter& c) {
+  c.tone = timeline<Tone>(in, "tone", c.tone, tone_of);
+  const json& parts = in.list("group_tone");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Reader part(parts[i], in.item("group_tone", i), {"joint", "group", "tone"});
+    PartTone made;
+    made.group = part.text("group", "");
+    if (part.has("joint") == part.has("group")) fail(in.item("group_tone", i), "needs a joint or a group");
+    if (part.has("joint")) made.joint = joint_of(skeleton, part.text("joint", ""), part.inside("joint"));
+    if (made.joint >= skeleton.body_count) fail(part.inside("joint"), "the joint is not simulated");
+    const auto works = [&](const Muscle& muscle) { return muscle.group == made.group; };
+    if (part.has("group") && std::none_of(skeleton.muscles.begin(), skeleton.muscles.end(), works))
+      fail(part.inside("group"), "no muscle of the group '" + made.group + "'");
+    made.tone = timeline<Tone>(part, "tone", {{0, Tone::kRigid}}, tone_of);
+    c.part_tones.push_back(made);
+  }
+}
+
 SceneCharacter read_character(const json& value, const std::string& where,
                               const std::filesystem::path& base) {
   const Reader in(value, where, {"asset",      "figure",      "name",           "position",       "yaw_deg",
@@ -173,7 +199,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
                                  "spin",       "random_spin", "strength",       "group_strength", "root",
                                  "root_force", "root_torque", "ground_contact", "self_collision", "options",
                                  "grid",       "bake",        "graph",          "inputs",         "behaviour",
-                                 "help_force", "help_torque"});
+                                 "help_force", "help_torque", "tone",           "group_tone"});
   SceneCharacter c;
   const std::shared_ptr<const Asset> asset = read_asset(in, base);
   c.name = in.text("name", asset->skeleton.name);
@@ -214,6 +240,7 @@ SceneCharacter read_character(const json& value, const std::string& where,
   }
   std::stable_sort(c.group_strength.begin(), c.group_strength.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  read_tone(in, asset->skeleton, c);
   c.root = timeline<RootDrive>(in, "root", c.root, drive_of);
   c.settings.root_force = in.time("root_force", c.settings.root_force);
   c.settings.root_torque = in.time("root_torque", c.settings.root_torque);

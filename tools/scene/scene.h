@@ -30,6 +30,13 @@ struct ClipUse {
   int clip_when_prone = -1;  ///< get_up: played instead when the character lies face down at `start`
 };
 
+/// Of the muscles below a joint, or of a group.
+struct PartTone {
+  int joint = -1;     ///< −1: those of `group`
+  std::string group;  ///< of Skeleton::muscles
+  Timeline<Tone> tone;
+};
+
 struct SceneCharacter {
   std::shared_ptr<const Asset> asset;
   std::string name;
@@ -47,6 +54,8 @@ struct SceneCharacter {
   /// Further factors for the subtrees below joints, parents first; a subtree's own factor replaces that of a
   /// larger one around it.
   std::vector<std::pair<int, Timeline<double>>> group_strength;
+  Timeline<Tone> tone{{0, Tone::kRigid}};
+  std::vector<PartTone> part_tones;  ///< each over those before it
   Timeline<RootDrive> root{{0, RootDrive::kKinematic}};
   CharacterSettings settings;
   bool bake = false;                           ///< see CharacterDetail

@@ -227,7 +227,7 @@ void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
     const int parent = s.tree.parent[i];
     if (!decays && parent >= 0 && turn_of<T>(s.history, parent, h) > T(kExpectable)) continue;
     const bool limp = has_no_muscle(s.problem, i);
-    s.baked[i] = limp || (s.joint_is_driven(i) && s.deviation[i].released);
+    s.baked[i] = limp || (s.joint_is_driven(i) && s.deviation[i].released && !s.joint_has_tone(i));
     if (!limp && !(decays && s.baked[i])) continue;
     std::array<T, 6> moved{};
     for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * kept;

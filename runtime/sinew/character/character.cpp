@@ -142,6 +142,66 @@ Status Character<T>::set_group_strength(const char* group, T strength) {
 }
 
 template <class T>
+Status Character<T>::set_tone(Tone tone) {
+  return set_tone(0, tone);
+}
+
+template <class T>
+Status Character<T>::set_tone(int joint, Tone tone) {
+  if (!state_) return nobody();
+  if (joint < 0 || joint >= state_->tree.bodies)
+    return Status::error(Code::kInvalidArgument, "no such simulated joint", joint);
+  if (tone < Tone::kRigid || tone > Tone::kBraced)
+    return Status::error(Code::kInvalidArgument, "no such tone", joint);
+  state_->set_tone(joint, tone);
+  state_->levels.wake = true;
+  return {};
+}
+
+template <class T>
+Status Character<T>::set_tone(int joint, const Stiffness& of) {
+  if (!state_) return nobody();
+  if (joint < 0 || joint >= state_->tree.bodies)
+    return Status::error(Code::kInvalidArgument, "no such simulated joint", joint);
+  if (!(of.stiffness > 0) || !(of.damping_ratio >= 0) || !std::isfinite(of.damping_ratio))
+    return Status::error(Code::kInvalidArgument, "stiffness must be > 0, damping ratio ≥ 0 and finite",
+                         joint);
+  if (state_->tree.type[joint] == JointType::kFree)
+    return Status::error(Code::kInvalidArgument, "a free joint has no tone", joint);
+  const bool muscles = !state_->problem.law.tone.empty();
+  for (int dof = state_->tree.first_dof[joint]; muscles && dof < state_->tree.first_dof[joint + 1]; ++dof) {
+    state_->problem.law.tone[dof].stiffness = T(of.stiffness);
+    state_->problem.law.tone[dof].damping_ratio = T(of.damping_ratio);
+  }
+  state_->problem.law.refresh_presence();
+  state_->levels.wake = true;
+  return {};
+}
+
+template <class T>
+Status Character<T>::set_group_tone(const char* group, Tone tone) {
+  if (!state_) return nobody();
+  if (tone < Tone::kRigid || tone > Tone::kBraced)
+    return Status::error(Code::kInvalidArgument, "no such tone");
+  bool any = false;
+  for (const Muscle& muscle : state_->skeleton.muscles) {
+    if (muscle.group.empty() || muscle.group != group) continue;
+    state_->set_tone(muscle.joint, muscle.dof, tone);
+    any = true;
+  }
+  state_->problem.law.refresh_presence();
+  state_->levels.wake = state_->levels.wake || any;
+  return any ? Status{} : Status::error(Code::kInvalidArgument, "no muscle of that group");
+}
+
+template <class T>
+Stiffness Character<T>::tone(int dof) const {
+  if (!state_ || dof < 0 || dof >= static_cast<int>(state_->problem.law.tone.size())) return {};
+  const ToneOfDof<T>& of = state_->problem.law.tone[dof];
+  return {double(of.stiffness), double(of.damping_ratio)};
+}
+
+template <class T>
 T Character<T>::muscle_torque(int muscle) const {
   if (!state_ || muscle < 0 || muscle >= static_cast<int>(state_->muscle_strength.size())) return T(0);
   const Muscle& of = state_->skeleton.muscles[muscle];

@@ -14,6 +14,11 @@ constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every jo
 constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
+// Of joints with a tone: near its animation the way back goes on with the speed that there is; what bears may
+// have settled further off.
+constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
+constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
+constexpr double kHome = 0.1;                                 ///< s
 
 /// The displacement that takes the animation's root under the body's: the turn about the vertical that leaves
 /// the least tilt.
@@ -42,10 +47,29 @@ bool joints_rest(const CharacterState<T>& s) {
   for (int i = 1; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];
     if (d.on_animation && !d.released) continue;
+    if (s.joint_has_tone(i)) {
+      const bool near = within(d.offset, 0, 6, T(kGivenWay));
+      if (!within(d.offset, 0, 6, T(kSettled)) ||
+          !within(d.rate, 0, 6, T(near ? kGivenWaySpeed : kSettledSpeed) / time))
+        return false;
+      continue;
+    }
     if (d.released || !within(d.offset, 0, 6, T(kTurn)) || !within(d.rate, 0, 6, T(kTurnSpeed) / time))
       return false;
   }
   return true;
+}
+
+/// Muscles with a tone let go of what is left of a character that nothing acts on: it goes the way back.
+template <class T>
+void lead_home(CharacterState<T>& s, T h) {
+  Grounding<T>& g = s.grounding;
+  g.rest = !s.acted_on && joints_rest(s) ? g.rest + h : T(0);
+  if (g.rest < T(kHome) * s.tree.scale.time) return;
+  for (int i = 0; i < s.tree.bodies; ++i)
+    if (s.joint_has_tone(i)) s.deviation[i].released = false;
+  g.returns = true;
+  s.settle_deviations();
 }
 
 }  // namespace
@@ -80,7 +104,8 @@ template <class T>
 void hand_back(CharacterState<T>& s, T h) {
   Grounding<T>& g = s.grounding;
   g.returns = false;
-  if (s.settings.root != RootDrive::kGrounded || !s.floats || s.is_prop) return;
+  if (!s.grounded()) return lead_home(s, h);
+  if (!s.floats) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
   const Displacement further = towards<T>(wanted, s.local[0]);

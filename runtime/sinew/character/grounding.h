@@ -19,8 +19,9 @@ JointJet<T> displaced(const Displacement& by, const JointJet<T>& jet);
 template <class T>
 void displace_target(CharacterState<T>& state, const Displacement& further);
 
-/// After a solved part of h seconds of a grounded character: whether it has stood as its animation wants it
-/// for long enough, and if so, that it is displaced.
+/// After a solved part of h seconds of a grounded character, or of one whose muscles have a tone: whether it
+/// has been as its animation wants it for long enough. If so, a grounded one is displaced, and the ordinary
+/// way back takes it onto its animation.
 template <class T>
 void hand_back(CharacterState<T>& state, T h);
 

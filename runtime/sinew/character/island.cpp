@@ -10,6 +10,7 @@
 #include "sinew/character/grounding.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/playback.h"
+#include "sinew/character/tone.h"
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/character/way_back.h"
@@ -21,7 +22,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kCertified = 0.9;  ///< of the limit: below, a joint at its target leaves the unknowns
+constexpr double kCertified = 0.9;     ///< of the limit: below, a joint at its target leaves the unknowns
+constexpr double kBearsNothing = 0.5;  ///< of what releases a joint with a tone
 constexpr int kReleaseRounds = 8;
 constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see excess()
 constexpr int kTightenRounds = 6;
@@ -69,6 +71,7 @@ void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
   radius_.reserve(room.trees);
   driven_.reserve(room.trees);
   lasts_.reserve(room.trees);
+  bears_.reserve(room.bodies);
   loose_.reserve(room.dofs);
   for (auto* v : {&jumps_, &late_jumps_}) v->reserve(room.bodies);
   for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
@@ -91,7 +94,7 @@ std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
   std::size_t sum =
       EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
       room.bodies *
-          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>)) +
+          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>) + 1) +
       (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
   for (const auto& effect : effects_) sum += effect->bytes(room);
   return sum;
@@ -141,8 +144,10 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     }
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
-    if (!s.baked[i] || s.joint_is_driven(i))
-      s.deviation[i].released = free && !(missed < T(4) * p.kink_width && load < T(kCertified));
+    // With a tone it has to be next to its animation, which update_deviation() asks.
+    const bool met = s.joint_has_tone(i) ? tone_load<T>(s, i, s.torque) < T(kBearsNothing)
+                                         : missed < T(4) * p.kink_width && load < T(kCertified);
+    if (!s.baked[i] || s.joint_is_driven(i)) s.deviation[i].released = free && !met;
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
   }
   if (!falls) {
@@ -301,6 +306,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time),
                       height_of_floor<T>(world, settings_.common_origin.z()), h);
+    choose_tone<T>(*s, settings_.gravity, h);
     choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);
@@ -373,6 +379,29 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
+/// Which joints of a tree nothing but its animation and the ground moves: its root is led, no joint above is
+/// an unknown, and what they carry touches nothing but the floor, with what may stand there.
+template <class T>
+std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
+  const CharacterState<T>& s = *states_[tree];
+  bears_.assign(s.tree.bodies, 1);
+  if (!s.problem.law.present.tone) return bears_;
+  const std::vector<int>& first = s.rig->support.first;
+  for (const Contact<T>& c : contacts_) {
+    if (!c.acts()) continue;
+    const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
+    if (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))) bears_[c.body_a] = 0;
+    if (c.tree_b == tree) bears_[c.body_b] = 0;
+  }
+  for (int i = s.tree.bodies - 1; i > 0; --i)
+    if (const int parent = s.tree.parent[i]; parent >= 0 && !bears_[i]) bears_[parent] = 0;
+  const auto is_free = [&](int i) { return s.tree.dof_count(i) > 0 && s.problem.free[s.tree.first_dof[i]]; };
+  for (int i = 0; i < s.tree.bodies; ++i)
+    for (int j = s.tree.parent[i]; j >= 0 && bears_[i]; j = s.tree.parent[j])
+      if (is_free(j)) bears_[i] = 0;
+  return bears_;
+}
+
 /// Solves one part of the step without moving anything: the result stays in the problems.
 template <class T>
 SolveReport IslandStepper<T>::attempt(bool may_split) {
@@ -383,8 +412,9 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
   for (int round = 1;; ++round) {
     if (may_split && !total.converged && passes_left_ > 0) return total;
     bool released = false;
-    for (CharacterState<T>* s : states_) {
-      released = release_overloaded(*s, h) || released;
+    for (std::size_t n = 0; n < states_.size(); ++n) {
+      CharacterState<T>* const s = states_[n];
+      released = release_overloaded(*s, find_bearing(static_cast<int>(n)), h) || released;
       released = release_baked(*s, world_->detail, settings_) || released;
     }
     if (!released || round == kReleaseRounds) return total;
@@ -449,7 +479,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   advance_all(h);
   stop_lost();
   for (CharacterState<T>* s : states_)
-    if (s->grounded()) hand_back<T>(*s, h);
+    if (s->grounded() || s->problem.law.present.tone) hand_back<T>(*s, h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {

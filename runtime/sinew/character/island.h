@@ -52,6 +52,7 @@ class IslandStepper {
     Deviation<T> deviation;
   };
 
+  std::span<const std::uint8_t> find_bearing(int tree);
   int parts_of() const;
   bool may_divide() const;
   bool starts() const;
@@ -173,6 +174,7 @@ class IslandStepper {
   // Of the scheme
   std::vector<int> set_;              ///< [tree] see find_sets
   std::vector<T> radius_;             ///< [set] ρ
+  std::vector<std::uint8_t> bears_;   ///< [body] of one tree, see find_bearing
   std::vector<std::uint8_t> driven_;  ///< [set] some member has muscles, or its root is driven
   std::vector<std::uint8_t> loose_;   ///< [dof, trees one after the other] see choose_loose
   std::vector<std::uint8_t> struck_;  ///< [set] some member's do not last

@@ -17,7 +17,8 @@ constexpr double kTurnsLittle = 0.1, kTurnsAll = 0.3;  ///< of what constant for
 /// Muscles, dry friction and damping: forces that answer what happens in a step at once.
 template <class T>
 bool answers(const JointRow<T>& row) {
-  return row.kind == RowKind::kKink || (row.kind == RowKind::kSpring && row.scalar == RowScalar::kFromStart);
+  return row.kind == RowKind::kKink || row.kind == RowKind::kTone ||
+         (row.kind == RowKind::kSpring && row.scalar == RowScalar::kFromStart);
 }
 
 /// Generalised forces [dof] of a tree's rows: of those that answer, and of the one-sided ones. Springs are
@@ -41,7 +42,7 @@ void add_rows(const TreeProblem<T>& p, std::span<T> kinks, std::span<T> others) 
 /// ball joint, about each of its axes.
 template <class T>
 bool holds(const CharacterState<T>& s, int dof) {
-  if (!s.problem.law.present.muscles) return false;
+  if (!s.problem.law.present.muscles || s.problem.law.has_tone(dof)) return false;
   const int i = s.tree.dof_body[dof];
   const bool each = s.tree.type[i] == JointType::kBall && !s.problem.law.ellipsoidal[i];
   const auto load = s.load.begin();
@@ -50,18 +51,26 @@ bool holds(const CharacterState<T>& s, int dof) {
   return s.joint_is_driven(i) && std::all_of(first, end, [](T x) { return x < T(kSaturated); });
 }
 
-/// Speed that constant forces leave [dof], by how far they move a body in the step: 2; less where damping
-/// would turn the speed around.
+/// Whether a row of those holds harder, the further it is off.
+template <class T>
+bool stiffens(const JointRow<T>& row) {
+  return row.kind == RowKind::kSpring || (row.kind == RowKind::kTone && row.curvature(row.value) > T(0));
+}
+
+/// Speed that constant forces leave [dof], by how far they move a body in the step: 2; less where damping, or
+/// a muscle with a tone, would turn the speed around.
 template <class T>
 void speed_shares(const TreeProblem<T>& p, bool damped, T h, std::span<T> out) {
   for (std::size_t dof = 0; dof < out.size(); ++dof)  // no rows where a joint is baked
     out[dof] = damped && !p.free[dof] ? h * p.law.damping[dof] : T(0);
   const T damps = h * h / constant_emphasis(p.prediction.weight, h);  // kg·m² by N·m/rad
   for (const JointRow<T>& row : p.rows)
-    for (int a = 0; a < row.count && row.kind == RowKind::kSpring && answers(row); ++a)
+    for (int a = 0; a < row.count && answers(row) && stiffens(row); ++a)
       out[row.dof + a] += damps * row.stiffness * row.gradient[a] * row.gradient[a];
   for (std::size_t dof = 0; dof < out.size(); ++dof) {
-    const T inertia = p.tree->inertia_at_joint[p.tree->dof_body[dof]].trace() / 3;
+    const int i = static_cast<int>(dof);
+    const T inertia = p.law.has_tone(i) ? p.law.tone[dof].inertia
+                                        : p.tree->inertia_at_joint[p.tree->dof_body[dof]].trace() / 3;
     out[dof] = out[dof] > 2 * inertia ? 1 + 2 * inertia / out[dof] : T(2);
   }
 }

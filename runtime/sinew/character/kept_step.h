@@ -18,7 +18,7 @@ auto changed_by_steps(CharacterState<T>& s) {
                   s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque, s.load,
                   s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.baked, s.unbaked,
                   s.contact_signature, s.limit_signature, s.steps_unchanged, s.passing, s.energy_ceiling,
-                  s.lent, s.levels, s.report);
+                  s.lent, s.levels, s.report, s.grounding.rest, s.grounding.returns);
 }
 
 template <class T>

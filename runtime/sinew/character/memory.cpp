@@ -36,7 +36,7 @@ std::size_t bytes_of(const CharacterState<T>& s) {
               s.deviation, s.joint_strength, s.muscle_strength, s.torque, s.load, s.limit, s.smooth,
               s.lasting, s.lasting_before, s.unknown, s.impulses, s.forces, s.baked, s.wanted) +
          held(law.torque_minus, law.torque_plus, law.dry_friction, law.damping, law.lower, law.upper,
-              law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal) +
+              law.swing_limit, law.swing_axis, law.twist_lower, law.twist_upper, law.ellipsoidal, law.tone) +
          held(p.prediction.center, p.prediction.rotation, p.prediction.momentum) +
          held(p.local, p.target, p.start, p.free, p.pushes, p.force, p.moment, p.body_force, p.couple,
               p.gradient, p.rows, p.ellipsoids, p.composite, p.joint_curvature) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/tone.h"
 #include "sinew/character/way_back.h"
 #include "sinew/effects/support.h"
 
@@ -64,6 +65,33 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
 }
 
+/// The same; whether it is more by `most` than the animation asks muscles with a tone for by itself.
+template <class T>
+bool asks_for_more(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
+                   const CheckRoom<T>& room, T most) {
+  if (s.problem.law.present.tone) {
+    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+                    s.problem.gradient);
+    keep_feed_forward(s);
+  }
+  check_under_loads(s, world, plan, h, room);
+  return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
+}
+
+/// Whether pushes and effects reach a joint. Under a root that is led, what pushes elsewhere does not, though
+/// the check has the ground bear it.
+template <class T>
+bool feels_pushes(const CharacterState<T>& s, int joint) {
+  if (!s.root_is_kinematic() || !s.problem.effects.empty()) return true;
+  const auto beyond = [&](const ExternalForce<T>& push) {
+    int i = push.body;
+    while (i > joint) i = s.tree.parent[i];
+    return i == joint;
+  };
+  return std::any_of(s.forces.begin(), s.forces.end(), beyond) ||
+         std::any_of(s.impulses.begin(), s.impulses.end(), beyond);
+}
+
 /// Velocity of the root's centre of mass, m/s.
 template <class T>
 Vec3<T> root_velocity(const Tree<T>& tree, const JointJet<T>& jet) {
@@ -89,9 +117,28 @@ bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& p
   if (has_plain_check(s))
     check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
                     s.problem.gradient);
-  else
-    check_under_loads(s, world, plan, h, room);
+  else if (asks_for_more(s, world, plan, h, room, T(1)))
+    return false;
   return play_checked(s, world, h);
+}
+
+template <class T>
+void begin_tone(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
+                const CheckRoom<T>& room) {
+  if (!s.problem.law.present.tone || s.limp()) return;
+  constexpr T kLittle = T(0.5);  // of what makes a muscle give way
+  s.grounding.returns = false;
+  s.acted_on = !has_plain_check(s);
+  if (s.acted_on) {
+    s.acted_on = asks_for_more(s, world, plan, h, room, kLittle);
+    for (int i = 0; i < s.tree.bodies; ++i)
+      if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
+    s.settle_deviations();
+    return;
+  }
+  check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+                  s.problem.gradient);
+  keep_feed_forward(s);
 }
 
 template <class T>

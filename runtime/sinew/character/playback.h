@@ -26,6 +26,12 @@ bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T
 template <class T>
 bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
+/// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
+/// with the ground's share; and which are to give way to pushes and effects. Ends a way back. O(bodies).
+template <class T>
+void begin_tone(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
+                const CheckRoom<T>& room);
+
 /// What held a grounded root besides the ground, into the report.
 template <class T>
 void report_help(CharacterState<T>& state);
@@ -44,6 +50,8 @@ void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
   prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&);                 \
   prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, const CheckRoom<T>&); \
   prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                                  \
+  prefix void begin_tone<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T,                 \
+                            const CheckRoom<T>&);                                                            \
   prefix void report_help<T>(CharacterState<T>&);                                                            \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                                        \
   prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);

@@ -205,6 +205,25 @@ void visit_last_speeds(CharacterState<T>& s, ByteStream& stream) {
   }
 }
 
+/// Stiffnesses that were asked for.
+template <class T>
+void visit_tone(CharacterState<T>& s, ByteStream& stream) {
+  std::vector<ToneOfDof<T>>& tone = s.problem.law.tone;
+  if (stream.part("has a tone", s.problem.law.present.tone)) {
+    ResidualCoder<T> coder("tone", stream);  // mostly that of the joint before
+    ToneOfDof<T> before;
+    before.stiffness = T(0);
+    for (ToneOfDof<T>& of : tone) {
+      coder.value(of.stiffness, before.stiffness);
+      coder.value(of.damping_ratio, before.damping_ratio);
+      before = of;
+    }
+  } else if (stream.reading()) {
+    std::fill(tone.begin(), tone.end(), ToneOfDof<T>{});
+  }
+  if (stream.reading()) s.problem.law.refresh_presence();
+}
+
 }  // namespace
 
 template <class T>
@@ -218,7 +237,8 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
   if (stream.reading()) s.grounding = {};
-  if (s.grounded() || stream.bounding()) {
+  visit_tone(s, stream);
+  if (s.grounded() || s.problem.law.present.tone || stream.bounding()) {
     stream.value("displaced along x", s.grounding.by.x);
     stream.value("displaced along y", s.grounding.by.y);
     stream.value("displaced about z", s.grounding.by.yaw);

@@ -119,6 +119,8 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
     target[i].translation = rest.translation;
   }
   report.dofs = tree.dofs;
+  if (problem.law.present.muscles || !skeleton.muscles.empty()) problem.law.tone.resize(tree.dofs);
+  set_tone(0, settings.tone);
   refresh_limits();
   reset_to_target(Vec3<T>::Zero());
 }
@@ -512,6 +514,35 @@ bool CharacterState<T>::joint_is_driven(int body) const {
   for (int dof = tree.first_dof[body]; all && dof < tree.first_dof[body + 1]; ++dof)
     all = problem.law.torque_minus[dof] > T(0) && problem.law.torque_plus[dof] > T(0);
   return all;
+}
+
+template <class T>
+bool CharacterState<T>::joint_has_tone(int body) const {
+  const JointLaw<T>& law = problem.law;
+  for (int dof = tree.first_dof[body]; law.present.tone && dof < tree.first_dof[body + 1]; ++dof)
+    if (law.has_tone(dof)) return joint_is_driven(body);
+  return false;
+}
+
+template <class T>
+void CharacterState<T>::set_tone(int joint, Tone tone) {
+  if (problem.law.tone.empty()) return;
+  for (int i = joint; i < tree.bodies; ++i) {
+    int ancestor = i;
+    while (ancestor > joint) ancestor = tree.parent[ancestor];
+    for (int k = 0; ancestor == joint && k < tree.dof_count(i); ++k) set_tone(i, k, tone);
+  }
+  problem.law.refresh_presence();
+}
+
+template <class T>
+void CharacterState<T>::set_tone(int joint, int dof, Tone tone) {
+  const Scale<double> scale{double(tree.scale.length), double(tree.scale.time), double(tree.scale.energy),
+                            double(tree.scale.load)};
+  const Stiffness of = stiffness_of(skeleton, scale, joint, dof, tone);
+  ToneOfDof<T>& mine = problem.law.tone[tree.first_dof[joint] + dof];
+  mine.stiffness = T(of.stiffness);
+  mine.damping_ratio = T(of.damping_ratio);
 }
 
 template <class T>

@@ -66,13 +66,13 @@ struct LevelState {
   double spent = 0, work = 0;  ///< as Budget::limit; units of work
 };
 
-/// Of a grounded character, see grounding.h.
+/// Of a grounded character, and of one with a tone: see grounding.h.
 template <class T>
 struct Grounding {
   Displacement by;                           ///< of the targets that the host gives
   T rest = T(0);                             ///< s that it has stood as its animation wants it
   double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
-  bool returns = false;  ///< next to its animation, where it may be played if the ground can do it
+  bool returns = false;  ///< next to its animation, where it may be played if ground and muscles can do it
 };
 
 /// What all characters of one skeleton share.
@@ -121,13 +121,14 @@ struct CharacterState {
   bool is_particles = false;  ///< every body but the fixed root is a particle
   CharacterDetail detail;
   LevelState levels;
-  bool driven = false;   ///< something holds every joint: there is a clip to play (see refresh_limits)
-  bool limited = false;  ///< some joint's muscles are neither dead nor boundless (see refresh_limits)
-  bool tied = false;     ///< in this step, by a coupling: it has to be solved
-  bool parked = false;   ///< out of the world
-  bool crowded = false;  ///< near one whom it was not solved together with: the island was full
-  bool carried = false;  ///< in this step, see carry_over()
-  bool calm = true;      ///< no joint deviates: see settle_deviations
+  bool driven = false;    ///< something holds every joint: there is a clip to play (see refresh_limits)
+  bool limited = false;   ///< some joint's muscles are neither dead nor boundless (see refresh_limits)
+  bool tied = false;      ///< in this step, by a coupling: it has to be solved
+  bool parked = false;    ///< out of the world
+  bool crowded = false;   ///< near one whom it was not solved together with: the island was full
+  bool carried = false;   ///< in this step, see carry_over()
+  bool calm = true;       ///< no joint deviates: see settle_deviations
+  bool acted_on = false;  ///< pushes or effects ask muscles with a tone for more: see begin_tone()
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
 
@@ -258,6 +259,18 @@ struct CharacterState {
   bool joint_is_driven(int body) const;
   /// It has muscles, and they do not bear whatever comes.
   bool joint_is_limited(int body) const;
+  /// It has muscles in every direction, and some give way below their limit.
+  bool joint_has_tone(int body) const;
+  /// Whether it is an unknown wherever something is: it has nothing that drives it, has been released, or is
+  /// off its animation and has a tone.
+  bool joint_gives_way(int body) const {
+    return !joint_is_driven(body) || deviation[body].released ||
+           (!deviation[body].on_animation && joint_has_tone(body));
+  }
+  /// Stiffnesses of all muscles below a joint, or of one degree of freedom of it alone (then
+  /// JointLaw::refresh_presence() is left to the caller).
+  void set_tone(int joint, Tone tone);
+  void set_tone(int joint, int dof, Tone tone);
   /// Speed of the fastest body, m/s.
   T fastest() const;
   /// The host pushes it in the coming step.

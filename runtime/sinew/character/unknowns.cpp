@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sinew/character/tone.h"
 #include "sinew/optimizer/bossak.h"
 
 namespace sinew {
@@ -22,17 +23,15 @@ void choose_unknowns(CharacterState<T>& s) {
   const bool solves = s.levels.allowed >= Level::kPartial;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i);
-    const bool driven = s.joint_is_driven(i);
     const bool root = s.tree.type[i] == JointType::kFree && s.tree.parent[i] < 0;
-    const bool free = root ? !s.root_is_kinematic() && (!driven || s.deviation[i].released)
-                           : !driven || s.deviation[i].released;
+    const bool free = s.joint_gives_way(i) && !(root && s.root_is_kinematic());
     const bool given = !solves || s.baked[i];
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = free && !given;
   }
 }
 
 template <class T>
-bool release_overloaded(CharacterState<T>& s, T h) {
+bool release_overloaded(CharacterState<T>& s, std::span<const std::uint8_t> bears, T h) {
   if (s.levels.allowed < Level::kPartial) return false;
   const T emphasis = emphasis_of(s.problem, h);
   bool any = false;
@@ -44,7 +43,8 @@ bool release_overloaded(CharacterState<T>& s, T h) {
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
       load = std::max(load, s.problem.law.load(s.tree, i, dof, s.torque));
-    if (load <= T(1)) continue;
+    const bool gives_way = s.joint_has_tone(i) && !bears[i] && tone_load<T>(s, i, s.torque) > T(1);
+    if (load <= T(1) && !gives_way) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;
   }
@@ -61,7 +61,7 @@ void first_guess(CharacterState<T>& s, T h, T share) {
     if (!to_target) {
       T load = T(0);
       for (int dof = first; dof < first + count; ++dof) load = std::max(load, s.load[dof]);
-      to_target = s.joint_is_driven(i) && load < T(0.99);
+      to_target = s.joint_is_driven(i) && load < T(0.99) && !s.joint_has_tone(i);
     }
     if (to_target) {
       p.local[i] = p.target[i];

@@ -14,27 +14,6 @@ namespace {
 constexpr double kBraking =
     0.33;  ///< of a muscle's limit; the rest bears weight. Half: at the edge of an overshoot
 
-/// Each body's subtree as one rigid body, about the common origin, into `problem.composite`.
-template <class T>
-void sum_subtrees(CharacterState<T>& s) {
-  TreeProblem<T>& p = s.problem;
-  for (int i = 0; i < s.tree.bodies; ++i) {
-    const Mat3<T>& r = p.kinematics.rotation[i];
-    p.composite[i] = {};
-    p.composite[i].add_body(s.tree.mass[i], p.kinematics.center[i], r * s.tree.inertia[i] * r.transpose());
-  }
-  for (int i = s.tree.bodies - 1; i > 0; --i)
-    if (const int parent = s.tree.parent[i]; parent >= 0) p.composite[parent] += p.composite[i];
-}
-
-/// Inertia (kg·m², kg) that a degree of freedom moves while the rest stands still.
-template <class T>
-T inertia_of(const TreeProblem<T>& p, int body, int dof) {
-  const Vec3<T>&w = p.kinematics.w[dof], &v = p.kinematics.v[dof];
-  const Composite<T>& c = p.composite[body];
-  return c.mass * v.squaredNorm() + 2 * v.dot(w.cross(c.first)) + w.dot(c.rotational * w);
-}
-
 /// Speed towards 0 at `offset` from which `deceleration` still stops there, in steps of h.
 template <class T>
 T stoppable(T offset, T deceleration, T h) {
@@ -131,6 +110,25 @@ T pressed_by_clip(const CharacterState<T>& s) {
 }  // namespace
 
 template <class T>
+void sum_subtrees(CharacterState<T>& s) {
+  TreeProblem<T>& p = s.problem;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const Mat3<T>& r = p.kinematics.rotation[i];
+    p.composite[i] = {};
+    p.composite[i].add_body(s.tree.mass[i], p.kinematics.center[i], r * s.tree.inertia[i] * r.transpose());
+  }
+  for (int i = s.tree.bodies - 1; i > 0; --i)
+    if (const int parent = s.tree.parent[i]; parent >= 0) p.composite[parent] += p.composite[i];
+}
+
+template <class T>
+T inertia_of(const TreeProblem<T>& p, int body, int dof) {
+  const Vec3<T>&w = p.kinematics.w[dof], &v = p.kinematics.v[dof];
+  const Composite<T>& c = p.composite[body];
+  return c.mass * v.squaredNorm() + 2 * v.dot(w.cross(c.first)) + w.dot(c.rotational * w);
+}
+
+template <class T>
 JointJet<T> animation_within(const JointJet<T>& before, const JointJet<T>& now, T frame, T fraction) {
   const Vec3<T> turn = rotation_log<T>(before.rotation.conjugate() * now.rotation);
   const Vec3<T> rate = now.omega + turn.cross(now.omega) / 2;  // of the rotation vector, to first order
@@ -158,7 +156,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];
     p.target[i] = s.wanted[i];
-    if (d.on_animation) continue;
+    if (d.on_animation || (s.joint_has_tone(i) && !s.grounding.returns)) continue;
     std::array<T, 6> offset{};
     for (int k = 0; k < s.tree.dof_count(i); ++k) {
       const int dof = s.tree.first_dof[i] + k;
@@ -199,7 +197,11 @@ template JointJet<double> animation_within<double>(const JointJet<double>&, cons
                                                    double);
 template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
 template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
+template void sum_subtrees<float>(CharacterState<float>&);
+template float inertia_of<float>(const TreeProblem<float>&, int, int);
 template void choose_targets<float>(CharacterState<float>&, float, float, float);
+template void sum_subtrees<double>(CharacterState<double>&);
+template double inertia_of<double>(const TreeProblem<double>&, int, int);
 template void choose_targets<double>(CharacterState<double>&, double, double, double);
 
 }  // namespace sinew

@@ -23,12 +23,22 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
 /// damped with time constant `return_time` (s, of a human), e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the
 /// offset from the animation; and no faster than the muscle can stop again with a third of its strength, or a
 /// return time far below the step would fling the joint across. It leads no joint further beyond its limits
-/// than it is. An assisted root goes over the floor: it is raised by what the animation, beyond
-/// kPressedByClips, and the joints' ways back would take feet into it, or it would press them there for good.
-/// `ground` is the floor's height from the common origin (m), −∞ without one. `problem.kinematics` must be
-/// those at `problem.start`.
+/// than it is. A muscle with a tone needs none: its target is the animation. An assisted root goes over the
+/// floor: it is raised by what the animation, beyond kPressedByClips, and the joints' ways back would take
+/// feet into it, or it would press them there for good. `ground` is the floor's height from the common origin
+/// (m), −∞ without one. `problem.kinematics` must be those at `problem.start`.
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
+
+/// Each body's subtree as one rigid body, about the common origin, into `problem.composite`: with the
+/// kinematics that the problem holds. O(bodies).
+template <class T>
+void sum_subtrees(CharacterState<T>& state);
+
+/// Inertia (kg·m², kg) that a degree of freedom of a body's joint moves while the rest stands still. After
+/// sum_subtrees().
+template <class T>
+T inertia_of(const TreeProblem<T>& problem, int body, int dof);
 
 /// Whether an animation whose root is assisted, not led, takes feet so deep into the floor that its root has
 /// to be raised, at the end of the next step: it can't be played. Writes `wanted`. O(bodies).
@@ -56,7 +66,11 @@ extern template JointJet<double> animation_within<double>(const JointJet<double>
                                                           double, double);
 extern template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
 extern template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
+extern template void sum_subtrees<float>(CharacterState<float>&);
+extern template float inertia_of<float>(const TreeProblem<float>&, int, int);
 extern template void choose_targets<float>(CharacterState<float>&, float, float, float);
+extern template void sum_subtrees<double>(CharacterState<double>&);
+extern template double inertia_of<double>(const TreeProblem<double>&, int, int);
 extern template void choose_targets<double>(CharacterState<double>&, double, double, double);
 
 }  // namespace sinew

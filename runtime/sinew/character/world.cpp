@@ -208,6 +208,10 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
     status = Status::error(Code::kInvalidArgument, "strength, root drive limits and help must be ≥ 0");
     return -1;
   }
+  if (settings.tone < Tone::kRigid || settings.tone > Tone::kBraced) {
+    status = Status::error(Code::kInvalidArgument, "no such tone");
+    return -1;
+  }
   status = validate(settings.detail);
   if (status) status = impl_->add(skeleton, settings);
   if (!status) return -1;

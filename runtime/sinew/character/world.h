@@ -24,6 +24,7 @@
 #include "sinew/effects/loop.h"
 #include "sinew/effects/particles.h"
 #include "sinew/effects/step_plan.h"
+#include "sinew/muscle/tone.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
 #include "sinew/skeleton/skeleton.h"
@@ -64,7 +65,8 @@ struct CharacterSettings {
   /// N and N·m of a human, grounded: what an invisible hand may do where the ground can't. Scaled with the
   /// character's weight and size; what it did is in the report.
   double help_force = 8, help_torque = 8;
-  double strength = 1;  ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  Tone tone = Tone::kRigid;  ///< how far all muscles give way below their limits, see set_tone()
   bool ground_contact = true;
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;
@@ -181,6 +183,18 @@ class Character {
   /// multiply it.
   Status set_muscle_strength(int muscle, T strength);
   Status set_group_strength(const char* group, T strength);
+  /// Tone of all muscles, or of those below one joint: how stiffly they stay with the animation below their
+  /// limits (muscle/tone.h). Rigid ones (the default) cost nothing; the others are solved for while something
+  /// moves them, and play the animation to the bit while nothing does.
+  Status set_tone(Tone tone);
+  Status set_tone(int joint, Tone tone);
+  /// Of one joint alone, all of its degrees of freedom; stiffness > 0 (N·m/rad, infinite: rigid), damping
+  /// ratio ≥ 0.
+  Status set_tone(int joint, const Stiffness& stiffness);
+  /// Of the degrees of freedom that a group of Skeleton::muscles works on.
+  Status set_group_tone(const char* group, Tone tone);
+  /// What was asked for of a degree of freedom (see first_dof); rigid where there is none such.
+  Stiffness tone(int dof) const;
   /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle. 0 where there is none
   /// such.
   T muscle_torque(int muscle) const;

@@ -155,6 +155,7 @@ void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   catch_up(s, worker.jets);
+  begin_tone(s, settings, plan, h, room_of_check(s, worker));
   log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
@@ -170,7 +171,10 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
                              std::span<LaggedForce<T>> lagged_out) {
   if (worker.log) worker.log->forget(indices);
   if (play_set(members, worker)) return 0;
-  for (CharacterState<T>* s : members) catch_up(*s, worker.jets);
+  for (CharacterState<T>* s : members) {
+    catch_up(*s, worker.jets);
+    begin_tone(*s, settings, plan, h, room_of_check(*s, worker));
+  }
   const int count =
       worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);
   for (CharacterState<T>* s : members) s->levels.did = level_of(*s);

@@ -1,5 +1,6 @@
 // Muscles: |offset from the animation| times the limit of that side, a kink at the target (joint_rows.h); or
-// all three of a ball joint as one ellipsoid (ellipsoid_row.h).
+// all three of a ball joint as one ellipsoid (ellipsoid_row.h). With a tone (tone.h) the kink is a spring up
+// to that limit, about where the muscle does nothing.
 #pragma once
 
 #include "sinew/effects/joint_step.h"
@@ -30,6 +31,12 @@ struct MuscleRows {
     row.plus = joint.emphasis * joint.law.torque_plus[dof];
     row.width = joint.kink_width * joint.unit(k);
     row.muscle = true;
+    if (joint.law.has_tone(dof)) {
+      const auto& tone = joint.law.tone[dof];
+      row.kind = RowKind::kTone;
+      row.stiffness = joint.emphasis * tone.slope;
+      row.value -= tone.neutral;
+    }
     rows.add_row(row, pulls);
   }
   static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
@@ -45,7 +52,18 @@ struct MuscleRows {
       row.minus[a] = joint.emphasis * joint.law.torque_minus[row.dof + a];
       row.plus[a] = joint.emphasis * joint.law.torque_plus[row.dof + a];
     }
+    if (joint.law.has_tone(row.dof)) give_tone(joint, row);
     return row;
+  }
+  /// See ToneOfDof::slope: of an ellipsoid as the square of the longer half axis along each.
+  static void give_tone(const Step& joint, EllipsoidRow<T>& row) {
+    const T longest = std::max(row.minus.maxCoeff(), row.plus.maxCoeff());
+    for (int a = 0; a < 3; ++a) {
+      const auto& tone = joint.law.tone[row.dof + a];
+      row.value[a] -= tone.neutral;
+      const T half_axis = std::max(row.minus[a], row.plus[a]);
+      if (half_axis == longest) row.width = longest / (joint.emphasis * tone.slope);
+    }
   }
 };
 

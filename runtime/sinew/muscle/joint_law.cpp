@@ -33,6 +33,7 @@ void JointLaw<T>::refresh_presence() {
   };
   const auto below = [](T value) { return value < kUnlimited; };
   present.muscles = above(torque_minus, T(0)) || above(torque_plus, T(0));
+  present.tone = std::any_of(tone.begin(), tone.end(), [](const ToneOfDof<T>& t) { return !t.rigid(); });
   present.losses = above(dry_friction, T(0)) || above(damping, T(0));
   present.ranges = above(lower, -kUnlimited) || std::any_of(upper.begin(), upper.end(), below);
   present.cones = std::any_of(swing_limit.begin(), swing_limit.end(), [](T most) { return most >= T(0); });

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,21 @@ namespace sinew {
 /// Which of a law's properties any joint has: what none has is not looked for in joint after joint.
 struct JointLawPresence {
   bool muscles = false, losses = false, ranges = false, cones = false;
+  bool tone = false;  ///< of some muscle
+};
+
+/// Of one degree of freedom's muscle, see tone.h.
+template <class T>
+struct ToneOfDof {
+  T stiffness = std::numeric_limits<T>::infinity();  ///< N·m/rad that was asked for; ∞: rigid
+  T damping_ratio = T(0);
+  T feed_forward = T(0);  ///< N·m, what the animation asks for by itself at the end of the frame
+  // Of the present part of a step
+  T inertia = T(0);  ///< kg·m², of what the joint carries, about its axis
+  T slope = T(0);    ///< κ, N·m/rad: k and d in one
+  T neutral = T(0);  ///< s*, rad from the animation: where the muscle does nothing
+
+  bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
 };
 
 /// Limits and passive properties of a tree's joints, as the step needs them.
@@ -28,6 +44,7 @@ struct JointLaw {
   std::vector<Vec3<T>> swing_axis;           ///< [body]
   std::vector<T> twist_lower, twist_upper;   ///< [body]
   std::vector<std::uint8_t> ellipsoidal;     ///< [body] 1: the three limits are an ellipsoid's half axes
+  std::vector<ToneOfDof<T>> tone;            ///< [dof]; empty where nobody can ask for any
   JointLawPresence present;
 
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
@@ -35,6 +52,11 @@ struct JointLaw {
   void refresh_presence();
   /// Whether a muscle pulls on a degree of freedom at all.
   bool has_muscle(int dof) const { return torque_minus[dof] > T(0) || torque_plus[dof] > T(0); }
+  /// Whether that gives way below its limit. One without a limit plays the animation, whatever its tone.
+  bool has_tone(int dof) const {
+    return present.tone && !tone[dof].rigid() && has_muscle(dof) && std::isfinite(torque_minus[dof]) &&
+           std::isfinite(torque_plus[dof]);
+  }
   /// Muscle limit of a degree of freedom on the side of `torque`.
   T limit(int dof, T torque) const { return on_side(torque, torque_minus[dof], torque_plus[dof]); }
   /// Whether `torque` [dof] is more than the muscle of a degree of freedom can give. Cheaper than load().

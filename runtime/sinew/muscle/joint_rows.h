@@ -18,6 +18,7 @@ enum class RowKind : std::uint8_t {
   kKink,  ///< |s| times the limit of its side, rounded over `width`: a muscle at its target, or dry friction
   kSpring,    ///< ½ k s²: damping over the step
   kOneSided,  ///< ½ k max(s, 0)²: joint limit, damped as a contact is (see JointRow::damp)
+  kTone,  ///< ½ k s² until its force is the limit of its side, straight from there: a muscle that gives way
 };
 
 /// Which scalar of its joint a row is a function of.
@@ -36,13 +37,14 @@ struct JointRow {
   int component = 0;   ///< of the offset: which of a ball's or free joint's three rotations, if any
   Number<T> sign = 1;  ///< −1: the row's scalar is a lower bound minus the joint's
   bool muscle = false;
-  int dof = 0;                   ///< first degree of freedom that `gradient` refers to, within its tree
-  int count = 1;                 ///< how many
-  std::array<T, 3> gradient{};   ///< ds/dd
-  T value = T(0);                ///< s at the chart centre
-  T minus = T(0), plus = T(0);   ///< kink: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
-  T width = T(1e-5);             ///< kink: rounding
-  T stiffness = T(0);            ///< spring and one-sided
+  int dof = 0;                  ///< first degree of freedom that `gradient` refers to, within its tree
+  int count = 1;                ///< how many
+  std::array<T, 3> gradient{};  ///< ds/dd
+  T value = T(0);               ///< s at the chart centre
+  T minus = T(0),
+    plus = T(0);       ///< kink, tone: force for s < 0 pushes up with `plus`, for s > 0 down with `minus`
+  T width = T(1e-5);   ///< kink: rounding
+  T stiffness = T(0);  ///< of the others
   T stretch = T(1), lag = T(0);  ///< one-sided: what bears is stretch·s − lag
 
   /// One-sided: the force is that of where s will be a damping time (s) later, and never a pull. `start` is s
@@ -62,6 +64,10 @@ struct JointRow {
         return T(0.5) * stiffness * s * s;
       case RowKind::kOneSided:
         return select(beyond(s) > zero, T(T(0.5) * stiffness * beyond(s) * beyond(s) / stretch), zero);
+      case RowKind::kTone:
+        return choose(
+            abs(s) * stiffness < side(s), [&] { return T(T(0.5) * stiffness * s * s); },
+            [&] { return T(side(s) * (abs(s) - side(s) / (2 * stiffness))); });
       case RowKind::kKink:
         break;
     }
@@ -78,6 +84,8 @@ struct JointRow {
         return stiffness * s;
       case RowKind::kOneSided:
         return select(beyond(s) > zero, T(stiffness * beyond(s)), zero);
+      case RowKind::kTone:
+        return smallest(largest(T(stiffness * s), T(-plus)), minus);
       case RowKind::kKink:
         break;
     }
@@ -93,6 +101,9 @@ struct JointRow {
         return stiffness;
       case RowKind::kOneSided:
         return select(beyond(s) > zero, T(stiffness * stretch), zero);
+      case RowKind::kTone:
+        return choose(
+            abs(s) * stiffness < side(s), [&] { return stiffness; }, [&] { return zero; });
       case RowKind::kKink:
         break;
     }
@@ -101,6 +112,7 @@ struct JointRow {
   }
 
  private:
+  T side(const T& s) const { return select(s > T(0), minus, plus); }
   T beyond(T s) const { return stretch * s - lag; }
 };
 

@@ -158,6 +158,7 @@ BehaviourPlan BehaviourPlan::quick() {
   BehaviourPlan plan;
   plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
   plan.phases = 2;
+  plan.hits = HitPlan::quick();
   return plan;
 }
 
@@ -167,6 +168,7 @@ BehaviourPlan BehaviourPlan::full() {
   for (const auto& [where, hz] :
        {std::pair{Role::kChest, 60.0}, {Role::kPelvis, 60}, {Role::kChest, 30}, {Role::kChest, 120}})
     plan.sweeps.push_back({where, hz, 8, ladder, 10});
+  plan.hits = HitPlan::full();
   return plan;
 }
 
@@ -183,6 +185,8 @@ convert::Error run_behaviour(const BehaviourPlan& plan, const std::function<void
     result.scenes.push_back({scene_of(result.maps.back()), {}});
     judge_map(result.maps.back(), result.scenes.back().findings);
   }
+  result.hits = run_hits(plan.hits, progress);
+  for (HitScene& hits : judge_hits(result.hits)) result.scenes.push_back({hits.name, hits.findings});
   result.scenes.push_back({"push_while_walking", {}});
   judge_walk(plan.phases, result.scenes.back().findings);
   if (several_rates(result.maps)) {
@@ -208,12 +212,13 @@ nlohmann::json behaviour_json(const BehaviourResult& result) {
       criteria.push_back({{"name", c.name}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}});
     scenes.push_back({{"name", scene.name}, {"passed", scene.findings.passed()}, {"criteria", criteria}});
   }
-  return {{"push_map", maps}, {"scenes", scenes}};
+  return {{"push_map", maps}, {"hits", hits_json(result.hits)}, {"scenes", scenes}};
 }
 
 std::string behaviour_table(const BehaviourResult& result) {
   std::string text;
   for (const PushMap& map : result.maps) text += map_table(map) + "\n";
+  text += hits_table(result.hits);
   for (const BehaviourScene& scene : result.scenes) text += scene_table(scene);
   return text;
 }

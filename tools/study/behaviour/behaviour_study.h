@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "study/behaviour/hits.h"
 #include "study/behaviour/push_map.h"
 #include "study/scenes/situation.h"
 
@@ -12,6 +13,7 @@ namespace sinew::study {
 
 struct BehaviourPlan {
   std::vector<PushSweep> sweeps;
+  HitPlan hits;
   double undisturbed = 60;  ///< s
   int phases = 4;           ///< of a walk, in which it is pushed
 
@@ -28,6 +30,7 @@ struct BehaviourScene {
 
 struct BehaviourResult {
   std::vector<PushMap> maps;
+  std::vector<Hit> hits;
   std::vector<BehaviourScene> scenes;
 };
 
@@ -39,8 +42,8 @@ convert::Error run_behaviour(const BehaviourPlan& plan, const std::function<void
 const char* behaviour_known_to_fail(const std::string& scene);
 
 /// {"push_map": [{"scene", "direction", "stay_step_50", "step_fall_50", "human_stay_step",
-/// "human_step_fall"}], "scenes": [{"name", "passed", "criteria": [{"name", "value", "bound", "passed"}]}]};
-/// N·s, null where the ladder of impulses does not reach.
+/// "human_step_fall"}], "hits": see hits_json, "scenes": [{"name", "passed", "criteria": [{"name", "value",
+/// "bound", "passed"}]}]}; N·s, null where the ladder of impulses does not reach.
 nlohmann::json behaviour_json(const BehaviourResult& result);
 std::string behaviour_table(const BehaviourResult& result);
 

@@ -1,0 +1,45 @@
+// What a step makes of muscles with a tone (muscle/tone.h), and when they give way.
+//
+// A toned joint is played like any other while what acts on it differs little from what its animation asks
+// for by itself. Else it is an unknown, until it is next to its animation and slow again; or until all of the
+// character is near its animation and slow, when the ordinary way back takes it there without unknowns
+// (hand_back).
+#pragma once
+
+#include <span>
+
+#include "sinew/character/state.h"
+
+namespace sinew {
+
+/// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself.
+template <class T>
+void keep_feed_forward(CharacterState<T>& state);
+
+/// Slope and neutral place of every toned muscle for a part of h seconds that begins at `problem.start`,
+/// whose kinematics the problem holds. What stands on a joint topples it by more, the further it leans: where
+/// muscles hold it up, their stiffness comes on top of that (Gershgorin's bound of what weights do to a chain
+/// of joints). A spring that pulls as where the step ends takes as much energy as a damper of kh/2 would, so
+/// that much of d is left out, as far as there is any: what is left is the midpoint rule, of second order.
+/// O(bodies · depth).
+template <class T>
+void choose_tone(CharacterState<T>& state, const Vec3<T>& gravity, T h);
+
+/// How much a joint's torques [dof] differ from what its animation asks for by itself, where 1 is what
+/// releases it. 0 of what has no tone.
+template <class T>
+T tone_load(const CharacterState<T>& state, int joint, std::span<const T> torque);
+
+/// Whether any joint's do by more than `most`.
+template <class T>
+bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T most);
+
+#define SINEW_TONE_INSTANCES(prefix, T)                                     \
+  prefix void keep_feed_forward<T>(CharacterState<T>&);                     \
+  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T);        \
+  prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>); \
+  prefix bool overloads_tone<T>(const CharacterState<T>&, std::span<const T>, T);
+SINEW_TONE_INSTANCES(extern template, float)
+SINEW_TONE_INSTANCES(extern template, double)
+
+}  // namespace sinew
