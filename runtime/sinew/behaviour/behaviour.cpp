@@ -535,15 +535,18 @@ void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, do
 /// Stands again: balanced over its feet, and from there on to the host's animation.
 template <class T>
 void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jets, double h) {
-  const MeasuredBody is = measure(character);
-  spin_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
-  root_before_ = is.root.rotation;
-  measured_ = true;
   report_ = {.state = BehaviourState::kBalance};
   allowed_ = false;
   get_up_.forget();
   tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
   see_clip(jets);
+  swing_ = -1;
+  choose_support(measure(character));
+  character.displace(to_feet());  // the animation faces as the body does
+  const MeasuredBody is = measure(character);
+  spin_.setZero();
+  root_before_ = is.root.rotation;
+  measured_ = true;
   character.set_help(0, weight_ * unit_ * settings_.help_torque);
   begin_plan(is, jets);
   move_plan(h);
