@@ -25,6 +25,7 @@ constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
+constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLieStill = 0.1;                      ///< m/s
 constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
 constexpr double kLie = 0.5, kNeverStill = 4;          ///< s; s after which it need not lie still
@@ -395,10 +396,12 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
 
 template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
+  // Who has just got up need not stand as well as it would like to.
+  const double patience = risen_ ? 1 + std::max(report_.time - kPatient, 0.0) / kPatient : 1;
   return swing_ < 0 && !fade_.running() &&
-         from_above(is.mass.velocity).norm() < kStill / 2 * std::sqrt(unit_) &&
-         (from_above(is.mass.place) - goal()).norm() < kSame / 2 * unit_ &&
-         (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < 0.02;
+         from_above(is.mass.velocity).norm() < patience * kStill / 2 * std::sqrt(unit_) &&
+         (from_above(is.mass.place) - goal()).norm() < patience * kSame / 2 * unit_ &&
+         (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;
 }
 
 /// The clip again, from where the feet stand now.
@@ -438,6 +441,7 @@ int Behaviour<T>::misplaced() const {
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
   character.displace(to_feet());
+  risen_ = false;
   give_up(character);
   fades_ = true;
 }
@@ -457,6 +461,7 @@ void Behaviour<T>::tell(BehaviourEventKind kind, BehaviourReason reason, double 
 template <class T>
 void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double number) {
   report_.state = BehaviourState::kFall;
+  risen_ = false;
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
@@ -536,6 +541,7 @@ void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, do
 template <class T>
 void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jets, double h) {
   report_ = {.state = BehaviourState::kBalance};
+  risen_ = true;
   allowed_ = false;
   get_up_.forget();
   tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);

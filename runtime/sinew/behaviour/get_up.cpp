@@ -11,11 +11,14 @@ constexpr double kStrong = 0.4;                  ///< s, in which the muscles' s
 constexpr double kSettles = 0.25, kPose = 0.05;  ///< s, m: gathered, or as near as it will come
 constexpr double kSame = 0.04;                   ///< m: another pose has to be nearer by that
 constexpr int kMostGathers = 3;
-constexpr double kMayRise = 0.25, kLost = 0.35;   ///< m off the clip's pose
+constexpr double kMayRise = 0.3, kLost = 0.35;   ///< m off the clip's pose
 constexpr double kFull = 1.5, kWaits = 0.08;      ///< rate and m: see above
+constexpr double kCaught = 1.5;                   ///< s, in which a limb that could not be gathered comes free
 constexpr double kRateTime = 0.08;                ///< s, in which the clip's rate follows
 constexpr double kMostWait = 1.5, kMostTime = 7;  ///< s
-constexpr double kEndsWithin = 0.1;               ///< m
+constexpr double kEndsWithin = 0.15;              ///< m
+constexpr double kNearlyUp = 0.93;                ///< of the clip: from here on balance may take over
+constexpr double kStraight = 0.05;                ///< m below its height at the clip's end: it stands
 
 double smooth(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -117,7 +120,8 @@ template <class T>
 GetUpOutcome GetUp<T>::update(Character<T>& character, std::span<JointJet<T>> jets, double h) {
   elapsed_ += h;
   look(character);
-  return rises_ ? rise(character, jets, h) : gather(character, jets, h);
+  if (!rises_) return gather(character, jets, h);
+  return rolls() ? roll(character, jets, h) : rise(character, jets, h);
 }
 
 template <class T>
@@ -151,7 +155,9 @@ template <class T>
 void GetUp<T>::begin_rise(Character<T>& character) {
   rises_ = true;
   waits_ = 0;
+  caught_ = off_;
   character.set_strength(T(strength_));
+  if (rolls()) return;  // nothing but the ground
   character.set_root_drive(RootDrive::kGrounded);
   character.set_help(weight_ * settings_.rise_force, weight_ * unit_ * settings_.rise_torque);
 }
@@ -159,7 +165,7 @@ void GetUp<T>::begin_rise(Character<T>& character) {
 /// The clip's time goes on, slower where the body is behind; critically damped.
 template <class T>
 void GetUp<T>::move_time(double h) {
-  const double wanted = std::clamp(kFull - off_ / (kWaits * unit_), 0.0, 1.0) / std::sqrt(unit_);
+  const double wanted = std::clamp(kFull - (off_ - caught_) / (kWaits * unit_), 0.0, 1.0) / std::sqrt(unit_);
   const double rate_time = kRateTime * std::sqrt(unit_);
   rate_change_ =
       (wanted - time_.rate) / (rate_time * rate_time) - 2 / rate_time * time_.acceleration;
@@ -167,10 +173,30 @@ void GetUp<T>::move_time(double h) {
   time_.rate = std::max(time_.rate + h * time_.acceleration, 0.0);
   time_.value += h * time_.rate;
   waits_ = wanted < 0.1 ? waits_ + h : 0;
+  caught_ *= std::exp(-h / (kCaught * std::sqrt(unit_)));
 }
 
 template <class T>
-GetUpOutcome GetUp<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+bool GetUp<T>::rolls() const {
+  return clips_.variants()[static_cast<std::size_t>(variant_)].rolls;
+}
+
+/// Over onto another side, which needs no balance; then on from there.
+template <class T>
+GetUpOutcome GetUp<T>::roll(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  off_ = caught_ = 0;
+  move_time(h);
+  clips_.sample(variant_, ClipTime{time_}, jets);
+  put(jets);
+  if (time_.value < double(clips_.variants()[static_cast<std::size_t>(variant_)].clip->duration))
+    return GetUpOutcome::kGathers;
+  tried_ |= 1u << variant_;
+  gathers_ = 0;
+  return gather_to(character, clips_.choose(is_, tried_)) ? GetUpOutcome::kGathers : GetUpOutcome::kStuck;
+}
+
+template <class T>
+GetUpOutcome GetUp<T>::rise(const Character<T>& character, std::span<JointJet<T>> jets, double h) {
   clips_.sample(variant_, ClipTime{time_}, pose_);
   clips_.place(pose_, model_, wanted_);
   off_ = fit_pose(clips_.points().mass(), wanted_, is_).off;
@@ -181,11 +207,10 @@ GetUpOutcome GetUp<T>::rise(Character<T>& character, std::span<JointJet<T>> jets
   if (off_ > kLost * unit_) return fail(GetUpOutcome::kTooFar);
   if (waits_ > kMostWait * std::sqrt(unit_) || elapsed_ > kMostTime * std::sqrt(unit_))
     return fail(GetUpOutcome::kTooLong);
-  if (time_.value < end || off_ > kEndsWithin * unit_) return GetUpOutcome::kRises;
-  if (!clips_.variants()[static_cast<std::size_t>(variant_)].rolls) return GetUpOutcome::kUp;
-  const GetUpChoice next = clips_.choose(is_, tried_ | 1u << variant_);
-  character.set_root_drive(RootDrive::kFree);
-  return gather_to(character, next) ? GetUpOutcome::kGathers : fail(GetUpOutcome::kStuck);
+  const double low = clips_.variants()[static_cast<std::size_t>(variant_)].end_height - double(character.model()[0].translation.z());
+  const bool stands = time_.value >= kNearlyUp * end && low < kStraight * unit_;
+  if (!stands || off_ > kEndsWithin * unit_) return GetUpOutcome::kRises;
+  return GetUpOutcome::kUp;
 }
 
 template class GetUp<float>;

@@ -48,7 +48,9 @@ class GetUp {
   void look(const Character<T>& character);
   bool gather_to(const Character<T>& character, const GetUpChoice& choice);
   GetUpOutcome gather(Character<T>& character, std::span<JointJet<T>> jets, double h);
-  GetUpOutcome rise(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  bool rolls() const;
+  GetUpOutcome roll(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  GetUpOutcome rise(const Character<T>& character, std::span<JointJet<T>> jets, double h);
   void begin_rise(Character<T>& character);
   void put(std::span<JointJet<T>> jets) const;
   GetUpOutcome fail(GetUpOutcome why);
@@ -61,6 +63,7 @@ class GetUp {
   bool rises_ = false;
   int entry_ = -1, variant_ = -1, gathers_ = 0;
   double strength_ = 1, elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
+  double caught_ = 0;  ///< m, that it was off when it began to rise: a limb under the body, that comes free
   Displacement place_;  ///< of the clip
   TimeJet<double> time_{0.0};
   double rate_change_ = 0;  ///< 1/s², how τ'' changes: that time itself is C²

@@ -14,7 +14,7 @@ constexpr double kEntered = 0.4;  ///< of a clip, until which it may be entered
 constexpr double kEvery = 0.1;    ///< s from one entry to the next
 constexpr double kBears = 0.02;   ///< m over the lowest point: what bears
 constexpr double kInside = 0.01;  ///< m, of the centre of mass inside what bears
-constexpr double kReach = 0.35;   ///< m off the nearest entry, from which a roll is looked for
+constexpr double kReach = 0.25;   ///< m off the nearest entry, from which a roll is looked for
 
 bool begins_with(const std::string& name, std::string_view word) {
   return name.compare(0, word.size(), word) == 0;
@@ -67,8 +67,8 @@ void GetUpClips<T>::prepare(const Skeleton& skeleton, std::span<const Clip> clip
     const bool rolls = begins_with(clip.name, "roll");
     if (!rolls && !begins_with(clip.name, "get_up")) continue;
     if (static_cast<std::size_t>(clip.joint_count) != skeleton.joints.size()) continue;
-    add(skeleton, {&clip, false, rolls}, jets, model);
-    if (sides) add(skeleton, {&clip, true, rolls}, jets, model);
+    add(skeleton, {&clip, false, rolls, 0}, jets, model);
+    if (sides) add(skeleton, {&clip, true, rolls, 0}, jets, model);
   }
 }
 
@@ -78,6 +78,8 @@ void GetUpClips<T>::add(const Skeleton& skeleton, const GetUpVariant& variant, s
   if (variants_.size() == kMostVariants) return;
   const int index = static_cast<int>(variants_.size());
   variants_.push_back(variant);
+  sample(index, ClipTime{double(variant.clip->duration), 0, 0}, jets);
+  variants_.back().end_height = double(jets[0].translation.z());
   std::vector<Vec3<double>> points(points_.count());
   bool any = false;
   for (double time = 0; time <= kEntered * double(variant.clip->duration); time += kEvery) {

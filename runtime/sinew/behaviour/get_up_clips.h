@@ -16,7 +16,8 @@ namespace sinew {
 struct GetUpVariant {
   const Clip* clip = nullptr;
   bool mirrored = false;
-  bool rolls = false;  ///< ends lying, so that another clip can get up from there
+  bool rolls = false;     ///< ends lying, so that another clip can get up from there
+  double end_height = 0;  ///< m, of the root where the clip ends
 };
 
 /// A pose at which a variant may be entered: one in which the body rests on what touches the ground.
