@@ -85,6 +85,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
     return Status::error(Code::kInvalidArgument, "a behaviour needs one jet per joint of its skeleton");
   if (!character.valid()) return Status::error(Code::kInvalidArgument, "a behaviour needs a character");
   events_count_ = 0;
+  if (std::exchange(knocked_, false)) tell(BehaviourEventKind::kFallen, BehaviourReason::kAsked);
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   if (!acts && character.unknown()[0] == 0) {
     measured_ = asked_ = false;
@@ -466,7 +467,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
   report_.time = 0;
   rest_ = 0;
   character.set_root_drive(RootDrive::kFree);
-  tell(BehaviourEventKind::kFallen, reason, number);
+  if (reason != BehaviourReason::kAsked) tell(BehaviourEventKind::kFallen, reason, number);
 }
 
 /// Whether it has lain still for a while.
@@ -582,6 +583,7 @@ void Behaviour<T>::knock_down(Character<T> character) {
   if (report_.state == BehaviourState::kClip) strength_ = double(character.strength());
   if (fallen()) return;
   report_.tries = 0;
+  knocked_ = true;  // the next update tells
   fall(character, BehaviourReason::kAsked, 0);
 }
 

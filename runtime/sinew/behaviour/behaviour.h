@@ -177,6 +177,7 @@ class Behaviour {
   double rest_ = 0;                ///< s
   GetUp<T> get_up_;
   bool allowed_ = false;  ///< to get up
+  bool knocked_ = false;  ///< since the last update
   bool risen_ = false;    ///< it has just got up, and balances
   std::array<BehaviourEvent, 4> events_;
   std::size_t events_count_ = 0;

@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kEntered = 0.4;  ///< of a clip, until which it may be entered
+constexpr double kEntered = 0.2;  ///< of a clip, until which it may be entered: who lies does not come into a later pose
 constexpr double kEvery = 0.1;    ///< s from one entry to the next
 constexpr double kBears = 0.02;   ///< m over the lowest point: what bears
 constexpr double kInside = 0.01;  ///< m, of the centre of mass inside what bears
