@@ -474,8 +474,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
 template <class T>
 bool Behaviour<T>::lies(const Character<T>& character, double h) {
   const MeasuredBody is = measure(character);
-  if (std::exchange(measured_, true))
-    spin_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
+  if (std::exchange(measured_, true)) spin_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
   root_before_ = is.root.rotation;
   const double speed = character.report().momentum.norm() / body_.total_mass, time = std::sqrt(unit_);
   const bool still = speed < kLieStill * time && spin_.norm() < kTurnsStill / time;

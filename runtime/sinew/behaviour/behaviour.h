@@ -48,12 +48,12 @@ enum class BehaviourEventKind : std::uint8_t {
 /// Why.
 enum class BehaviourReason : std::uint8_t {
   kNone,
-  kAsked,         ///< the host wanted it
-  kBeyondReach,   ///< number: m that the capture point was beyond what steps reach
-  kTilted,        ///< number: m, height of the root
-  kNotGathered,   ///< number: m off the pose from which it was to rise
-  kLeftItsClip,   ///< number: m off it
-  kTookTooLong,   ///< number: s
+  kAsked,        ///< the host wanted it
+  kBeyondReach,  ///< number: m that the capture point was beyond what steps reach
+  kTilted,       ///< number: m, height of the root
+  kNotGathered,  ///< number: m off the pose from which it was to rise
+  kLeftItsClip,  ///< number: m off it
+  kTookTooLong,  ///< number: s
 };
 
 struct BehaviourEvent {
@@ -89,8 +89,8 @@ class Behaviour {
   Behaviour(Behaviour&&) noexcept = default;
   Behaviour& operator=(Behaviour&&) noexcept = default;
 
-  /// Set-up: the clips by which it gets up, of all clips of an asset those named get_up… and roll…, which must
-  /// outlive this. Errors if there is none.
+  /// Set-up: the clips by which it gets up, of all clips of an asset those named get_up… and roll…, which
+  /// must outlive this. Errors if there is none.
   Status use_get_ups(const Skeleton& skeleton, std::span<const Clip> clips);
 
   /// Before a step of h seconds, with what the animation wants at its end. Errors if the span has not one jet
@@ -172,9 +172,9 @@ class Behaviour {
   TimeJet<double> height_{0.0};
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
-  bool measured_ = false;          ///< `root_before_` is that of the last frame
-  double strength_ = 1;            ///< before it fell
-  double rest_ = 0;                ///< s
+  bool measured_ = false;  ///< `root_before_` is that of the last frame
+  double strength_ = 1;    ///< before it fell
+  double rest_ = 0;        ///< s
   GetUp<T> get_up_;
   bool allowed_ = false;  ///< to get up
   bool knocked_ = false;  ///< since the last update

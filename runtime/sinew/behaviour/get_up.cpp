@@ -11,10 +11,10 @@ constexpr double kStrong = 0.4;                  ///< s, in which the muscles' s
 constexpr double kSettles = 0.25, kPose = 0.05;  ///< s, m: gathered, or as near as it will come
 constexpr double kSame = 0.04;                   ///< m: another pose has to be nearer by that
 constexpr int kMostGathers = 3;
-constexpr double kMayRise = 0.3, kLost = 0.35;   ///< m off the clip's pose
-constexpr double kFull = 1.5, kWaits = 0.08;      ///< rate and m: see above
-constexpr double kCaught = 1.5;                   ///< s, in which a limb that could not be gathered comes free
-constexpr double kRateTime = 0.08;                ///< s, in which the clip's rate follows
+constexpr double kMayRise = 0.3, kLost = 0.35;  ///< m off the clip's pose
+constexpr double kFull = 1.5, kWaits = 0.08;    ///< rate and m: see above
+constexpr double kCaught = 1.5;                 ///< s, in which a limb that could not be gathered comes free
+constexpr double kRateTime = 0.08;              ///< s, in which the clip's rate follows
 constexpr double kMostWait = 1.5, kMostTime = 7;  ///< s
 constexpr double kEndsWithin = 0.15;              ///< m
 constexpr double kNearlyUp = 0.93;                ///< of the clip: from here on balance may take over
@@ -129,8 +129,7 @@ GetUpOutcome GetUp<T>::gather(Character<T>& character, std::span<JointJet<T>> je
   const double before = strong_from_;
   strong_from_ += h / (kStrong * std::sqrt(unit_));
   if (before < 1)
-    character.set_strength(
-        T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
+    character.set_strength(T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
   fade_.elapsed += T(h);
   const Fit fit = clips_.fit(entry_, is_);
   off_ = fit.off;
@@ -143,8 +142,8 @@ GetUpOutcome GetUp<T>::gather(Character<T>& character, std::span<JointJet<T>> je
   waits_ += h;
   if (waits_ < kSettles * std::sqrt(unit_)) return GetUpOutcome::kGathers;
   const GetUpChoice best = clips_.choose(is_, tried_);
-  const bool turned = best.entry >= 0 && clips_.entry(best.entry).variant != variant_ &&
-                      best.fit.off < off_ - kSame * unit_;
+  const bool turned =
+      best.entry >= 0 && clips_.entry(best.entry).variant != variant_ && best.fit.off < off_ - kSame * unit_;
   if (turned && gathers_ < kMostGathers && gather_to(character, best)) return GetUpOutcome::kGathers;
   if (off_ > kMayRise * unit_) return fail(GetUpOutcome::kStuck);
   begin_rise(character);
@@ -167,8 +166,7 @@ template <class T>
 void GetUp<T>::move_time(double h) {
   const double wanted = std::clamp(kFull - (off_ - caught_) / (kWaits * unit_), 0.0, 1.0) / std::sqrt(unit_);
   const double rate_time = kRateTime * std::sqrt(unit_);
-  rate_change_ =
-      (wanted - time_.rate) / (rate_time * rate_time) - 2 / rate_time * time_.acceleration;
+  rate_change_ = (wanted - time_.rate) / (rate_time * rate_time) - 2 / rate_time * time_.acceleration;
   time_.acceleration += h * rate_change_;
   time_.rate = std::max(time_.rate + h * time_.acceleration, 0.0);
   time_.value += h * time_.rate;
@@ -207,7 +205,8 @@ GetUpOutcome GetUp<T>::rise(const Character<T>& character, std::span<JointJet<T>
   if (off_ > kLost * unit_) return fail(GetUpOutcome::kTooFar);
   if (waits_ > kMostWait * std::sqrt(unit_) || elapsed_ > kMostTime * std::sqrt(unit_))
     return fail(GetUpOutcome::kTooLong);
-  const double low = clips_.variants()[static_cast<std::size_t>(variant_)].end_height - double(character.model()[0].translation.z());
+  const double low = clips_.variants()[static_cast<std::size_t>(variant_)].end_height -
+                     double(character.model()[0].translation.z());
   const bool stands = time_.value >= kNearlyUp * end && low < kStraight * unit_;
   if (!stands || off_ > kEndsWithin * unit_) return GetUpOutcome::kRises;
   return GetUpOutcome::kUp;

@@ -63,14 +63,14 @@ class GetUp {
   bool rises_ = false;
   int entry_ = -1, variant_ = -1, gathers_ = 0;
   double strength_ = 1, elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
-  double caught_ = 0;  ///< m, that it was off when it began to rise: a limb under the body, that comes free
+  double caught_ = 0;   ///< m, that it was off when it began to rise: a limb under the body, that comes free
   Displacement place_;  ///< of the clip
   TimeJet<double> time_{0.0};
   double rate_change_ = 0;  ///< 1/s², how τ'' changes: that time itself is C²
   InertialState<T> fade_;
   std::vector<T> fade_numbers_;
-  std::vector<JointJet<T>> lies_, pose_;  ///< [joint]
-  std::vector<Transform<T>> model_;       ///< [joint]
+  std::vector<JointJet<T>> lies_, pose_;   ///< [joint]
+  std::vector<Transform<T>> model_;        ///< [joint]
   std::vector<Vec3<double>> is_, wanted_;  ///< [point] m
 };
 

@@ -10,7 +10,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kEntered = 0.2;  ///< of a clip, until which it may be entered: who lies does not come into a later pose
+constexpr double kEntered =
+    0.2;  ///< of a clip, until which it may be entered: who lies does not come into a later pose
 constexpr double kEvery = 0.1;    ///< s from one entry to the next
 constexpr double kBears = 0.02;   ///< m over the lowest point: what bears
 constexpr double kInside = 0.01;  ///< m, of the centre of mass inside what bears
@@ -42,9 +43,9 @@ bool bears(const Skeleton& skeleton, std::span<const Transform<T>> model, double
   ground.close();
   Vec3<double> center = Vec3<double>::Zero();
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i)
-    center += skeleton.joints[i].mass / skeleton.total_mass() *
-              (model[i] * Vec3<T>(skeleton.joints[i].center_of_mass.template cast<T>()))
-                  .template cast<double>();
+    center +=
+        skeleton.joints[i].mass / skeleton.total_mass() *
+        (model[i] * Vec3<T>(skeleton.joints[i].center_of_mass.template cast<T>())).template cast<double>();
   return ground.depth(from_above(center)) > kInside * unit;
 }
 

@@ -5,7 +5,8 @@
 namespace sinew {
 namespace {
 
-constexpr double kArm = 0.2;  ///< m of a human, by which a body's points are off its centre of mass: turned over costs 0.3
+constexpr double kArm =
+    0.2;  ///< m of a human, by which a body's points are off its centre of mass: turned over costs 0.3
 
 }  // namespace
 

@@ -94,7 +94,8 @@ void add(const Fall& fall, GetUpResult& into, Rising* found, std::mutex& writing
                     is.stood - is.decided);
 }
 
-GetUpResult run_falls(const char* name, int falls, double slope, const std::function<void(int, int)>& progress) {
+GetUpResult run_falls(const char* name, int falls, double slope,
+                      const std::function<void(int, int)>& progress) {
   GetUpResult result;
   result.name = name;
   std::mutex writing;
@@ -159,7 +160,8 @@ nlohmann::json get_ups_json(const std::vector<GetUpResult>& results) {
 }
 
 std::string get_ups_table(const std::vector<GetUpResult>& results) {
-  std::string text = "getting up      stand     s, median  longest   help N   N m   slip mm   rad/s   deep mm\n";
+  std::string text =
+      "getting up      stand     s, median  longest   help N   N m   slip mm   rad/s   deep mm\n";
   char line[300];
   for (const GetUpResult& r : results) {
     std::snprintf(line, sizeof line, "    %-12s %3d/%-3d %8.2f %9.2f %8.0f %5.0f %9.0f %7.1f %9.1f\n",

@@ -13,13 +13,13 @@ namespace sinew::study {
 
 /// What a recording's first character did after it fell: nothing that a behaviour says of itself is read.
 struct Rising {
-  bool fell = false;    ///< anything but its feet touched the ground
-  bool stands = false;  ///< in the end, for at least a second
-  double decided = -1;  ///< s: it had lain still for a quarter of a second, and moves
-  double stood = -1;    ///< s: from here on it stands
+  bool fell = false;       ///< anything but its feet touched the ground
+  bool stands = false;     ///< in the end, for at least a second
+  double decided = -1;     ///< s: it had lain still for a quarter of a second, and moves
+  double stood = -1;       ///< s: from here on it stands
   double joint_speed = 0;  ///< rad/s, fastest of a joint between the two
-  double slip = 0;         ///< m, furthest of a hand or foot that touches, over a quarter of a second or longer
-  double depth = 0;        ///< m, deepest in the ground
+  double slip = 0;   ///< m, furthest of a hand or foot that touches, over a quarter of a second or longer
+  double depth = 0;  ///< m, deepest in the ground
   int decided_frame = -1, stood_frame = -1;
 };
 
@@ -30,8 +30,8 @@ Rising rising(const scene::Recording& recording, double slope = 0);
 struct GetUpResult {
   std::string name;  ///< "flat", "slope_10_deg", "interrupted"
   int falls = 0, stand = 0;
-  std::vector<double> times;                 ///< s from decision to standing, of those that stand, sorted
-  double help_force = 0, help_torque = 0;    ///< N, N·m: peaks from the decision on
+  std::vector<double> times;                    ///< s from decision to standing, of those that stand, sorted
+  double help_force = 0, help_torque = 0;       ///< N, N·m: peaks from the decision on
   double slip = 0, joint_speed = 0, depth = 0;  ///< worst
   std::string refused;
 
@@ -40,7 +40,7 @@ struct GetUpResult {
 };
 
 struct GetUpPlan {
-  int falls = 200;        ///< on the flat, and as many on the slope
+  int falls = 200;         ///< on the flat, and as many on the slope
   int interruptions = 10;  ///< pushes of 60 N·s, at so many times of one rising
 
   static GetUpPlan quick() { return {12, 4}; }

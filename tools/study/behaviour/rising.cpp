@@ -11,11 +11,11 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kUp = 0.9;                         ///< of the root's height
-constexpr double kTouches = 1e-3;                   ///< m
-constexpr double kStill = 0.05, kLies = 0.25;       ///< m/s of every body, s
-constexpr double kLow = 0.5;                        ///< of the root's height: who lies or sits
-constexpr double kStandsFor = 1;                    ///< s
+constexpr double kUp = 0.9;                    ///< of the root's height
+constexpr double kTouches = 1e-3;              ///< m
+constexpr double kStill = 0.05, kLies = 0.25;  ///< m/s of every body, s
+constexpr double kLow = 0.5;                   ///< of the root's height: who lies or sits
+constexpr double kStandsFor = 1;               ///< s
 
 /// The character in the axes of the ground, which is level at 0 there.
 class Lying {
@@ -28,7 +28,8 @@ class Lying {
     const Skeleton& skeleton = recording.characters[0]->skeleton;
     for (std::size_t b = 0; b < member_.bodies.size(); ++b) {
       const Role role = skeleton.joints[b].role;
-      const bool foot = role == Role::kFootL || role == Role::kFootR || role == Role::kToesL || role == Role::kToesR;
+      const bool foot =
+          role == Role::kFootL || role == Role::kFootR || role == Role::kToesL || role == Role::kToesR;
       feet_.push_back(foot);
       bears_.push_back(foot || role == Role::kHandL || role == Role::kHandR);
     }
@@ -123,7 +124,8 @@ Rising rising(const scene::Recording& recording, double slope) {
     if (found.stood_frame < 0 && found.decided >= 0) {
       found.joint_speed = std::max(found.joint_speed, fastest_joint(body, before, now, h));
       for (std::size_t s = 0; s < now.solids.size(); ++s)
-        if (body.bears(now.whose[s])) slips[now.whose[s]].look(before.solids[s], now.solids[s], body.ground());
+        if (body.bears(now.whose[s]))
+          slips[now.whose[s]].look(before.solids[s], now.solids[s], body.ground());
       for (auto& [whose, slip] : slips) slip.end_frame();
     }
     if (stands && found.stood_frame < 0) found.stood_frame = f;
