@@ -57,7 +57,7 @@ scene::Scene fall_scene(const Fall& fall) {
     s.pushes.push_back(p);
   };
   push(at, size * way, kPushAt);
-  push(Role::kUpperarmL, between(random, -60, 60) * Vec3<double>(-way.y(), way.x(), 0), kPushAt);
+  push(Role::kUpperArmL, between(random, -60, 60) * Vec3<double>(-way.y(), way.x(), 0), kPushAt);
   push(Role::kChest, 150 * way, kPushAt + 0.3);  // no step catches it
   if (fall.interrupted > 0) push(Role::kChest, kInterrupts * way, fall.interrupted);
   if (fall.slope == 0) return s;
