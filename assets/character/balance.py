@@ -17,11 +17,11 @@ for _tail in ("_l", "_r"):
                ("foot" + _tail, "toes" + _tail, 0.0137, 0.5, 0.4)]
 
 
-def points(motion):
-    """Masses (shares of the body's) and paths [point][frame][3] of the body's point masses."""
+def points(motion, bones=_BONES):
+    """Masses (shares of the body's) and paths [point][frame][3] of the body's point masses; `bones` as _BONES."""
     rotation, place = motion.globals()
     masses, paths = [], []
-    for joint, far, share, centre, radius in _BONES:
+    for joint, far, share, centre, radius in bones:
         bone = (AT[far] if isinstance(far, str) else np.array(far)) - AT[joint]
         for at in (centre - radius, centre + radius):
             masses.append(share / 2)
@@ -43,9 +43,9 @@ def acceleration(paths, seconds, travel=None):
     return np.fft.ifft(-(k ** 2)[:, None] * np.fft.fft(level, axis=1), axis=1).real
 
 
-def floor_forces(motion, seconds, travel=None):
+def floor_forces(motion, seconds, travel=None, bones=_BONES):
     """What the floor gives: force per body weight [frame][3], and the point where it acts on the floor [frame][3] (far away in flight)."""
-    masses, paths = points(motion)
+    masses, paths = points(motion, bones)
     force = acceleration(paths, seconds, travel) + [0, GRAVITY, 0]
     total = np.tensordot(masses, force, 1)
     moment = np.tensordot(masses, np.cross(paths, force), 1)

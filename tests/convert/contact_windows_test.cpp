@@ -68,7 +68,7 @@ TEST_F(DemoContacts, WhoStandsRestsAllTheTimeAndWhoGetsUpLeansOnItsHandsFirst) {
   }
   const auto hands = windows_of(asset_, clip("get_up_prone"), Role::kHandL);
   ASSERT_FALSE(hands.empty());
-  EXPECT_LT(hands.back().end, 0.6f * clip("get_up_prone").duration);
+  EXPECT_LT(hands.back().end, 0.75f * clip("get_up_prone").duration);  // its squat begins at 0.74
 }
 
 TEST_F(DemoContacts, GiveLoopsTheirMarkersAndOthersNone) {

@@ -162,7 +162,7 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
     return names;
   };
   using Names = std::set<std::string>;
-  EXPECT_EQ(keys(json), (Names{"hits", "push_map", "scenes"}));
+  EXPECT_EQ(keys(json), (Names{"get_ups", "hits", "push_map", "scenes"}));
   ASSERT_EQ(json["push_map"].size(), 2u);
   for (const auto& d : json["push_map"])
     EXPECT_EQ(keys(d), (Names{"scene", "direction", "stay_step_50", "step_fall_50", "human_stay_step",

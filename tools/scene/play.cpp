@@ -43,6 +43,7 @@ convert::Error Play<T>::add_all() {
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
+    if (behaviour) behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down
     asked_.push_back({settings.strength, {}, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)

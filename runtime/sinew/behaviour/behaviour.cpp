@@ -25,8 +25,10 @@ constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
+constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLieStill = 0.1;                      ///< m/s
-constexpr double kLie = 0.5;                           ///< s
+constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
+constexpr double kLie = 0.5, kNeverStill = 4;          ///< s; s after which it need not lie still
 
 Quat<double> upright(const Quat<double>& turned) {
   const double size = std::hypot(turned.w(), turned.z());
@@ -82,6 +84,8 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   if (jets.size() != last_.size())
     return Status::error(Code::kInvalidArgument, "a behaviour needs one jet per joint of its skeleton");
   if (!character.valid()) return Status::error(Code::kInvalidArgument, "a behaviour needs a character");
+  events_count_ = 0;
+  if (std::exchange(knocked_, false)) tell(BehaviourEventKind::kFallen, BehaviourReason::kAsked);
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   if (!acts && character.unknown()[0] == 0) {
     measured_ = asked_ = false;
@@ -91,9 +95,11 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   switch (report_.state) {
     case BehaviourState::kFall:
     case BehaviourState::kDown:
-      if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
-      let_go(character, double(h));
-      std::copy(last_.begin(), last_.end(), jets.begin());
+      lie(character, jets, double(h));
+      return {};
+    case BehaviourState::kGather:
+    case BehaviourState::kRise:
+      rise(character, jets, double(h));
       return {};
     default:
       break;
@@ -177,7 +183,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
   if (is.root.translation.z() < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
-    return fall(character, 0);
+    return fall(character, BehaviourReason::kTilted, is.root.translation.z());
   if (report_.state == BehaviourState::kPassive) {
     if (character.unknown()[0] == 0) return give_up(character);
     if (report_.time < settings_.reaction) return;
@@ -208,7 +214,7 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;
     if (out_of_reach(-report_.capture_depth, frequency_, left, law_))
-      return fall(character, -report_.capture_depth);
+      return fall(character, BehaviourReason::kBeyondReach, -report_.capture_depth);
     return begin_step(is);
   }
   if (home_ >= 0) {
@@ -391,10 +397,12 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
 
 template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
+  // Who has just got up need not stand as well as it would like to.
+  const double patience = risen_ ? 1 + std::max(report_.time - kPatient, 0.0) / kPatient : 1;
   return swing_ < 0 && !fade_.running() &&
-         from_above(is.mass.velocity).norm() < kStill / 2 * std::sqrt(unit_) &&
-         (from_above(is.mass.place) - goal()).norm() < kSame / 2 * unit_ &&
-         (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < 0.02;
+         from_above(is.mass.velocity).norm() < patience * kStill / 2 * std::sqrt(unit_) &&
+         (from_above(is.mass.place) - goal()).norm() < patience * kSame / 2 * unit_ &&
+         (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;
 }
 
 /// The clip again, from where the feet stand now.
@@ -434,6 +442,7 @@ int Behaviour<T>::misplaced() const {
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
   character.displace(to_feet());
+  risen_ = false;
   give_up(character);
   fades_ = true;
 }
@@ -446,12 +455,31 @@ void Behaviour<T>::give_up(Character<T>& character) {
 }
 
 template <class T>
-void Behaviour<T>::fall(Character<T>& character, double beyond) {
+void Behaviour<T>::tell(BehaviourEventKind kind, BehaviourReason reason, double number) {
+  if (events_count_ < events_.size()) events_[events_count_++] = {kind, reason, number};
+}
+
+template <class T>
+void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double number) {
   report_.state = BehaviourState::kFall;
-  report_.fell_beyond = beyond;
+  risen_ = false;
+  report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
   character.set_root_drive(RootDrive::kFree);
+  if (reason != BehaviourReason::kAsked) tell(BehaviourEventKind::kFallen, reason, number);
+}
+
+/// Whether it has lain still for a while.
+template <class T>
+bool Behaviour<T>::lies(const Character<T>& character, double h) {
+  const MeasuredBody is = measure(character);
+  if (std::exchange(measured_, true)) spin_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
+  root_before_ = is.root.rotation;
+  const double speed = character.report().momentum.norm() / body_.total_mass, time = std::sqrt(unit_);
+  const bool still = speed < kLieStill * time && spin_.norm() < kTurnsStill / time;
+  rest_ = still ? rest_ + h : 0;
+  return rest_ > kLie * time || report_.time > kNeverStill * time;
 }
 
 template <class T>
@@ -459,14 +487,103 @@ void Behaviour<T>::let_go(Character<T>& character, double h) {
   const double share = std::min(report_.time / std::max(settings_.let_go, 1e-9), 1.0);
   if (report_.time < settings_.let_go + 2 * h)
     character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
-  const double speed = character.report().momentum.norm() / body_.total_mass;
-  rest_ = speed < kLieStill * std::sqrt(unit_) ? rest_ + h : 0;
-  if (rest_ > kLie * std::sqrt(unit_)) report_.state = BehaviourState::kDown;
+}
+
+template <class T>
+bool Behaviour<T>::may_get_up() const {
+  if (!get_up_.possible() || settings_.get_up == GetUpPolicy::kNever) return false;
+  return settings_.get_up == GetUpPolicy::kAuto || allowed_;
+}
+
+/// Falls, or lies and waits.
+template <class T>
+void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
+  let_go(character, h);
+  if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
+  if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, strength_)) {
+    report_.state = BehaviourState::kGather;
+    ++report_.tries;
+    tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
+    return rise(character, jets, h);
+  }
+  std::copy(last_.begin(), last_.end(), jets.begin());
+}
+
+/// Gathers its limbs and gets up, by a clip of its own.
+template <class T>
+void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  const GetUpOutcome outcome = get_up_.update(character, last_, h);
+  switch (outcome) {
+    case GetUpOutcome::kGathers:
+      report_.state = BehaviourState::kGather;
+      break;
+    case GetUpOutcome::kRises:
+      report_.state = BehaviourState::kRise;
+      break;
+    case GetUpOutcome::kUp:
+      return take_over(character, jets, h);
+    case GetUpOutcome::kStuck:
+      fall(character, BehaviourReason::kNotGathered, get_up_.off());
+      break;
+    case GetUpOutcome::kTooFar:
+      fall(character, BehaviourReason::kLeftItsClip, get_up_.off());
+      break;
+    case GetUpOutcome::kTooLong:
+      fall(character, BehaviourReason::kTookTooLong, report_.time);
+      break;
+  }
+  asked_ = true;
+  std::copy(last_.begin(), last_.end(), jets.begin());
+}
+
+/// Stands again: balanced over its feet, and from there on to the host's animation.
+template <class T>
+void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  report_ = {.state = BehaviourState::kBalance};
+  risen_ = true;
+  allowed_ = false;
+  get_up_.forget();
+  tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
+  see_clip(jets);
+  swing_ = -1;
+  choose_support(measure(character));
+  character.displace(to_feet());  // the animation faces as the body does
+  const MeasuredBody is = measure(character);
+  spin_.setZero();
+  root_before_ = is.root.rotation;
+  measured_ = true;
+  character.set_help(0, weight_ * unit_ * settings_.help_torque);
+  begin_plan(is, jets);
+  move_plan(h);
+  write_stance(jets, h);
+  fade(jets, T(h));
+  std::copy(jets.begin(), jets.end(), last_.begin());
+}
+
+template <class T>
+Status Behaviour<T>::use_get_ups(const Skeleton& skeleton, std::span<const Clip> clips) {
+  if (skeleton.joints.size() != last_.size())
+    return Status::error(Code::kInvalidArgument, "not the skeleton of this behaviour");
+  get_up_.prepare(skeleton, clips, settings_, unit_, weight_);
+  return get_up_.possible() ? Status{} : Status::error(Code::kInvalidArgument, "no clip to get up by");
+}
+
+template <class T>
+Status Behaviour<T>::get_up() {
+  if (settings_.get_up == GetUpPolicy::kNever || !get_up_.possible())
+    return Status::error(Code::kInvalidArgument, "it does not get up");
+  allowed_ = true;
+  return {};
 }
 
 template <class T>
 void Behaviour<T>::knock_down(Character<T> character) {
-  fall(character, 0);
+  if (report_.state == BehaviourState::kClip) strength_ = double(character.strength());
+  if (fallen()) return;
+  report_.tries = 0;
+  knocked_ = true;  // the next update tells
+  fall(character, BehaviourReason::kAsked, 0);
 }
 
 template <class T>
@@ -475,6 +592,7 @@ void Behaviour<T>::stand(Character<T> character) {
   character.set_root_drive(RootDrive::kGrounded);
   character.set_help(-1, -1);
   report_ = {};
+  allowed_ = false;
 }
 
 template class Behaviour<float>;

@@ -21,6 +21,7 @@
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/behaviour/balance_plan.h"
 #include "sinew/behaviour/behaviour_settings.h"
+#include "sinew/behaviour/get_up.h"
 #include "sinew/behaviour/stance.h"
 #include "sinew/character/world.h"
 
@@ -32,7 +33,33 @@ enum class BehaviourState : std::uint8_t {
   kBalance,  ///< feet stand, the body is brought back over them
   kStep,     ///< one foot is on its way
   kFall,     ///< nothing is done any more
-  kDown,     ///< lies still: the host decides how it gets up
+  kDown,     ///< lies still: it may get up, or the host decides how
+  kGather,   ///< lies, and comes into the pose from which it rises
+  kRise,     ///< gets up
+};
+
+/// What a host may want to hear of: sounds, scores, decisions.
+enum class BehaviourEventKind : std::uint8_t {
+  kFallen,    ///< it falls, or lies again after it tried to rise
+  kRising,    ///< it has begun to get up
+  kStanding,  ///< it stands
+};
+
+/// Why.
+enum class BehaviourReason : std::uint8_t {
+  kNone,
+  kAsked,        ///< the host wanted it
+  kBeyondReach,  ///< number: m that the capture point was beyond what steps reach
+  kTilted,       ///< number: m, height of the root
+  kNotGathered,  ///< number: m off the pose from which it was to rise
+  kLeftItsClip,  ///< number: m off it
+  kTookTooLong,  ///< number: s
+};
+
+struct BehaviourEvent {
+  BehaviourEventKind kind = BehaviourEventKind::kFallen;
+  BehaviourReason reason = BehaviourReason::kNone;
+  double number = 0;  ///< see BehaviourReason
 };
 
 /// What it did, for whoever tells the player.
@@ -42,6 +69,7 @@ struct BehaviourReport {
   double capture_depth = 0;  ///< m, of the capture point inside the standing soles; negative: outside
   double time = 0;           ///< s since the push
   double fell_beyond = 0;    ///< m that the capture point was beyond reach, where it fell
+  int tries = 0;             ///< to get up, since it fell
 };
 
 /// What the last step left of a body, in the frame in which targets are given.
@@ -61,16 +89,31 @@ class Behaviour {
   Behaviour(Behaviour&&) noexcept = default;
   Behaviour& operator=(Behaviour&&) noexcept = default;
 
+  /// Set-up: the clips by which it gets up, of all clips of an asset those named get_up… and roll…, which
+  /// must outlive this. Errors if there is none.
+  Status use_get_ups(const Skeleton& skeleton, std::span<const Clip> clips);
+
   /// Before a step of h seconds, with what the animation wants at its end. Errors if the span has not one jet
   /// per joint. No allocation. O(1) while nothing disturbs, else O(joints).
   Status update(Character<T> character, std::span<JointJet<T>> jets, T h);
   /// Falls now, whatever the balance says.
   void knock_down(Character<T> character);
+  /// Lets it get up as soon as it lies still (GetUpPolicy::kWhenAllowed). Errors if it never may, or has no
+  /// clip to get up by.
+  Status get_up();
+  /// Whether it falls or lies, and does nothing about it yet.
+  bool fallen() const {
+    return report_.state == BehaviourState::kFall || report_.state == BehaviourState::kDown;
+  }
   /// After it was down, or to give a behaviour up: the animation again, muscles as strong as they were. Where
   /// it lies is the animation's to begin from.
   void stand(Character<T> character);
 
   const BehaviourReport& report() const { return report_; }
+  /// Of the last update.
+  std::span<const BehaviourEvent> events() const { return {events_.data(), events_count_}; }
+  /// By which it gets up.
+  const GetUp<T>& getting_up() const { return get_up_; }
   BehaviourState state() const { return report_.state; }
   /// Of the body that was pushed, m and m/s.
   const Pendulum& plan() const { return plan_; }
@@ -95,8 +138,14 @@ class Behaviour {
   void write_stance(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
   void finish(Character<T>& character);
-  void fall(Character<T>& character, double beyond);
+  void fall(Character<T>& character, BehaviourReason reason, double number);
   void let_go(Character<T>& character, double h);
+  bool lies(const Character<T>& character, double h);
+  bool may_get_up() const;
+  void lie(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  void rise(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  void take_over(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  void tell(BehaviourEventKind kind, BehaviourReason reason, double number = 0);
   bool may_finish(const MeasuredBody& is) const;
   Vec2 goal() const;
   Feet feet_now(const Transform<double>& root) const;
@@ -123,9 +172,15 @@ class Behaviour {
   TimeJet<double> height_{0.0};
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
-  bool measured_ = false;          ///< `root_before_` is that of the last frame
-  double strength_ = 1;            ///< before it fell
-  double rest_ = 0;                ///< s
+  bool measured_ = false;  ///< `root_before_` is that of the last frame
+  double strength_ = 1;    ///< before it fell
+  double rest_ = 0;        ///< s
+  GetUp<T> get_up_;
+  bool allowed_ = false;  ///< to get up
+  bool knocked_ = false;  ///< since the last update
+  bool risen_ = false;    ///< it has just got up, and balances
+  std::array<BehaviourEvent, 4> events_;
+  std::size_t events_count_ = 0;
   std::vector<JointJet<T>> last_;  ///< [joint] what was asked last
   bool asked_ = false;             ///< in the last frame
   bool fades_ = false;             ///< a fade has to begin in this frame

@@ -1,7 +1,16 @@
 // What a game sets of a body that keeps its balance.
 #pragma once
 
+#include <cstdint>
+
 namespace sinew {
+
+/// When a body that lies at rest gets up.
+enum class GetUpPolicy : std::uint8_t {
+  kAuto,         ///< as soon as it lies still
+  kWhenAllowed,  ///< when Behaviour::get_up() has been called
+  kNever,        ///< dead
+};
 
 struct BehaviourSettings {
   double reaction = 0.125;  ///< s, in which nothing but physics acts (Bortolami 2003: 125 ms)
@@ -10,6 +19,10 @@ struct BehaviourSettings {
   double help_torque = 60;  ///< N·m of a human, that may keep the trunk up while it balances; see the report
   double fallen_strength = 0.02;  ///< of the muscles, once it falls: limbs do not flail
   double let_go = 0.15;           ///< s, in which they come to that
+  GetUpPolicy get_up = GetUpPolicy::kAuto;
+  double gather = 0.6;  ///< s, of a human, from where it lies into the pose from which it rises
+  /// N and N·m of a human, that an invisible hand may do while it rises; see the report.
+  double rise_force = 0, rise_torque = 120;
 };
 
 }  // namespace sinew

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "study/audit/member.h"
+#include "study/behaviour/slip.h"
 
 namespace sinew::study {
 namespace {
@@ -59,44 +59,6 @@ class Standing {
   double ground_;
   std::vector<int> foot_of_;  ///< [body]
   std::vector<int> whose_;    ///< [solid]
-};
-
-/// Points on which a solid may stand, m, world.
-std::vector<Vector3d> lowest_points(const audit::Solid& solid) {
-  std::vector<Vector3d> points;
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0})
-      for (const double z : {-1.0, 1.0})
-        points.emplace_back(solid.pose *
-                                Vector3d(x * solid.half.x(), y * solid.half.y(), z * solid.half.z()) -
-                            solid.radius * Vector3d::UnitZ());
-  return points;
-}
-
-/// How far a foot has slid since it touched the ground.
-class Slip {
- public:
-  /// The solid as it was a frame ago and as it is now.
-  void look(const audit::Solid& before, const audit::Solid& now, double ground) {
-    const Eigen::Isometry3d moved = now.pose * before.pose.inverse();
-    for (const Vector3d& point : lowest_points(before)) {
-      const Vector3d to = moved * point;
-      if (point.z() > ground + kTouches || to.z() > ground + kTouches) continue;
-      const Vector2d way = (to - point).head<2>();
-      if (!least_ || way.norm() < least_->norm()) least_ = way;
-    }
-  }
-  void end_frame() {
-    sum_ = least_ ? Vector2d(sum_ + *least_) : Vector2d::Zero();
-    furthest_ = std::max(furthest_, sum_.norm());
-    least_.reset();
-  }
-  double furthest() const { return furthest_; }
-
- private:
-  std::optional<Vector2d> least_;
-  Vector2d sum_ = Vector2d::Zero();
-  double furthest_ = 0;
 };
 
 }  // namespace

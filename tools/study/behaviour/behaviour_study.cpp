@@ -159,6 +159,7 @@ BehaviourPlan BehaviourPlan::quick() {
   plan.sweeps = {{Role::kChest, 60, 4, {10, 20, 30, 40, 50, 60, 80, 100, 120}, 3}};
   plan.phases = 2;
   plan.hits = HitPlan::quick();
+  plan.get_ups = GetUpPlan::quick();
   return plan;
 }
 
@@ -189,6 +190,11 @@ convert::Error run_behaviour(const BehaviourPlan& plan, const std::function<void
   for (HitScene& hits : judge_hits(result.hits)) result.scenes.push_back({hits.name, hits.findings});
   result.scenes.push_back({"push_while_walking", {}});
   judge_walk(plan.phases, result.scenes.back().findings);
+  result.get_ups = run_get_ups(plan.get_ups, progress);
+  for (const GetUpResult& get_up : result.get_ups) {
+    result.scenes.push_back({"get_up_" + get_up.name, {}});
+    judge_get_ups(get_up, result.scenes.back().findings);
+  }
   if (several_rates(result.maps)) {
     result.scenes.push_back({"rates", {}});
     judge_rates(result.maps, result.scenes.back().findings);
@@ -212,13 +218,17 @@ nlohmann::json behaviour_json(const BehaviourResult& result) {
       criteria.push_back({{"name", c.name}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}});
     scenes.push_back({{"name", scene.name}, {"passed", scene.findings.passed()}, {"criteria", criteria}});
   }
-  return {{"push_map", maps}, {"hits", hits_json(result.hits)}, {"scenes", scenes}};
+  return {{"push_map", maps},
+          {"hits", hits_json(result.hits)},
+          {"scenes", scenes},
+          {"get_ups", get_ups_json(result.get_ups)}};
 }
 
 std::string behaviour_table(const BehaviourResult& result) {
   std::string text;
   for (const PushMap& map : result.maps) text += map_table(map) + "\n";
   text += hits_table(result.hits);
+  text += get_ups_table(result.get_ups);
   for (const BehaviourScene& scene : result.scenes) text += scene_table(scene);
   return text;
 }

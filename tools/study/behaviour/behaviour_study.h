@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "study/behaviour/get_up_study.h"
 #include "study/behaviour/hits.h"
 #include "study/behaviour/push_map.h"
 #include "study/scenes/situation.h"
@@ -16,6 +17,7 @@ struct BehaviourPlan {
   HitPlan hits;
   double undisturbed = 60;  ///< s
   int phases = 4;           ///< of a walk, in which it is pushed
+  GetUpPlan get_ups;
 
   /// 8 directions, chest and pelvis, 10 seeds, chest also at 30 and 120 Hz.
   static BehaviourPlan full();
@@ -32,6 +34,7 @@ struct BehaviourResult {
   std::vector<PushMap> maps;
   std::vector<Hit> hits;
   std::vector<BehaviourScene> scenes;
+  std::vector<GetUpResult> get_ups;
 };
 
 /// `progress(done, total)` of the map that is being made; may be empty.

@@ -116,7 +116,7 @@ scene::Scene balancing_scene(const char* clip, bool grounded, double seconds, do
   c.clips.push_back({.clip = asset->find_clip(clip)});
   if (grounded) {
     c.root = {{0, RootDrive::kGrounded}};
-    c.behaviour.emplace();
+    c.behaviour.emplace().get_up = GetUpPolicy::kNever;
   }
   s.characters.push_back(c);
   return s;

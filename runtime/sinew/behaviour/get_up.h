@@ -1,0 +1,80 @@
+// How a body that lies gets up: from where it lies into the nearest pose of a get-up clip, and up by it.
+// Internal to behaviours.
+//
+// *Gather*: the joints go from where they are to that pose, C², while their strength comes back; the root has
+// nothing but the ground. *Rise*: the clip is played from there with a rate that waits where the body is
+// behind, r = clamp(1.5 − e/0.08 m, 0, 1), e how far the body is from the clip's pose wherever that stands
+// and faces (Tao et al., "Learning to get up", 2022, wait in poses that bear, too); the root is grounded.
+#pragma once
+
+#include <vector>
+
+#include "sinew/animation/inertialize_job.h"
+#include "sinew/behaviour/behaviour_settings.h"
+#include "sinew/behaviour/get_up_clips.h"
+#include "sinew/character/world.h"
+
+namespace sinew {
+
+enum class GetUpOutcome : std::uint8_t {
+  kGathers,
+  kRises,
+  kStuck,   ///< the pose to rise from was not reached
+  kTooFar,  ///< it left the clip while rising
+  kTooLong,
+  kUp,  ///< the clip has ended and the body is where it ends
+};
+
+template <class T>
+class GetUp {
+ public:
+  /// Set-up. `unit`: the figure's size, of a human's; `weight`: its mass, likewise. See GetUpClips::prepare.
+  void prepare(const Skeleton& skeleton, std::span<const Clip> clips, const BehaviourSettings& settings,
+               double unit, double weight);
+  bool possible() const { return !clips_.empty(); }
+  /// From where the body lies. `strength`: of its muscles when it stands. Whether there is a way.
+  bool begin(Character<T>& character, double strength);
+  /// Moves on by h s, and writes what the body is to do.
+  GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  /// Forgets which clips failed.
+  void forget() { tried_ = 0; }
+  /// Chosen: index of GetUpClips::variants(); time s.
+  int variant() const { return variant_; }
+  double time() const { return time_.value; }
+  double off() const { return off_; }  ///< m, from the pose that it should be in
+  const GetUpClips<T>& clips() const { return clips_; }
+
+ private:
+  void look(const Character<T>& character);
+  bool gather_to(const Character<T>& character, const GetUpChoice& choice);
+  GetUpOutcome gather(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  bool rolls() const;
+  GetUpOutcome roll(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  GetUpOutcome rise(const Character<T>& character, std::span<JointJet<T>> jets, double h);
+  void begin_rise(Character<T>& character);
+  void put(std::span<JointJet<T>> jets) const;
+  GetUpOutcome fail(GetUpOutcome why);
+  void move_time(double h);
+
+  GetUpClips<T> clips_;
+  BehaviourSettings settings_;
+  double unit_ = 1, weight_ = 1;
+  std::uint32_t tried_ = 0;  ///< variants that failed
+  bool rises_ = false;
+  int entry_ = -1, variant_ = -1, gathers_ = 0;
+  double strength_ = 1, elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
+  double caught_ = 0;   ///< m, that it was off when it began to rise: a limb under the body, that comes free
+  Displacement place_;  ///< of the clip
+  TimeJet<double> time_{0.0};
+  double rate_change_ = 0;  ///< 1/s², how τ'' changes: that time itself is C²
+  InertialState<T> fade_;
+  std::vector<T> fade_numbers_;
+  std::vector<JointJet<T>> lies_, pose_;   ///< [joint]
+  std::vector<Transform<T>> model_;        ///< [joint]
+  std::vector<Vec3<double>> is_, wanted_;  ///< [point] m
+};
+
+extern template class GetUp<float>;
+extern template class GetUp<double>;
+
+}  // namespace sinew

@@ -1,0 +1,220 @@
+// A body that lies gets up by itself: which clip it chooses, that it stands again, when it may not, and what
+// becomes of one that is pushed while it rises.
+#include <algorithm>
+
+#include "fixtures/counting_new.h"
+#include "fixtures/known_failure.h"
+#include "pushed.h"
+#include "sinew/behaviour/get_up_clips.h"
+
+namespace sinew {
+namespace {
+
+using fixtures::Pushed;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Falls when it is told, after 0.3 s.
+struct Fallen : Pushed {
+  Status status;
+  Behaviour<float> behaviour;
+  std::vector<BehaviourEvent> told;
+  double decided = -1, stood = -1;  ///< s
+
+  explicit Fallen(const BehaviourSettings& settings = {})
+      : Pushed("stand"), behaviour(asset.skeleton, settings, status) {
+    EXPECT_TRUE(status) << status.reason;
+    EXPECT_TRUE(behaviour.use_get_ups(asset.skeleton, asset.clips));
+    behave = [this](std::span<JointJet<float>> wanted) {
+      EXPECT_TRUE(behaviour.update(character(), wanted, h));
+      for (const BehaviourEvent& event : behaviour.events()) {
+        told.push_back(event);
+        if (event.kind == BehaviourEventKind::kRising && decided < 0) decided = time();
+        if (event.kind == BehaviourEventKind::kStanding) stood = time();
+      }
+    };
+  }
+  void falls(double impulse, double direction) {
+    run(0.3);
+    behaviour.knock_down(character());
+    push(impulse, direction);
+  }
+  /// At most so many seconds.
+  void run_until_it_stands(double seconds) {
+    for (int n = 0; n < std::lround(seconds / double(h)) && stood < 0; ++n) step();
+  }
+  int count(BehaviourEventKind kind) const {
+    return static_cast<int>(
+        std::count_if(told.begin(), told.end(), [&](const BehaviourEvent& e) { return e.kind == kind; }));
+  }
+};
+
+/// The clips of the sample character and what they begin with.
+struct Choosing : ::testing::Test {
+  Asset asset;
+  GetUpClips<float> clips;
+  std::vector<JointJet<float>> jets;
+  std::vector<Transform<float>> model;
+  std::vector<Vec3<double>> points;
+
+  void SetUp() override {
+    ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset));
+    clips.prepare(asset.skeleton, asset.clips, 1);
+    jets.resize(asset.skeleton.joints.size());
+    model.resize(jets.size());
+    points.resize(clips.points().count());
+  }
+  /// The pose in which a variant begins, elsewhere and turned.
+  GetUpChoice choose(int variant, double yaw, double x, double y) {
+    clips.sample(variant, ClipTime{0, 0, 0}, jets);
+    clips.place(jets, model, points);
+    const Displacement by{x, y, yaw};
+    for (Vec3<double>& p : points) p = by.turn() * p + Vec3<double>(x, y, 0);
+    return clips.choose(points, 0);
+  }
+};
+
+TEST_F(Choosing, AClipIsChosenInThePoseInWhichItBeginsWhereverThatLies) {
+  ASSERT_EQ(clips.variants().size(), 6u);  // from the back, the front, over; and their mirror images
+  for (int variant = 0; variant < 6; ++variant) {
+    if (clips.variants()[static_cast<std::size_t>(variant)].rolls) continue;
+    for (const double yaw : {0.0, 0.7, 2.5, -3.0}) {
+      const GetUpChoice found = choose(variant, yaw, 3, -2);
+      ASSERT_GE(found.entry, 0);
+      EXPECT_EQ(clips.entry(found.entry).variant, variant) << yaw;
+      EXPECT_LT(found.fit.off, 1e-5) << yaw;  // m: rounding of float
+      EXPECT_NEAR(std::remainder(found.fit.place.yaw - yaw, 2 * kPi), 0, 1e-5);
+      EXPECT_NEAR(found.fit.place.x, 3, 1e-5);
+      EXPECT_NEAR(found.fit.place.y, -2, 1e-5);
+    }
+  }
+}
+
+TEST_F(Choosing, WhatFailedIsLeftOut) {
+  const GetUpChoice first = choose(0, 0, 0, 0);
+  const int variant = clips.entry(first.entry).variant;
+  const GetUpChoice second = clips.choose(points, 1u << variant);
+  EXPECT_NE(clips.entry(second.entry).variant, variant);
+  EXPECT_GT(second.fit.off, first.fit.off);
+  EXPECT_EQ(clips.choose(points, 0xffffffffu).entry, -1);
+}
+
+TEST_F(Choosing, WhoCannotGetUpFromTheBackRollsOver) {
+  std::uint32_t from_back = 0;
+  for (std::size_t n = 0; n < clips.variants().size(); ++n)
+    if (clips.variants()[n].clip->name == "get_up_supine") from_back |= 1u << n;
+  const int supine = from_back & 1u ? 0 : from_back & 4u ? 2 : 4;
+  choose(supine, 0.4, 0, 0);
+  const GetUpChoice found = clips.choose(points, from_back);
+  ASSERT_GE(found.entry, 0);
+  EXPECT_TRUE(clips.variants()[static_cast<std::size_t>(clips.entry(found.entry).variant)].rolls);
+}
+
+TEST(GetUp, WhoFellStandsAgainOnItsAnimation) {
+  for (const double direction : {0.0, kPi, 0.5 * kPi}) {
+    Fallen body;
+    body.falls(150, direction);
+    body.run_until_it_stands(25);
+    EXPECT_GE(body.count(BehaviourEventKind::kFallen), 1);
+    EXPECT_EQ(body.count(BehaviourEventKind::kStanding), 1) << direction;
+    for (int n = 0; n < 8 * 60 && body.behaviour.state() != BehaviourState::kClip; ++n) body.step();
+    EXPECT_EQ(body.behaviour.state(), BehaviourState::kClip) << direction;
+    EXPECT_GT(body.root_height(), 0.9);
+    EXPECT_EQ(body.character().strength(), 1.f);
+    body.run(6);
+    EXPECT_GT(body.root_height(), 0.9);
+  }
+}
+
+TEST(GetUp, WhoStandsAgainIsPlayedAgain) {
+  int played = 0;
+  for (const double direction : {0.0, kPi, 0.5 * kPi}) {
+    Fallen body;
+    body.falls(150, direction);
+    body.run_until_it_stands(25);
+    body.run(12);
+    played += body.character().report().unknown_dofs == 0;
+  }
+  SINEW_FAILS_TODAY(
+      played == 3,
+      "feet that a get-up clip set down are a little off the animation's: some are balanced and "
+      "handed over again and again");
+}
+
+TEST(GetUp, NeverMeansNever) {
+  BehaviourSettings settings;
+  settings.get_up = GetUpPolicy::kNever;
+  Fallen body(settings);
+  body.falls(150, 0);
+  body.run(6);
+  EXPECT_EQ(body.behaviour.state(), BehaviourState::kDown);
+  EXPECT_FALSE(body.behaviour.get_up());
+  body.run(2);
+  EXPECT_EQ(body.behaviour.state(), BehaviourState::kDown);
+  EXPECT_EQ(body.count(BehaviourEventKind::kRising), 0);
+}
+
+TEST(GetUp, WaitsUntilItMay) {
+  BehaviourSettings settings;
+  settings.get_up = GetUpPolicy::kWhenAllowed;
+  Fallen body(settings);
+  body.falls(150, kPi);
+  body.run(6);
+  EXPECT_EQ(body.behaviour.state(), BehaviourState::kDown);
+  EXPECT_TRUE(body.behaviour.fallen());
+  EXPECT_TRUE(body.behaviour.get_up());
+  body.step();
+  EXPECT_EQ(body.behaviour.state(), BehaviourState::kGather);
+  ASSERT_EQ(body.count(BehaviourEventKind::kRising), 1);
+  EXPECT_EQ(body.told.back().reason, BehaviourReason::kAsked);
+}
+
+TEST(GetUp, WhoIsPushedWhileItRisesStandsInTheEnd) {
+  Fallen body;
+  body.falls(150, kPi);
+  while (body.decided < 0 && body.time() < 10) body.step();
+  body.run(2);
+  body.push(60, 0.3);
+  body.stood = -1;
+  body.run_until_it_stands(40);
+  EXPECT_GT(body.stood, 0);
+}
+
+TEST(GetUp, RepeatsToTheBit) {
+  const auto run = [] {
+    Fallen body;
+    body.falls(150, 0.4);
+    body.run(5);
+    return Vec3<float>(body.character().model()[5].translation);
+  };
+  EXPECT_EQ(run(), run());
+}
+
+TEST(GetUp, AllocatesNothing) {
+  Fallen body;
+  body.falls(150, kPi);
+  body.run(1);
+  // Every vector that the fixture itself fills is filled by now.
+  body.told.reserve(64);
+  std::vector<JointJet<float>> wanted(body.jets);
+  const long before = fixtures::allocations;
+  while (body.behaviour.state() != BehaviourState::kRise && body.time() < 10) {
+    ++body.frame;
+    body.sample();
+    std::copy(body.jets.begin(), body.jets.end(), wanted.begin());
+    body.behaviour.update(body.character(), wanted, body.h);
+    body.character().set_target(wanted);
+    body.world.step(body.h);
+  }
+  EXPECT_EQ(fixtures::allocations, before);
+  EXPECT_EQ(body.behaviour.state(), BehaviourState::kRise);
+}
+
+TEST(GetUp, NeedsAClip) {
+  Fallen body;
+  EXPECT_FALSE(body.behaviour.use_get_ups(body.asset.skeleton, {}));
+  EXPECT_FALSE(body.behaviour.get_up());
+}
+
+}  // namespace
+}  // namespace sinew
