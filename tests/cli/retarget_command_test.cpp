@@ -124,7 +124,7 @@ Frame Time: 0.05
   const Outcome run = sinew(both + " --retarget");
   ASSERT_EQ(run.code, 0) << run.out;
   const json info = json::parse(sinew("info " + out + " --json").out);
-  EXPECT_EQ(info["clips"].size(), 6u);
+  EXPECT_EQ(info["clips"].size(), 7u);
   EXPECT_TRUE(info["retarget"].contains(other));
 }
 

@@ -147,6 +147,7 @@ const BehaviourResult& small_study() {
     plan.sweeps = {{Role::kChest, 60, 2, {15, 50, 120}, 1}};
     plan.phases = 1;
     plan.hits = {{5, 20, 40}, {60}};
+    plan.get_ups = {1, 1};
     BehaviourResult made;
     if (const convert::Error error = run_behaviour(plan, nullptr, made)) ADD_FAILURE() << error.message;
     return made;
@@ -171,7 +172,9 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
   for (const auto& hit : json["hits"])
     EXPECT_EQ(keys(hit), (Names{"place", "tone", "hz", "impulse", "peak_deg", "peak_s", "back_s", "overshoot",
                                 "unknowns_after_1_s"}));
-  ASSERT_EQ(json["scenes"].size(), 7u);
+  ASSERT_EQ(json["get_ups"].size(), 3u);
+  for (const auto& get_up : json["get_ups"]) EXPECT_TRUE(get_up.contains("name")) << get_up;
+  ASSERT_EQ(json["scenes"].size(), 10u);
   for (const auto& scene : json["scenes"]) {
     EXPECT_EQ(keys(scene), (Names{"name", "passed", "criteria"}));
     EXPECT_FALSE(scene["criteria"].empty()) << scene["name"];

@@ -161,6 +161,8 @@ void read_entry(const Json& json, const std::string& where, double begin, ClipEn
   for_each(json, where, [&](const std::string& key, const Json& value, const std::string& at) {
     if (key == "loops")
       entry.loops = truth(value, at);
+    else if (key == "strengthens")
+      entry.strengthens = truth(value, at);
     else if (key == "events")
       entry.events = list(value, at, begin, event);
     else if (key == "curves")
@@ -532,6 +534,7 @@ void ClipData::add(const ClipData& other) {
   for (const auto& [name, from] : other.clips) {
     ClipEntry& to = clips[name];
     if (from.loops) to.loops = from.loops;
+    if (from.strengthens) to.strengthens = from.strengthens;
     if (from.events) to.events = from.events;
     for (const auto& [curve, keys] : from.curves) to.curves[curve] = keys;
     if (from.markers.empty()) continue;

@@ -30,6 +30,7 @@ struct EventEntry {
 
 struct ClipEntry {
   std::optional<bool> loops;
+  std::optional<bool> strengthens;  ///< false: muscles are not made as strong as it asks
   std::optional<std::vector<EventEntry>> events;
   std::map<std::string, CurveKeys> curves;
   std::vector<PhaseMarker> markers;

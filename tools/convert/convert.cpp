@@ -194,6 +194,16 @@ Error add_foreign_clips(const std::vector<std::string>& inputs, const Rig& rig, 
   return {};
 }
 
+/// Those that muscles are made for.
+std::vector<Clip> demanding_clips(const std::vector<Clip>& clips, const ClipData& data) {
+  std::vector<Clip> demanding;
+  for (const Clip& clip : clips) {
+    const auto entry = data.clips.find(clip.name);
+    if (entry == data.clips.end() || entry->second.strengthens.value_or(true)) demanding.push_back(clip);
+  }
+  return demanding;
+}
+
 Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
                      const Options& options, const AddForeignClips& add_foreign, Asset& out,
                      nlohmann::json& report) {
@@ -232,7 +242,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     for (std::size_t j = 0; j < rig.joints.size(); ++j)
       asset.inverse_bind[joint_of_rig[j]] = rig.joints[j].rest.inverse().cast<float>();
     if (Error error = add_foreign_clips(inputs, rig, options, add_foreign, asset, report)) return error;
-    strengthen(asset.clips, options.strength_margin, asset.skeleton, report);
+    strengthen(demanding_clips(asset.clips, data), options.strength_margin, asset.skeleton, report);
     report_torque_errors(asset, references, report);
   }
   if (Error error = add_clip_data(data, !options.clips.empty(), asset, report))

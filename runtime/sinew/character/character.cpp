@@ -2,6 +2,7 @@
 
 #include "sinew/character/grounding.h"
 #include "sinew/character/state.h"
+#include "sinew/character/tone.h"
 
 namespace sinew {
 namespace {
@@ -168,6 +169,7 @@ Status Character<T>::set_tone(int joint, const Stiffness& of) {
                          joint);
   if (state_->tree.type[joint] == JointType::kFree)
     return Status::error(Code::kInvalidArgument, "a free joint has no tone", joint);
+  make_room_for_tone(*state_);
   const bool muscles = !state_->problem.law.tone.empty();
   for (int dof = state_->tree.first_dof[joint]; muscles && dof < state_->tree.first_dof[joint + 1]; ++dof) {
     state_->problem.law.tone[dof].stiffness = T(of.stiffness);
@@ -183,6 +185,7 @@ Status Character<T>::set_group_tone(const char* group, Tone tone) {
   if (!state_) return nobody();
   if (tone < Tone::kRigid || tone > Tone::kBraced)
     return Status::error(Code::kInvalidArgument, "no such tone");
+  make_room_for_tone(*state_);
   bool any = false;
   for (const Muscle& muscle : state_->skeleton.muscles) {
     if (muscle.group.empty() || muscle.group != group) continue;

@@ -4,6 +4,7 @@
 
 #include "sinew/character/residual_coder.h"
 #include "sinew/character/snapshot_history.h"
+#include "sinew/character/tone.h"
 #include "sinew/character/unknowns.h"
 #include "sinew/skeleton/fewer_digits.h"
 
@@ -210,6 +211,7 @@ template <class T>
 void visit_tone(CharacterState<T>& s, ByteStream& stream) {
   std::vector<ToneOfDof<T>>& tone = s.problem.law.tone;
   if (stream.part("has a tone", s.problem.law.present.tone)) {
+    if (stream.reading()) make_room_for_tone(s);
     ResidualCoder<T> coder("tone", stream);  // mostly that of the joint before
     ToneOfDof<T> before;
     before.stiffness = T(0);

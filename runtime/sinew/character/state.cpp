@@ -8,6 +8,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/cut.h"
+#include "sinew/character/tone.h"
 #include "sinew/residual/tree_pass.h"
 
 namespace sinew {
@@ -119,7 +120,6 @@ CharacterState<T>::CharacterState(std::shared_ptr<const Rig<T>> of, const Charac
     target[i].translation = rest.translation;
   }
   report.dofs = tree.dofs;
-  if (problem.law.present.muscles || !skeleton.muscles.empty()) problem.law.tone.resize(tree.dofs);
   set_tone(0, settings.tone);
   refresh_limits();
   reset_to_target(Vec3<T>::Zero());
@@ -526,6 +526,7 @@ bool CharacterState<T>::joint_has_tone(int body) const {
 
 template <class T>
 void CharacterState<T>::set_tone(int joint, Tone tone) {
+  if (tone != Tone::kRigid) make_room_for_tone(*this);
   if (problem.law.tone.empty()) return;
   for (int i = joint; i < tree.bodies; ++i) {
     int ancestor = i;

@@ -114,6 +114,12 @@ void share_slopes(JointLaw<T>& law, int first) {
 }  // namespace
 
 template <class T>
+void make_room_for_tone(CharacterState<T>& s) {
+  JointLaw<T>& law = s.problem.law;
+  if (law.present.muscles || !s.skeleton.muscles.empty()) law.tone.resize(s.tree.dofs);
+}
+
+template <class T>
 void keep_feed_forward(CharacterState<T>& s) {
   for (int dof = 0; dof < s.tree.dofs; ++dof) s.problem.law.tone[dof].feed_forward = s.problem.gradient[dof];
 }

@@ -12,6 +12,10 @@
 
 namespace sinew {
 
+/// Room for what is asked of muscles, which a character without a tone does not have. Set-up.
+template <class T>
+void make_room_for_tone(CharacterState<T>& state);
+
 /// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself.
 template <class T>
 void keep_feed_forward(CharacterState<T>& state);
@@ -35,6 +39,7 @@ template <class T>
 bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T most);
 
 #define SINEW_TONE_INSTANCES(prefix, T)                                     \
+  prefix void make_room_for_tone<T>(CharacterState<T>&);                    \
   prefix void keep_feed_forward<T>(CharacterState<T>&);                     \
   prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T);        \
   prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>); \
