@@ -173,7 +173,7 @@ TEST(BehaviourStudy, JsonIsAsItIsDescribed) {
     EXPECT_EQ(keys(hit), (Names{"place", "tone", "hz", "impulse", "peak_deg", "peak_s", "back_s", "overshoot",
                                 "unknowns_after_1_s"}));
   ASSERT_EQ(json["get_ups"].size(), 3u);
-  for (const auto& get_up : json["get_ups"]) EXPECT_TRUE(get_up.contains("name")) << get_up;
+  for (const auto& get_up : json["get_ups"]) EXPECT_TRUE(get_up.contains("scene")) << get_up;
   ASSERT_EQ(json["scenes"].size(), 10u);
   for (const auto& scene : json["scenes"]) {
     EXPECT_EQ(keys(scene), (Names{"name", "passed", "criteria"}));

@@ -7,9 +7,9 @@ namespace sinew {
 namespace {
 
 // Of a human.
-constexpr double kStrong = 0.4;                  ///< s, in which the muscles' strength comes back
-constexpr double kSettles = 0.25, kPose = 0.05;  ///< s, m: gathered, or as near as it will come
-constexpr double kSame = 0.04;                   ///< m: another pose has to be nearer by that
+constexpr double kStrong = 0.4;    ///< s, in which the muscles' strength comes back
+constexpr double kSettles = 0.25;  ///< s: gathered, or as near as it will come
+constexpr double kSame = 0.04;     ///< m: another pose has to be nearer by that
 constexpr int kMostGathers = 3;
 constexpr double kMayRise = 0.3, kLost = 0.35;  ///< m off the clip's pose
 constexpr double kFull = 1.5, kWaits = 0.08;    ///< rate and m: see above

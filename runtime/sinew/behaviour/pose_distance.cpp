@@ -18,7 +18,7 @@ void PosePoints<T>::prepare(const Skeleton& skeleton, double unit) {
     if (!(joint.mass > 0)) continue;
     for (int axis = 0; axis < 3; ++axis) {
       joint_.push_back(static_cast<int>(i));
-      at_.push_back(joint.center_of_mass + kArm * unit * Vec3<double>::Unit(axis));
+      at_.emplace_back(joint.center_of_mass + kArm * unit * Vec3<double>::Unit(axis));
       mass_.push_back(joint.mass / total / 3);
     }
   }

@@ -108,7 +108,8 @@ bool copy_models(World<float>& world, std::span<sinew_transform> out, int& count
   std::size_t joints = 0;
   for (int n = 0; n < world.character_count(); ++n) {
     const std::span<const Transform<float>> model = world.character(n).model();
-    if (joints + model.size() <= out.size()) std::memcpy(&out[joints], model.data(), model.size_bytes());
+    if (joints + model.size() <= out.size())
+      std::memcpy(&out[joints], static_cast<const void*>(model.data()), model.size_bytes());
     joints += model.size();
   }
   count = static_cast<int>(joints);

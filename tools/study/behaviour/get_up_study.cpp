@@ -80,7 +80,9 @@ void add(const Fall& fall, GetUpResult& into, Rising* found, std::mutex& writing
   if (found) *found = is;
   ++into.falls;
   into.depth = std::max(into.depth, is.depth);
-  if (is.decided < 0) return;
+  const bool stands = is.stands && is.fell;
+  into.stand += stands ? 1 : 0;
+  if (is.decided < 0) return;  // it never lay quite still: what it took is not to be told apart from its fall
   into.slip = std::max(into.slip, is.slip);
   into.joint_speed = std::max(into.joint_speed, is.joint_speed);
   for (const scene::TelemetryRow& row : telemetry.rows) {
@@ -88,10 +90,9 @@ void add(const Fall& fall, GetUpResult& into, Rising* found, std::mutex& writing
     into.help_force = std::max(into.help_force, row.report.help_force);
     into.help_torque = std::max(into.help_torque, row.report.help_torque);
   }
-  if (!is.stands || !is.fell) return;
-  ++into.stand;
-  into.times.insert(std::upper_bound(into.times.begin(), into.times.end(), is.stood - is.decided),
-                    is.stood - is.decided);
+  if (stands)
+    into.times.insert(std::upper_bound(into.times.begin(), into.times.end(), is.stood - is.decided),
+                      is.stood - is.decided);
 }
 
 GetUpResult run_falls(const char* name, int falls, double slope,

@@ -11,11 +11,11 @@
 namespace sinew::study {
 namespace {
 
-constexpr double kUp = 0.9;                    ///< of the root's height
-constexpr double kTouches = 1e-3;              ///< m
-constexpr double kStill = 0.05, kLies = 0.25;  ///< m/s of every body, s
-constexpr double kLow = 0.5;                   ///< of the root's height: who lies or sits
-constexpr double kStandsFor = 1;               ///< s
+constexpr double kUp = 0.9;                   ///< of the root's height
+constexpr double kTouches = 1e-3;             ///< m
+constexpr double kStill = 0.1, kLies = 0.25;  ///< m/s of every body, s
+constexpr double kLow = 0.5;                  ///< of the root's height: who lies or sits
+constexpr double kStandsFor = 1;              ///< s
 
 /// The character in the axes of the ground, which is level at 0 there.
 class Lying {
