@@ -21,8 +21,6 @@
 namespace sinew {
 namespace {
 
-using fixtures::CScene;
-
 constexpr int kCallsOfASequence = 1000;
 constexpr int kSteps = 8;  ///< of a sequence, the dearest of its calls
 
