@@ -76,6 +76,7 @@ tidy() {
     echo "$settings" >build-tidy/settings
   fi
   configure build-tidy -DSINEW_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
+    -DCMAKE_C_COMPILER_LAUNCHER="$instead" -DCMAKE_C_LINKER_LAUNCHER="$instead" \
     -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
     -DCMAKE_CXX_CLANG_TIDY="clang-tidy;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
   mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
