@@ -341,6 +341,13 @@ TEST(Tone, ComesBackAndIsPlayedAgain) {
   EXPECT_TRUE(playing.pose_is_the_targets_bits());
 }
 
+// A host asks once how large its snapshots may become.
+TEST(Tone, ThatIsAskedForLaterHasRoomInASnapshot) {
+  fixtures::Playing<float> rigid, toned;
+  ASSERT_TRUE(toned.character().set_tone(Tone::kAlert).ok());
+  EXPECT_EQ(rigid.world.snapshot_capacity(), toned.world.snapshot_capacity());
+}
+
 TEST(Tone, GoesOnFromASnapshotWithTheSameBits) {
   fixtures::Playing<float> playing;
   ASSERT_TRUE(playing.character().set_tone(Tone::kAlert).ok());

@@ -17,6 +17,7 @@
 #include "cli/memory.h"
 #include "cli/render_folder.h"
 #include "cli/retarget.h"
+#include "cli/source_options.h"
 #include "cli/study_program.h"
 #include "cli/terminal.h"
 #include "convert/convert.h"
@@ -34,62 +35,7 @@ using nlohmann::json;
 using sinew::Asset;
 using sinew::convert::Error;
 namespace cli = sinew::cli;
-
-/// Inputs that several commands share.
-struct SourceOptions {
-  std::string options_file, clip_data, up, facing;
-  double unit = 0;
-  std::vector<std::string> packages;
-
-  void add(CLI::App& app) {
-    app.add_option("--options", options_file, "conversion options, JSON (see sinew convert --reference)")
-        ->type_name("FILE");
-    app.add_option("--clip-data", clip_data,
-                   "events, curves, markers and masks, JSON (else SOURCE.clips.json, where it is there)")
-        ->type_name("FILE");
-    app.add_option("--unit", unit, "metres per unit of the source")
-        ->check(CLI::PositiveNumber)
-        ->default_str("the file's");
-    app.add_option("--up", up, "up axis of the source")
-        ->check(CLI::IsMember({"x", "y", "z"}))
-        ->default_str("the file's");
-    app.add_option("--facing", facing, "axis of the source that the character faces at rest")
-        ->check(CLI::IsMember({"x", "-x", "y", "-y", "z", "-z"}))
-        ->default_str("found by its joints");
-    app.add_option("--package", packages, "URDF: where a ROS package is, for meshes named package://NAME/…")
-        ->type_name("NAME=DIR")
-        ->default_str("looked for upwards");
-  }
-  /// The same again, for another process.
-  std::vector<std::string> arguments() const {
-    std::vector<std::string> all;
-    for (const auto& [name, value] :
-         {std::pair("--options", options_file), std::pair("--clip-data", clip_data), std::pair("--up", up)})
-      if (!value.empty()) all.insert(all.end(), {name, value});
-    if (!facing.empty()) all.push_back("--facing=" + facing);             // which may begin with a minus
-    if (unit != 0) all.insert(all.end(), {"--unit", json(unit).dump()});  // all digits
-    for (const std::string& package : packages) all.insert(all.end(), {"--package", package});
-    return all;
-  }
-  Error read(json& out) const {
-    out = json::object();
-    if (!options_file.empty())
-      if (Error error = cli::read_json(options_file, out)) return error;
-    if (!clip_data.empty())
-      if (Error error = cli::read_json(clip_data, out["clip_data"])) return error;
-    if (unit != 0) out["unit"] = unit;  // NaN too: refused by name
-    if (!up.empty()) out["up"] = up;
-    if (!facing.empty()) out["facing"] = facing;
-    for (const std::string& package : packages) {
-      const std::size_t equals = package.find('=');
-      if (equals == std::string::npos || equals == 0 ||
-          !std::filesystem::is_directory(package.substr(equals + 1)))
-        return {"--package " + package + ": not NAME=DIRECTORY of a directory that is there"};
-      out["packages"][package.substr(0, equals)] = package.substr(equals + 1);
-    }
-    return {};
-  }
-};
+using sinew::cli::SourceOptions;
 
 struct ConvertCommand {
   std::vector<std::string> inputs;

@@ -384,8 +384,8 @@ bool IslandStepper<T>::tighten_loops() {
 template <class T>
 std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
   const CharacterState<T>& s = *states_[tree];
+  if (!s.problem.law.present.tone) return {};  // nobody asks
   bears_.assign(s.tree.bodies, 1);
-  if (!s.problem.law.present.tone) return bears_;
   const std::vector<int>& first = s.rig->support.first;
   for (const Contact<T>& c : contacts_) {
     if (!c.acts()) continue;

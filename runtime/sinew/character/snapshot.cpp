@@ -215,7 +215,10 @@ void visit_tone(CharacterState<T>& s, ByteStream& stream) {
     ResidualCoder<T> coder("tone", stream);  // mostly that of the joint before
     ToneOfDof<T> before;
     before.stiffness = T(0);
-    for (ToneOfDof<T>& of : tone) {
+    ToneOfDof<T> later;  // that may be asked for until the snapshot is taken
+    const std::size_t count = stream.bounding() ? static_cast<std::size_t>(s.tree.dofs) : tone.size();
+    for (std::size_t dof = 0; dof < count; ++dof) {
+      ToneOfDof<T>& of = stream.bounding() ? later : tone[dof];
       coder.value(of.stiffness, before.stiffness);
       coder.value(of.damping_ratio, before.damping_ratio);
       before = of;
