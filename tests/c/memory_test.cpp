@@ -125,7 +125,7 @@ TEST(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
     scene.step();
     sinew_view view{};
     EXPECT_EQ(sinew_character_get_view(scene.hero, SINEW_VIEW_MODEL, &view), SINEW_OK);
-    EXPECT_EQ(scene.report().held, 0);
+    EXPECT_EQ(scene.report().frozen, 0);
   }
   left = -1;
 }

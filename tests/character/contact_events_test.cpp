@@ -502,7 +502,7 @@ TEST(ContactEventsOfATurmoil, GoOnInTurnThroughStepsThatAreFrozen) {
   for (int n = 0; n < 120; ++n) {
     const std::vector<ContactEvent> events = scene.step();
     for (const ContactEvent& e : events) ASSERT_TRUE(turns.in_turn(e)) << "step " << n;
-    if (scene.world.character(0).report().held == 0) continue;
+    if (scene.world.character(0).report().frozen == 0) continue;
     ++frozen;
     touching += !turns.touching.empty();
   }

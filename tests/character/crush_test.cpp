@@ -1,4 +1,4 @@
-// What is pressed harder than it can bear: between something that is led and a wall.
+// What is pressed harder than it can bear: between something that is driven and a wall.
 #include <algorithm>
 #include <cstdlib>
 

@@ -249,7 +249,7 @@ TEST(Impact, FiguresCaughtInEachOtherComeFreeAndFall) {
   int held = 0;
   for (int n = 0; n < 120; ++n) {
     ASSERT_TRUE(world.step(1 / 60.f).ok());
-    held += world.character(0).report().held > 0;
+    held += world.character(0).report().frozen > 0;
   }
   const auto highest =
       std::max(world.character(0).model()[0].translation.z(), world.character(1).model()[0].translation.z());

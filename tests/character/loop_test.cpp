@@ -27,7 +27,7 @@ WorldSettings airborne(const V& gravity = {0, 0, -9.81}) {
   return settings;
 }
 
-CharacterSettings limp() {
+CharacterSettings passive() {
   CharacterSettings settings;
   settings.root = RootDrive::kFree;
   settings.strength = 0;
@@ -62,7 +62,7 @@ struct Scene {
   explicit Scene(const WorldSettings& settings = airborne()) : world(settings) {}
   int add(const Linkage& l) {
     Status status;
-    const int index = world.add_character(l.skeleton, limp(), status);
+    const int index = world.add_character(l.skeleton, passive(), status);
     EXPECT_GE(index, 0) << status.reason;
     world.character(index).reset();
     return index;

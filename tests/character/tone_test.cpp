@@ -13,7 +13,7 @@ namespace sinew {
 namespace {
 
 constexpr double kLimit = 400;            ///< N·m
-constexpr double kMass = 3, kLength = 1;  ///< kg, m: a rod that hangs on a led base
+constexpr double kMass = 3, kLength = 1;  ///< kg, m: a rod that hangs on a driven base
 
 Skeleton rod() {
   Skeleton s;
@@ -79,7 +79,8 @@ template <class T>
 Swing swing(double hz, double stiffness, double damping_ratio) {
   Rod<T> rod(hz, stiffness, damping_ratio);
   rod.step();
-  rod.hit(1.2 * std::sqrt(stiffness * kInertia) / kLength);  // as far as 1.2 rad: small swings are led home
+  rod.hit(1.2 * std::sqrt(stiffness * kInertia) /
+          kLength);  // as far as 1.2 rad: small swings return without unknowns
   std::vector<double> at, peaks;
   double before = 0, last = 0;
   for (int n = 0; peaks.size() < 3 && n < 10 * hz; ++n) {

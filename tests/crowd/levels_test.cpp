@@ -15,7 +15,7 @@ using fixtures::idle;
 constexpr float kStep = 1 / 60.f;
 constexpr double kDegree = std::numbers::pi / 180;
 
-CharacterSettings limp() {
+CharacterSettings passive() {
   CharacterSettings settings;
   settings.root = RootDrive::kFree;
   settings.strength = 0;
@@ -34,7 +34,7 @@ struct Sleeper {
   }
   Sleeper() : settings(sleepy()), world(settings) {
     Status status;
-    EXPECT_EQ(world.add_character(humanoid(), limp(), status), 0) << status.reason;
+    EXPECT_EQ(world.add_character(humanoid(), passive(), status), 0) << status.reason;
     world.character(0).reset();
     for (int n = 0; n < 1200 && level() != Level::kAsleep; ++n) EXPECT_TRUE(world.step(kStep).ok());
     EXPECT_EQ(level(), Level::kAsleep) << "never came to rest";
@@ -59,7 +59,7 @@ TEST(Sleep, WhoLiesAtRestCostsNothingAndStaysWhereItIs) {
 TEST(Sleep, NobodySleepsUnlessAsked) {
   World<float> world({});
   Status status;
-  ASSERT_EQ(world.add_character(humanoid(), limp(), status), 0);
+  ASSERT_EQ(world.add_character(humanoid(), passive(), status), 0);
   for (int n = 0; n < 600; ++n) ASSERT_TRUE(world.step(kStep).ok());
   EXPECT_NE(world.character(0).report().level, Level::kAsleep);
 }

@@ -57,7 +57,7 @@ const Quoted kQuotes[] = {
     {"runtime/sinew/optimizer/README.md", R"(centre plus ([\d.]+) m per radian)", kRotationArm},
     {"runtime/sinew/optimizer/README.md", R"(curvature of a row has changed by more than ([\d.]+) of itself)",
      kSameCurvature},
-    {"runtime/sinew/optimizer/README.md", R"(is taken while each is at most ([\d.]+)\s)", kChordRate},
+    {"runtime/sinew/optimizer/README.md", R"(is taken while each is at most ([\d.]+)\s)", kSimplifiedRate},
     {"runtime/sinew/optimizer/README.md", R"(in contact with a ratio of ([\d.]+) at least)",
      kLeastRateInContact},
     {"runtime/sinew/optimizer/README.md", R"(contacts bear more than ([\d.]+) times what they did)",

@@ -21,7 +21,7 @@ TEST(Stage, AFreeFallNeitherGainsNorIsPushed) {
   WorldSettings settings;
   settings.ground = false;
   Stage<double> stage(settings);
-  stage.add(free_body(2, {0.1, 0.1, 0.1}), limp());
+  stage.add(free_body(2, {0.1, 0.1, 0.1}), passive());
   stage.run(1, 0.01);
   EXPECT_EQ(stage.measured().steps, 100);
   EXPECT_NEAR(stage.kinetic(), 0.5 * 2 * 9.81 * 9.81, 0.02 * 0.5 * 2 * 9.81 * 9.81);  // first steps: order h
@@ -31,7 +31,7 @@ TEST(Stage, AFreeFallNeitherGainsNorIsPushed) {
 
 TEST(Stage, WorkOfAPushIsTheKineticEnergyThatItLeaves) {
   Stage<double> stage(weightless());
-  stage.add(free_body(2, {0.1, 0.1, 0.1}), limp());
+  stage.add(free_body(2, {0.1, 0.1, 0.1}), passive());
   // A force over many steps: implicit Euler's first order error fades with their number.
   for (int n = 0; n < 1000; ++n) {
     stage.push(0, 0, stage.character(0).model()[0].translation, Vec3<double>(0.01, 0, 0));
@@ -45,7 +45,7 @@ void add_swinging_chain(Stage<double>& stage, int links) {
   const Skeleton body = chain({links, JointType::kBall, JointType::kFree, 0.5});
   std::vector<JointJet<double>> jets = rest_jets<double>(body);
   randomise_speeds(body, jets, 2, 1);
-  stage.add(body, limp(), jets);
+  stage.add(body, passive(), jets);
 }
 
 TEST(Stage, AStrikeIsBookedWithTheEnergyThatItLeaves) {

@@ -18,7 +18,7 @@ struct FreeBody : fixtures::FreeBody {
 
   FreeBody(const V& omega, const V& velocity, const V& gravity)
       : fixtures::FreeBody(omega, velocity, gravity) {
-    ends.reserve(problem.room);
+    ends.reserve(problem.capacity);
     history.acceleration[0] = gravity;
     history.torque[0].setZero();
   }
@@ -102,17 +102,17 @@ TEST(EndVelocities, AreWhatTheyWereWhereJointsAllowThem) {
   FreeBody body(V(1, 2, 3), V(3, -1, 2), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};
   const std::vector<std::uint8_t> loose(6, 1);
-  const std::vector<Twist<double>> led(1);
+  const std::vector<Twist<double>> driven(1);
   std::vector<std::array<double, 6>> rate(1);
   body.ends.begin(trees, loose);
   const V velocity = body.history.velocity[0], momentum = body.history.momentum[0];
-  body.ends.project(0, led, rate, {}, body.history);
+  body.ends.project(0, driven, rate, {}, body.history);
   body.ends.write(0, body.history, rate);
   // The matrix' floor takes some 1e-6 of what is not in `rate` yet.
   EXPECT_LT((body.history.velocity[0] - velocity).norm(), 1e-4 * velocity.norm());
   EXPECT_LT((body.history.momentum[0] - momentum).norm(), 1e-4 * momentum.norm());
   const V once = body.history.velocity[0];
-  body.ends.project(0, led, rate, {}, body.history);
+  body.ends.project(0, driven, rate, {}, body.history);
   body.ends.write(0, body.history, rate);
   EXPECT_LT((body.history.velocity[0] - once).norm(), 1e-9 * velocity.norm());
 }
@@ -122,11 +122,11 @@ double pressed(double speed, double force, double h) {
   FreeBody body(V::Zero(), V(0, 0, speed), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};
   const std::vector<std::uint8_t> loose(6, 1);
-  const std::vector<Twist<double>> led(1);
+  const std::vector<Twist<double>> driven(1);
   std::vector<std::array<double, 6>> rate(1);
   rate[0][2] = speed;
   body.ends.begin(trees, loose);
-  body.ends.project(0, led, rate, {}, body.history);
+  body.ends.project(0, driven, rate, {}, body.history);
   Contact<double> c = bearing(force, 0, 0, 0);
   c.point = body.history.center[0];
   body.ends.add(c, 2 * h * force, 0, V::Zero());
@@ -141,11 +141,11 @@ double rubbed(double cone, double rubbed) {
   FreeBody body(V::Zero(), V(1, 0, 0), V::Zero());
   TreeProblem<double>* const trees[] = {&body.problem};
   const std::vector<std::uint8_t> loose(6, 1);
-  const std::vector<Twist<double>> led(1);
+  const std::vector<Twist<double>> driven(1);
   std::vector<std::array<double, 6>> rate(1);
   rate[0][0] = 1;
   body.ends.begin(trees, loose);
-  body.ends.project(0, led, rate, {}, body.history);
+  body.ends.project(0, driven, rate, {}, body.history);
   Contact<double> c = bearing(100, 0, 0, 0);
   c.point = body.history.center[0];
   body.ends.add(c, 0, cone, V(-rubbed, 0, 0));

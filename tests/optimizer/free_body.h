@@ -38,7 +38,7 @@ struct FreeBody {
     settings.plan = &standard_plan<double>();
     settings.gravity = gravity;
     solver.declare(*settings.plan);
-    solver.reserve(problem.room);
+    solver.reserve(problem.capacity);
     problem.free.assign(6, 1);
     Motion<double> motion(tree);
     JointJet<double> jet;

@@ -1,4 +1,4 @@
-// Figures that a scene file describes itself, how they start and where they are led.
+// Figures that a scene file describes itself, how they start and where they are driven.
 #include "scene/figure.h"
 
 #include <gmock/gmock.h>

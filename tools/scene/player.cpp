@@ -87,7 +87,7 @@ const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transfor
 template <class T>
 std::vector<JointJet<T>> Player<T>::start(std::span<const Transform<T>> now) {
   std::vector<JointJet<T>> jets = at(0, now);
-  if (c_.clips.empty() && !graph_)  // at rest: what it is led along begins to move it in the first step
+  if (c_.clips.empty() && !graph_)  // at rest: what it is driven along begins to move it in the first step
     for (JointJet<T>& jet : jets) jet.omega.setZero(), jet.velocity.setZero();
   add_speeds(c_.asset->skeleton, c_.speeds, jets);
   return jets;

@@ -2,7 +2,7 @@
 
 namespace sinew::study {
 
-CharacterSettings limp() {
+CharacterSettings passive() {
   CharacterSettings settings;
   settings.root = RootDrive::kFree;
   settings.strength = 0;
@@ -23,7 +23,7 @@ int add_thrown_humanoid(Stage<T>& stage, double height, double rms, unsigned see
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
   jets[0].translation.z() += T(height);
   randomise_speeds(body, jets, rms, seed);
-  return stage.add(body, limp(), jets);
+  return stage.add(body, passive(), jets);
 }
 
 Skeleton& skeleton_of(scene::Scene& scene, int character) {

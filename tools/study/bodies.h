@@ -19,7 +19,7 @@ using scene::humanoid;
 using scene::make_frictionless;
 using scene::randomise_speeds;
 
-CharacterSettings limp();
+CharacterSettings passive();
 WorldSettings weightless();
 /// A frictionless limp humanoid in the air, random joint speeds.
 template <class T>

@@ -134,7 +134,7 @@ template <class T>
 double lost_on_a_hand(const Trial& t, Measurement& measured, bool& hit) {
   Stage<T> stage(t.scene.world);
   const Skeleton body = humanoid();
-  const int figure = stage.add(body, limp());
+  const int figure = stage.add(body, passive());
   const auto hand = static_cast<std::size_t>(body.find("hand_l"));
   PropSettings bullet = t.scene.props[0].settings;
   bullet.pose.translation +=

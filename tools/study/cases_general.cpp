@@ -46,7 +46,7 @@ Verdict effort_of_a_step(const Trial& t) {
 
 /// Whether a step's report says that it was not simply solved.
 bool took_a_rung(const CharacterReport& r) {
-  return !r.converged || r.splits > 0 || r.restarts > 0 || r.damped > 0 || r.held > 0;
+  return !r.converged || r.splits > 0 || r.restarts > 0 || r.damped > 0 || r.frozen > 0;
 }
 
 /// Every step is solved again from the same state, as exactly as numbers allow; how far off any joint was, of

@@ -291,7 +291,7 @@ int parts_of_turning_body(double speed, double h, Measurement& measured) {
   const Skeleton body = free_body(1, {0.02, 0.05, 0.06});
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
   jets[0].omega = Vec3<T>(T(0.1), T(0.1), T(speed));
-  stage.add(body, limp(), jets);
+  stage.add(body, passive(), jets);
   stage.run(1, h);
   measured.merge(stage.measured());
   return stage.character(0).report().substeps;

@@ -175,7 +175,7 @@ Verdict massless_inner_link(const Trial& t) {
   body.joints[2].inertia.setZero();
   Status status;
   World<T> other((WorldSettings()));
-  other.add_character(body, limp(), status);
+  other.add_character(body, passive(), status);
   Verdict v(stage.measured());
   v.general();
   v.require(!status.ok() && status.index >= 0, "a joint that moves no mass is not refused by its index");
@@ -197,7 +197,7 @@ Verdict contact_stiffness_sweep(const Trial& t) {
   }
   Verdict v(measured);
   v.general();
-  v.at_most("mean iterations (passes and chords), most over fewest", most / fewest, 2);
+  v.at_most("mean iterations (passes and simplified Newton steps), most over fewest", most / fewest, 2);
   return v;
 }
 
@@ -225,7 +225,7 @@ Verdict limits_that_meet(const Trial& t) {
   body.joints[1].dofs[0].lower = 0.3 + kPi / 180;
   Status status;
   World<T> other((WorldSettings()));
-  other.add_character(body, limp(), status);
+  other.add_character(body, passive(), status);
   Verdict v(stage.measured());
   v.general();
   v.at_most("off the only angle allowed (rad)", off, 0.05);

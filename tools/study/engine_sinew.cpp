@@ -31,7 +31,7 @@ class SinewEngine : public Engine {
     if (const Status status = world_.template declare<ContinuousDetection>(); !status)
       refusal_ = status.reason;
     for (const Figure& figure : scene.figures) {
-      CharacterSettings how = limp();
+      CharacterSettings how = passive();
       if (figure.driven) how = CharacterSettings{};
       Status status;
       const int index = world_.add_character(figure.skeleton, how, status);

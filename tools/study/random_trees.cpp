@@ -18,7 +18,7 @@ constexpr int kMostDofs = 60;
 
 // Of the most kinetic energy that the tree ever has
 constexpr double kMostGain = 1e-3;  ///< above what it began with
-constexpr double kMostRise = 0.03;  ///< in one step: what swings in flight has 2 % (EnergyLedger)
+constexpr double kMostRise = 0.03;  ///< in one step: what swings in flight has 2 % (EnergyBalance)
 
 /// Uniform and normal numbers that are the same on every platform (the standard's distributions are not).
 class Dice {
@@ -101,7 +101,7 @@ double lowest_point(const Skeleton& tree, const std::vector<JointJet<T>>& jets) 
   return lowest;
 }
 
-/// What is no gain yet, J: 1 µJ, and that a tree's height is known to a few roundings of T, as EnergyLedger
+/// What is no gain yet, J: 1 µJ, and that a tree's height is known to a few roundings of T, as EnergyBalance
 /// allows. Matters where next to nothing moves: a hinge of 0.6 kg that swings with 0.4 mJ, 1 m up (seed 9005
 /// in float).
 template <class T>
@@ -121,7 +121,7 @@ Measurement throw_tree(std::uint64_t seed, double& h, double& noise) {
   randomise_speeds(tree, jets, dice.uniform(0, 5), static_cast<unsigned>(seed));
   // Nothing begins in the floor: leading it out would be work.
   jets[0].translation.z() += T(1 + std::max(0.0, -lowest_point<T>(tree, jets)));
-  stage.add(tree, limp(), jets);
+  stage.add(tree, passive(), jets);
   noise = noise_of<T>(energy_of<T>(tree, jets, settings.gravity));
   for (int n = 0; n < kSteps && stage.step(h); ++n) {
   }

@@ -60,7 +60,7 @@ void Measurement::count(const CharacterReport& r) {
   unconverged += !r.converged;
   restarts += r.restarts;
   passes += r.outer_passes;
-  chords += r.chords;
+  simplified_steps += r.simplified_steps;
   factorisations += r.factorisations;
   const int planned = std::max(r.substeps - r.splits, 1);
   const int passes_each = (r.outer_passes + planned - 1) / planned;
@@ -87,7 +87,7 @@ void Measurement::merge(const Measurement& o) {
   restarts += o.restarts;
   solved += o.solved;
   passes += o.passes;
-  chords += o.chords;
+  simplified_steps += o.simplified_steps;
   factorisations += o.factorisations;
   most_passes = std::max(most_passes, o.most_passes);
   most_factorisations = std::max(most_factorisations, o.most_factorisations);

@@ -33,7 +33,7 @@ struct Measurement {
   int unconverged = 0;     ///< steps of characters and props that moved in a solve, see `solved`
   int solved = 0;
   int restarts = 0;  ///< see CharacterReport
-  long passes = 0, chords = 0, factorisations = 0;
+  long passes = 0, simplified_steps = 0, factorisations = 0;
   int most_passes = 0, most_factorisations = 0;  ///< of one solve: a step in parts on purpose is so many
   std::array<int, 256> pass_histogram{};         ///< solved steps by passes of a solve (the last: or more)
   double microseconds = 0;                       ///< processor time of all steps together
@@ -41,7 +41,7 @@ struct Measurement {
   std::string refused;           ///< reason of the step that the world refused, or empty
 
   double mean_passes() const { return solved ? double(passes) / solved : 0; }
-  double mean_iterations() const { return solved ? double(passes + chords) / solved : 0; }
+  double mean_iterations() const { return solved ? double(passes + simplified_steps) / solved : 0; }
   double mean_factorisations() const { return solved ? double(factorisations) / solved : 0; }
   double seen_share() const { return instants ? double(seen) / instants : 0; }
   double unconverged_share() const { return solved ? double(unconverged) / solved : 0; }

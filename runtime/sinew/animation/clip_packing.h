@@ -28,7 +28,7 @@ inline constexpr int kPackingBits = 27;  ///< of a number beside its sign, at mo
 void unpack_control(const Clip::Packing& packing, bool rotation, const std::int32_t (&numbers)[4],
                     float* control);
 
-/// The way back. False where no numbers give these very bits.
+/// The inverse. False where no numbers give these very bits.
 bool pack_control(const Clip::Packing& packing, bool rotation, const float* control,
                   std::int32_t (&numbers)[4]);
 
@@ -43,7 +43,7 @@ std::size_t packed_bits(std::span<const std::int32_t> numbers);
 /// are not what their packings can say. Allocates.
 bool pack_group(const Clip::Group& group, std::vector<std::uint8_t>& bytes);
 
-/// The way back, into a group whose other members are set. An error where the bytes end early or say what
+/// The inverse, into a group whose other members are set. An error where the bytes end early or say what
 /// cannot be: any bytes may be given. Allocates at most 256 times as much as it is given.
 Status unpack_group(std::span<const std::uint8_t> bytes, Clip::Group& group);
 

@@ -15,7 +15,7 @@ inline void fill_report(const CharacterReport& r, sinew_character_report& out) {
   out.unbaked = r.unbaked;
   out.outer_passes = r.outer_passes;
   out.factorisations = r.factorisations;
-  out.chords = r.chords;
+  out.simplified_steps = r.simplified_steps;
   out.corrections = r.corrections;
   out.plain_passes = r.plain_passes;
   out.contacts = r.contacts;
@@ -24,7 +24,7 @@ inline void fill_report(const CharacterReport& r, sinew_character_report& out) {
   out.splits = r.splits;
   out.restarts = r.restarts;
   out.damped = r.damped;
-  out.held = r.held;
+  out.frozen = r.frozen;
   out.crowded = r.crowded;
   out.converged = r.converged;
   out.carried = r.carried;

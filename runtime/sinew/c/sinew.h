@@ -265,7 +265,7 @@ typedef struct sinew_world_settings {
   double stick_speed;      ///< m/s, below which friction sticks
   double limit_stiffness;  ///< N m/rad, of joint limits
   double limit_damping;    ///< s
-  double return_time;      ///< s, of the way back to the animation
+  double return_time;      ///< s, of the return to the animation
   double dwell;            ///< s, that a level is kept after it was last needed
   double sleep_after;      ///< s at rest. 0: never
   double sleep_speed;      ///< m/s, below which it rests
@@ -405,7 +405,7 @@ typedef struct sinew_character_report {
   int32_t unbaked;
   int32_t outer_passes;
   int32_t factorisations;
-  int32_t chords;
+  int32_t simplified_steps;
   int32_t corrections;
   int32_t plain_passes;
   int32_t contacts;
@@ -414,7 +414,7 @@ typedef struct sinew_character_report {
   int32_t splits;
   int32_t restarts;
   int32_t damped;
-  int32_t held;
+  int32_t frozen;
   int32_t crowded;             ///< flag
   int32_t converged;           ///< flag
   int32_t carried;             ///< flag

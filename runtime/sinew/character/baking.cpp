@@ -112,14 +112,14 @@ template <class T>
 Pull<T> pull_of(const StepSettings<T>& settings, TreeProblem<T>& p, int i, const Column<T>& asked) {
   const int first = p.tree->first_dof[i];
   std::copy_n(asked.data(), asked.size(), p.gradient.begin() + first);
-  const bool limp = has_no_muscle(p, i);
-  Pull<T> pull{joint_offset_value<T>(*p.tree, i, limp ? p.start[i] : p.target[i], p.local[i]), asked};
+  const bool passive = has_no_muscle(p, i);
+  Pull<T> pull{joint_offset_value<T>(*p.tree, i, passive ? p.start[i] : p.target[i], p.local[i]), asked};
   const T larger = emphasis<T>(settings, p.prediction.weight);
   const T load = p.law.ellipsoidal[i] ? p.law.load(*p.tree, i, first, p.gradient) / larger : T(0);
   for (int a = 0; a < asked.size(); ++a) {
     const T friction = settings.plan->joints.damping ? p.law.dry_friction[first + a] : T(0);
-    const T minus = larger * (limp ? friction : p.law.torque_minus[first + a]);
-    const T plus = larger * (limp ? friction : p.law.torque_plus[first + a]);
+    const T minus = larger * (passive ? friction : p.law.torque_minus[first + a]);
+    const T plus = larger * (passive ? friction : p.law.torque_plus[first + a]);
     if (p.law.ellipsoidal[i])
       pull.torque[a] = asked[a] / std::max(load, T(1));
     else if (std::abs(pull.off[a]) > p.kink_width)
@@ -226,9 +226,9 @@ void choose_baked(CharacterState<T>& s, const LevelOfDetail& detail, T h) {
     if (!bakes || !s.rig->bakes[i]) continue;
     const int parent = s.tree.parent[i];
     if (!decays && parent >= 0 && turn_of<T>(s.history, parent, h) > T(kExpectable)) continue;
-    const bool limp = has_no_muscle(s.problem, i);
-    s.baked[i] = limp || (s.joint_is_driven(i) && s.deviation[i].released && !s.joint_has_tone(i));
-    if (!limp && !(decays && s.baked[i])) continue;
+    const bool passive = has_no_muscle(s.problem, i);
+    s.baked[i] = passive || (s.joint_is_driven(i) && s.deviation[i].released && !s.joint_has_tone(i));
+    if (!passive && !(decays && s.baked[i])) continue;
     std::array<T, 6> moved{};
     for (int k = 0; k < s.tree.dof_count(i); ++k) moved[k] = s.rate[i][k] * kept;
     s.problem.target[i] = at_offset<T>(s.tree, i, s.problem.start[i], moved);

@@ -47,7 +47,7 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
     if (Status status = check(jets[i], static_cast<int>(i)); !status) return status;
   // What is limp has no use for a target, and sleeps on.
   const JointJet<T> root = displaced(state_->grounding.by, jets[0]);
-  if (state_->levels.asleep && !state_->limp() &&
+  if (state_->levels.asleep && !state_->passive() &&
       !(same_pose<T>(root, state_->target[0]) &&
         std::equal(jets.begin() + 1, jets.end(), state_->target.begin() + 1, same_pose<T>)))
     state_->levels.wake = true;
@@ -169,7 +169,7 @@ Status Character<T>::set_tone(int joint, const Stiffness& of) {
                          joint);
   if (state_->tree.type[joint] == JointType::kFree)
     return Status::error(Code::kInvalidArgument, "a free joint has no tone", joint);
-  make_room_for_tone(*state_);
+  reserve_for_tone(*state_);
   const bool muscles = !state_->problem.law.tone.empty();
   for (int dof = state_->tree.first_dof[joint]; muscles && dof < state_->tree.first_dof[joint + 1]; ++dof) {
     state_->problem.law.tone[dof].stiffness = T(of.stiffness);
@@ -185,7 +185,7 @@ Status Character<T>::set_group_tone(const char* group, Tone tone) {
   if (!state_) return nobody();
   if (tone < Tone::kRigid || tone > Tone::kBraced)
     return Status::error(Code::kInvalidArgument, "no such tone");
-  make_room_for_tone(*state_);
+  reserve_for_tone(*state_);
   bool any = false;
   for (const Muscle& muscle : state_->skeleton.muscles) {
     if (muscle.group.empty() || muscle.group != group) continue;
@@ -362,7 +362,7 @@ template <class T>
 const CharacterReport& Character<T>::report() const {
   static const CharacterReport none;
   if (!state_) return none;
-  state_->settle_totals();
+  state_->compute_totals();
   return state_->report;
 }
 

@@ -39,7 +39,7 @@ MovingCollider<T> moving_collider(CharacterState<T>& s, std::size_t collider, T 
   m.pose = joint * m.collider->local.template cast<T>();
   m.radius = s.bound_radius[collider];
   const bool played = s.driven && s.undisturbed();
-  if (played || s.owed.motion) {
+  if (played || s.deferred.motion) {
     m.velocity = s.history.velocity[0];
     m.any = h * (played ? animated_speed(s, collider) : T(kLimbSpeed) * s.tree.scale.time);
   } else {

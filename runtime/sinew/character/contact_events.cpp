@@ -32,19 +32,19 @@ TouchPoint touch_point(const LoggedContact<T>& c) {
 
 bool ContactRing::take(ContactEvent& out) {
   if (size_ == 0) return false;
-  out = room_[first_];
-  first_ = first_ + 1 == room_.size() ? 0 : first_ + 1;
+  out = buffer_[first_];
+  first_ = first_ + 1 == buffer_.size() ? 0 : first_ + 1;
   --size_;
   return true;
 }
 
 void ContactRing::put(const ContactEvent& event) {
-  if (size_ == room_.size()) {
+  if (size_ == buffer_.size()) {
     ++dropped_;
     return;
   }
   const std::size_t at = first_ + size_;
-  room_[at < room_.size() ? at : at - room_.size()] = event;
+  buffer_[at < buffer_.size() ? at : at - buffer_.size()] = event;
   ++size_;
 }
 
@@ -100,7 +100,7 @@ void ContactReporter<T>::gather(std::span<const int> first) {
 /// Of each collider that the animation leads on to the ground, the lowest point.
 template <class T>
 void ContactReporter<T>::add_animated(CharacterState<T>& s, int n, const WorldSettings& world) {
-  if (!s.settings.ground_contact || s.limp()) return;
+  if (!s.settings.ground_contact || s.passive()) return;
   const double reach = settings_.animated_reach * double(s.tree.scale.length);
   for (std::size_t k = 0; k + 1 < s.first_point.size(); ++k) {
     const int body = s.colliders[k].joint;

@@ -72,7 +72,7 @@ struct ContactEvent {
 class ContactRing {
  public:
   /// Not copied: the memory must outlive the ring, and the ring the reports.
-  explicit ContactRing(std::span<ContactEvent> room) : room_(room) {}
+  explicit ContactRing(std::span<ContactEvent> room) : buffer_(room) {}
 
   std::size_t size() const { return size_; }
   /// Events that found the ring full, since it was made; the first ones are kept.
@@ -83,7 +83,7 @@ class ContactRing {
   void put(const ContactEvent& event);
 
  private:
-  std::span<ContactEvent> room_;
+  std::span<ContactEvent> buffer_;
   std::size_t first_ = 0, size_ = 0;
   std::uint64_t dropped_ = 0;
 };

@@ -25,8 +25,8 @@ constexpr double kMostStored =
 constexpr double kSlides =
     20;  ///< what slips by as much less than it turns rolls, the more the less it slips
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
-/// m, where something is led as a whole: it presses on whatever has stopped what strikes, and loads it.
-constexpr double kImpactDepthLed = 0.025;
+/// m, where something is driven as a whole: it presses on whatever has stopped what strikes, and loads it.
+constexpr double kImpactDepthDriven = 0.025;
 
 /// Contact identity that survives from step to step.
 std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
@@ -70,15 +70,15 @@ void begin_inside(Contact<T>& c) {
 }  // namespace
 
 template <class T>
-void ContactFinder<T>::reserve(const SolveRoom& room, int obstacles) {
+void ContactFinder<T>::reserve(const SolveCapacity& capacity, int obstacles) {
   near_.reserve(static_cast<std::size_t>(obstacles));
-  contacts_.reserve(room.contacts);
-  gaps_.reserve(room.contacts);
-  room_ = static_cast<std::size_t>(room.contacts);
-  bounds_.reserve(room.colliders);
-  follows_.reserve(room.bodies);
-  for (auto* v : {&first_bound_, &first_body_}) v->reserve(room.trees);
-  depenetrating_.reserve(room.trees);
+  contacts_.reserve(capacity.contacts);
+  gaps_.reserve(capacity.contacts);
+  capacity_ = static_cast<std::size_t>(capacity.contacts);
+  bounds_.reserve(capacity.colliders);
+  follows_.reserve(capacity.bodies);
+  for (auto* v : {&first_bound_, &first_body_}) v->reserve(capacity.trees);
+  depenetrating_.reserve(capacity.trees);
 }
 
 template <class T>
@@ -153,7 +153,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
   allow_pressed(c);
   const T& most_gap = most_gap_[between_trees(c)];
   while (c.gap < most_gap && contacts_.size() >= most_)
-    if (!make_room()) break;
+    if (!reserve()) break;
   if (!(c.gap < most_gap) || contacts_.size() >= most_) {
     ++left_out_;
     return;
@@ -165,7 +165,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
 /// Drops the further half of the contacts between trees, or, if there are none, of the static ones; further
 /// ones are not taken any more. False where all are as near.
 template <class T>
-bool ContactFinder<T>::make_room() {
+bool ContactFinder<T>::reserve() {
   const bool any_between = std::any_of(contacts_.begin(), contacts_.end(), between_trees<T>);
   T& most_gap = most_gap_[any_between];
   gaps_.clear();
@@ -444,7 +444,7 @@ void ContactFinder<T>::find_near(int n, const Surroundings& surroundings) {
 template <class T>
 void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
   find_near(n, surroundings);
-  std::erase_if(near_, [&](int o) { return led_through(n, surroundings.obstacles[o]); });
+  std::erase_if(near_, [&](int o) { return driven_through(n, surroundings.obstacles[o]); });
   const CharacterState<T>& s = *states_[n];
   const T ground = T(world_->ground_height - common_origin_.z());
   for (std::size_t collider = 0; collider < s.colliders.size(); ++collider) {
@@ -518,7 +518,7 @@ template <class T>
 void ContactFinder<T>::meet_tree(int n, int m) {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   const int count = static_cast<int>(t.colliders.size());
-  if (n != m && led_through(n, m)) return;
+  if (n != m && driven_through(n, m)) return;
   for (int c = 0; c < static_cast<int>(s.colliders.size()); ++c)
     for (int o = 0; o < count; ++o)
       if (n != m || s.may_touch[c * count + o]) meet_collider(n, c, m, o);
@@ -545,18 +545,18 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   most_sunk_ = std::numeric_limits<T>::infinity();
   impact_depth_ = T(kImpactDepth);
   for (const CharacterState<T>* s : states) {
-    most_ += static_cast<std::size_t>(s->problem.room.contacts);
+    most_ += static_cast<std::size_t>(s->problem.capacity.contacts);
     if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) {  // led as a whole
       // It presses with whatever force it takes. With friction to match, what stands aslant between it and a
       // wall is jammed for good, and driven in until it comes out at the back.
       most_sunk_ = T(kMostGripped * world.accuracy.sink_depth);
-      impact_depth_ = T(kImpactDepthLed);
+      impact_depth_ = T(kImpactDepthDriven);
       continue;
     }
     heaviest = std::max(heaviest, T(s->total_mass));
   }
   bears_ = states.size() > 1 ? T(kPiled) * heaviest : heaviest;
-  most_ = std::min(most_, room_);
+  most_ = std::min(most_, capacity_);
   count_depenetrating();
   contacts_.clear();
   std::fill_n(most_gap_, 2, std::numeric_limits<T>::infinity());
@@ -594,23 +594,23 @@ double half_thickness_of(const Collider& obstacle, double floor, double unit) {
 }  // namespace
 
 template <class T>
-bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleRoom<T>& room) {
+bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleScratch<T>& scratch) {
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
   const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
   const T pressed = T(kPressedByClips) * s.tree.scale.length;
-  room.moving.clear();
-  room.from.clear();
-  room.to.clear();
+  scratch.moving.clear();
+  scratch.from.clear();
+  scratch.to.clear();
   const auto paths = [&] {
-    if (room.from.empty()) {
-      place_colliders<T>(s, s.local, origin, origin, room.from);
+    if (scratch.from.empty()) {
+      place_colliders<T>(s, s.local, origin, origin, scratch.from);
       for (int i = 0; i < s.tree.bodies; ++i)
         s.problem.target[i] = {s.target[i].rotation, s.target[i].translation};
       place_colliders<T>(s, s.problem.target, s.target[0].translation.template cast<double>(), origin,
-                         room.to);
+                         scratch.to);
     }
-    return ColliderPaths<T>{room.from, room.to};
+    return ColliderPaths<T>{scratch.from, scratch.to};
   };
   bool meets = false;
   if (!around.obstacles.empty())
@@ -621,13 +621,13 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       if (meets || d.distance > double(reach)) return;
       Transform<double> pose = obstacle.local;
       pose.translation -= origin;
-      room.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
+      scratch.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
       const T thin = T(half_thickness_of(obstacle, around.floor, double(s.tree.scale.length)));
-      meets = touch_on_the_way<T>(paths(), {room.obstacle, room.obstacle}, std::min(pressed, thin / 2));
+      meets = touch_on_the_way<T>(paths(), {scratch.obstacle, scratch.obstacle}, std::min(pressed, thin / 2));
     });
   const auto movers = [&] {
-    if (room.moving.empty()) append_moving(s, h, room.moving);
-    return std::span<const MovingCollider<T>>(room.moving);
+    if (scratch.moving.empty()) append_moving(s, h, scratch.moving);
+    return std::span<const MovingCollider<T>>(scratch.moving);
   };
   return meets || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
            return o.shape->distance(center).distance < double(reach) &&

@@ -7,9 +7,9 @@
 
 #include "sinew/character/closeness.h"
 #include "sinew/character/neighbour_grid.h"
+#include "sinew/character/return_to_animation.h"
 #include "sinew/character/state.h"
 #include "sinew/character/touching.h"
-#include "sinew/character/way_back.h"
 #include "sinew/effects/crossing_edges.h"
 #include "sinew/effects/static_shape.h"
 
@@ -98,9 +98,9 @@ class ContactSearch {
  public:
   virtual ~ContactSearch() = default;
   /// For so much, among so many obstacles.
-  virtual void reserve(const SolveRoom& room, int obstacles) = 0;
+  virtual void reserve(const SolveCapacity& capacity, int obstacles) = 0;
   /// That reserve() takes.
-  virtual std::size_t bytes(const SolveRoom& room) const = 0;
+  virtual std::size_t bytes(const SolveCapacity& capacity) const = 0;
 
   /// All pairs that may touch within h seconds, measured at the kinematics that the states hold (about
   /// `common_origin`). `indices` are the trees' numbers in the world, for identities that last; `lagged` is
@@ -121,9 +121,10 @@ class ContactSearch {
 template <class T>
 class ContactFinder final : public ContactSearch<T> {
  public:
-  void reserve(const SolveRoom& room, int obstacles) override;
-  std::size_t bytes(const SolveRoom& room) const override {
-    return room.contacts * (sizeof(Contact<T>) + sizeof(T)) + room.colliders * sizeof(Bound) + room.bodies;
+  void reserve(const SolveCapacity& capacity, int obstacles) override;
+  std::size_t bytes(const SolveCapacity& capacity) const override {
+    return capacity.contacts * (sizeof(Contact<T>) + sizeof(T)) + capacity.colliders * sizeof(Bound) +
+           capacity.bodies;
   }
   std::span<Contact<T>> find(const WorldSettings& world, const Surroundings& surroundings,
                              std::span<CharacterState<T>* const> states, std::span<const int> indices,
@@ -136,21 +137,21 @@ class ContactFinder final : public ContactSearch<T> {
   struct Bound {
     Vec3<T> center;
     T radius = T(0), reach = T(0);
-    bool moved = false;  ///< by some unknown, or on the way back to its animation
+    bool moved = false;  ///< by some unknown, or on the return to its animation
   };
 
   /// How a body follows a clip.
   enum class Follows : std::uint8_t {
     kNot,
     kRoughly,  ///< its joints are driven, but some unknown moves it
-    kExactly,  ///< or is on its way back
+    kExactly,  ///< or is on its return
   };
 
   void bound(const CharacterState<T>& state, T h);
   void find_followers(CharacterState<T>& state);
   PlacedCollider<T> collider_at(int n, std::size_t collider, const Kinematics<T>& kinematics) const;
-  bool led_through(int n, const Collider& obstacle) const;
-  bool led_through(int n, int m) const;
+  bool driven_through(int n, const Collider& obstacle) const;
+  bool driven_through(int n, int m) const;
   void allow_pressed(Contact<T>& contact) const;
   /// About the common origin.
   Transform<T> pose_of(const Collider& obstacle) const {
@@ -188,7 +189,7 @@ class ContactFinder final : public ContactSearch<T> {
   void meet_corners(int n, int collider, const Met& met, T reach);
   void let_roll(Contact<T>& contact) const;
   void add(Contact<T>& contact, T reach);
-  bool make_room();
+  bool reserve();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
   void go_on_below(T unit, const Vec3<T>& other, Met& box) const;
   void begin_all();
@@ -213,8 +214,8 @@ class ContactFinder final : public ContactSearch<T> {
   T most_sunk_ =
       T(0);  ///< m of a human: a normal force that sinks a contact deeper adds nothing to its friction
   std::vector<Contact<T>> contacts_;
-  std::size_t room_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
-  std::vector<T> gaps_;              ///< m, for make_room()
+  std::size_t capacity_ = 0, most_ = 0;  ///< contacts that there is memory for, and that these trees may have
+  std::vector<T> gaps_;                  ///< m, for reserve()
   T most_gap_[2] = {T(0), T(0)};  ///< m, of static contacts and of those between trees that there is room for
   int left_out_ = 0;
   CrossingEdges<T> edges_;          ///< of a pair of colliders
@@ -228,7 +229,7 @@ class ContactFinder final : public ContactSearch<T> {
 
 /// Room for meets_obstacle().
 template <class T>
-struct ObstacleRoom {
+struct ObstacleScratch {
   std::vector<MovingCollider<T>> moving;
   std::vector<PlacedCollider<T>> from, to, obstacle;
 
@@ -242,13 +243,14 @@ struct ObstacleRoom {
 /// Whether the animation meets an obstacle on its way to the target, within h seconds; or comes within a few
 /// centimetres of a shape of the host's. O(colliders) for each obstacle that is within their reach.
 template <class T>
-bool meets_obstacle(CharacterState<T>& state, const Surroundings& around, T h, ObstacleRoom<T>& room);
+bool meets_obstacle(CharacterState<T>& state, const Surroundings& around, T h, ObstacleScratch<T>& scratch);
 
 /// What a world's step asks of contacts.
 template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
-  bool (*meets_obstacle)(CharacterState<T>& state, const Surroundings& around, T h, ObstacleRoom<T>& room);
+  bool (*meets_obstacle)(CharacterState<T>& state, const Surroundings& around, T h,
+                         ObstacleScratch<T>& scratch);
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);

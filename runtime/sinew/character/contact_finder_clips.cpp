@@ -1,4 +1,4 @@
-// What follows a clip in ContactFinder: as deep as its clip presses it, and where its root is led anyway.
+// What follows a clip in ContactFinder: as deep as its clip presses it, and where its root is driven anyway.
 #include <limits>
 
 #include "sinew/character/contact_finder.h"
@@ -6,7 +6,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kLedInto = 5e-3;     ///< m of a human: so much deeper what muscles lead back may go
+constexpr double kDrivenInto = 5e-3;  ///< m of a human: so much deeper what muscles lead back may go
 constexpr double kGivesWay = 0.02;    ///< m of a human, see give_way()
 constexpr double kGivingSpeed = 0.1;  ///< m/s, see give_way()
 
@@ -24,7 +24,7 @@ bool lie_deeper(const PlacedCollider<T>& a, const PlacedCollider<T>& b, T depth)
 template <class T>
 void ContactFinder<T>::find_followers(CharacterState<T>& s) {
   first_body_.push_back(static_cast<int>(follows_.size()));
-  const bool any = !s.is_prop && !s.limp() && s.settings.root != RootDrive::kFree;
+  const bool any = !s.is_prop && !s.passive() && s.settings.root != RootDrive::kFree;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int parent = s.tree.parent[i];
     const bool root = parent < 0 && s.tree.type[i] == JointType::kFree;
@@ -45,12 +45,12 @@ PlacedCollider<T> ContactFinder<T>::collider_at(int n, std::size_t c, const Kine
   return {&collider, body * collider.local.template cast<T>(), s.bound_radius[c]};
 }
 
-/// Whether a led root takes its own body further into an obstacle than clips press, at the end of the part.
-/// Nothing keeps it out, and limbs that were would be torn off: all pass, until none is in it any more.
+/// Whether a driven root takes its own body further into an obstacle than clips press, at the end of the
+/// part. Nothing keeps it out, and limbs that were would be torn off: all pass, until none is in it any more.
 template <class T>
-bool ContactFinder<T>::led_through(int n, const Collider& obstacle) const {
+bool ContactFinder<T>::driven_through(int n, const Collider& obstacle) const {
   const CharacterState<T>& s = *states_[n];
-  if (!s.leads_limbs()) return false;
+  if (!s.drives_limbs()) return false;
   const PlacedCollider<T> other{&obstacle, pose_of(obstacle), T(bounding_radius(obstacle))};
   const T pressed = T(kPressedByClips) * s.tree.scale.length;
   for (std::size_t c = 0; c < s.colliders.size(); ++c) {
@@ -64,12 +64,12 @@ bool ContactFinder<T>::led_through(int n, const Collider& obstacle) const {
   return false;
 }
 
-/// The same of two trees whose roots are led, the one into the other: figures, or one and a platform.
+/// The same of two trees whose roots are driven, the one into the other: figures, or one and a platform.
 template <class T>
-bool ContactFinder<T>::led_through(int n, int m) const {
+bool ContactFinder<T>::driven_through(int n, int m) const {
   const CharacterState<T>&s = *states_[n], &t = *states_[m];
   if (!s.root_is_kinematic() || !t.root_is_kinematic()) return false;
-  if (!s.leads_limbs() && !t.leads_limbs()) return false;
+  if (!s.drives_limbs() && !t.drives_limbs()) return false;
   const T pressed = T(kPressedByClips) * std::min(s.tree.scale.length, t.tree.scale.length);
   for (std::size_t c = 0; c < s.colliders.size(); ++c)
     for (std::size_t o = 0; o < t.colliders.size(); ++o) {
@@ -98,16 +98,17 @@ void ContactFinder<T>::allow_pressed(Contact<T>& c) const {
   const T most = c.plane && states_[c.tree_a]->root_is_kinematic()
                      ? std::numeric_limits<T>::infinity()
                      : std::min(T(kPressedByClips) * c.length_scale, half_thickness(c) / 2);
-  const T clip = std::max(-wanted.gap, T(0)), led = follows == Follows::kExactly ? T(kLedInto) : T(0);
+  const T clip = std::max(-wanted.gap, T(0)), driven = follows == Follows::kExactly ? T(kDrivenInto) : T(0);
   const T allowed = clip > most ? std::max(2 * most - clip, T(0)) : clip;
-  const T pressed = std::min(allowed + led * c.length_scale, most);
+  const T pressed = std::min(allowed + driven * c.length_scale, most);
   c.slack += pressed;
   c.gap += pressed;
   c.start_gap = c.gap;
 }
 
-/// What bears more than half the weight of a figure whose root is led gives way slowly: the root has no need
-/// of it, and muscles may press a limb against it that can't get back but through it. True while it does.
+/// What bears more than half the weight of a figure whose root is driven gives way slowly: the root has no
+/// need of it, and muscles may press a limb against it that can't get back but through it. True while it
+/// does.
 template <class T>
 bool ContactFinder<T>::give_way(Contact<T>& c) const {
   const CharacterState<T>& s = *states_[c.tree_a];
@@ -124,8 +125,8 @@ bool ContactFinder<T>::give_way(Contact<T>& c) const {
 #define SINEW_CLIP_INSTANCES(T)                                                                           \
   template void ContactFinder<T>::find_followers(CharacterState<T>&);                                     \
   template PlacedCollider<T> ContactFinder<T>::collider_at(int, std::size_t, const Kinematics<T>&) const; \
-  template bool ContactFinder<T>::led_through(int, const Collider&) const;                                \
-  template bool ContactFinder<T>::led_through(int, int) const;                                            \
+  template bool ContactFinder<T>::driven_through(int, const Collider&) const;                             \
+  template bool ContactFinder<T>::driven_through(int, int) const;                                         \
   template void ContactFinder<T>::allow_pressed(Contact<T>&) const;                                       \
   template bool ContactFinder<T>::give_way(Contact<T>&) const;
 SINEW_CLIP_INSTANCES(float)

@@ -49,7 +49,7 @@ class ContactLog {
  public:
   /// For an island's contacts, into `room`; how many there are stands in `count` all the time.
   void begin(std::span<LoggedContact<T>> room, int& count) {
-    room_ = room;
+    buffer_ = room;
     count_ = &count;
     count = 0;
     end_part();
@@ -59,9 +59,9 @@ class ContactLog {
   /// before have. Drops what there is no memory for, as the step does (see lagged forces).
   void add(const LoggedContact<T>& found) {
     LoggedContact<T>* const known = find(found.id);
-    if (!known && *count_ == static_cast<int>(room_.size())) return;
+    if (!known && *count_ == static_cast<int>(buffer_.size())) return;
     const T impulse = known ? known->impulse : T(0);
-    LoggedContact<T>& to = known ? *known : room_[static_cast<std::size_t>((*count_)++)];
+    LoggedContact<T>& to = known ? *known : buffer_[static_cast<std::size_t>((*count_)++)];
     to = found;
     to.impulse += impulse;
   }
@@ -76,7 +76,7 @@ class ContactLog {
       const auto is = [&](int tree) { return std::binary_search(trees.begin(), trees.end(), tree); };
       return is(c.pair.a.tree) || (c.pair.b.tree >= 0 && is(c.pair.b.tree));
     };
-    const auto all = room_.first(static_cast<std::size_t>(*count_));
+    const auto all = buffer_.first(static_cast<std::size_t>(*count_));
     *count_ = static_cast<int>(std::remove_if(all.begin(), all.end(), its) - all.begin());
     end_part();
   }
@@ -114,14 +114,14 @@ class ContactLog {
   LoggedContact<T>* find(std::uint64_t id) {
     for (int n = 0; n < known_; ++n) {
       const int at = next_ + n < known_ ? next_ + n : next_ + n - known_;
-      if (room_[static_cast<std::size_t>(at)].id != id) continue;
+      if (buffer_[static_cast<std::size_t>(at)].id != id) continue;
       next_ = at + 1 < known_ ? at + 1 : 0;
-      return &room_[static_cast<std::size_t>(at)];
+      return &buffer_[static_cast<std::size_t>(at)];
     }
     return nullptr;
   }
 
-  std::span<LoggedContact<T>> room_;
+  std::span<LoggedContact<T>> buffer_;
   int* count_ = nullptr;
   int known_ = 0, next_ = 0;  ///< written by parts before; where find() begins
   int strikes_ = 0, pushes_ = 0;

@@ -18,29 +18,29 @@ void Couplings<T>::drop_last() {
 }
 
 template <class T>
-void Couplings<T>::count_in(States states, SolveRooms& rooms) {
-  rooms_.clear();
+void Couplings<T>::count_in(States states, SolveCapacities& rooms) {
+  capacities_.clear();
   // Trees that are tied together if all couplings are switched on, by their first.
   std::vector<int> clump_of(states.size());
   std::iota(clump_of.begin(), clump_of.end(), 0);
   for (const auto& c : all_) {
-    SolveRoom& room = rooms_.emplace_back();
-    room.nodes = static_cast<int>(c->nodes.size());
-    room.stencils = static_cast<int>(c->stencils.size());
-    room.tetrahedra = static_cast<int>(c->tetrahedra.size());
+    SolveCapacity& capacity = capacities_.emplace_back();
+    capacity.nodes = static_cast<int>(c->nodes.size());
+    capacity.stencils = static_cast<int>(c->stencils.size());
+    capacity.tetrahedra = static_cast<int>(c->tetrahedra.size());
     for (const CouplingNode<T>& node : c->nodes)
-      if (node.state >= 0) room.node_entries += path_entries(states[node.state]->tree, node.body);
-    rooms.all += room;
+      if (node.state >= 0) capacity.node_entries += path_entries(states[node.state]->tree, node.body);
+    rooms.all += capacity;
     const int first = first_tree(*c);
     for_each_tree(*c, [&](int n) {
       const auto [to, from] = std::minmax(clump_of[first], clump_of[n]);
       if (to != from) std::replace(clump_of.begin(), clump_of.end(), int(from), int(to));
     });
   }
-  std::vector<SolveRoom> clump(states.size());
-  for (std::size_t n = 0; n < states.size(); ++n) clump[clump_of[n]] += states[n]->problem.room;
+  std::vector<SolveCapacity> clump(states.size());
+  for (std::size_t n = 0; n < states.size(); ++n) clump[clump_of[n]] += states[n]->problem.capacity;
   for (std::size_t c = 0; c < all_.size(); ++c)
-    if (const int first = first_tree(*all_[c]); first >= 0) clump[clump_of[first]] += rooms_[c];
+    if (const int first = first_tree(*all_[c]); first >= 0) clump[clump_of[first]] += capacities_[c];
   for (const auto& c : all_)
     if (const int first = first_tree(*c); first >= 0) rooms.include(clump[clump_of[first]]);
 }
@@ -76,7 +76,7 @@ void begin_couplings(std::span<Coupling<T>* const> couplings, std::span<Characte
       if (node.tree < 0) {
         node.point = (node.place - origin).template cast<T>();
       } else {
-        c->strained = c->strained || states[node.tree]->leads_limbs();
+        c->strained = c->strained || states[node.tree]->drives_limbs();
         const Vec3<T> world = states[node.tree]->model()[node.body] * node.local;
         node.point = (world.template cast<double>() - origin).template cast<T>();
       }

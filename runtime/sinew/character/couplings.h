@@ -9,7 +9,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/effects/coupling.h"
-#include "sinew/optimizer/solve_room.h"
+#include "sinew/optimizer/solve_capacity.h"
 
 namespace sinew {
 
@@ -24,9 +24,9 @@ class Couplings {
   /// Set-up: two bodies never touch each other.
   void keep_apart(const BodyPair& pair) { apart_.push_back(pair); }
   /// Adds what all of them bring to solves, after all states; what they may tie together is solved as one.
-  void count_in(States states, SolveRooms& rooms);
+  void count_in(States states, SolveCapacities& rooms);
   /// What one of them brings to a solve, as counted.
-  const SolveRoom& room(int index) const { return rooms_[index]; }
+  const SolveCapacity& capacity(int index) const { return capacities_[index]; }
 
   Coupling<T>& operator[](int index) { return *all_[index]; }
   const Coupling<T>& operator[](int index) const { return *all_[index]; }
@@ -42,7 +42,7 @@ class Couplings {
   bool works(const Coupling<T>& coupling, States states) const;
 
   std::vector<std::unique_ptr<Coupling<T>>> all_;
-  std::vector<SolveRoom> rooms_;
+  std::vector<SolveCapacity> capacities_;
   std::vector<int> working_;
   std::vector<BodyPair> apart_;
 };

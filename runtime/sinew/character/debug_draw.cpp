@@ -66,7 +66,7 @@ class Drawing {
     if (settings_.muscles) draw_muscles(s);
     if (settings_.unknowns) draw_unknowns(s);
     if (settings_.support) draw_support(s);
-    if (settings_.targets && !s.undisturbed() && !s.limp()) draw_targets(s);
+    if (settings_.targets && !s.undisturbed() && !s.passive()) draw_targets(s);
   }
 
   void draw_skeleton(CharacterState<T>& s) {

@@ -14,7 +14,7 @@ constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every jo
 constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
-// Of joints with a tone: near its animation the way back goes on with the speed that there is; what bears may
+// Of joints with a tone: near its animation the return goes on with the speed that there is; what bears may
 // have settled further off.
 constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
 constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
@@ -60,7 +60,8 @@ bool joints_rest(const CharacterState<T>& s) {
   return true;
 }
 
-/// Muscles with a tone let go of what is left of a character that nothing acts on: it goes the way back.
+/// Muscles with a tone let go of what is left of a character that nothing acts on: it returns to its
+/// animation without unknowns.
 template <class T>
 void lead_home(CharacterState<T>& s, T h) {
   Grounding<T>& g = s.grounding;
@@ -69,7 +70,7 @@ void lead_home(CharacterState<T>& s, T h) {
   for (int i = 0; i < s.tree.bodies; ++i)
     if (s.joint_has_tone(i)) s.deviation[i].released = false;
   g.returns = true;
-  s.settle_deviations();
+  s.clear_deviations();
 }
 
 }  // namespace
@@ -123,7 +124,7 @@ void hand_back(CharacterState<T>& s, T h) {
   s.deviation[0].rate = {};
   s.deviation[0].released = false;
   g.returns = true;
-  s.settle_deviations();
+  s.clear_deviations();
 }
 
 SINEW_GROUNDING_INSTANCES(template, float)

@@ -4,7 +4,7 @@
 // On its animation the check asks whether the ground can do it (ground_balance.h). Where it can't, the root
 // is solved for like a joint whose muscle is too weak. A body that comes to rest again stands where its feet
 // are, not where the animation would have them: it is taken as displaced, level and about the vertical, and
-// follows its animation from there. Only what is left of height and tilt goes the way back.
+// follows its animation from there. Only what is left of height and tilt returns in its own time.
 #pragma once
 
 #include "sinew/character/state.h"
@@ -21,7 +21,7 @@ void displace_target(CharacterState<T>& state, const Displacement& further);
 
 /// After a solved part of h seconds of a grounded character, or of one whose muscles have a tone: whether it
 /// has been as its animation wants it for long enough. If so, a grounded one is displaced, and the ordinary
-/// way back takes it onto its animation.
+/// return takes it onto its animation.
 template <class T>
 void hand_back(CharacterState<T>& state, T h);
 

@@ -10,10 +10,10 @@
 #include "sinew/character/grounding.h"
 #include "sinew/character/levels.h"
 #include "sinew/character/playback.h"
+#include "sinew/character/return_to_animation.h"
 #include "sinew/character/tone.h"
 #include "sinew/character/touch_digest.h"
 #include "sinew/character/unknowns.h"
-#include "sinew/character/way_back.h"
 #include "sinew/optimizer/error_estimate.h"
 #include "sinew/optimizer/time_scheme.h"
 #include "sinew/residual/tree_pass.h"
@@ -25,7 +25,7 @@ namespace {
 constexpr double kCertified = 0.9;     ///< of the limit: below, a joint at its target leaves the unknowns
 constexpr double kBearsNothing = 0.5;  ///< of what releases a joint with a tone
 constexpr int kReleaseRounds = 8;
-constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see excess()
+constexpr int kEasyPasses = 8;  ///< a solve that took more may have gone astray: see energy_error()
 constexpr int kTightenRounds = 6;
 constexpr double kSlides = 0.99;  ///< of the square of a stick: what slides as far has left no elastic slip
 constexpr int kLeastPasses = 12;  ///< of a solve, where the step has none left: 8 leave 5 cm of error
@@ -42,7 +42,7 @@ bool flies(const CharacterState<T>& s) {
 template <class T>
 void begin_one_step(CharacterState<T>& s) {
   if (s.rate_step > T(0)) return;
-  s.history.accelerates = s.history.accelerates && !s.limp();  // else it is the animation's
+  s.history.accelerates = s.history.accelerates && !s.passive();  // else it is the animation's
   for (auto* v : {&s.smooth, &s.lasting, &s.lasting_before}) std::fill(v->begin(), v->end(), T(0));
 }
 
@@ -55,48 +55,48 @@ bool gets_substeps(const CharacterState<T>* s) {
 }  // namespace
 
 template <class T>
-void IslandStepper<T>::reserve(const SolveRoom& room, int obstacles) {
-  problems_.reserve(room.trees);
-  free_share_.reserve(room.trees);
-  is_held_.reserve(room.trees);
-  ledger_.reserve(room.trees);
-  trees_.reserve(room.trees);
-  for (const auto& effect : effects_) effect->reserve(room);
-  if (finder_) finder_->reserve(room, obstacles);
-  lagged_.reserve(room.contacts);
-  for (auto* v : {&parted_, &shut_}) v->reserve(room.contacts);
-  room_ = room.contacts;
-  solver_.reserve(room);
-  set_.reserve(room.trees);
-  radius_.reserve(room.trees);
-  driven_.reserve(room.trees);
-  lasts_.reserve(room.trees);
-  bears_.reserve(room.bodies);
-  loose_.reserve(room.dofs);
-  for (auto* v : {&jumps_, &late_jumps_}) v->reserve(room.bodies);
-  for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(room.dofs);
+void IslandStepper<T>::reserve(const SolveCapacity& capacity, int obstacles) {
+  problems_.reserve(capacity.trees);
+  free_share_.reserve(capacity.trees);
+  is_frozen_.reserve(capacity.trees);
+  balance_.reserve(capacity.trees);
+  trees_.reserve(capacity.trees);
+  for (const auto& effect : effects_) effect->reserve(capacity);
+  if (finder_) finder_->reserve(capacity, obstacles);
+  lagged_.reserve(capacity.contacts);
+  for (auto* v : {&opened_, &shut_}) v->reserve(capacity.contacts);
+  capacity_ = capacity.contacts;
+  solver_.reserve(capacity);
+  set_.reserve(capacity.trees);
+  radius_.reserve(capacity.trees);
+  driven_.reserve(capacity.trees);
+  lasts_.reserve(capacity.trees);
+  bears_.reserve(capacity.bodies);
+  loose_.reserve(capacity.dofs);
+  for (auto* v : {&jumps_, &late_jumps_}) v->reserve(capacity.bodies);
+  for (auto* v : {&jump_force_, &constant_, &kinks_, &others_, &speed_share_}) v->reserve(capacity.dofs);
   for (auto* v : {&moved_, &turned_, &end_sped_, &end_spun_, &start_sped_, &start_spun_})
-    v->reserve(room.bodies);
-  impulse_.reserve(room.dofs);
-  for (auto* v : {&first_body_, &first_dof_}) v->reserve(room.trees);
-  turned_far_.reserve(room.trees);
-  for (auto* v : {&missed_, &unturned_}) v->reserve(room.bodies);
-  led_rates_.reserve(room.bodies);
-  for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(room.bodies);
-  kept_.reserve(room.bodies);
-  momenta_.reserve(room.trees);
-  ends_.reserve(room);
-  struck_.reserve(room.trees);
+    v->reserve(capacity.bodies);
+  impulse_.reserve(capacity.dofs);
+  for (auto* v : {&first_body_, &first_dof_}) v->reserve(capacity.trees);
+  turned_far_.reserve(capacity.trees);
+  for (auto* v : {&missed_, &unturned_}) v->reserve(capacity.bodies);
+  driven_rates_.reserve(capacity.bodies);
+  for (auto* v : {&struck_velocity_, &struck_momentum_}) v->reserve(capacity.bodies);
+  kept_.reserve(capacity.bodies);
+  momenta_.reserve(capacity.trees);
+  ends_.reserve(capacity);
+  struck_.reserve(capacity.trees);
 }
 
 template <class T>
-std::size_t IslandStepper<T>::bytes(const SolveRoom& room) const {
-  std::size_t sum =
-      EndVelocities<T>::bytes(room) + room.dofs * (6 * sizeof(T) + 1) +
-      room.bodies *
-          (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) + 2 * sizeof(std::array<T, 6>) + 1) +
-      (finder_ ? finder_->bytes(room) : 0) + solver_.bytes(room) + room.contacts * sizeof(LaggedForce<T>);
-  for (const auto& effect : effects_) sum += effect->bytes(room);
+std::size_t IslandStepper<T>::bytes(const SolveCapacity& capacity) const {
+  std::size_t sum = EndVelocities<T>::bytes(capacity) + capacity.dofs * (6 * sizeof(T) + 1) +
+                    capacity.bodies * (10 * sizeof(Vec3<T>) + sizeof(Twist<T>) + sizeof(Landing) +
+                                       2 * sizeof(std::array<T, 6>) + 1) +
+                    (finder_ ? finder_->bytes(capacity) : 0) + solver_.bytes(capacity) +
+                    capacity.contacts * sizeof(LaggedForce<T>);
+  for (const auto& effect : effects_) sum += effect->bytes(capacity);
   return sum;
 }
 
@@ -105,8 +105,8 @@ template <class T>
 void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
   lagged_.clear();
   std::ptrdiff_t room = 0;
-  for (const CharacterState<T>* s : states_) room += s->problem.room.contacts;
-  room = std::min(room, room_);
+  for (const CharacterState<T>* s : states_) room += s->problem.capacity.contacts;
+  room = std::min(room, capacity_);
   const auto before = [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; };
   for (const int index : indices_) {
     const auto begin = std::lower_bound(lagged.begin(), lagged.end(), first_contact_id(index), before);
@@ -117,7 +117,7 @@ void IslandStepper<T>::choose_lagged(std::span<const LaggedForce<T>> lagged) {
 }
 
 template <class T>
-void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
+void IslandStepper<T>::finish_pose(CharacterState<T>& s, int tree, T h) {
   const WorldSettings& world = *world_;
   TreeProblem<T>& p = s.problem;
   read_torques(s, h);
@@ -151,9 +151,9 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
   }
   if (!falls) {
-    s.settle_deviations();
-  } else if (!s.owed.deviations) {
-    s.owed.deviations = true;
+    s.clear_deviations();
+  } else if (!s.deferred.deviations) {
+    s.deferred.deviations = true;
     std::fill(s.deviation.begin(), s.deviation.end(), Deviation<T>{});
     std::fill(s.load.begin(), s.load.end(), T(0));
   }
@@ -164,7 +164,7 @@ void IslandStepper<T>::settle_pose(CharacterState<T>& s, int tree, T h) {
   const bool touched = std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
     return (c.tree_a == tree || c.tree_b == tree) && c.acts();
   });
-  s.left_to_gravity = !touched && !landed_ && !is_held_[tree] && couplings_.empty() && flies(s);
+  s.left_to_gravity = !touched && !landed_ && !is_frozen_[tree] && couplings_.empty() && flies(s);
 }
 
 /// Moves all trees' histories on to the solution.
@@ -239,7 +239,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   r.elastic_energy += elastic_of<T>(couplings_, tree);
   const bool unchanged = !landed_ && signature == s.contact_signature && limits == s.limit_signature;
   s.steps_unchanged = unchanged ? s.steps_unchanged + 1 : 0;
-  if (!is_held_[tree] && s.passing > 0) --s.passing;
+  if (!is_frozen_[tree] && s.collision_suspended > 0) --s.collision_suspended;
   s.contact_signature = signature;
   s.limit_signature = limits;
   s.report_totals(world_->gravity);
@@ -258,7 +258,7 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
   }
 }
 
-/// What may touch within h, but for what trees that were held are caught in.
+/// What may touch within h, but for what trees that were frozen are caught in.
 template <class T>
 void IslandStepper<T>::find_contacts(T h) {
   contacts_ = {};
@@ -267,7 +267,8 @@ void IslandStepper<T>::find_contacts(T h) {
   left_out_ = std::max(left_out_, finder_->left_out());
   const auto passes = [&](const Contact<T>& c) {
     const bool caught = c.tree_b >= 0 && c.offset > T(0);
-    return caught && (states_[c.tree_a]->passing > 0 || states_[c.tree_b]->passing > 0);
+    return caught &&
+           (states_[c.tree_a]->collision_suspended > 0 || states_[c.tree_b]->collision_suspended > 0);
   };
   const auto rest = std::remove_if(contacts_.begin(), contacts_.end(), passes);
   contacts_ = contacts_.first(static_cast<std::size_t>(rest - contacts_.begin()));
@@ -314,7 +315,7 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
   }
   if (!settings_.plan->scheme) drop_played();
   find_contacts(h);
-  if (std::exchange(blow_, false)) drop_parted(h);
+  if (std::exchange(blow_, false)) drop_opened(h);
 }
 
 /// The rest of what a part's first solve asks for: a guess that passes through nothing, and the prediction.
@@ -363,7 +364,7 @@ SolveReport IslandStepper<T>::solve() {
 template <class T>
 void IslandStepper<T>::loosen_loops() {
   for (Coupling<T>* c : couplings_) {
-    if (!c->leads_out) continue;
+    if (!c->closes_slowly) continue;
     for (Stencil<T>& e : c->stencils) {
       e.shift.setZero();
       e.shortened = T(0);
@@ -379,8 +380,8 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
-/// Which joints of a tree nothing but its animation and the ground moves: its root is led, no joint above is
-/// an unknown, and what they carry touches nothing but the floor, with what may stand there.
+/// Which joints of a tree nothing but its animation and the ground moves: its root is driven, no joint above
+/// is an unknown, and what they carry touches nothing but the floor, with what may stand there.
 template <class T>
 std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
   const CharacterState<T>& s = *states_[tree];
@@ -431,7 +432,7 @@ SolveReport IslandStepper<T>::attempt(bool may_split) {
 /// creep back to it, as far below the stick speed as friction's load is below its most.
 template <class T>
 bool IslandStepper<T>::stays_where_it_sticks(const Contact<T>& c) const {
-  return states_[c.tree_a]->limp() || (c.tree_b >= 0 && states_[c.tree_b]->limp());
+  return states_[c.tree_a]->passive() || (c.tree_b >= 0 && states_[c.tree_b]->passive());
 }
 
 /// One part of the step, from `begin` to `end` (fractions of the frame): halved where it is long for an
@@ -448,7 +449,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   begin_part(h, end);
   if (begin == T(0) && may_divide() && starts()) find_accelerations();
   closed_ = passive();
-  budget_ = closed_ ? ledger_.open(states_, world_->gravity) : 0;
+  budget_ = closed_ ? balance_.open(states_, world_->gravity) : 0;
   land(h);
   const bool closed = closed_;
   SolveReport solved = attempt(splits_left > 0);
@@ -456,7 +457,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   total_.add(solved);
   const bool may_restart = closed && !settings_.plan->scheme;
   if (may_restart && (solved.converged || splits_left == 0) &&
-      excess(solved.converged && solved.outer_passes <= kEasyPasses) > 0) {
+      energy_error(solved.converged && solved.outer_passes <= kEasyPasses) > 0) {
     take_back_landing();
     solved = solve_from_start();
     total_.add(solved);
@@ -473,9 +474,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     return effect->may_change_speeds(contacts_);
   });
   if (!closed && (may_bounce || !solved.converged))  // else nobody asks what there was
-    budget_ = ledger_.open(states_, world_->gravity);
-  hold_lost(!solved.converged && closed && excess(false) > standing());
-  for (std::size_t n = 0; n < states_.size(); ++n) settle_pose(*states_[n], static_cast<int>(n), h);
+    budget_ = balance_.open(states_, world_->gravity);
+  freeze_lost(!solved.converged && closed && energy_error(false) > rest_tolerance());
+  for (std::size_t n = 0; n < states_.size(); ++n) finish_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
   stop_lost();
   for (CharacterState<T>* s : states_)
@@ -490,15 +491,15 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   const bool tied = !couplings_.empty();
   if (!solved.converged || closed) {
     const bool exchanged = landed_ && states_.size() > 1;
-    if (ledger_.settle(states_, contacts_, world_->gravity, !solved.converged, tied, exchanged)) ++damped_;
+    if (balance_.close(states_, contacts_, world_->gravity, !solved.converged, tied, exchanged)) ++damped_;
   } else {
     for (CharacterState<T>* s : states_) s->forget_energy();
   }
   lagged_.clear();
   for (const Contact<T>& c : contacts_) {
     const T force = normal_force(c);
-    const bool led = c.offset > T(0) && c.gap < c.offset;  // still inside
-    if (!(force > T(0) || led)) continue;
+    const bool driven = c.offset > T(0) && c.gap < c.offset;  // still inside
+    if (!(force > T(0) || driven)) continue;
     std::array<T, 2> elastic{};
     if (stays_where_it_sticks(c)) elastic = elastic_share(c, settings_.stick);
     if (elastic[0] * elastic[0] + elastic[1] * elastic[1] > T(kSlides)) elastic = {};
@@ -540,7 +541,7 @@ void IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   total_ = {};
   all_converged_ = true;
   for (CharacterState<T>* s : states) s->unbaked = 0;
-  splits_ = parts_ = damped_ = held_ = restarts_ = left_out_ = 0;
+  splits_ = parts_ = damped_ = frozen_ = restarts_ = left_out_ = 0;
   settings_.gravity = world.gravity.template cast<T>();
   settings_.limit_stiffness = T(world.accuracy.limit_stiffness);
   settings_.limit_damping = T(world.accuracy.limit_damping);
@@ -550,7 +551,7 @@ void IslandStepper<T>::begin(const WorldSettings& world, const Surroundings& sur
   }
   if (!settings_.plan->scheme) strike_all();
   begin_couplings<T>(couplings_, states_, indices_);
-  for (Coupling<T>* c : couplings_) settings_.plan->couplings->lead_out(h, *c);
+  for (Coupling<T>* c : couplings_) settings_.plan->couplings->close_slowly(h, *c);
 }
 
 template <class T>
@@ -569,7 +570,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
     CharacterReport& r = s->report;
     r.outer_passes = total_.outer_passes;
     r.factorisations = total_.factorisations;
-    r.chords = total_.chords;
+    r.simplified_steps = total_.simplified_steps;
     r.corrections = total_.corrections;
     r.plain_passes = total_.plain_passes;
     r.converged = all_converged_;
@@ -577,7 +578,7 @@ int IslandStepper<T>::step(const WorldSettings& world, const Surroundings& surro
     r.splits = splits_;
     r.damped = damped_;
     r.restarts = restarts_;
-    r.held = held_;
+    r.frozen = frozen_;
     r.left_out = left_out_;
     r.unbaked = s->unbaked;
   }

@@ -7,7 +7,7 @@
 
 #include "sinew/character/contact_finder.h"
 #include "sinew/character/contact_log.h"
-#include "sinew/character/energy_ledger.h"
+#include "sinew/character/energy_balance.h"
 #include "sinew/effects/island_effect.h"
 #include "sinew/optimizer/bossak.h"
 #include "sinew/optimizer/end_velocities.h"
@@ -20,9 +20,9 @@ namespace sinew {
 template <class T>
 class IslandStepper {
  public:
-  void reserve(const SolveRoom& room, int obstacles);
+  void reserve(const SolveCapacity& capacity, int obstacles);
   /// That reserve() takes.
-  std::size_t bytes(const SolveRoom& room) const;
+  std::size_t bytes(const SolveCapacity& capacity) const;
   /// Set-up, before reserve(): the world's plan, again where it has changed.
   void declare(const StepPlan<T>& plan) {
     settings_.plan = &plan;
@@ -78,16 +78,16 @@ class IslandStepper {
   bool passive() const;
   double pose_energy() const;
   double way_energy() const;
-  double excess(bool easy) const;
-  double standing() const;
+  double energy_error(bool easy) const;
+  double rest_tolerance() const;
   SolveReport solve_from_start();
-  void hold(CharacterState<T>& state);
+  void freeze(CharacterState<T>& state);
   void forget_contacts();
   void write_pushes(CharacterState<T>& state, T emphasis) const;
   void stop_lost();
-  void hold_lost(bool no_pose);
+  void freeze_lost(bool no_pose);
   T return_time() const { return T(world_->accuracy.return_time); }
-  bool settled(const CharacterState<T>& state) const;
+  bool is_finite(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
   void find_sets();
   void predict_all(T h);
@@ -96,7 +96,7 @@ class IslandStepper {
   void drop_constant(CharacterState<T>& state, int tree, std::span<const T> force);
   T opening_speed(const Contact<T>& c) const;
   void write_borne();
-  void drop_parted(T h);
+  void drop_opened(T h);
   void drop_played();
   void strike_all();
   Strike<T> strike_of(std::size_t tree) const;
@@ -111,7 +111,7 @@ class IslandStepper {
   void add_limits(CharacterState<T>& state, int tree, T h);
   void append_loose(const CharacterState<T>& state);
   void add_to_rate(CharacterState<T>& state, int joint, const std::array<T, 6>& spin);
-  void measure_led_at_start(const CharacterState<T>& state, int tree);
+  void measure_driven_at_start(const CharacterState<T>& state, int tree);
   void land(T h);
   void take_landing(T h);
   void lead_back(CharacterState<T>& state, int tree, T h);
@@ -131,7 +131,7 @@ class IslandStepper {
   Jumps<T> measure_jumps(CharacterState<T>& state, int tree, T h);
   T choose_start(const CharacterState<T>& state, int tree);
   void add_start(CharacterState<T>& state, int tree);
-  void measure_led(const CharacterState<T>& state, int tree, T h);
+  void measure_driven(const CharacterState<T>& state, int tree, T h);
   bool is_locked(const CharacterState<T>& state) const;
   void fall(History<T>& history) const;
   void accelerate_locked(CharacterState<T>& state, int tree);
@@ -140,7 +140,7 @@ class IslandStepper {
   void emphasise_friction(T h);
   void relax_friction(T h);
   void press(T h);
-  void settle_pose(CharacterState<T>& state, int tree, T h);
+  void finish_pose(CharacterState<T>& state, int tree, T h);
   void number_bodies();
   void advance_all(T h);
   void advance_by(const TimeScheme<T>& scheme, T h);
@@ -154,20 +154,20 @@ class IslandStepper {
   T frame_ = T(0);                      ///< s, the whole step
   T part_end_ = T(1);                   ///< where the present part ends, as a fraction of it
   std::vector<LaggedForce<T>> lagged_;  ///< of the last part
-  std::ptrdiff_t room_ = 0;             ///< contacts that there is memory for
+  std::ptrdiff_t capacity_ = 0;         ///< contacts that there is memory for
   SolveReport total_;
   bool closed_ = false;  ///< nothing can do work on the trees in this part
   double budget_ = 0;    ///< J, what they had when it began, where anybody asks
   bool all_converged_ = true;
   int passes_left_ = 0;  ///< of the step, see Accuracy::max_passes
-  int parts_ = 0, splits_ = 0, damped_ = 0, held_ = 0, restarts_ = 0, left_out_ = 0;
+  int parts_ = 0, splits_ = 0, damped_ = 0, frozen_ = 0, restarts_ = 0, left_out_ = 0;
   StepSettings<T> settings_;
-  std::vector<std::uint8_t> is_held_;  ///< [tree] in the present part
+  std::vector<std::uint8_t> is_frozen_;  ///< [tree] in the present part
   std::vector<TreeProblem<T>*> problems_;
   std::unique_ptr<ContactSearch<T>> finder_;               ///< null: no contacts are declared
   std::vector<std::unique_ptr<IslandEffect<T>>> effects_;  ///< declared
   std::vector<IslandTree<T>> trees_;                       ///< as these see them; empty where there are none
-  EnergyLedger<T> ledger_;
+  EnergyBalance<T> balance_;
   std::vector<T> free_share_;  ///< [tree] see IslandEffect::limit_guess
   std::span<Contact<T>> contacts_;
   NewtonSolver<T> solver_;
@@ -190,11 +190,11 @@ class IslandStepper {
   std::vector<std::array<T, 6>> late_jumps_;      ///< [body, trees one after the other] see take_landing
   std::vector<Vec3<T>> struck_velocity_, struck_momentum_;  ///< [body, trees one after the other] see Strike
   bool landed_ = false;                                     ///< land() has changed velocities
-  std::vector<T> parted_, shut_;                            ///< [contact] see drop_parted
+  std::vector<T> opened_, shut_;                            ///< [contact] see drop_opened
   bool blow_ = false;                                       ///< what it parts still carries a force
   std::vector<Landing> kept_;                               ///< [body, the same] before it did
   ContactLog<T>* log_ = nullptr;
-  std::vector<Twist<T>> led_rates_;  ///< [body]
+  std::vector<Twist<T>> driven_rates_;  ///< [body]
   EndVelocities<T> ends_;
   std::vector<Vec3<double>> momenta_;  ///< [tree] at the end, where gravity alone acts
 };

@@ -30,7 +30,7 @@ bool IslandStepper<T>::turns_far(T h) const {
   const T most = T(accuracy.max_rotation);
   if (!(most > T(0)) || !may_divide()) return false;
   return std::any_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
-    const bool moves = !s->is_prop && (s->limp() || !s->undisturbed());
+    const bool moves = !s->is_prop && (s->passive() || !s->undisturbed());
     return moves && h > T(1.5 * accuracy.shortest_part) * s->tree.scale.time &&
            largest_turn<T>(s->tree, s->history, h) > most &&
            share_turning_faster<T>(s->tree, s->history, most / h) > T(kSharesTurn);

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sinew/character/island.h"
-#include "sinew/character/way_back.h"
+#include "sinew/character/return_to_animation.h"
 
 namespace sinew {
 namespace {
@@ -141,7 +141,7 @@ void IslandStepper<T>::measure_constant(const CharacterState<T>& s, TreeProblem<
 template <class T>
 void IslandStepper<T>::measure_constant_at_start(CharacterState<T>& s, int tree, T h) {
   TreeProblem<T>& p = s.problem;
-  const bool acted_on = !s.limp() || !p.pushes.empty() ||
+  const bool acted_on = !s.passive() || !p.pushes.empty() ||
                         std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
                           return c.grip > T(0) && (c.tree_a == tree || c.tree_b == tree);
                         });
@@ -185,7 +185,8 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils) {
-      const Vec3<T> left = c->leads_out ? Vec3<T>(stencil_pull(*c, e) - e.carried.smooth) : Vec3<T>::Zero();
+      const Vec3<T> left =
+          c->closes_slowly ? Vec3<T>(stencil_pull(*c, e) - e.carried.smooth) : Vec3<T>::Zero();
       if (left.isZero(T(0))) continue;
       for (int k = 0; k < e.count; ++k)
         if (const CouplingNode<T>& node = c->nodes[e.node[k]]; node.tree == tree)
@@ -232,14 +233,14 @@ Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>& s, int tree, T h) {
   if (!(p.prediction.rho > T(0))) {  // implicit Euler has all forces act at once
     std::fill(impulse.begin(), impulse.end(), T(0));
   } else if (!any_constant) {
-    ends_.settle(tree, impulse, 1 / h);
+    ends_.remove_floor_share(tree, impulse, 1 / h);
   } else {
     speed_share_.resize(s.tree.dofs);
     speed_shares<T>(p, settings_.plan->joints.damping, h, speed_share_);
     for (int dof = 0; dof < s.tree.dofs; ++dof) constant_[dof] *= speed_share_[dof];
     const T started = choose_start(s, tree);
     for (int dof = 0; dof < s.tree.dofs; ++dof) impulse[dof] += (1 - started) / h * constant_[dof];
-    ends_.settle(tree, impulse, T(0));  // its floor's share is missing in `moved_`, too
+    ends_.remove_floor_share(tree, impulse, T(0));  // its floor's share is missing in `moved_`, too
   }
   return {moved_, turned_};
 }
@@ -273,21 +274,21 @@ void IslandStepper<T>::add_start(CharacterState<T>& s, int tree) {
   }
 }
 
-/// How joints move at the end of the part that are led: as the animation does, or on their way back to it.
+/// How joints move at the end of the part that are driven: as the animation does, or on their return to it.
 template <class T>
-void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
+void IslandStepper<T>::measure_driven(const CharacterState<T>& s, int tree, T h) {
   const TreeProblem<T>& p = s.problem;
-  led_rates_.assign(s.tree.bodies, {});
+  driven_rates_.assign(s.tree.bodies, {});
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
     int loose = 0;
     for (int k = 0; k < count; ++k) loose += ends_.loose(tree, first + k);
     if (count > 0 ? loose == count : parent < 0) continue;
     const Mat3<T> outer = parent < 0 ? Mat3<T>(Mat3<T>::Identity()) : p.kinematics.rotation[parent];
-    Twist<T>& held = led_rates_[i];
+    Twist<T>& twist = driven_rates_[i];
     const auto lead = [&](const Mat3<T>& turned, const Vec3<T>& omega, const Vec3<T>& velocity) {
-      held.w = outer * (turned * omega);
-      held.v = outer * velocity - held.w.cross(p.kinematics.origin[i]);
+      twist.w = outer * (turned * omega);
+      twist.v = outer * velocity - twist.w.cross(p.kinematics.origin[i]);
     };
     const Quat<T>& start = p.start[i].rotation;
     const Vec3<T> moved = p.local[i].translation - p.start[i].translation;
@@ -311,7 +312,7 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
     if (d.on_animation && loose == 0) continue;
     std::array<T, 6> rate = spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
     if (loose > 0) {  // a ball joint that holds about some of its axes: as it went
-      held = {};
+      twist = {};
       for (int k = 0; k < count; ++k) rate[k] = ends_.loose(tree, first + k) ? T(0) : s.rate[i][k];
     }
     if (s.tree.type[i] == JointType::kFree) {
@@ -319,8 +320,8 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
       for (int a = 0; a < 3; ++a) rate[3 + a] = world[a];
     }
     for (int k = 0; k < count; ++k) {
-      held.w += rate[k] * p.kinematics.w[first + k];
-      held.v += rate[k] * p.kinematics.v[first + k];
+      twist.w += rate[k] * p.kinematics.w[first + k];
+      twist.v += rate[k] * p.kinematics.v[first + k];
     }
   }
 }
@@ -330,15 +331,15 @@ void IslandStepper<T>::measure_led(const CharacterState<T>& s, int tree, T h) {
 template <class T>
 bool IslandStepper<T>::choose_loose() {
   loose_.clear();
-  bool led = false;
+  bool driven = false;
   const bool by_itself = !(world_->detail.baked_decay > 0);  // what is baked; else it has the rate of its law
   for (const CharacterState<T>* s : states_)
     for (int dof = 0; dof < s->tree.dofs; ++dof) {
       loose_.push_back((s->problem.free[dof] || (by_itself && s->baked[s->tree.dof_body[dof]])) &&
                        !holds(*s, dof));
-      led = led || !loose_.back();
+      driven = driven || !loose_.back();
     }
-  return led;
+  return driven;
 }
 
 /// Takes what leads and pulls in a trial at rest out of the accelerations, as drop_constant().
@@ -361,7 +362,7 @@ void IslandStepper<T>::drop_trial(CharacterState<T>& s, int tree) {
   template Jumps<T> IslandStepper<T>::measure_jumps(CharacterState<T>&, int, T);                   \
   template T IslandStepper<T>::choose_start(const CharacterState<T>&, int);                        \
   template void IslandStepper<T>::add_start(CharacterState<T>&, int);                              \
-  template void IslandStepper<T>::measure_led(const CharacterState<T>&, int, T);                   \
+  template void IslandStepper<T>::measure_driven(const CharacterState<T>&, int, T);                \
   template bool IslandStepper<T>::choose_loose();
 SINEW_JUMP_INSTANCES(float)
 SINEW_JUMP_INSTANCES(double)

@@ -12,7 +12,7 @@
 namespace sinew {
 namespace {
 
-constexpr int kPassing = 30;          ///< steps after a tree was held
+constexpr int kSuspendedSteps = 30;   ///< steps after a tree was frozen
 constexpr double kSlackOfWay = 1e-3;  ///< of the kinetic energy of a way: what schemes swing by
 
 /// J, that goes at least with the way from where the tree was to the present poses in h seconds: whatever is
@@ -45,7 +45,7 @@ bool IslandStepper<T>::passive() const {
   const auto closed = [](const Effect<T>* effect) { return effect->passive(); };
   return std::all_of(states_.begin(), states_.end(), [&](const CharacterState<T>* s) {
     const auto& effects = s->problem.effects;
-    return !s->pushed() && s->limp() && std::all_of(effects.begin(), effects.end(), closed);
+    return !s->pushed() && s->passive() && std::all_of(effects.begin(), effects.end(), closed);
   });
 }
 
@@ -91,7 +91,7 @@ double IslandStepper<T>::way_energy() const {
 /// nowhere could reach them where it is above 0. Unless a solve was `easy` the way there is asked, too, which
 /// may need more than they: a body leaps, and is as slow as before.
 template <class T>
-double IslandStepper<T>::excess(bool easy) const {
+double IslandStepper<T>::energy_error(bool easy) const {
   const double had = budget_;
   const double needed = easy ? pose_energy() : std::max(pose_energy(), way_energy());
   return needed - had - 4 * double(std::numeric_limits<T>::epsilon()) * (std::abs(had) + std::abs(needed));
@@ -99,7 +99,7 @@ double IslandStepper<T>::excess(bool easy) const {
 
 /// J that what stands still stores in its contacts: no more than a solve that failed may leave.
 template <class T>
-double IslandStepper<T>::standing() const {
+double IslandStepper<T>::rest_tolerance() const {
   double moments = 0;
   for (const CharacterState<T>* s : states_) moments += s->total_mass * double(s->tree.scale.length);
   return moments * std::max(1.0, world_->gravity.norm()) * world_->accuracy.sink_depth;
@@ -121,35 +121,35 @@ SolveReport IslandStepper<T>::solve_from_start() {
 /// the tree stays where it was, at rest. If it is caught in another one, neither finds a side to part to: for
 /// half a second they pass.
 template <class T>
-void IslandStepper<T>::hold(CharacterState<T>& s) {
+void IslandStepper<T>::freeze(CharacterState<T>& s) {
   s.problem.local = s.problem.start;
   forward_kinematics<T>(s.tree, s.problem.local, s.problem.common_origin, s.problem.kinematics);
   s.problem.rows.clear();
   s.problem.ellipsoids.clear();
   std::fill(s.problem.gradient.begin(), s.problem.gradient.end(), T(0));
   s.history.stop();
-  s.passing = kPassing;
+  s.collision_suspended = kSuspendedSteps;
   predict_euler<T>(s.tree, s.history, settings_.h, settings_.common_origin, s.problem.prediction);
   std::fill(s.problem.couple.begin(), s.problem.couple.end(), Vec3<T>(Vec3<T>::Zero()));
   all_converged_ = false;
-  ++held_;
+  ++frozen_;
 }
 
-/// Where a tree was held, contacts let go: surfaces that come back to it (ContactFinder::depenetrate) would
+/// Where a tree was frozen, contacts let go: surfaces that come back to it (ContactFinder::depenetrate) would
 /// load what cannot move, without end.
 template <class T>
 void IslandStepper<T>::forget_contacts() {
   for (Contact<T>& c : contacts_) {
     settings_.plan->contacts->measure(problems_[c.tree_a]->kinematics,
                                       c.tree_b < 0 ? nullptr : &problems_[c.tree_b]->kinematics, c);
-    if (!is_held_[c.tree_a] && (c.tree_b < 0 || !is_held_[c.tree_b])) continue;
+    if (!is_frozen_[c.tree_a] && (c.tree_b < 0 || !is_frozen_[c.tree_b])) continue;
     c.offset -= std::min(c.gap, T(0));
     c.gap = std::max(c.gap, T(0));
   }
 }
 
 template <class T>
-bool IslandStepper<T>::settled(const CharacterState<T>& s) const {
+bool IslandStepper<T>::is_finite(const CharacterState<T>& s) const {
   T sum = T(0);
   for (const Vec3<T>& c : s.problem.kinematics.center) sum += c.sum();
   for (const Mat3<T>& r : s.problem.kinematics.rotation) sum += r.sum();
@@ -167,38 +167,38 @@ void IslandStepper<T>::stop_lost() {
     s->history.stop();
     std::fill(s->rate.begin(), s->rate.end(), std::array<T, 6>{});
     all_converged_ = false;
-    ++held_;
+    ++frozen_;
   }
 }
 
 /// Holds the trees whose solve left no finite pose; all of them where there is `no_pose` at all.
 template <class T>
-void IslandStepper<T>::hold_lost(bool no_pose) {
-  const int held_before = held_;
-  is_held_.assign(states_.size(), 0);
+void IslandStepper<T>::freeze_lost(bool no_pose) {
+  const int frozen_before = frozen_;
+  is_frozen_.assign(states_.size(), 0);
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (no_pose || !settled(*states_[n])) {
-      hold(*states_[n]);
-      is_held_[n] = 1;
+    if (no_pose || !is_finite(*states_[n])) {
+      freeze(*states_[n]);
+      is_frozen_[n] = 1;
     }
-  if (held_ == held_before) return;
+  if (frozen_ == frozen_before) return;
   forget_contacts();
   for (Coupling<T>* c : couplings_)
     (void)settings_.plan->couplings->measure(problems_, settings_.common_origin, *c);
 }
 
-#define SINEW_LADDER_INSTANCES(T)                                          \
-  template bool IslandStepper<T>::passive() const;                         \
-  template double IslandStepper<T>::pose_energy() const;                   \
-  template double IslandStepper<T>::way_energy() const;                    \
-  template double IslandStepper<T>::excess(bool) const;                    \
-  template double IslandStepper<T>::standing() const;                      \
-  template SolveReport IslandStepper<T>::solve_from_start();               \
-  template void IslandStepper<T>::hold(CharacterState<T>&);                \
-  template void IslandStepper<T>::forget_contacts();                       \
-  template bool IslandStepper<T>::settled(const CharacterState<T>&) const; \
-  template void IslandStepper<T>::stop_lost();                             \
-  template void IslandStepper<T>::hold_lost(bool);
+#define SINEW_LADDER_INSTANCES(T)                                            \
+  template bool IslandStepper<T>::passive() const;                           \
+  template double IslandStepper<T>::pose_energy() const;                     \
+  template double IslandStepper<T>::way_energy() const;                      \
+  template double IslandStepper<T>::energy_error(bool) const;                \
+  template double IslandStepper<T>::rest_tolerance() const;                  \
+  template SolveReport IslandStepper<T>::solve_from_start();                 \
+  template void IslandStepper<T>::freeze(CharacterState<T>&);                \
+  template void IslandStepper<T>::forget_contacts();                         \
+  template bool IslandStepper<T>::is_finite(const CharacterState<T>&) const; \
+  template void IslandStepper<T>::stop_lost();                               \
+  template void IslandStepper<T>::freeze_lost(bool);
 SINEW_LADDER_INSTANCES(float)
 SINEW_LADDER_INSTANCES(double)
 

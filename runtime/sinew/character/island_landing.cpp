@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "sinew/character/island.h"
+#include "sinew/character/return_to_animation.h"
 #include "sinew/character/unknowns.h"
-#include "sinew/character/way_back.h"
 #include "sinew/optimizer/joint_terms.h"
 
 namespace sinew {
@@ -30,7 +30,7 @@ bool IslandStepper<T>::may_land() const {
 /// sets a foot down, the clip knows how.
 template <class T>
 bool IslandStepper<T>::strikes(const Contact<T>& c, T h) const {
-  const bool thrown = states_[c.tree_a]->limp() || (c.tree_b >= 0 && states_[c.tree_b]->limp());
+  const bool thrown = states_[c.tree_a]->passive() || (c.tree_b >= 0 && states_[c.tree_b]->passive());
   return thrown && strikes_within(c, h) && c.restitution == T(0);
 }
 
@@ -46,7 +46,7 @@ bool IslandStepper<T>::passes_by(const Contact<T>& c) const {
 template <class T>
 std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>& s, int i) const {
   std::array<T, 6> rate{};
-  if (!s.limp()) {
+  if (!s.passive()) {
     const Deviation<T>& d = s.deviation[i];
     return d.on_animation ? rate : spin_of_rate<T>(s.tree.type[i], d.offset, d.rate);
   }
@@ -84,7 +84,7 @@ void IslandStepper<T>::for_each_limit(CharacterState<T>& s, T h, bool all, const
 /// Whether a joint strikes a limit within h, at the speed that its bodies have.
 template <class T>
 bool IslandStepper<T>::strikes_limit(CharacterState<T>& s, T h) {
-  if (!s.limp() && s.calm) return false;
+  if (!s.passive() && s.calm) return false;
   bool any = false;
   for_each_limit(s, h, false, [&](const JointRow<T>&, bool closes) { any = any || closes; });
   return any;
@@ -94,7 +94,7 @@ bool IslandStepper<T>::strikes_limit(CharacterState<T>& s, T h) {
 template <class T>
 void IslandStepper<T>::add_limits(CharacterState<T>& s, int tree, T h) {
   for_each_limit(s, h, true, [&](const JointRow<T>& row, bool closes) {
-    if (!ends_.loose(tree, row.dof) || (!closes && !s.limp() && row.value < T(-kReached))) return;
+    if (!ends_.loose(tree, row.dof) || (!closes && !s.passive() && row.value < T(-kReached))) return;
     if (row.value > T(-kNearLimit)) ends_.add_limit(tree, row, !closes, T(kLimitSpeed));
   });
 }
@@ -120,9 +120,9 @@ void IslandStepper<T>::land(T h) {
     TreeProblem<T>& p = s.problem;
     forward_kinematics<T>(s.tree, p.local, p.common_origin, s.guessed);
     p.local = p.start;
-    led_rates_.assign(s.tree.bodies, {});
-    if (!s.limp()) measure_led_at_start(s, static_cast<int>(n));
-    ends_.project(static_cast<int>(n), led_rates_, s.rate, {}, s.history);
+    driven_rates_.assign(s.tree.bodies, {});
+    if (!s.passive()) measure_driven_at_start(s, static_cast<int>(n));
+    ends_.project(static_cast<int>(n), driven_rates_, s.rate, {}, s.history);
     add_limits(s, static_cast<int>(n), h);
   }
   for (const Contact<T>& c : contacts_) {
@@ -148,7 +148,7 @@ void IslandStepper<T>::land(T h) {
 
 /// Velocities of the joints that strikes do not move, where a part begins.
 template <class T>
-void IslandStepper<T>::measure_led_at_start(const CharacterState<T>& s, int tree) {
+void IslandStepper<T>::measure_driven_at_start(const CharacterState<T>& s, int tree) {
   const Kinematics<T>& k = s.problem.kinematics;
   const auto twist = [&](int i) {
     Twist<T> of;
@@ -159,11 +159,11 @@ void IslandStepper<T>::measure_led_at_start(const CharacterState<T>& s, int tree
   for (int i = 0; i < s.tree.bodies; ++i) {
     const int first = s.tree.first_dof[i], count = s.tree.dof_count(i), parent = s.tree.parent[i];
     if (count > 0 ? ends_.loose(tree, first) : parent >= 0) continue;
-    led_rates_[i] = twist(i);
+    driven_rates_[i] = twist(i);
     if (parent < 0) continue;
     const Twist<T> outer = twist(parent);
-    led_rates_[i].w -= outer.w;
-    led_rates_[i].v -= outer.v;
+    driven_rates_[i].w -= outer.w;
+    driven_rates_[i].v -= outer.v;
   }
 }
 
@@ -194,7 +194,7 @@ void IslandStepper<T>::take_landing(T h) {
     }
     const auto late = std::span(late_jumps_).subspan(first, s.tree.bodies);
     ends_.answered(static_cast<int>(n), late);  // of what missed() has found
-    if (!s.limp()) lead_back(s, static_cast<int>(n), h);
+    if (!s.passive()) lead_back(s, static_cast<int>(n), h);
     first_guess(s, h);
     for (int i = 0; i < s.tree.bodies; ++i) {
       if (s.tree.dof_count(i) == 0 || !s.problem.free[s.tree.first_dof[i]]) continue;
@@ -218,7 +218,7 @@ void IslandStepper<T>::lead_back(CharacterState<T>& s, int tree, T h) {
         rate_of_spin<T>(s.tree.type[i], d.offset, late_jumps_[first_body_[tree] + i]);
     for (int k = 0; k < s.tree.dof_count(i); ++k) d.offset[k] -= h * late[k];
   }
-  s.settle_deviations();
+  s.clear_deviations();
   choose_targets<T>(s, return_time(), height_of_floor<T>(*world_, settings_.common_origin.z()), h);
 }
 
@@ -240,7 +240,7 @@ void IslandStepper<T>::take_back_landing() {
       struck_velocity_[body] = kept->struck_velocity;
       struck_momentum_[body] = kept->struck_momentum;
     }
-  for (CharacterState<T>* s : states_) s->settle_deviations();
+  for (CharacterState<T>* s : states_) s->clear_deviations();
 }
 
 #define SINEW_LANDING_INSTANCES(T)                                                                \
@@ -251,7 +251,7 @@ void IslandStepper<T>::take_back_landing() {
   template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                           \
   template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                         \
   template bool IslandStepper<T>::passes_by(const Contact<T>&) const;                             \
-  template void IslandStepper<T>::measure_led_at_start(const CharacterState<T>&, int);            \
+  template void IslandStepper<T>::measure_driven_at_start(const CharacterState<T>&, int);         \
   template void IslandStepper<T>::lead_back(CharacterState<T>&, int, T);                          \
   template void IslandStepper<T>::take_landing(T);                                                \
   template void IslandStepper<T>::take_back_landing();

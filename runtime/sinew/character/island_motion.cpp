@@ -45,7 +45,7 @@ void IslandStepper<T>::predict_all(T h) {
   driven_.assign(states_.size(), 0);
   radius_.assign(states_.size(), T(1));
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (!states_[n]->limp() || !couplings_.empty()) driven_[set_[n]] = 1;
+    if (!states_[n]->passive() || !couplings_.empty()) driven_[set_[n]] = 1;
   for (std::size_t n = 0; n < states_.size(); ++n) {
     T& radius = radius_[set_[n]];
     radius = std::min(radius, spectral_radius<T>(largest_turn<T>(states_[n]->tree, states_[n]->history, h),
@@ -76,11 +76,12 @@ void IslandStepper<T>::predict_euler_all(T h) {
 template <class T>
 void IslandStepper<T>::append_loose(const CharacterState<T>& s) {
   const JointLaw<T>& law = s.problem.law;
-  const bool limp = s.limp(), gives_way = s.levels.allowed >= Level::kPartial;
+  const bool passive = s.passive(), gives_way = s.levels.allowed >= Level::kPartial;
   for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    const bool led = s.root_is_kinematic() && s.tree.type[0] == JointType::kFree && dof < s.tree.first_dof[1];
+    const bool driven =
+        s.root_is_kinematic() && s.tree.type[0] == JointType::kFree && dof < s.tree.first_dof[1];
     const bool weak = std::isfinite(law.torque_minus[dof]) && std::isfinite(law.torque_plus[dof]);
-    loose_.push_back(limp || (gives_way && !led && weak));
+    loose_.push_back(passive || (gives_way && !driven && weak));
   }
 }
 
@@ -131,11 +132,11 @@ void IslandStepper<T>::strike(CharacterState<T>& s, std::span<Vec3<T>> velocity,
     velocity[i] /= 2;  // they act all along the step
     momentum[i] /= 2;
   }
-  if (s.limp()) return;
+  if (s.passive()) return;
   jumps_.resize(s.tree.bodies);
   ends_.answered(0, jumps_);
   for (int i = 0; i < s.tree.bodies; ++i) add_to_rate(s, i, jumps_[i]);
-  s.settle_deviations();
+  s.clear_deviations();
   std::fill_n(velocity.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
   std::fill_n(momentum.begin(), s.tree.bodies, Vec3<T>(Vec3<T>::Zero()));
 }
@@ -192,7 +193,7 @@ void IslandStepper<T>::drop_constant(CharacterState<T>& s, int tree, std::span<c
   }
 }
 
-/// Whether no degree of freedom of a tree can move in the step, but as it is led.
+/// Whether no degree of freedom of a tree can move in the step, but as it is driven.
 template <class T>
 bool IslandStepper<T>::is_locked(const CharacterState<T>& s) const {
   const auto none = [](const auto& v) {
@@ -264,7 +265,7 @@ T IslandStepper<T>::opening_speed(const Contact<T>& c) const {
   return c.normal.dot(Vec3<T>(speed(c.tree_a, c.body_a) - carried));
 }
 
-/// The wrenches of forces that contacts bore in the step before, times `parted_`, into the problems' rooms.
+/// The wrenches of forces that contacts bore in the step before, times `opened_`, into the problems' rooms.
 template <class T>
 void IslandStepper<T>::write_borne() {
   for (CharacterState<T>* s : states_) s->problem.clear_wrenches();
@@ -275,7 +276,7 @@ void IslandStepper<T>::write_borne() {
   };
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const Contact<T>& c = contacts_[k];
-    const Vec3<T> bore = parted_[k] * c.smooth_before * c.normal;
+    const Vec3<T> bore = opened_[k] * c.smooth_before * c.normal;
     if (bore.isZero(T(0))) continue;
     act(c.tree_a, c.body_a, c.point, bore);
     if (c.tree_b >= 0) act(c.tree_b, c.body_b, c.point, Vec3<T>(-bore));
@@ -285,16 +286,16 @@ void IslandStepper<T>::write_borne() {
 /// Takes out of accelerations what contacts bore until a blow parted them: their force ended before the step.
 /// All of it where they stay open; less where they, bearing nothing, would close within the step again.
 template <class T>
-void IslandStepper<T>::drop_parted(T h) {
+void IslandStepper<T>::drop_opened(T h) {
   const auto struck = [&](int n) {
     return n >= 0 && states_[n]->history.accelerates && states_[n]->is_struck(return_time());
   };
   const auto parts = [&](const Contact<T>& c) {
     return c.smooth_before > T(0) && (struck(c.tree_a) || struck(c.tree_b)) && opening_speed(c) > T(0);
   };
-  parted_.clear();
-  for (const Contact<T>& c : contacts_) parted_.push_back(parts(c) ? T(1) : T(0));
-  if (std::all_of(parted_.begin(), parted_.end(), [](T x) { return x == T(0); })) return;
+  opened_.clear();
+  for (const Contact<T>& c : contacts_) opened_.push_back(parts(c) ? T(1) : T(0));
+  if (std::all_of(opened_.begin(), opened_.end(), [](T x) { return x == T(0); })) return;
   const auto each_tree = [&](const auto& act) {  // act(tree): its generalised forces are in constant_
     write_borne();
     for (std::size_t n = 0; n < states_.size(); ++n) {
@@ -317,23 +318,23 @@ void IslandStepper<T>::drop_parted(T h) {
     };
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       const Contact<T>& c = contacts_[k];
-      if (parted_[k] == T(0)) continue;
+      if (opened_[k] == T(0)) continue;
       if (c.tree_a == n) shut_[k] += along(c, c.body_a);
       if (c.tree_b == n) shut_[k] -= along(c, c.body_b);
     }
   });
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     Contact<T>& c = contacts_[k];
-    if (parted_[k] == T(0)) continue;
+    if (opened_[k] == T(0)) continue;
     const T opens = opening_speed(c), closes = h * shut_[k];
-    parted_[k] = opens < closes ? opens / closes : T(1);
+    opened_[k] = opens < closes ? opens / closes : T(1);
   }
   each_tree([&](int n) { drop_constant(*states_[n], n, constant_); });
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     Contact<T>& c = contacts_[k];
-    if (parted_[k] == T(0)) continue;
-    c.smooth_before *= 1 - parted_[k];
-    c.grip *= 1 - parted_[k];
+    if (opened_[k] == T(0)) continue;
+    c.smooth_before *= 1 - opened_[k];
+    c.grip *= 1 - opened_[k];
     const auto left = std::lower_bound(lagged_.begin(), lagged_.end(), c.id,
                                        [](const LaggedForce<T>& f, std::uint64_t id) { return f.id < id; });
     left->smooth = c.smooth_before;  // should the part be halved
@@ -385,7 +386,7 @@ void IslandStepper<T>::split_contacts(T h) {
     split<T>(lasts_[c.tree_a] && (c.tree_b < 0 || lasts_[c.tree_b]), share, c);
   }
   for (Coupling<T>* c : couplings_) {
-    if (!c->leads_out) continue;  // what gives is smooth
+    if (!c->closes_slowly) continue;  // what gives is smooth
     bool last = true;
     T share = T(1);
     for (const CouplingNode<T>& node : c->nodes) {
@@ -437,13 +438,13 @@ void IslandStepper<T>::advance_one_step(T h) {
   if (choose_loose()) ends_.begin(problems_, loose_);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     CharacterState<T>& s = *states_[n];
-    measure_led(s, static_cast<int>(n), h);
+    measure_driven(s, static_cast<int>(n), h);
     // Mean rates over the step, those before it: with both what is near to those at the end.
     for (int i = 0; s.rate_step_before > T(0) && i < s.tree.bodies; ++i)
       for (int k = 0; k < s.tree.dof_count(i); ++k)
         if (ends_.loose(static_cast<int>(n), s.tree.first_dof[i] + k))
           s.rate[i][k] = 2 * s.rate[i][k] - s.rate_before[i][k];
-    ends_.project(static_cast<int>(n), led_rates_, s.rate,
+    ends_.project(static_cast<int>(n), driven_rates_, s.rate,
                   std::span<const T>(impulse_).subspan(first_dof_[n], s.tree.dofs), s.history);
   }
   press(h);
@@ -474,7 +475,7 @@ void IslandStepper<T>::press(T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils)
-      if (c->led) ends_.add(*c, e);
+      if (c->driven) ends_.add(*c, e);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     if (!struck_[set_[n]]) continue;
     for (const JointRow<T>& row : problems_[n]->rows)
@@ -497,7 +498,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::drop_constant(CharacterState<T>&, int, std::span<const T>);         \
   template T IslandStepper<T>::opening_speed(const Contact<T>&) const;                                \
   template void IslandStepper<T>::write_borne();                                                      \
-  template void IslandStepper<T>::drop_parted(T);                                                     \
+  template void IslandStepper<T>::drop_opened(T);                                                     \
   template void IslandStepper<T>::drop_played();                                                      \
   template void IslandStepper<T>::begin_ends();                                                       \
   template void IslandStepper<T>::expect_to_last(T);                                                  \

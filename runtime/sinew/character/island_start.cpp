@@ -65,8 +65,8 @@ void measure_coasting(CharacterState<T>& s) {
     const int parent = s.tree.parent[i];
     BodyMotion<T>& body = s.motion.body[i];
     const int first = s.tree.first_dof[i];
-    const bool held = s.tree.dof_count(i) == 0 || !p.free[first];
-    move_body<T>(s.tree, i, held ? s.target[i] : coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
+    const bool fixed = s.tree.dof_count(i) == 0 || !p.free[first];
+    move_body<T>(s.tree, i, fixed ? s.target[i] : coasting_jet(s, i), Vec3<T>(Vec3<T>::Zero()),
                  parent < 0 ? nullptr : &s.motion.body[parent], body);
     const Mat3<T>& r = p.kinematics.rotation[i];
     p.force[i] = r * body.force;
@@ -107,11 +107,11 @@ void IslandStepper<T>::find_accelerations() {
       std::fill(p.gradient.begin(), p.gradient.end(), T(0));
     }
   }
-  const auto swap_led = [&] {  // at rest what began open stays so
+  const auto swap_offsets = [&] {  // at rest what began open stays so
     for (Coupling<T>* c : couplings_)
-      for (Stencil<T>& e : c->stencils) std::swap(e.offset, e.led_from);
+      for (Stencil<T>& e : c->stencils) std::swap(e.offset, e.unclosed_offset);
   };
-  swap_led();
+  swap_offsets();
   loosen_loops();
   SolveReport trial;
   trial.converged = true;
@@ -136,7 +136,7 @@ void IslandStepper<T>::find_accelerations() {
     write_pushes(*s, T(1));
   }
   if (trial.converged) begin_loaded(h);
-  swap_led();
+  swap_offsets();
 }
 
 /// What rests on something from the start on bears it like that since long: what the trial at rest found.

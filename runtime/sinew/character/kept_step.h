@@ -14,11 +14,12 @@ namespace sinew {
 /// history works it out from the target.
 template <class T>
 auto changed_by_steps(CharacterState<T>& s) {
-  return std::tie(s.calm, s.left_to_gravity, s.target_before, s.target_stands, s.local, s.played_from, s.owed,
-                  s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque, s.load,
-                  s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.baked, s.unbaked,
-                  s.contact_signature, s.limit_signature, s.steps_unchanged, s.passing, s.energy_ceiling,
-                  s.lent, s.levels, s.report, s.grounding.rest, s.grounding.returns);
+  return std::tie(s.calm, s.left_to_gravity, s.target_before, s.target_stands, s.local, s.played_from,
+                  s.deferred, s.rate, s.rate_before, s.rate_step, s.rate_step_before, s.deviation, s.torque,
+                  s.load, s.limit, s.smooth, s.lasting, s.lasting_before, s.unknown, s.history, s.baked,
+                  s.unbaked, s.contact_signature, s.limit_signature, s.steps_unchanged, s.collision_suspended,
+                  s.energy_ceiling, s.depenetration_energy, s.levels, s.report, s.grounding.rest,
+                  s.grounding.returns);
 }
 
 template <class T>

@@ -16,7 +16,7 @@ namespace sinew {
 /// Seed talk, "Bake" and "LOD"; states after research/hard-cases-and-solvers.md, section 4.2.
 enum class Level : std::uint8_t {
   kAsleep,    ///< limp and at rest: nothing is computed
-  kPlayback,  ///< on the clip, or on a smooth way back to it; what its muscles can do is not asked
+  kPlayback,  ///< on the clip, or on a smooth return to it; what its muscles can do is not asked
   kChecked,   ///< on the clip, which its muscles can follow
   kPartial,   ///< some degrees of freedom are solved for
   kFull,      ///< all are

@@ -13,7 +13,7 @@ constexpr int kUnderSteps = 30;        ///< well below it before a cap is taken 
 constexpr double kWellBelow = 0.75;    ///< of the limit
 constexpr double kAim = 0.85;          ///< of the limit, that capping and raising keep to
 constexpr float kPartialShare = 0.6f;  ///< of a full solve's cost, that one with baked limbs takes
-/// rad (or m) and rad/s off the animation, from which the way back leads without asking the muscles: within a
+/// rad (or m) and rad/s off the animation, from which the return leads without asking the muscles: within a
 /// step they would make less than 0.5° of difference
 constexpr double kCalmOffset = 0.15, kCalmRate = 1.5;
 constexpr int kShare = 10;  ///< at most one in so many characters is capped in one step
@@ -52,7 +52,7 @@ Level level_of(const CharacterState<T>& s) {
 }
 
 template <class T>
-void settle_level(CharacterState<T>& s, Level needed, T h, double dwell) {
+void choose_level(CharacterState<T>& s, Level needed, T h, double dwell) {
   LevelState& l = s.levels;
   ++l.steps;
   l.cap_age = std::min(l.cap_age + static_cast<float>(h), 1e6f);

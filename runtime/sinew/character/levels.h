@@ -19,7 +19,7 @@ Level level_of(const CharacterState<T>& state);
 
 /// After a step that did `needed` with it: up at once, down when it was not needed for `dwell` seconds.
 template <class T>
-void settle_level(CharacterState<T>& state, Level needed, T h, double dwell);
+void choose_level(CharacterState<T>& state, Level needed, T h, double dwell);
 
 /// Units of work of what the last step did with a character or prop.
 template <class T>
@@ -57,7 +57,7 @@ class BudgetController {
 #define SINEW_LEVEL_INSTANCES(prefix, T)                             \
   prefix Level allowed_level<T>(const CharacterState<T>&);           \
   prefix Level level_of<T>(const CharacterState<T>&);                \
-  prefix void settle_level<T>(CharacterState<T>&, Level, T, double); \
+  prefix void choose_level<T>(CharacterState<T>&, Level, T, double); \
   prefix double work_of<T>(const CharacterState<T>&, Level);         \
   prefix class BudgetController<T>;
 SINEW_LEVEL_INSTANCES(extern template, float)

@@ -20,7 +20,7 @@ std::size_t bytes_of(const Rig<T>& rig) {
   const Tree<T>& t = rig.tree;
   return sizeof rig + held(rig.skeleton.joints, rig.skeleton.colliders, rig.skeleton.muscles) +
          held(t.parent, t.type, t.first_dof, t.dof_body, t.dof_parent, t.rest, t.axis, t.axis2, t.mass,
-              t.center_of_mass, t.inertia, t.first_moment, t.inertia_at_joint, t.held_axes, t.by_depth,
+              t.center_of_mass, t.inertia, t.first_moment, t.inertia_at_joint, t.parent_axes, t.by_depth,
               t.second_moment, t.inverse_inertia) +
          held(rig.colliders, rig.bound_center, rig.bound_radius, rig.points, rig.first_point, rig.may_touch,
               rig.bakes) +

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/character/return_to_animation.h"
 #include "sinew/character/tone.h"
-#include "sinew/character/way_back.h"
 #include "sinew/effects/support.h"
 
 namespace sinew {
@@ -38,7 +38,7 @@ Standing<T> standing_of(const CharacterState<T>& s, const WorldSettings& world, 
 /// What the muscles would have to give, with nothing that acts from outside left out.
 template <class T>
 void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                       CheckRoom<T> room) {
+                       CheckScratch<T> scratch) {
   TreeProblem<T>& p = s.problem;
   const Vec3<T> origin = s.target[0].translation, gravity = world.gravity.template cast<T>();
   inertial_wrenches<T>(s.tree, s.target, gravity, origin, p.kinematics, s.motion, p.force, p.moment);
@@ -46,21 +46,21 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     if (!any) return;
     p.clear_wrenches();
     add();
-    add_wrenches<T>(p.kinematics, p.force, p.moment, room.body);
+    add_wrenches<T>(p.kinematics, p.force, p.moment, scratch.body);
   };
   const Standing<T> standing = standing_of(s, world, plan);
-  room.body = s.motion.body;  // to the bit what check_motion makes
-  room.rotation = p.kinematics.rotation;
-  room.origin = p.kinematics.origin;
+  scratch.body = s.motion.body;  // to the bit what check_motion makes
+  scratch.rotation = p.kinematics.rotation;
+  scratch.origin = p.kinematics.origin;
   take_off(!s.impulses.empty() || !s.forces.empty(), [&] {
     for (const ExternalForce<T>& j : s.impulses)
       plan.impulses->add_gradient({j.body, j.local, j.force / h}, p.kinematics, {p.force, p.moment});
     for (const ExternalForce<T>& f : s.forces)
       plan.impulses->add_gradient(f, p.kinematics, {p.force, p.moment});
   });
-  standing.bear(origin.z() - standing.ground, room);
+  standing.bear(origin.z() - standing.ground, scratch);
   take_off(!p.effects.empty(), [&] { add_effect_wrenches(s, world, origin, h); });
-  project_bodies<T>(s.tree, room.body, [&](int dof, const T& t) { p.gradient[dof] = t; });
+  project_bodies<T>(s.tree, scratch.body, [&](int dof, const T& t) { p.gradient[dof] = t; });
   for (const JointRow<T>& row : p.effect_rows)
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
 }
@@ -68,18 +68,18 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
 /// The same; whether it is more by `most` than the animation asks muscles with a tone for by itself.
 template <class T>
 bool asks_for_more(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                   const CheckRoom<T>& room, T most) {
+                   const CheckScratch<T>& scratch, T most) {
   if (s.problem.law.present.tone) {
-    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
                     s.problem.gradient);
     keep_feed_forward(s);
   }
-  check_under_loads(s, world, plan, h, room);
+  check_under_loads(s, world, plan, h, scratch);
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
 }
 
-/// Whether pushes and effects reach a joint. Under a root that is led, what pushes elsewhere does not, though
-/// the check has the ground bear it.
+/// Whether pushes and effects reach a joint. Under a root that is driven, what pushes elsewhere does not,
+/// though the check has the ground bear it.
 template <class T>
 bool feels_pushes(const CharacterState<T>& s, int joint) {
   if (!s.root_is_kinematic() || !s.problem.effects.empty()) return true;
@@ -112,31 +112,31 @@ bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPl
 
 template <class T>
 bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-          const CheckRoom<T>& room) {
+          const CheckScratch<T>& scratch) {
   if (s.is_struck(T(world.accuracy.return_time))) return false;
   if (has_plain_check(s))
-    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
                     s.problem.gradient);
-  else if (asks_for_more(s, world, plan, h, room, T(1)))
+  else if (asks_for_more(s, world, plan, h, scratch, T(1)))
     return false;
   return play_checked(s, world, h);
 }
 
 template <class T>
 void begin_tone(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                const CheckRoom<T>& room) {
-  if (!s.problem.law.present.tone || s.limp()) return;
+                const CheckScratch<T>& scratch) {
+  if (!s.problem.law.present.tone || s.passive()) return;
   constexpr T kLittle = T(0.5);  // of what makes a muscle give way
   s.grounding.returns = false;
   s.acted_on = !has_plain_check(s);
   if (s.acted_on) {
-    s.acted_on = asks_for_more(s, world, plan, h, room, kLittle);
+    s.acted_on = asks_for_more(s, world, plan, h, scratch, kLittle);
     for (int i = 0; i < s.tree.bodies; ++i)
       if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
-    s.settle_deviations();
+    s.clear_deviations();
     return;
   }
-  check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), room,
+  check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
                   s.problem.gradient);
   keep_feed_forward(s);
 }
@@ -149,7 +149,7 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
   for (int i = begin; i < end; ++i)
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof)
       if (p.law.overloaded(s.tree, i, dof, p.gradient)) return false;
-  if (leads_into_floor(s, world)) return false;
+  if (drives_into_floor(s, world)) return false;
   if (!s.undisturbed()) {
     std::copy(p.gradient.begin(), p.gradient.end(), s.torque.begin());
     follow(s, world, h);
@@ -165,7 +165,8 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
   s.pose_changed();
   s.history.place = s.target[0].translation.template cast<double>();  // neighbours go by these two
   s.history.velocity[0] = root_velocity(s.tree, s.target[0]);
-  s.owed = {.loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
+  s.deferred = {
+      .loads = true, .rates = true, .history = true, .totals = true, .h = h, .gravity = world.gravity};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
@@ -200,29 +201,29 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
     s.local[i] = p.target[i];
     s.deviation[i].released = false;
     if (s.deviation[i].on_animation) continue;
-    // Nobody measures what the way back takes: no muscle counts as saturated.
+    // Nobody measures what the return takes: no muscle counts as saturated.
     std::fill_n(s.load.begin() + s.tree.first_dof[i], s.tree.dof_count(i), T(0));
     s.update_deviation(i, joint_offset_value<T>(s.tree, i, s.wanted[i], s.local[i]), h,
                        T(world.accuracy.return_time));
   }
-  s.settle_deviations();
+  s.clear_deviations();
   for (std::size_t i = s.tree.bodies; i < s.local.size(); ++i)
     s.local[i] = {s.target[i].rotation, s.target[i].translation};
   s.pose_changed();
   std::fill(s.unknown.begin(), s.unknown.end(), std::uint8_t{0});
   s.history.velocity[0] = (s.local[0].translation - p.start[0].translation) / h;  // neighbours go by it
   s.history.place = s.local[0].translation.template cast<double>();
-  s.owed = {.rates = true, .history = true, .motion = true, .h = h};
+  s.deferred = {.rates = true, .history = true, .motion = true, .h = h};
   s.forget_contacts();
   s.report = {};
   s.report.dofs = s.tree.dofs;
 }
 
 template <class T>
-void catch_up(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
+void synchronise(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
   s.keep_record();
-  if (!s.owed.motion) return;
-  s.owed.history = s.owed.motion = false;
+  if (!s.deferred.motion) return;
+  s.deferred.history = s.deferred.motion = false;
   // Speeds of the animation, and on top of them those of what is off it.
   jets.assign(s.last_target().begin(), s.last_target().begin() + s.tree.bodies);
   for (int i = 0; i < s.tree.bodies; ++i) {

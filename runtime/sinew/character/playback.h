@@ -20,17 +20,17 @@ bool stands(const CharacterState<T>& state, const WorldSettings& world, const St
 /// rig's size.
 template <class T>
 bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
-          const CheckRoom<T>& room);
+          const CheckScratch<T>& scratch);
 
 /// The same where `state.problem.gradient` holds what the muscles would have to give.
 template <class T>
 bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
 /// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
-/// with the ground's share; and which are to give way to pushes and effects. Ends a way back. O(bodies).
+/// with the ground's share; and which are to give way to pushes and effects. Ends a return. O(bodies).
 template <class T>
 void begin_tone(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                const CheckRoom<T>& room);
+                const CheckScratch<T>& scratch);
 
 /// What held a grounded root besides the ground, into the report.
 template <class T>
@@ -43,18 +43,19 @@ void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 /// Makes the joint speeds and the history of a character that was played: poses and speeds that it has now.
 /// `jets` is room for its bodies.
 template <class T>
-void catch_up(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
+void synchronise(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 
-#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                                  \
-  prefix bool has_plain_check<T>(const CharacterState<T>&);                                                  \
-  prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&);                 \
-  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, const CheckRoom<T>&); \
-  prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                                  \
-  prefix void begin_tone<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T,                 \
-                            const CheckRoom<T>&);                                                            \
-  prefix void report_help<T>(CharacterState<T>&);                                                            \
-  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                                        \
-  prefix void catch_up<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                  \
+  prefix bool has_plain_check<T>(const CharacterState<T>&);                                  \
+  prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&); \
+  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T,       \
+                      const CheckScratch<T>&);                                               \
+  prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                  \
+  prefix void begin_tone<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, \
+                            const CheckScratch<T>&);                                         \
+  prefix void report_help<T>(CharacterState<T>&);                                            \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                        \
+  prefix void synchronise<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)
 

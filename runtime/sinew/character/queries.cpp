@@ -112,10 +112,10 @@ double go_to_host(const Probe& probe, double limit, const StaticShape& shape, Ne
 class Hits {
  public:
   Hits(const QueryFilter& filter, std::span<QueryHit> room, double limit)
-      : filter_(filter), room_(room), limit_(limit) {}
+      : filter_(filter), buffer_(room), limit_(limit) {}
 
   /// m, beyond which nothing is of use.
-  double limit() const { return full() ? std::min(limit_, room_.back().distance) : limit_; }
+  double limit() const { return full() ? std::min(limit_, buffer_.back().distance) : limit_; }
   int count() const { return static_cast<int>(count_); }
   bool accepts(const BodyRef& body) const { return !filter_.accept || filter_.accept(filter_.context, body); }
   void add(const BodyRef& body, int collider, double distance, const Near& near) {
@@ -124,9 +124,9 @@ class Hits {
     const auto before = [](const QueryHit& a, const QueryHit& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.depth > b.depth;
     };
-    const auto end = room_.begin() + static_cast<std::ptrdiff_t>(count_);
-    const auto at = std::upper_bound(room_.begin(), end, hit, before);
-    if (at == room_.end()) return;
+    const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto at = std::upper_bound(buffer_.begin(), end, hit, before);
+    if (at == buffer_.end()) return;
     if (full())
       std::move_backward(at, end - 1, end);
     else {
@@ -137,10 +137,10 @@ class Hits {
   }
 
  private:
-  bool full() const { return count_ == room_.size() && !room_.empty(); }
+  bool full() const { return count_ == buffer_.size() && !buffer_.empty(); }
 
   const QueryFilter& filter_;
-  std::span<QueryHit> room_;
+  std::span<QueryHit> buffer_;
   double limit_;
   std::size_t count_ = 0;
 };

@@ -12,7 +12,7 @@ bool rests(const CharacterState<T>& s, const LevelOfDetail& detail) {
   if (s.pushed() || s.crowded) return false;
   for (const Effect<T>* effect : s.problem.effects)
     if (!effect->passive()) return false;  // wind rises again
-  if (!s.limp()) {
+  if (!s.passive()) {
     const auto same = [](const JointJet<T>& a, const JointJet<T>& b) {
       return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
     };

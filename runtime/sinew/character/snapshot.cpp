@@ -32,13 +32,13 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
   visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
   std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
-                                                 (l.wake ? 4 : 0) + (s.owed.deviations ? 8 : 0));
+                                                 (l.wake ? 4 : 0) + (s.deferred.deviations ? 8 : 0));
   stream.value("asleep, baked, to be woken, only falling", flags);
   if (stream.reading()) {
     l.asleep = (flags & 1) != 0;
     s.detail.bake = (flags & 2) != 0;
     l.wake = (flags & 4) != 0;
-    s.owed = {.deviations = (flags & 8) != 0};
+    s.deferred = {.deviations = (flags & 8) != 0};
   }
   const CharacterDetail usual;
   const bool detailed =
@@ -109,7 +109,7 @@ void visit_flags(CharacterState<T>& s, ByteStream& stream) {
     JointJet<T>& last = s.own_last_target()[i];
     Deviation<T>& d = s.deviation[i];
     // Of what only falls nobody asks where its animation was.
-    const bool asked = !s.owed.deviations || s.tree.dof_count(i) == 0;
+    const bool asked = !s.deferred.deviations || s.tree.dof_count(i) == 0;
     const bool elsewhere = asked && (last.rotation.coeffs() != s.local[i].rotation.coeffs() ||
                                      last.translation != s.local[i].translation);
     const bool deviates = !same_bits(d.offset, none) || !same_bits(d.rate, none);
@@ -190,7 +190,7 @@ void visit_joints(CharacterState<T>& s, ByteStream& stream) {
 /// How the animation moved at the end of the last step, for parts of the next one: what is on it moves so.
 template <class T>
 void visit_last_speeds(CharacterState<T>& s, ByteStream& stream) {
-  if (s.owed.deviations && !stream.bounding()) return;  // what only falls follows none
+  if (s.deferred.deviations && !stream.bounding()) return;  // what only falls follows none
   const History<T>& h = s.history;
   const auto spin = [&](int body) {
     const Mat3<T>& r = h.rotation[body];
@@ -211,7 +211,7 @@ template <class T>
 void visit_tone(CharacterState<T>& s, ByteStream& stream) {
   std::vector<ToneOfDof<T>>& tone = s.problem.law.tone;
   if (stream.part("has a tone", s.problem.law.present.tone)) {
-    if (stream.reading()) make_room_for_tone(s);
+    if (stream.reading()) reserve_for_tone(s);
     ResidualCoder<T> coder("tone", stream);  // mostly that of the joint before
     ToneOfDof<T> before;
     before.stiffness = T(0);
@@ -265,11 +265,11 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_strengths("strength of a muscle", s.muscle_strength);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
-  stream.value("steps of passing", s.passing);
+  stream.value("steps of passing", s.collision_suspended);
   stream.value("energy ceiling", s.energy_ceiling);
   {
     ResidualCoder<double> coder("energy lent by surfaces, stored energy", stream, true);
-    coder.value(s.lent, 0);
+    coder.value(s.depenetration_energy, 0);
     coder.value(s.report.elastic_energy, 0);
   }
   {
@@ -282,7 +282,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_history(s, stream);
   visit_last_speeds(s, stream);
   if (!stream.reading()) return;
-  s.settle_deviations();
+  s.clear_deviations();
   s.impulses.clear();
   s.forces.clear();
   s.refresh_limits();
@@ -361,7 +361,7 @@ void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   stream.value("number of contact forces", count);
   if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
   // An identity in three parts of 45 bits, eight numbers and at most three bytes more each.
-  if (stream.bounding()) return stream.leave_room(lagged.capacity() * (17 + 8 * (sizeof(T) + 3)));
+  if (stream.bounding()) return stream.reserve_capacity(lagged.capacity() * (17 + 8 * (sizeof(T) + 3)));
   {
     ResidualCoder<std::uint32_t> coder("contact", stream, true);
     std::array<std::uint32_t, 3> before{};
@@ -420,7 +420,7 @@ void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
   std::uint8_t active = coupling.active ? 1 : 0;
   stream.value("loop is closed", active);
   if (stream.reading()) coupling.active = active != 0;
-  if (!coupling.leads_out) return;
+  if (!coupling.closes_slowly) return;
   for (Stencil<T>& e : coupling.stencils) {
     stream.vector("what is left open of a loop", e.offset);
     stream.vector("smooth part of a loop's pull", e.carried.smooth);

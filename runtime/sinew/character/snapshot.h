@@ -2,8 +2,8 @@
 //
 // One list of fields (visit_state) serves all that is done with them: bounding, writing, reading, and naming
 // the field that a byte belongs to. What follows from the rest is left out: deviations of joints on the
-// animation; of what only falls all deviations and last targets, for nobody asks for them until it is held.
-// What nearly follows is written as its distance from what it would be (residual_coder.h): masses' places
+// animation; of what only falls all deviations and last targets, for nobody asks for them until muscles hold
+// it. What nearly follows is written as its distance from what it would be (residual_coder.h): masses' places
 // from the pose, velocities from the joints' speeds. Whoever reads must compute these alike, as whoever
 // replays must.
 #pragma once
@@ -79,7 +79,7 @@ class ByteStream {
     array(name, q.coeffs().data(), 4);
   }
   /// kBound: that so many bytes may follow.
-  void leave_room(std::size_t bytes) { position_ += bytes; }
+  void reserve_capacity(std::size_t bytes) { position_ += bytes; }
   /// Whether a part follows; `there` is what the state says. A bound counts every part.
   bool part(const char* name, bool there) {
     std::uint8_t flag = there ? 1 : 0;
@@ -128,7 +128,7 @@ std::size_t bytes_at_most(const MovingParts<T>& world, Content content);
 /// Writes a header and the content; bytes written, 0 where they do not fit.
 template <class T>
 std::size_t write_bytes(const MovingParts<T>& world, Content content, std::span<std::byte> out);
-/// The way back. Refuses bytes of another world, another content, or changed ones, with nothing moved.
+/// The inverse. Refuses bytes of another world, another content, or changed ones, with nothing moved.
 template <class T>
 Status read_bytes(const MovingParts<T>& world, Content content, std::span<const std::byte> in);
 /// Which field of which state holds a byte of the snapshot that the world would give now.

@@ -239,35 +239,35 @@ bool CharacterState<T>::joint_is_limited(int body) const {
 
 template <class T>
 void CharacterState<T>::keep_loads() {
-  for (int dof = 0; owed.loads && dof < tree.dofs; ++dof) {
+  for (int dof = 0; deferred.loads && dof < tree.dofs; ++dof) {
     limit[dof] = problem.law.limit(dof, torque[dof]);
     load[dof] = problem.law.load(tree, tree.dof_body[dof], dof, torque);
   }
-  owed.loads = false;
+  deferred.loads = false;
 }
 
 template <class T>
 void CharacterState<T>::keep_record() {
   keep_loads();
-  for (int i = 0; owed.rates && i < tree.bodies; ++i) {
+  for (int i = 0; deferred.rates && i < tree.bodies; ++i) {
     rate[i] = joint_offset_value<T>(tree, i, played_from[i], local[i]);
-    for (T& r : rate[i]) r /= owed.h;
+    for (T& r : rate[i]) r /= deferred.h;
   }
-  owed.rates = false;
-  if (!owed.history || owed.motion) return;
-  owed.history = false;
+  deferred.rates = false;
+  if (!deferred.history || deferred.motion) return;
+  deferred.history = false;
   // Once more: a check that failed since has left the motion of another target.
   const Vec3<T>& origin = last_target()[0].translation;
   inertial_wrenches<T>(tree, last_target(), Vec3<T>::Zero(), origin, problem.kinematics, motion,
                        problem.force, problem.moment);
-  advance_exactly<T>(tree, problem.kinematics, motion, owed.h, Vec3<T>::Zero(),
+  advance_exactly<T>(tree, problem.kinematics, motion, deferred.h, Vec3<T>::Zero(),
                      origin.template cast<double>(), history);
 }
 
 template <class T>
-void CharacterState<T>::settle_totals() {
-  if (!owed.totals) return;
-  report_totals(totals<T>(tree, last_target(), owed.gravity, problem.kinematics, motion));
+void CharacterState<T>::compute_totals() {
+  if (!deferred.totals) return;
+  report_totals(totals<T>(tree, last_target(), deferred.gravity, problem.kinematics, motion));
 }
 
 template <class T>
@@ -289,7 +289,7 @@ void CharacterState<T>::report_totals(const Vec3<double>& gravity) {
 
 template <class T>
 void CharacterState<T>::report_totals(const Totals& sum) {
-  owed.totals = false;
+  deferred.totals = false;
   report.kinetic_energy = sum.kinetic_energy;
   report.potential_energy = sum.potential_energy;
   report.momentum = sum.momentum;
@@ -298,13 +298,13 @@ void CharacterState<T>::report_totals(const Totals& sum) {
 
 template <class T>
 void CharacterState<T>::pose_changed() {
-  model_owed = true;
+  model_deferred = true;
   if (is_particles) bound_particles();
 }
 
 template <class T>
 void CharacterState<T>::update_model() {
-  model_owed = false;
+  model_deferred = false;
   for (std::size_t i = 0; i < local.size(); ++i) {
     const int parent = skeleton.joints[i].parent;
     model_pose[i] = parent < 0 ? local[i] : model_pose[parent] * local[i];
@@ -332,7 +332,7 @@ T CharacterState<T>::pace() const {
 template <class T>
 void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
   keep_record();
-  settle_totals();
+  compute_totals();
   for (std::size_t i = 0; i < local.size(); ++i) local[i] = {target[i].rotation, target[i].translation};
   target_stands = true;
   pose_changed();
@@ -365,11 +365,11 @@ void CharacterState<T>::reset_to_target(const Vec3<T>& gravity) {
         break;  // starts from rest: only the first guess of the first step
     }
   }
-  settle_deviations();
+  clear_deviations();
   forget_contacts();
   levels.wake = levels.wake || levels.asleep;  // for those who slept with it
   levels.asleep = false;
-  owed = {};
+  deferred = {};
   levels.still = 0;
   std::fill(unknown.begin(), unknown.end(), std::uint8_t{0});
 }
@@ -379,7 +379,7 @@ void CharacterState<T>::forget_contacts() {
   rate_step = T(0);
   contact_signature = limit_signature = 0;
   steps_unchanged = 0;
-  passing = 0;
+  collision_suspended = 0;
   forget_energy();
 }
 
@@ -445,7 +445,7 @@ template <class T>
 void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured, T h, T return_time) {
   Deviation<T>& d = deviation[i];
   std::array<T, 6> from_animation = continued(tree.type[i], measured, d.offset);
-  // The way back is no longer than three quarters of a turn, nor than need be where no muscle has begun it.
+  // The return is no longer than three quarters of a turn, nor than need be where no muscle has begun it.
   const bool around =
       !joint_is_driven(i) || length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
   const T time = tree.scale.time;
@@ -454,7 +454,7 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
   T offset = T(0), speed = T(0);
   d.on_path = true;
   for (int k = 0; k < tree.dof_count(i); ++k) {
-    // On the way back (no saturated muscle is) the rate is the path's at its end; its mean over the step
+    // On the return (no saturated muscle is) the rate is the path's at its end; its mean over the step
     // would start the next part of the path too fast or too slow by an error of first order.
     const T pull = d.rate[k] + d.offset[k] / return_time;
     const T unit = slides(tree, tree.first_dof[i] + k) ? tree.scale.length : T(1);
@@ -479,8 +479,8 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
 
 template <class T>
 void CharacterState<T>::keep_deviations(T h) {
-  if (!owed.deviations || only_falls()) return;
-  owed.deviations = false;
+  if (!deferred.deviations || only_falls()) return;
+  deferred.deviations = false;
   for (int i = 0; i < tree.bodies; ++i) {
     const JointJet<T>& jet = target[i];
     const Transform<T> ago = a_step_ago(jet, h), before = in_solve(i, ago, history.place),
@@ -499,11 +499,11 @@ void CharacterState<T>::keep_deviations(T h) {
     d.released = tree.dof_count(i) > 0;
     d.on_animation = !d.released;
   }
-  settle_deviations();
+  clear_deviations();
 }
 
 template <class T>
-void CharacterState<T>::settle_deviations() {
+void CharacterState<T>::clear_deviations() {
   calm = std::all_of(deviation.begin(), deviation.end(),
                      [](const Deviation<T>& d) { return d.on_animation && !d.released; });
 }
@@ -526,7 +526,7 @@ bool CharacterState<T>::joint_has_tone(int body) const {
 
 template <class T>
 void CharacterState<T>::set_tone(int joint, Tone tone) {
-  if (tone != Tone::kRigid) make_room_for_tone(*this);
+  if (tone != Tone::kRigid) reserve_for_tone(*this);
   if (problem.law.tone.empty()) return;
   for (int i = joint; i < tree.bodies; ++i) {
     int ancestor = i;
@@ -556,7 +556,7 @@ T CharacterState<T>::fastest() const {
 template <class T>
 bool CharacterState<T>::is_struck(T return_time) const {
   if (impulses.empty()) return false;
-  if (limp()) return true;
+  if (passive()) return true;
   const auto moves = [&](const ExternalForce<T>& impulse) {
     return impulse.force.norm() * return_time * tree.scale.time >
            T(kFelt) * tree.scale.length * tree.mass[impulse.body];
@@ -565,7 +565,7 @@ bool CharacterState<T>::is_struck(T return_time) const {
 }
 
 template <class T>
-bool CharacterState<T>::limp() const {
+bool CharacterState<T>::passive() const {
   return !root_is_kinematic() && !problem.law.present.muscles;
 }
 

@@ -21,7 +21,7 @@ struct Deviation {
   std::array<T, 6> rate{};    ///< 1/s
   bool on_animation = true;   ///< exactly where the clip wants it
   bool released = false;      ///< was an unknown in the last step
-  bool on_path = false;       ///< went along the way back in the last step: `rate` is that path's
+  bool on_path = false;       ///< went along the return in the last step: `rate` is that path's
 };
 
 /// The rate of a deviation, whose turn is that of a rotation vector, with the child's angular velocity about
@@ -31,9 +31,10 @@ std::array<T, 6> spin_of_rate(JointType type, const std::array<T, 6>& offset, st
 template <class T>
 std::array<T, 6> rate_of_spin(JointType type, const std::array<T, 6>& offset, std::array<T, 6> spin);
 
-/// What a played step leaves undone until somebody asks: mostly nobody does. See keep_record(), catch_up().
+/// What a played step leaves undone until somebody asks: mostly nobody does. See keep_record(),
+/// synchronise().
 template <class T>
-struct Owed {
+struct Deferred {
   bool loads = false;    ///< `load` and `limit`, of `torque` and the muscles' present strength
   bool rates = false;    ///< `rate`
   bool history = false;  ///< all of it but `place` and velocity[0]
@@ -127,7 +128,7 @@ struct CharacterState {
   bool parked = false;    ///< out of the world
   bool crowded = false;   ///< near one whom it was not solved together with: the island was full
   bool carried = false;   ///< in this step, see carry_over()
-  bool calm = true;       ///< no joint deviates: see settle_deviations
+  bool calm = true;       ///< no joint deviates: see clear_deviations
   bool acted_on = false;  ///< pushes or effects ask muscles with a tone for more: see begin_tone()
   bool left_to_gravity = false;  ///< in the last part of a step: nothing else from outside acted on it
   bool floats = false;           ///< hangs on one free root, whose translation is `history.place` rounded
@@ -137,9 +138,9 @@ struct CharacterState {
   bool target_stands = false;              ///< nobody has set another since: `target_before` is out of date
   std::vector<Transform<T>> local;         ///< [joint]
   std::vector<Transform<T>> model_pose;    ///< [joint] see model()
-  bool model_owed = false;
+  bool model_deferred = false;
   std::vector<Transform<T>> played_from;           ///< [joint] `local` before the last played step
-  Owed<T> owed;                                    ///< by that step
+  Deferred<T> deferred;                            ///< by that step
   std::vector<std::array<T, 6>> rate;              ///< [body] joint speed over the last step, as joint_offset
   std::vector<std::array<T, 6>> rate_before;       ///< [body] over the step before
   T rate_step = T(0);                              ///< s, that `rate` was measured over; 0: unknown
@@ -164,10 +165,12 @@ struct CharacterState {
   std::uint64_t contact_signature = 0;  ///< of the contacts that touched after the last step
   std::uint64_t limit_signature = 0;    ///< of the joint limits that bore
   int steps_unchanged = 0;
-  std::uint8_t passing = 0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::hold
+  std::uint8_t collision_suspended =
+      0;  ///< steps in which what it is caught in lets it pass: see IslandStepper::freeze
   double energy_ceiling =
-      std::numeric_limits<double>::infinity();  ///< J, see EnergyLedger; infinite: unknown
-  double lent = 0;  ///< J, by surfaces that lead it out of them, and stored in contacts still: not its own
+      std::numeric_limits<double>::infinity();  ///< J, see EnergyBalance; infinite: unknown
+  double depenetration_energy =
+      0;  ///< J, by surfaces that lead it out of them, and stored in contacts still: not its own
   CharacterReport report;
 
   CharacterState(std::shared_ptr<const Rig<T>> of, const CharacterSettings& c, const StepPlan<T>& plan);
@@ -196,15 +199,15 @@ struct CharacterState {
   void report_totals(const Vec3<double>& gravity);
   void report_totals(const Totals& sum);
   /// Those of the animation where the last step owes them.
-  void settle_totals();
-  /// What is owed of the muscles; before their strength changes.
+  void compute_totals();
+  /// What is deferred of the muscles; before their strength changes.
   void keep_loads();
   /// The same and of the joint speeds, and the history where the step was checked: to the bit what keeping
   /// them in every step would have left.
   void keep_record();
   /// Joint → world, of all joints: worked out when it is first asked for after the local ones changed.
   const std::vector<Transform<T>>& model() {
-    if (model_owed) update_model();
+    if (model_deferred) update_model();
     return model_pose;
   }
   /// After `local` changed.
@@ -236,14 +239,14 @@ struct CharacterState {
   /// Something has done work on it: what it may have is not known.
   void forget_energy() {
     energy_ceiling = std::numeric_limits<double>::infinity();
-    lent = 0;
+    depenetration_energy = 0;
   }
   /// After a step of h seconds: how far a joint is off what the animation wants (`measured`, a
   /// joint_offset), and how fast that changes; on the animation where both are next to nothing. `return_time`
-  /// of a human's way back, s.
+  /// of a human's return, s.
   void update_deviation(int body, const std::array<T, 6>& measured, T h, T return_time);
-  /// Before a step of h seconds, with its target set: the deviations that are owed, where the step asks for
-  /// them. Their rates are those with which the joints leave what the animation does in the step.
+  /// Before a step of h seconds, with its target set: the deviations that are deferred, where the step asks
+  /// for them. Their rates are those with which the joints leave what the animation does in the step.
   void keep_deviations(T h);
   /// Where `radius` is measured from: the root's origin, or the middle of a body of particles.
   Vec3<double> middle() const {
@@ -252,9 +255,9 @@ struct CharacterState {
   /// m/s: of the root, or of the fastest particle.
   T pace() const;
   /// Every joint is on the animation, and none is released.
-  bool undisturbed() const { return calm && !owed.deviations && !is_prop; }
+  bool undisturbed() const { return calm && !deferred.deviations && !is_prop; }
   /// After deviations changed: sums them up for undisturbed(), which is asked in every step.
-  void settle_deviations();
+  void clear_deviations();
   /// Every degree of freedom of a joint has a muscle, in both directions.
   bool joint_is_driven(int body) const;
   /// It has muscles, and they do not bear whatever comes.
@@ -276,14 +279,14 @@ struct CharacterState {
   /// The host pushes it in the coming step.
   bool pushed() const { return !impulses.empty() || !forces.empty(); }
   /// No joint has a muscle, nothing drives the root.
-  bool limp() const;
+  bool passive() const;
   /// Whether the impulses of the coming step change velocities at its beginning: no muscle is quick enough to
   /// do anything about them, while over a step it would bear what it can stop in one. What moves nothing by
   /// more than a millimetre until its muscles have brought it back (τ/e of its speed) is left to them.
   bool is_struck(T return_time) const;
-  /// Nor is any joint put anywhere but by the solve: where the way back to the animation leads is not asked.
+  /// Nor is any joint put anywhere but by the solve: where the return to the animation leads is not asked.
   bool only_falls() const {
-    return limp() && levels.allowed >= Level::kPartial &&
+    return passive() && levels.allowed >= Level::kPartial &&
            std::min(detail.most, levels.cap) > Level::kPartial && !detail.bake;
   }
   /// The simulated joint that carries `joint`, itself or an ancestor.
@@ -293,7 +296,7 @@ struct CharacterState {
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
   /// And has limbs, that it could tear off: what has none, as a platform, presses whatever is in its way.
-  bool leads_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }
+  bool drives_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }
 };
 
 #define SINEW_RATE_INSTANCES(prefix, T)                                                          \

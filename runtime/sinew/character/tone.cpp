@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/character/way_back.h"
+#include "sinew/character/return_to_animation.h"
 
 namespace sinew {
 namespace {
@@ -114,7 +114,7 @@ void share_slopes(JointLaw<T>& law, int first) {
 }  // namespace
 
 template <class T>
-void make_room_for_tone(CharacterState<T>& s) {
+void reserve_for_tone(CharacterState<T>& s) {
   JointLaw<T>& law = s.problem.law;
   if (law.present.muscles || !s.skeleton.muscles.empty()) law.tone.resize(s.tree.dofs);
 }

@@ -2,7 +2,7 @@
 //
 // A toned joint is played like any other while what acts on it differs little from what its animation asks
 // for by itself. Else it is an unknown, until it is next to its animation and slow again; or until all of the
-// character is near its animation and slow, when the ordinary way back takes it there without unknowns
+// character is near its animation and slow, when the ordinary return takes it there without unknowns
 // (hand_back).
 #pragma once
 
@@ -14,7 +14,7 @@ namespace sinew {
 
 /// Room for what is asked of muscles, which a character without a tone does not have. Set-up.
 template <class T>
-void make_room_for_tone(CharacterState<T>& state);
+void reserve_for_tone(CharacterState<T>& state);
 
 /// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself.
 template <class T>
@@ -39,7 +39,7 @@ template <class T>
 bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T most);
 
 #define SINEW_TONE_INSTANCES(prefix, T)                                     \
-  prefix void make_room_for_tone<T>(CharacterState<T>&);                    \
+  prefix void reserve_for_tone<T>(CharacterState<T>&);                      \
   prefix void keep_feed_forward<T>(CharacterState<T>&);                     \
   prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T);        \
   prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>); \

@@ -13,20 +13,21 @@ constexpr double kBoundToTouch = 5e-3;
 }  // namespace
 
 template <class T>
-void TouchingSets<T>::reserve(const SolveRoom& room) {
-  for (auto* v : {&set_, &spent_, &its_indices_}) v->reserve(room.trees);
-  for (auto* v : {&stepped_, &changed_}) v->reserve(room.trees);
-  for (auto* v : {&from_, &to_, &placed_}) v->reserve(room.colliders);
-  first_collider_.reserve(room.trees + 1);
-  lagged_.reserve(room.loaded);
-  its_states_.reserve(room.trees);
-  its_ties_.reserve(room.nodes);
+void TouchingSets<T>::reserve(const SolveCapacity& capacity) {
+  for (auto* v : {&set_, &spent_, &its_indices_}) v->reserve(capacity.trees);
+  for (auto* v : {&stepped_, &changed_}) v->reserve(capacity.trees);
+  for (auto* v : {&from_, &to_, &placed_}) v->reserve(capacity.colliders);
+  first_collider_.reserve(capacity.trees + 1);
+  lagged_.reserve(capacity.loaded);
+  its_states_.reserve(capacity.trees);
+  its_ties_.reserve(capacity.nodes);
 }
 
 template <class T>
-std::size_t TouchingSets<T>::bytes(const SolveRoom& room) const {
-  return room.trees * (4 * sizeof(int) + 2 + sizeof(void*)) + 3 * room.colliders * sizeof(PlacedCollider<T>) +
-         room.loaded * sizeof(LaggedForce<T>) + room.nodes * sizeof(void*);
+std::size_t TouchingSets<T>::bytes(const SolveCapacity& capacity) const {
+  return capacity.trees * (4 * sizeof(int) + 2 + sizeof(void*)) +
+         3 * capacity.colliders * sizeof(PlacedCollider<T>) + capacity.loaded * sizeof(LaggedForce<T>) +
+         capacity.nodes * sizeof(void*);
 }
 
 template <class T>

@@ -22,8 +22,8 @@ constexpr double kGrazing = 1e-5;  ///< m of a human: what so little depth bears
 template <class T>
 class TouchingSets {
  public:
-  void reserve(const SolveRoom& room);
-  std::size_t bytes(const SolveRoom& room) const;
+  void reserve(const SolveCapacity& capacity);
+  std::size_t bytes(const SolveCapacity& capacity) const;
 
   /// An island's members (ascending by their numbers in the world, `indices`), what ties them, and the
   /// world's contact forces of the last step, sorted by id. False where all are in one set from the
@@ -86,7 +86,7 @@ std::span<const LaggedForce<T>> TouchingSets<T>::step_all(std::span<KeptStep<T>>
       const std::size_t had = lagged_.size();
       int room = 0, spent = 0;
       for (std::size_t k = 0; k < its_states_.size(); ++k) {
-        room += its_states_[k]->problem.room.loaded;
+        room += its_states_[k]->problem.capacity.loaded;
         spent = std::max(spent, spent_[member_of(its_indices_[k])]);
       }
       lagged_.resize(had + room);

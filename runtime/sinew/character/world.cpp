@@ -44,19 +44,19 @@ template <class T>
 World<T>::~World() = default;
 
 template <class T>
-SolveRoom World<T>::Impl::room_of_rig(const Rig<T>& rig) const {
+SolveCapacity World<T>::Impl::capacity_of_rig(const Rig<T>& rig) const {
   // Every point may be near the floor, an obstacle, and a few shapes of others.
   const int points = static_cast<int>(rig.points.size());
   const int around = std::min(static_cast<int>(obstacles.size() + hosts.size()), kMostObstacles);
-  return room_of(rig.tree, points * (6 + around) + 64, 2 * points + 16,
-                 static_cast<int>(rig.colliders.size()));
+  return capacity_of(rig.tree, points * (6 + around) + 64, 2 * points + 16,
+                     static_cast<int>(rig.colliders.size()));
 }
 
 template <class T>
 void World<T>::Impl::count_in(CharacterState<T>& s) {
-  s.problem.room = room_of_rig(*s.rig);
-  for (const auto& effect : s.effects) s.problem.room.effect_rows += effect->most_rows();
-  rooms.add(s.problem.room);
+  s.problem.capacity = capacity_of_rig(*s.rig);
+  for (const auto& effect : s.effects) s.problem.capacity.effect_rows += effect->most_rows();
+  rooms.add(s.problem.capacity);
   if (!s.is_prop && !s.is_particles)
     checked_rig = {std::max(checked_rig.bodies, s.tree.bodies), std::max(checked_rig.dofs, s.tree.dofs),
                    std::max(checked_rig.points, static_cast<int>(s.rig->support.points.size()))};
@@ -72,8 +72,8 @@ void World<T>::Impl::count_all() {
 
 /// Of the first worker, and of the others.
 template <class T>
-std::array<SolveRoom, 2> World<T>::Impl::rooms_of_workers() const {
-  const SolveRoom most = rooms.of_island(settings.island_dofs);
+std::array<SolveCapacity, 2> World<T>::Impl::capacity_of_workers() const {
+  const SolveCapacity most = rooms.of_island(settings.island_dofs);
   return {most, workers.size() > 1 ? smaller(most, rooms.largest.times(kSmallIsland)) : most};
 }
 
@@ -88,12 +88,12 @@ WorldMemory World<T>::Impl::memory() const {
   bytes.characters += 2 * rooms.all.loaded * sizeof(LaggedForce<T>);
   bytes.characters += rooms.all.colliders * sizeof(MovingCollider<T>);
   if (reporter) bytes.characters += reporter->bytes();
-  const auto [most, small] = rooms_of_workers();
+  const auto [most, small] = capacity_of_workers();
   for (std::size_t n = 0; n < workers.size(); ++n)
     bytes.solving +=
         workers[n]->stepper.bytes(n == 0 ? most : small) + workers[n]->sets.bytes(n == 0 ? most : small);
   for (const auto& worker : workers) {
-    bytes.solving += worker->check_room.capacity();
+    bytes.solving += worker->check_scratch.capacity();
     if (worker->checks) bytes.solving += worker->checks->bytes();
   }
   return bytes;
@@ -102,18 +102,18 @@ WorldMemory World<T>::Impl::memory() const {
 /// Memory for everything that the next step may need.
 template <class T>
 void World<T>::Impl::reserve() {
-  const auto [most, small] = rooms_of_workers();
-  small_room = small;
+  const auto [most, small] = capacity_of_workers();
+  small_capacity = small;
   for (std::size_t n = 0; n < workers.size(); ++n) {
-    const SolveRoom& room = n == 0 ? most : small_room;
-    workers[n]->stepper.reserve(room, static_cast<int>(obstacles.size()));
-    workers[n]->obstacle_room.reserve(rooms.largest.colliders);
-    workers[n]->sets.reserve(room);
-    workers[n]->members.reserve(room.trees);
+    const SolveCapacity& capacity = n == 0 ? most : small_capacity;
+    workers[n]->stepper.reserve(capacity, static_cast<int>(obstacles.size()));
+    workers[n]->obstacle_scratch.reserve(rooms.largest.colliders);
+    workers[n]->sets.reserve(capacity);
+    workers[n]->members.reserve(capacity.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
     const auto& [bodies, dofs, points] = checked_rig;
-    workers[n]->check_room.resize(CheckRoom<T>::bytes(bodies, bodies, points));
+    workers[n]->check_scratch.resize(CheckScratch<T>::bytes(bodies, bodies, points));
     if (workers[n]->checks) workers[n]->checks->reserve(bodies, dofs, points);
     workers[n]->unchecked.reserve(Impl::kMostWaiting);
   }
@@ -182,7 +182,7 @@ Status World<T>::Impl::add(const Skeleton& skeleton, const CharacterSettings& ch
     return Status::error(Code::kInvalidArgument, kNoMuscles);
   }
   added.levels.steps = static_cast<std::uint32_t>(states.size());  // not all are checked at once
-  const SolveRooms before = rooms;
+  const SolveCapacities before = rooms;
   count_in(added);
   if (over_cap()) {
     rooms = before;
@@ -395,15 +395,15 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   first_lagged.assign(1, 0);
   lagged_count.assign(islands.count(), 0);
   for (int i = 0; i < islands.count(); ++i) {
-    SolveRoom room;
+    SolveCapacity capacity;
     bool plays = true;
     for (const int n : islands.members(i)) {
-      room += states[n]->problem.room;
+      capacity += states[n]->problem.capacity;
       plays = plays && !states[n]->tied && states[n]->undisturbed() && !states[n]->pushed();
     }
-    for (const int n : islands.ties(i)) room += couplings.room(n);
-    (!room.fits(small_room) ? large : plays && room.trees == 1 ? light : heavy).push_back(i);
-    first_lagged.push_back(first_lagged.back() + room.loaded);
+    for (const int n : islands.ties(i)) capacity += couplings.capacity(n);
+    (!capacity.fits(small_capacity) ? large : plays && capacity.trees == 1 ? light : heavy).push_back(i);
+    first_lagged.push_back(first_lagged.back() + capacity.loaded);
   }
   lagged_new.resize(first_lagged.back());
   if (reporter) reporter->begin_step(islands.count());
@@ -446,7 +446,7 @@ std::size_t World<T>::snapshot_capacity() const {
 
 template <class T>
 std::size_t World<T>::save(std::span<std::byte> out) const {
-  for (const auto& s : impl_->states) catch_up(*s, impl_->workers[0]->jets);
+  for (const auto& s : impl_->states) synchronise(*s, impl_->workers[0]->jets);
   return write_bytes(impl_->moving(), Content::kState, out);
 }
 
@@ -472,7 +472,7 @@ Status World<T>::restore_inputs(std::span<const std::byte> inputs) {
 
 template <class T>
 SnapshotField World<T>::snapshot_field(std::size_t byte) const {
-  for (const auto& s : impl_->states) catch_up(*s, impl_->workers[0]->jets);
+  for (const auto& s : impl_->states) synchronise(*s, impl_->workers[0]->jets);
   return field_at(impl_->moving(), byte);
 }
 

@@ -82,16 +82,16 @@ struct CharacterReport {
   int unbaked = 0;  ///< that it had to solve for all the same: at a limit, or about to go far wrong
   int outer_passes = 0;
   int factorisations = 0;
-  int chords = 0;        ///< steps of simplified Newton, with the matrix of the pass before
-  int corrections = 0;   ///< second-order corrections that saved a full step
-  int plain_passes = 0;  ///< passes without the geometric terms, which made the matrix indefinite
-  int contacts = 0;      ///< active contact points
+  int simplified_steps = 0;  ///< steps of simplified Newton, with the matrix of the pass before
+  int corrections = 0;       ///< second-order corrections that saved a full step
+  int plain_passes = 0;      ///< passes without the geometric terms, which made the matrix indefinite
+  int contacts = 0;          ///< active contact points
   int left_out = 0;      ///< of the candidates for contacts, those that there was no memory for: the furthest
   int substeps = 0;      ///< parts that the step was solved in; 0 = played
   int splits = 0;        ///< of these, halvings because a solve did not converge
   int restarts = 0;      ///< of the parts, solved again from where they began: the first result was too deep
-  int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyLedger)
-  int held = 0;          ///< trees that were stopped where they stood: no pose could be found
+  int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyBalance)
+  int frozen = 0;        ///< trees that were stopped where they stood: no pose could be found
   bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
   bool converged = true;
   bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
@@ -206,7 +206,7 @@ class Character {
   /// The host has moved the character's place itself: targets are given there from now on.
   Status take_displacement();
   /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that. For who
-  /// stands there already, within millimetres, as after a step; the rest goes the way back.
+  /// stands there already, within millimetres, as after a step; the rest returns over time.
   Status displace(const Displacement& further);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);

@@ -59,11 +59,11 @@ struct World<T>::Impl {
     IslandStepper<T> stepper;
     std::unique_ptr<BatchCheck> checks;  ///< null: not declared
     std::vector<Unchecked> unchecked;
-    std::vector<std::byte> check_room;  ///< of a check alone, of the largest rig
+    std::vector<std::byte> check_scratch;  ///< of a check alone, of the largest rig
     std::vector<CharacterState<T>*> members;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
-    ObstacleRoom<T> obstacle_room;
+    ObstacleScratch<T> obstacle_scratch;
     TouchingSets<T> sets;
     std::size_t number = 0;
     ContactLog<T>* log = nullptr;  ///< of the island that it steps; null where nobody listens
@@ -89,12 +89,12 @@ struct World<T>::Impl {
   std::unique_ptr<ContactReporter<T>> reporter;             ///< null: nobody listens
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<MakeIslandEffect<T>> declared;  ///< each worker has one of each
-  SolveRooms rooms;
+  SolveCapacities rooms;
   /// What the largest rig that may be played has: points that may stand on the ground.
   struct {
     int bodies = 0, dofs = 0, points = 0;
   } checked_rig;
-  SolveRoom small_room;  ///< of an island that any worker can step; the first one can step all
+  SolveCapacity small_capacity;  ///< of an island that any worker can step; the first one can step all
 
   // Of the present step
   T h = T(0);
@@ -128,13 +128,13 @@ struct World<T>::Impl {
 
   void declare(DeclareTerm<T> term);
   Status add(const Skeleton& skeleton, const CharacterSettings& character);
-  SolveRoom room_of_rig(const Rig<T>& rig) const;
+  SolveCapacity capacity_of_rig(const Rig<T>& rig) const;
   void count_in(CharacterState<T>& state);
   void count_all();
   bool over_cap() const;
   void drop_last();
   int tie(Coupling<T> coupling, Status& status);
-  std::array<SolveRoom, 2> rooms_of_workers() const;
+  std::array<SolveCapacity, 2> capacity_of_workers() const;
   WorldMemory memory() const;
   void reserve();
   void meet_surroundings();
@@ -146,7 +146,7 @@ struct World<T>::Impl {
   bool play_alone(CharacterState<T>& state, Worker& worker);
   bool may_play(CharacterState<T>& state, Worker& worker) const;
   bool checks(const CharacterState<T>& state) const;
-  CheckRoom<T> room_of_check(const CharacterState<T>& state, Worker& worker) const;
+  CheckScratch<T> scratch_of_check(const CharacterState<T>& state, Worker& worker) const;
   bool checks_in_batches(const CharacterState<T>& state, const Worker& worker) const;
   void check_later(int island, Worker& worker, double spent);
   void check_alike(Worker& worker, const Unchecked& one);

@@ -48,7 +48,7 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
   if (std::any_of(members.begin(), members.end(), may_be_solved)) return false;
   for (CharacterState<T>* s : members) {
     const bool checked = s->levels.allowed == Level::kChecked && s->undisturbed() &&
-                         play(*s, settings, plan, h, room_of_check(*s, worker));
+                         play(*s, settings, plan, h, scratch_of_check(*s, worker));
     if (!checked) follow(*s, settings, h);
     s->levels.did = checked ? Level::kChecked : Level::kPlayback;
   }
@@ -59,7 +59,7 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
 template <class T>
 bool World<T>::Impl::may_play(CharacterState<T>& s, Worker& worker) const {
   return !s.tied && s.driven && (s.undisturbed() || s.grounding.returns) &&
-         !(plan.contacts && plan.contacts->meets_obstacle(s, surroundings(), h, worker.obstacle_room));
+         !(plan.contacts && plan.contacts->meets_obstacle(s, surroundings(), h, worker.obstacle_scratch));
 }
 
 /// Whether its muscles are asked in this step.
@@ -70,8 +70,8 @@ bool World<T>::Impl::checks(const CharacterState<T>& s) const {
 }
 
 template <class T>
-CheckRoom<T> World<T>::Impl::room_of_check(const CharacterState<T>& s, Worker& worker) const {
-  return {worker.check_room.data(), s.tree.bodies, s.tree.bodies,
+CheckScratch<T> World<T>::Impl::scratch_of_check(const CharacterState<T>& s, Worker& worker) const {
+  return {worker.check_scratch.data(), s.tree.bodies, s.tree.bodies,
           static_cast<int>(s.rig->support.points.size())};
 }
 
@@ -79,7 +79,7 @@ CheckRoom<T> World<T>::Impl::room_of_check(const CharacterState<T>& s, Worker& w
 template <class T>
 bool World<T>::Impl::play_alone(CharacterState<T>& s, Worker& worker) {
   const bool checked = checks(s);
-  if (checked && !play(s, settings, plan, h, room_of_check(s, worker))) return false;
+  if (checked && !play(s, settings, plan, h, scratch_of_check(s, worker))) return false;
   if (!checked) follow(s, settings, h);
   s.levels.did = checked ? Level::kChecked : Level::kPlayback;
   return true;
@@ -136,7 +136,7 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
     const Unchecked& u = batch[n];
     CharacterState<T>* state = u.state;
     const bool played = checked ? play_checked(*state, settings, h)
-                                : play(*state, settings, plan, h, room_of_check(*state, worker));
+                                : play(*state, settings, plan, h, scratch_of_check(*state, worker));
     const double spent = u.spent + share + now(settings.detail.budget) - again;
     worker.members.assign(1, state);
     worker.ties.clear();
@@ -154,8 +154,8 @@ template <class T>
 void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
-  catch_up(s, worker.jets);
-  begin_tone(s, settings, plan, h, room_of_check(s, worker));
+  synchronise(s, worker.jets);
+  begin_tone(s, settings, plan, h, scratch_of_check(s, worker));
   log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
@@ -172,8 +172,8 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
   if (worker.log) worker.log->forget(indices);
   if (play_set(members, worker)) return 0;
   for (CharacterState<T>* s : members) {
-    catch_up(*s, worker.jets);
-    begin_tone(*s, settings, plan, h, room_of_check(*s, worker));
+    synchronise(*s, worker.jets);
+    begin_tone(*s, settings, plan, h, scratch_of_check(*s, worker));
   }
   const int count =
       worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);
@@ -195,7 +195,7 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   // Their ways are predicted by their histories, which must not depend on whether somebody has asked for
   // them.
   for (CharacterState<T>* s : worker.members)
-    if (worker.members.size() > 1 && !s->undisturbed()) catch_up(*s, worker.jets);
+    if (worker.members.size() > 1 && !s->undisturbed()) synchronise(*s, worker.jets);
   if (worker.members.size() == 1) {
     const auto spent = [&] { return now(settings.detail.budget) - begin; };
     CharacterState<T>& s = *worker.members[0];
@@ -231,7 +231,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->levels.spent = work > 0 ? spent * s->levels.work / work : 0;
     // Between two checks it is at the level that checks it.
     const Level least = s->levels.asleep ? Level::kAsleep : std::min(s->levels.allowed, Level::kChecked);
-    settle_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
+    choose_level(*s, std::max(s->levels.did, least), h, settings.detail.dwell);
     s->report.level = s->levels.level;
     s->report.crowded = s->crowded;
     s->impulses.clear();

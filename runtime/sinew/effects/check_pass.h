@@ -12,7 +12,7 @@ namespace sinew {
 
 /// What a check works in.
 template <class T>
-struct CheckRoom {
+struct CheckScratch {
   std::span<BodyMotion<T>> body;
   std::span<Mat3<T>> rotation;           ///< body → world
   std::span<Vec3<T>> force, moment;      ///< about the root's origin, world axes
@@ -26,7 +26,7 @@ struct CheckRoom {
            std::size_t(points) * (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>));
   }
   /// In `memory` of that many bytes, aligned as T is.
-  CheckRoom(void* memory, int bodies, int joints, int points) {
+  CheckScratch(void* memory, int bodies, int joints, int points) {
     const auto take = [&]<class U>(std::span<U>& out, int count) {
       out = {static_cast<U*>(memory), std::size_t(count)};
       memory = out.data() + count;
@@ -43,7 +43,7 @@ struct CheckRoom {
 
 /// Where a body is, from its parent.
 template <class T>
-[[gnu::always_inline]] inline void place_body(const Tree<Number<T>>& tree, int i, const CheckRoom<T>& r) {
+[[gnu::always_inline]] inline void place_body(const Tree<Number<T>>& tree, int i, const CheckScratch<T>& r) {
   const int p = tree.parent[i];
   if (p < 0) {
     r.rotation[i] = r.body[i].turn;
@@ -56,7 +56,7 @@ template <class T>
 
 /// What the motion asks of the bodies, in world axes about the common origin.
 template <class T>
-[[gnu::always_inline]] inline void wrenches_in_world(const CheckRoom<T>& r) {
+[[gnu::always_inline]] inline void wrenches_in_world(const CheckScratch<T>& r) {
   for (std::size_t i = 0; i < r.body.size(); ++i) {
     r.force[i] = r.rotation[i] * r.body[i].force;
     r.moment[i] = r.rotation[i] * r.body[i].moment + r.origin[i].cross(r.force[i]);
@@ -66,7 +66,7 @@ template <class T>
 /// And back to the axes of those that may stand.
 template <class T>
 [[gnu::always_inline]] inline void wrenches_to_bodies(const SupportPoints<Number<T>>& points, const T& ground,
-                                                      const CheckRoom<T>& r) {
+                                                      const CheckScratch<T>& r) {
   for (std::size_t i = 0; i < r.body.size(); ++i) {
     const Number<T> reach = Number<T>(SupportSettings{}.reach);
     if (!may_stand<T>(points, int(i), r.origin[i], ground, reach)) continue;
@@ -82,7 +82,7 @@ template <class T>
 /// The ground's share goes from the wrenches of the bodies that may stand on it. `ground`: its height from
 /// the root's origin, m.
 template <class T>
-void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckRoom<T>& r) {
+void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckScratch<T>& r) {
   wrenches_in_world(r);
   share_support<T>(points, r.rotation, r.origin.first(r.body.size()), ground, {}, r.standing, r.force,
                    r.moment);
@@ -110,12 +110,12 @@ struct Standing {
   T weight = T(0);    ///< N, of a character that has nothing but the ground; 0: its root bears the rest
 
   /// Takes off what the ground bears; `height`: of the root above it, m.
-  void bear(T height, const CheckRoom<T>& room) const {
+  void bear(T height, const CheckScratch<T>& scratch) const {
     if (!support) return;
     if (weight > T(0))
-      support->balance(points, -height, friction, weight, room);
+      support->balance(points, -height, friction, weight, scratch);
     else
-      support->stand(points, -height, room);
+      support->stand(points, -height, scratch);
   }
 };
 
@@ -129,18 +129,18 @@ void add_wrenches(const Kinematics<T>& kinematics, std::span<const Vec3<T>> forc
   }
 }
 
-/// Torques [dof] (N·m; N for translations) that the motion `jets` [body] asks for. `room` must have this
+/// Torques [dof] (N·m; N for translations) that the motion `jets` [body] asks for. `scratch` must have this
 /// tree's size. O(bodies).
 template <class T>
 void check_motion(const Tree<T>& tree, std::span<const JointJet<T>> jets, const Vec3<T>& gravity,
-                  const Standing<T>& standing, const CheckRoom<T>& room, std::span<T> torque) {
+                  const Standing<T>& standing, const CheckScratch<T>& scratch, std::span<T> torque) {
   for (const int i : tree.by_depth) {
     const int p = tree.parent[i];
-    move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &room.body[p], room.body[i]);
-    if (standing.support) place_body<T>(tree, i, room);
+    move_body<T>(tree, i, jets[i], gravity, p < 0 ? nullptr : &scratch.body[p], scratch.body[i]);
+    if (standing.support) place_body<T>(tree, i, scratch);
   }
-  standing.bear(jets[0].translation.z() - standing.ground, room);
-  project_bodies<T>(tree, room.body, [&](int dof, const T& t) { torque[dof] = t; });
+  standing.bear(jets[0].translation.z() - standing.ground, scratch);
+  project_bodies<T>(tree, scratch.body, [&](int dof, const T& t) { torque[dof] = t; });
 }
 
 }  // namespace sinew

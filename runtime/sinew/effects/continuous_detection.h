@@ -16,8 +16,8 @@ class ContinuousDetection final : public IslandEffect<T> {
  public:
   using typename IslandEffect<T>::Trees;
 
-  void reserve(const SolveRoom& /*room*/) override {}
-  std::size_t bytes(const SolveRoom& /*room*/) const override { return sizeof *this; }
+  void reserve(const SolveCapacity& /*capacity*/) override {}
+  std::size_t bytes(const SolveCapacity& /*capacity*/) const override { return sizeof *this; }
   void limit_guess(Trees trees, std::span<const Contact<T>> contacts, T h, std::span<T> share) override;
   bool meets_on_the_way(Trees trees, const Contact<T>& contact) const override;
 };

@@ -11,7 +11,7 @@ namespace {
 
 // Weights that pull a loop as far apart as it is.
 constexpr double kSlack = 10;   ///< a loop that bore nothing: open by more, it began so
-constexpr double kYields = 10;  ///< to a led root
+constexpr double kYields = 10;  ///< to a driven root
 constexpr double kTorn = 200;
 constexpr double kTightened = 0.5;  ///< of what is tight: so far a multiplier closes
 
@@ -182,9 +182,9 @@ TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& c, const Tetrahed
 }
 
 template <class T>
-void lead_out(T h, Coupling<T>& c) {
-  if (!c.leads_out) return;
-  c.led = c.closes();
+void close_slowly(T h, Coupling<T>& c) {
+  if (!c.closes_slowly) return;
+  c.driven = c.closes();
   for (Stencil<T>& e : c.stencils) {
     e.offset_before = e.offset;
     e.carried_before = e.carried;
@@ -195,19 +195,19 @@ void lead_out(T h, Coupling<T>& c) {
     const Vec3<T> reached = open - e.offset;
     const T size = reached.norm(), room = e.length + T(kYields) * e.sinks - size;
     if (c.strained && room < T(0)) e.offset -= room / size * reached;
-    e.led_from = e.offset;
+    e.unclosed_offset = e.offset;
     const T left = e.offset.norm();
     e.yields = c.strained && left > T(0);
     T closes = T(kClosingSpeed) * c.speed_scale * h;
     if (e.yields) closes = std::clamp(room, T(0), closes);
     e.offset *= left > closes ? T(1) - closes / left : T(0);
   }
-  c.led = c.led || c.closes();
+  c.driven = c.driven || c.closes();
 }
 
 template <class T>
 bool tighten(Coupling<T>& c) {
-  if (!c.leads_out || c.strained) return false;  // a led root pulls with any force
+  if (!c.closes_slowly || c.strained) return false;  // a driven root pulls with any force
   bool any = false;
   for (Stencil<T>& e : c.stencils) {
     if (!(e.tight > T(0)) || e.yields || !e.offset.isZero(T(0))) continue;

@@ -62,16 +62,16 @@ struct Stencil {
   T weight[4] = {T(1), T(-1), T(0), T(0)};  ///< sum 0
   T stiffness = T(0);                       ///< N/m
   T length = T(0);                          ///< m
-  T sinks = T(0);                           ///< m, that a weight pulls a loop apart: see lead_out()
+  T sinks = T(0);                           ///< m, that a weight pulls a loop apart: see close_slowly()
   bool only_pulls = false;                  ///< no energy while shorter than `length`
   T tight = T(0);                   ///< m, further apart is no loop for long: see tighten(); 0: a spring
   Vec3<T> shift = Vec3<T>::Zero();  ///< m, of a closed point: its multiplier by the stiffness
   T shortened = T(0);               ///< m, the same of a rod or rope
-  /// What was open when a loop was closed, world axes, m; led to 0 at a walking pace.
+  /// What was open when a loop was closed, world axes, m; closed at 0.45 m/s.
   Vec3<T> offset = Vec3<T>::Zero();
   Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
-  Vec3<T> led_from = Vec3<T>::Zero();       ///< the offset before this step led it in
-  bool yields = false;                      ///< to a led root, in this step: see lead_out()
+  Vec3<T> unclosed_offset = Vec3<T>::Zero();  ///< the offset before this step closed it further
+  bool yields = false;                      ///< to a driven root, in this step: see close_slowly()
   CarriedForce<T> carried, carried_before;  ///< its pull, where a loop is rigid; the same
 };
 
@@ -94,13 +94,13 @@ struct Coupling {
   std::vector<Stencil<T>> stencils;
   std::vector<Tetrahedron<T>> tetrahedra;
   bool active = true;
-  bool leads_out = false;                     ///< stencils that begin open close at a walking pace (loops)
-  bool strained = false;                      ///< one who is tied has a led root, and limbs: see lead_out()
-  bool led = false;                           ///< in this step: its velocities are led, too
+  bool closes_slowly = false;  ///< stencils that begin open close at a limited speed (loops)
+  bool strained = false;       ///< one who is tied has a driven root, and limbs: see close_slowly()
+  bool driven = false;         ///< in this step: its velocities are those of closing, too
   T length_scale = T(1), speed_scale = T(1);  ///< of what it ties, by a human's: see Scale
   double energy = 0;                          ///< J, when last measured
 
-  /// Whether something that began open is still being led out: that does work.
+  /// Whether something that began open is still being closed: that does work.
   bool closes() const {
     return std::any_of(stencils.begin(), stencils.end(),
                        [](const Stencil<T>& e) { return !e.offset.isZero(T(0)); });
@@ -154,9 +154,9 @@ Mat3<T> stencil_curvature(const Coupling<T>& coupling, const Stencil<T>& stencil
 template <class T>
 TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const Tetrahedron<T>& element);
 
-constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts lead out
+constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts depenetrate
 
-/// m/s: how fast what is still open of an element is led in.
+/// m/s: how fast what is still open of an element closes.
 template <class T>
 Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
   const T open = e.offset.norm();
@@ -164,12 +164,12 @@ Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
                      : Vec3<T>(Vec3<T>::Zero());
 }
 
-/// Lets what began open come nearer by h seconds of walking pace; what was torn apart from outside (a cut, a
-/// teleport) begins anew. A led root may take a limb further than what that is tied to lets it: the loop
+/// Lets what began open come nearer by h seconds at kClosingSpeed; what was torn apart from outside (a cut, a
+/// teleport) begins anew. A driven root may take a limb further than what that is tied to lets it: the loop
 /// yields, beyond what ten weights pull it apart, and closes with no more than these. Call at the start of a
 /// part of a step, at the pose there.
 template <class T>
-void lead_out(T h, Coupling<T>& coupling);
+void close_slowly(T h, Coupling<T>& coupling);
 
 /// Method of multipliers (Hestenes 1969): where a solve left a loop further apart than is `tight`, it is
 /// pulled by what that is too much as well, in the same step and by no more than closes it so far. False: all
@@ -182,7 +182,7 @@ bool tighten(Coupling<T>& coupling);
   prefix Mat3<T> stencil_curvature<T>(const Coupling<T>&, const Stencil<T>&);                       \
   prefix TetrahedronHessian<T> tetrahedron_curvature<T>(const Coupling<T>&, const Tetrahedron<T>&); \
   prefix bool tighten<T>(Coupling<T>&);                                                             \
-  prefix void lead_out<T>(T, Coupling<T>&);
+  prefix void close_slowly<T>(T, Coupling<T>&);
 SINEW_COUPLING_INSTANCES(extern template, float)
 SINEW_COUPLING_INSTANCES(extern template, double)
 

@@ -39,9 +39,9 @@ class IslandEffect {
 
   virtual ~IslandEffect() = default;
   /// Set-up: memory for what may be solved together. The only place to allocate.
-  virtual void reserve(const SolveRoom& room) = 0;
+  virtual void reserve(const SolveCapacity& capacity) = 0;
   /// That reserve() takes.
-  virtual std::size_t bytes(const SolveRoom& room) const = 0;
+  virtual std::size_t bytes(const SolveCapacity& capacity) const = 0;
 
   /// Before a solve of h seconds: lowers `share` [tree], the part of the motion from `problem.start` to
   /// `problem.local` that the solve may start with. Contacts and kinematics stand at the step's beginning.

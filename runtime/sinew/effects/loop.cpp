@@ -42,7 +42,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   if (settings.kind == LoopKind::kHinge) held = hinge;
   if (settings.kind == LoopKind::kWeld) held = weld;
   Coupling<T> loop;
-  loop.leads_out = true;
+  loop.closes_slowly = true;
   loop.length_scale = T(unit);
   loop.speed_scale = T(std::sqrt(unit));
   for (const V& x : held) {

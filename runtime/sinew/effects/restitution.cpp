@@ -30,20 +30,20 @@ Vec3<T> touch(const Contact<T>& c) {
 }  // namespace
 
 template <class T>
-void Restitution<T>::reserve(const SolveRoom& room) {
-  const int dofs = room.dofs;
+void Restitution<T>::reserve(const SolveCapacity& capacity) {
+  const int dofs = capacity.dofs;
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs, room.path_entries);
-  mass_.reserve(dofs, room.path_entries);
-  first_.reserve(room.trees);
+  axes_.reserve(dofs, capacity.path_entries);
+  mass_.reserve(dofs, capacity.path_entries);
+  first_.reserve(capacity.trees);
   impacts_.reserve(kMost);
   impulse_.reserve(kMostRows);
   rows_.reserve(std::size_t(kMostRows) * dofs);
   answers_.reserve(std::size_t(kMostRows) * dofs);
   delassus_.reserve(kMostRows * kMostRows);
   change_.reserve(dofs);
-  turn_.reserve(room.bodies);
-  slide_.reserve(room.bodies);
+  turn_.reserve(capacity.bodies);
+  slide_.reserve(capacity.bodies);
 }
 
 template <class T>

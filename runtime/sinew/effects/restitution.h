@@ -22,11 +22,11 @@ class Restitution final : public IslandEffect<T> {
  public:
   using typename IslandEffect<T>::Trees;
 
-  void reserve(const SolveRoom& room) override;
-  std::size_t bytes(const SolveRoom& room) const override {
-    return sizeof *this + room.path_entries * 7 * sizeof(T) +
-           room.dofs * ((2 * kMostRows + 2) * sizeof(T) + 8 * sizeof(int)) +
-           room.bodies * 2 * sizeof(Vec3<T>) + kMost * sizeof(Impact) +
+  void reserve(const SolveCapacity& capacity) override;
+  std::size_t bytes(const SolveCapacity& capacity) const override {
+    return sizeof *this + capacity.path_entries * 7 * sizeof(T) +
+           capacity.dofs * ((2 * kMostRows + 2) * sizeof(T) + 8 * sizeof(int)) +
+           capacity.bodies * 2 * sizeof(Vec3<T>) + kMost * sizeof(Impact) +
            kMostRows * (kMostRows + 1) * sizeof(T);
   }
 

@@ -40,7 +40,8 @@ SupportPoints<T> points_of(const Tree<T>& tree, std::span<const ContactPoint<T>>
 constexpr double kBearsNothing = 1e-4;  ///< of a point's full share: left out
 
 template <class T>
-void balance(const SupportPoints<T>& points, const T& ground, T friction, T weight, const CheckRoom<T>& r) {
+void balance(const SupportPoints<T>& points, const T& ground, T friction, T weight,
+             const CheckScratch<T>& r) {
   wrenches_in_world(r);
   Vec3<T> force = Vec3<T>::Zero(), moment = Vec3<T>::Zero();
   for (std::size_t i = 0; i < r.body.size(); ++i) {

@@ -175,18 +175,18 @@ extern template struct SupportPoints<float>;
 extern template struct SupportPoints<double>;
 
 template <class T>
-struct CheckRoom;
+struct CheckScratch;
 
 /// The same as a character's step calls it, see check_pass.h.
 template <class T>
 struct SupportTerm {
   SupportPoints<T> (*points)(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
   /// As a driven root leaves it to them, which bears what they don't.
-  void (*stand)(const SupportPoints<T>& points, const T& ground, const CheckRoom<T>& room);
+  void (*stand)(const SupportPoints<T>& points, const T& ground, const CheckScratch<T>& scratch);
   /// As the ground can, for a root that has nothing else (ground_balance.h). `friction`: the floor's;
   /// `weight`, N.
   void (*balance)(const SupportPoints<T>& points, const T& ground, T friction, T weight,
-                  const CheckRoom<T>& room);
+                  const CheckScratch<T>& scratch);
 };
 
 /// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.

@@ -164,8 +164,8 @@ double potential_energy(const Model& model, double t, const ConstVector& q, cons
   return sum;
 }
 
-double power_of_the_rest(const Model& model, double t, const ConstVector& q, const ConstVector& qd,
-                         const BodyMotion& m) {
+double power_of_others(const Model& model, double t, const ConstVector& q, const ConstVector& qd,
+                       const BodyMotion& m) {
   double power = 0;
   for (int i = 0; i < model.size(); ++i) {
     const JointForce& f = model.joint_force[i];

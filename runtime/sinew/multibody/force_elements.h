@@ -23,8 +23,8 @@ void apply_forces(const Model& model, double t, const ConstVector& q, const Cons
 double potential_energy(const Model& model, double t, const ConstVector& q, const BodyMotion& motion);
 /// Work per second, W, of everything that `potential_energy` leaves out (dampers, one-sided and prescribed
 /// forces), so that d(kinetic + potential)/dt = this.
-double power_of_the_rest(const Model& model, double t, const ConstVector& q, const ConstVector& qd,
-                         const BodyMotion& motion);
+double power_of_others(const Model& model, double t, const ConstVector& q, const ConstVector& qd,
+                       const BodyMotion& motion);
 double kinetic_energy(const Model& model, const BodyMotion& motion);
 
 /// Adds −∂Q/∂q to `stiffness` and −∂Q/∂q' to `damping` [N×N], Q the forces on the coordinates (equation 78:

@@ -40,7 +40,7 @@ double work_over(Equations& equations, const Integrator& integrator, double from
   const auto power = [&](double t) {
     Vector y = integrator.at(t);
     equations.close(y);
-    return power_of_the_rest(model, t, y.head(n), y.tail(n), equations.motion());
+    return power_of_others(model, t, y.head(n), y.tail(n), equations.motion());
   };
   return half * (5 * power(middle - node * half) + 8 * power(middle) + 5 * power(middle + node * half)) / 9;
 }

@@ -23,7 +23,7 @@ struct Accuracy {
   double stick_speed = 0.005;     ///< slip speed below which friction sticks (m/s)
   double limit_stiffness = 2000;  ///< joint limits, N·m/rad
   double limit_damping = 0.02;    ///< joint limits: s; their torque is that of the angle so much later
-  double return_time = 0.1;       ///< time constant of the way back to the animation (s)
+  double return_time = 0.1;       ///< time constant of the return to the animation (s)
   bool estimate_error =
       false;  ///< fill CharacterReport::estimated_error (error_estimate.h says what it costs)
 };

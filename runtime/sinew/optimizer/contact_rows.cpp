@@ -24,8 +24,8 @@ class ContactRows final : public ContactModel<T> {
   using Trees = typename ContactModel<T>::Trees;
 
   void reserve(int contacts, int entries) override;
-  std::size_t bytes(const SolveRoom& room) const override {
-    return room.contacts * sizeof(Row) + room.contact_entries * (sizeof(int) + 6 * sizeof(T));
+  std::size_t bytes(const SolveCapacity& capacity) const override {
+    return capacity.contacts * sizeof(Row) + capacity.contact_entries * (sizeof(int) + 6 * sizeof(T));
   }
   void limit(int entries) override { most_entries_ = entries; }
   void evaluate(Trees trees, std::span<Contact<T>> contacts, T stick, double& energy) const override;

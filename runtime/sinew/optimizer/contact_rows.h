@@ -22,7 +22,7 @@ class ContactModel {
   /// Set-up for so many contacts and entries of their paths; nothing allocates afterwards.
   virtual void reserve(int /*contacts*/, int /*entries*/) {}
   /// That reserve() takes.
-  virtual std::size_t bytes(const SolveRoom& /*room*/) const { return 0; }
+  virtual std::size_t bytes(const SolveCapacity& /*capacity*/) const { return 0; }
   /// Of the coming solve: as many entries as its trees have room for, whoever else the memory serves.
   virtual void limit(int /*entries*/) {}
 

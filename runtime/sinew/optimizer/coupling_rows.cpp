@@ -9,10 +9,10 @@ namespace {
 template <class T>
 class CouplingRows final : public CouplingModel<T> {
  public:
-  void reserve(const SolveRoom& room) override;
-  std::size_t bytes(const SolveRoom& room) const override {
-    return room.nodes * (sizeof(Node) + 2 * sizeof(Vec3<T>)) + room.stencils * sizeof(Stencils) +
-           room.tetrahedra * sizeof(Tetrahedra) + room.node_entries * 3 * sizeof(T);
+  void reserve(const SolveCapacity& capacity) override;
+  std::size_t bytes(const SolveCapacity& capacity) const override {
+    return capacity.nodes * (sizeof(Node) + 2 * sizeof(Vec3<T>)) + capacity.stencils * sizeof(Stencils) +
+           capacity.tetrahedra * sizeof(Tetrahedra) + capacity.node_entries * 3 * sizeof(T);
   }
   void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
                const Unknowns& unknowns, const PathAxes<T>& axes) override;
@@ -77,13 +77,13 @@ void add_wrenches(const Coupling<T>& c, std::span<TreeProblem<T>* const> trees) 
 }
 
 template <class T>
-void CouplingRows<T>::reserve(const SolveRoom& room) {
-  nodes_.reserve(room.nodes);
-  moved_.reserve(room.nodes);
-  pulled_.reserve(room.nodes);
-  stencils_.reserve(room.stencils);
-  tetrahedra_.reserve(room.tetrahedra);
-  for (std::vector<T>& v : along_) v.reserve(room.node_entries);
+void CouplingRows<T>::reserve(const SolveCapacity& capacity) {
+  nodes_.reserve(capacity.nodes);
+  moved_.reserve(capacity.nodes);
+  pulled_.reserve(capacity.nodes);
+  stencils_.reserve(capacity.stencils);
+  tetrahedra_.reserve(capacity.tetrahedra);
+  for (std::vector<T>& v : along_) v.reserve(capacity.node_entries);
 }
 
 template <class T>
@@ -263,7 +263,7 @@ std::unique_ptr<CouplingModel<T>> make_rows() {
 }
 
 template <class T>
-constexpr CouplingTerm<T> kCouplings{make_rows<T>, measure<T>, add_wrenches<T>, lead_out<T>, tighten<T>};
+constexpr CouplingTerm<T> kCouplings{make_rows<T>, measure<T>, add_wrenches<T>, close_slowly<T>, tighten<T>};
 
 }  // namespace
 

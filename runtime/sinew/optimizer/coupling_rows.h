@@ -20,9 +20,9 @@ class CouplingModel {
  public:
   virtual ~CouplingModel() = default;
   /// Set-up; nothing allocates afterwards.
-  virtual void reserve(const SolveRoom& room) = 0;
+  virtual void reserve(const SolveCapacity& capacity) = 0;
   /// That reserve() takes.
-  virtual std::size_t bytes(const SolveRoom& room) const = 0;
+  virtual std::size_t bytes(const SolveCapacity& capacity) const = 0;
 
   /// Linearises all elements about the present kinematics of `trees`, where their nodes have been placed.
   virtual void collect(std::span<TreeProblem<T>* const> trees, std::span<Coupling<T>* const> couplings,
@@ -48,8 +48,8 @@ struct CouplingTerm {
                     Coupling<T>& coupling);
   /// Adds the nodes' gradients to the wrenches of their bodies (after begin_evaluation).
   void (*add_wrenches)(const Coupling<T>& coupling, std::span<TreeProblem<T>* const> trees);
-  /// See lead_out.
-  void (*lead_out)(T h, Coupling<T>& coupling);
+  /// See close_slowly.
+  void (*close_slowly)(T h, Coupling<T>& coupling);
   bool (*tighten)(Coupling<T>& coupling);
 };
 

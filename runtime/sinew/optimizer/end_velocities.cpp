@@ -41,29 +41,29 @@ void factorise_masses(TreeProblem<T>& p, std::span<const int> dofs, ArticulatedP
 }  // namespace
 
 template <class T>
-void EndVelocities<T>::reserve(const SolveRoom& room) {
-  parts_.reserve(room.trees);
-  for (auto* v : {&of_dof_, &dof_, &first_}) v->resize(room.dofs);
-  blocks_.resize(room.bodies);
-  eliminated_.resize(room.bodies);
-  for (auto* v : {&force_, &motion_}) v->resize(room.bodies);
-  for (auto* v : {&axes_, &moved_, &reduced_}) v->resize(room.dofs);
-  for (auto* v : {&own_, &factor_}) v->resize(room.dofs);
-  for (auto* v : {&rates_, &near_, &projection_}) v->resize(room.dofs);
-  for (auto* v : {&led_, &twist_}) v->resize(room.bodies);
+void EndVelocities<T>::reserve(const SolveCapacity& capacity) {
+  parts_.reserve(capacity.trees);
+  for (auto* v : {&of_dof_, &dof_, &first_}) v->resize(capacity.dofs);
+  blocks_.resize(capacity.bodies);
+  eliminated_.resize(capacity.bodies);
+  for (auto* v : {&force_, &motion_}) v->resize(capacity.bodies);
+  for (auto* v : {&axes_, &moved_, &reduced_}) v->resize(capacity.dofs);
+  for (auto* v : {&own_, &factor_}) v->resize(capacity.dofs);
+  for (auto* v : {&rates_, &near_, &projection_}) v->resize(capacity.dofs);
+  for (auto* v : {&driven_, &twist_}) v->resize(capacity.bodies);
   pressed_.reserve(kMost);
-  rows_.reserve(kMost * room.dofs);
-  row_.reserve(room.dofs);
-  on_path_.reserve(room.bodies);
-  for (auto* v : {&done_, &late_, &before_}) v->resize(room.dofs);
-  disturbed_.reserve(room.trees);
+  rows_.reserve(kMost * capacity.dofs);
+  row_.reserve(capacity.dofs);
+  on_path_.reserve(capacity.bodies);
+  for (auto* v : {&done_, &late_, &before_}) v->resize(capacity.dofs);
+  disturbed_.reserve(capacity.trees);
 }
 
 template <class T>
-std::size_t EndVelocities<T>::bytes(const SolveRoom& room) {
-  return room.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs) +
-         room.dofs * (7 * sizeof(T) + 7 * sizeof(int)) + 2 * room.bodies * sizeof(Twist<T>) +
-         kMost * (sizeof(Row) + sizeof(T) * room.dofs);
+std::size_t EndVelocities<T>::bytes(const SolveCapacity& capacity) {
+  return capacity.trees * sizeof(Part) + ArticulatedMatrix<T>::bytes(capacity.bodies, capacity.dofs) +
+         capacity.dofs * (7 * sizeof(T) + 7 * sizeof(int)) + 2 * capacity.bodies * sizeof(Twist<T>) +
+         kMost * (sizeof(Row) + sizeof(T) * capacity.dofs);
 }
 
 template <class T>
@@ -115,10 +115,10 @@ void EndVelocities<T>::move(int n) {
   const Tree<T>& tree = *problems_[n]->tree;
   const Kinematics<T>& k = problems_[n]->kinematics;
   Twist<T>* const twists = twist_.data() + part.first_body;
-  const Twist<T>* const led = led_.data() + part.first_body;
+  const Twist<T>* const driven = driven_.data() + part.first_body;
   for (int i = 0; i < tree.bodies; ++i) {
     Twist<T>& twist = twists[i];
-    twist = led[i];
+    twist = driven[i];
     if (const int parent = tree.parent[i]; parent >= 0) {
       twist.w += twists[parent].w;
       twist.v += twists[parent].v;
@@ -140,7 +140,7 @@ void EndVelocities<T>::respond(int n, std::span<const T> force, std::span<Vec3<T
   const int bodies = problems_[n]->tree->bodies;
   for (int u = 0; u < part.count; ++u) rates(n)[u] = force[dof_[part.first + u]];
   solve_by_joints<T>(part.matrix, rates(n));
-  std::fill_n(led_.begin() + part.first_body, bodies, Twist<T>());
+  std::fill_n(driven_.begin() + part.first_body, bodies, Twist<T>());
   move(n);
   for (int i = 0; i < bodies; ++i) {
     const Twist<T>& twist = twist_[part.first_body + i];
@@ -150,7 +150,7 @@ void EndVelocities<T>::respond(int n, std::span<const T> force, std::span<Vec3<T
 }
 
 template <class T>
-void EndVelocities<T>::settle(int n, std::span<T> force, T answered) {
+void EndVelocities<T>::remove_floor_share(int n, std::span<T> force, T answered) {
   const Part& part = parts_[n];
   const TreeProblem<T>& p = *problems_[n];
   const bool anew = answered == T(0);
@@ -182,13 +182,14 @@ void EndVelocities<T>::read_near(int n, std::span<const std::array<T, 6>> rate) 
 }
 
 template <class T>
-void EndVelocities<T>::project(int n, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
-                               std::span<const T> impulse, const History<T>& history) {
+void EndVelocities<T>::project(int n, std::span<const Twist<T>> driven,
+                               std::span<const std::array<T, 6>> rate, std::span<const T> impulse,
+                               const History<T>& history) {
   const Part& part = parts_[n];
   TreeProblem<T>& p = *problems_[n];
   const Tree<T>& tree = *p.tree;
   const Kinematics<T>& k = p.kinematics;
-  std::copy_n(led.begin(), tree.bodies, led_.begin() + part.first_body);
+  std::copy_n(driven.begin(), tree.bodies, driven_.begin() + part.first_body);
   read_near(n, rate);
   std::copy_n(near_.begin() + part.first, part.count, rates(n).begin());
   move(n);
@@ -267,22 +268,22 @@ typename EndVelocities<T>::Row* EndVelocities<T>::add_point(const Contact<T>& c,
   const auto given = [&](int n, int body) {
     const Tree<T>& tree = *problems_[n]->tree;
     Vec3<T> sum = Vec3<T>::Zero();
-    for (; body >= 0; body = tree.parent[body]) sum += led_[parts_[n].first_body + body].at(point);
+    for (; body >= 0; body = tree.parent[body]) sum += driven_[parts_[n].first_body + body].at(point);
     return sum.dot(direction);
   };
   begin_side(c.tree_a);
   project_point(c.tree_a, c.body_a, point, direction, T(1));
   row->given = given(c.tree_a, c.body_a);
   if (c.tree_b == c.tree_a) project_point(c.tree_b, c.body_b, point, direction, T(-1));
-  bool room = add_side(*row, 0);
+  bool fits = add_side(*row, 0);
   if (row->tree[1] >= 0) {
     begin_side(c.tree_b);
     project_point(c.tree_b, c.body_b, point, direction, T(-1));
-    room = room && add_side(*row, 1);
+    fits = fits && add_side(*row, 1);
   }
   if (c.tree_b >= 0) row->given -= given(c.tree_b, c.body_b);
-  if (!room) pressed_.pop_back();
-  return room ? row : nullptr;
+  if (!fits) pressed_.pop_back();
+  return fits ? row : nullptr;
 }
 
 template <class T>
@@ -336,7 +337,7 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
   row->unit = coupling.speed_scale;
   row->least = least;
   row->most = std::numeric_limits<T>::max();
-  bool room = true;
+  bool fits = true;
   for (int n = 0; n < row->sides(); ++n) {
     begin_side(trees[n]);
     for (int k = 0; k < e.count; ++k) {
@@ -345,11 +346,12 @@ void EndVelocities<T>::add_stencil(const Coupling<T>& coupling, const Stencil<T>
       project_point(node.tree, node.body, node.point, direction, e.weight[k]);
       const Tree<T>& tree = *problems_[node.tree]->tree;
       for (int body = node.body; body >= 0; body = tree.parent[body])
-        row->given += e.weight[k] * led_[parts_[node.tree].first_body + body].at(node.point).dot(direction);
+        row->given +=
+            e.weight[k] * driven_[parts_[node.tree].first_body + body].at(node.point).dot(direction);
     }
-    room = room && add_side(*row, n);
+    fits = fits && add_side(*row, n);
   }
-  if (!room) pressed_.pop_back();
+  if (!fits) pressed_.pop_back();
 }
 
 template <class T>
@@ -576,7 +578,7 @@ void EndVelocities<T>::missed(int n, std::span<Vec3<T>> moved, std::span<Vec3<T>
   const int bodies = problems_[n]->tree->bodies;
   std::copy_n(late_.begin() + part.first, part.count, rates(n).begin());
   expand_by_joints<T>(part.matrix, rates(n));
-  std::fill_n(led_.begin() + part.first_body, bodies, Twist<T>());
+  std::fill_n(driven_.begin() + part.first_body, bodies, Twist<T>());
   move(n);
   for (int i = 0; i < bodies; ++i) {
     const Twist<T>& twist = twist_[part.first_body + i];

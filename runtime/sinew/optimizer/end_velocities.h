@@ -6,7 +6,7 @@
 // ≥ 0 take out what of u does, projected Gauss-Seidel over (n·J) u ≥ 0 (Acary, "Projected event-capturing
 // time-stepping schemes for nonsmooth mechanical systems", 2013). Nor may it slide, as far as Coulomb's cone
 // of that impulse allows: friction in the step itself goes by the smooth force that there was when it began.
-// What is led into a loop moves as it is led. All are projections: none adds energy.
+// What is driven into a loop moves as it is driven. All are projections: none adds energy.
 #pragma once
 
 #include <array>
@@ -31,9 +31,9 @@ struct Twist {
 template <class T>
 class EndVelocities {
  public:
-  void reserve(const SolveRoom& room);
+  void reserve(const SolveCapacity& capacity);
   /// That reserve() takes.
-  static std::size_t bytes(const SolveRoom& room);
+  static std::size_t bytes(const SolveCapacity& capacity);
 
   /// Factorises the mass matrices of the trees over their `loose` degrees of freedom [dof, trees one after
   /// the other] at the problems' kinematics, as if every other joint were locked. Uses the problems'
@@ -53,20 +53,20 @@ class EndVelocities {
   /// Takes out of generalised forces or impulses [dof] what the matrix' floor (composite.h) keeps from moving
   /// anything, as it does for respond(): M of what its factor makes of them. `answered`: they are so many
   /// times what respond() has just been asked about; 0: something else. O(bodies).
-  void settle(int tree, std::span<T> force, T answered);
+  void remove_floor_share(int tree, std::span<T> force, T answered);
 
   /// Finds the rates of a tree's unknowns from the momenta of its history and the impulses `impulse` [dof]
   /// (N·m·s, N·s; empty: none), whose response M⁻¹ need not be found to be projected: JᵀmJM⁻¹ is 1. Joints
-  /// that no unknown moves have the velocities `led` [body]. It solves for the change of `rate` [body], near
-  /// to the answer, for the matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
-  void project(int tree, std::span<const Twist<T>> led, std::span<const std::array<T, 6>> rate,
+  /// that no unknown moves have the velocities `driven` [body]. It solves for the change of `rate` [body],
+  /// near to the answer, for the matrix has a floor (composite.h). Uses the problem's wrenches. O(bodies).
+  void project(int tree, std::span<const Twist<T>> driven, std::span<const std::array<T, 6>> rate,
                std::span<const T> impulse, const History<T>& history);
 
   /// A contact may not close, as far as an impulse of `most` (N·s) can see to that; nor slide, as far as
   /// friction by that impulse and `cone` beside it (N·s) can, of which `rubbed` (on body a, world axes) has
   /// been done.
   void add(const Contact<T>& contact, T most, T cone, const Vec3<T>& rubbed);
-  /// Nor may an element of a coupling stretch, or move but as it is led.
+  /// Nor may an element of a coupling stretch, or move but as it is driven.
   void add(const Coupling<T>& coupling, const Stencil<T>& element);
   /// Nor may the scalar of a tree's joint row grow.
   void add(int tree, const JointRow<T>& row, T most);
@@ -162,7 +162,7 @@ class EndVelocities {
   std::vector<JointBlockRow<T>> own_, factor_;
   std::vector<SpatialForm<T>> eliminated_;
   std::vector<T> rates_, near_, projection_;
-  std::vector<Twist<T>> led_, twist_;  ///< [body] of the joint alone; of the body
+  std::vector<Twist<T>> driven_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
   std::vector<T> rows_;  ///< what a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ
   std::vector<T> row_;                 ///< [unknown] of one side

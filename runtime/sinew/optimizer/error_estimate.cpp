@@ -14,8 +14,8 @@ constexpr double kSaturated =
 template <class T>
 bool integrates(const TreeProblem<T>& p, std::span<const T> load, int body) {
   for (int dof = p.tree->first_dof[body]; dof < p.tree->first_dof[body + 1]; ++dof) {
-    const bool limp = p.law.torque_plus[dof] <= T(0) || p.law.torque_minus[dof] <= T(0);
-    if (p.free[dof] && (limp || load[dof] >= T(kSaturated))) return true;
+    const bool passive = p.law.torque_plus[dof] <= T(0) || p.law.torque_minus[dof] <= T(0);
+    if (p.free[dof] && (passive || load[dof] >= T(kSaturated))) return true;
   }
   return false;
 }

@@ -35,18 +35,18 @@ void InnerProblem<T>::declare(const StepPlan<T>& plan) {
 }
 
 template <class T>
-void InnerProblem<T>::reserve(const SolveRoom& room) {
-  const int dofs = room.dofs;
-  most_entries_ = room.contact_entries;
-  turn_.reserve(room.bodies);
-  slide_.reserve(room.bodies);
+void InnerProblem<T>::reserve(const SolveCapacity& capacity) {
+  const int dofs = capacity.dofs;
+  most_entries_ = capacity.contact_entries;
+  turn_.reserve(capacity.bodies);
+  slide_.reserve(capacity.bodies);
   unknowns_.reserve(dofs);
-  axes_.reserve(dofs, room.path_entries);
-  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, room.path_entries);
-  joints_.reserve(room.bodies, dofs);
-  contact_rows_->reserve(room.contacts, room.contact_entries);
-  if (couplings_) couplings_->reserve(room);
-  joint_rows_.reserve(dofs * 8 + room.effect_rows);
+  axes_.reserve(dofs, capacity.path_entries);
+  for (TreeMatrix<T>* m : {&smooth_, &local_, &factor_}) m->reserve(dofs, capacity.path_entries);
+  joints_.reserve(capacity.bodies, dofs);
+  contact_rows_->reserve(capacity.contacts, capacity.contact_entries);
+  if (couplings_) couplings_->reserve(capacity);
+  joint_rows_.reserve(dofs * 8 + capacity.effect_rows);
   path_.resize(TreePattern::padded(dofs));
   if (ellipsoid_model_) ellipsoid_model_->reserve(dofs / 3);
   for (auto* v : {&base_gradient_, &smooth_gradient_, &inner_gradient_, &step_, &product_, &correction_,
@@ -61,7 +61,7 @@ void InnerProblem<T>::begin(const StepSettings<T>& settings, std::span<TreeProbl
   factorisations = products = 0;
   unknowns_.clear();
   int entries = 0;
-  for (const TreeProblem<T>* p : trees_) entries += p->room.contact_entries;
+  for (const TreeProblem<T>* p : trees_) entries += p->capacity.contact_entries;
   contact_rows_->limit(std::min(entries, most_entries_));
   for (TreeProblem<T>* p : trees_) p->first_unknown_map = append_unknowns<T>(*p->tree, p->free, unknowns_);
 }
@@ -422,7 +422,7 @@ void InnerProblem<T>::correct(std::span<const Contact<T>> contacts) {
 }
 
 template <class T>
-double InnerProblem<T>::chord(std::span<const Contact<T>> contacts) {
+double InnerProblem<T>::simplified_newton_step(std::span<const Contact<T>> contacts) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (ellipsoids_ ? !ellipsoids_->measure(trees_) : rounded()) return kNone;
   contact_rows_->measure(contacts);

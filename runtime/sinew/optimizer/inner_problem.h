@@ -32,14 +32,15 @@ class InnerProblem {
  public:
   /// Set-up, before reserve(): what `plan` has rows of, it can solve.
   void declare(const StepPlan<T>& plan);
-  void reserve(const SolveRoom& room);
+  void reserve(const SolveCapacity& capacity);
   /// That reserve() takes.
-  std::size_t bytes(const SolveRoom& room) const {
-    return contact_rows_->bytes(room) + (couplings_ ? couplings_->bytes(room) : 0) +
-           (ellipsoid_model_ ? ellipsoid_model_->bytes(room.dofs / 3) : 0) +
-           room.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
-           room.effect_rows * sizeof(JointRows) + room.path_entries * 9 * sizeof(T) +
-           room.bodies * 2 * sizeof(Vec3<T>) + ArticulatedMatrix<T>::bytes(room.bodies, room.dofs);
+  std::size_t bytes(const SolveCapacity& capacity) const {
+    return contact_rows_->bytes(capacity) + (couplings_ ? couplings_->bytes(capacity) : 0) +
+           (ellipsoid_model_ ? ellipsoid_model_->bytes(capacity.dofs / 3) : 0) +
+           capacity.dofs * (8 * sizeof(JointRows) + 14 * sizeof(T) + 8 * sizeof(int)) +
+           capacity.effect_rows * sizeof(JointRows) + capacity.path_entries * 9 * sizeof(T) +
+           capacity.bodies * 2 * sizeof(Vec3<T>) +
+           ArticulatedMatrix<T>::bytes(capacity.bodies, capacity.dofs);
   }
 
   /// Numbers the unknowns of all trees.
@@ -65,11 +66,11 @@ class InnerProblem {
   /// correction led, and the old Jacobians. Call minimise() after it.
   void correct(std::span<const Contact<T>> contacts);
 
-  /// Simplified Newton step, a chord, from where the last correction led: true gradient, rows as the trees
+  /// Simplified Newton step, from where the last correction led: true gradient, rows as the trees
   /// and `contacts` found them there, this pass's H₀ and Jacobians. It becomes correction(); the model is
   /// spent. Returns its length (m, see displacement), infinite where there is none. Costs a factorisation
   /// where a row has changed much.
-  double chord(std::span<const Contact<T>> contacts);
+  double simplified_newton_step(std::span<const Contact<T>> contacts);
 
   const ContactModel<T>& contacts() const { return *contact_rows_; }
   std::vector<T>& correction() { return correction_; }

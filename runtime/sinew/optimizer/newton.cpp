@@ -11,10 +11,10 @@
 
 namespace sinew {
 template <class T>
-void NewtonSolver<T>::reserve(const SolveRoom& room) {
-  inner_.reserve(room);
-  plain_.reserve(room.dofs);
-  base_.reserve(room.bodies);
+void NewtonSolver<T>::reserve(const SolveCapacity& capacity) {
+  inner_.reserve(capacity);
+  plain_.reserve(capacity.dofs);
+  base_.reserve(capacity.bodies);
 }
 
 template <class T>
@@ -113,7 +113,7 @@ bool NewtonSolver<T>::correct_step(T tolerance, double energy, double& new_energ
 /// compressed (cloth that crumples): as far as the slopes say, while the energy falls.
 template <class T>
 void NewtonSolver<T>::go_further(T slope, double& energy) {
-  const auto crumples = [](const Coupling<T>* c) { return !c->leads_out; };
+  const auto crumples = [](const Coupling<T>* c) { return !c->closes_slowly; };
   if (lacks_energy(*trees_[0]) || std::none_of(couplings_.begin(), couplings_.end(), crumples)) return;
   T t = T(1), left = inner_.slope_now(inner_.correction()) / slope;
   const T furthest = T(1) / std::max(longest_correction(), std::numeric_limits<T>::min());
@@ -162,10 +162,10 @@ typename NewtonSolver<T>::Outcome NewtonSolver<T>::line_search(T tolerance, bool
 /// Goes on with the pass's own matrix while that shrinks the steps: an evaluation each, where a pass builds
 /// and factorises. True when one was below the tolerance.
 template <class T>
-bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double& energy) {
+bool NewtonSolver<T>::converge_by_simplified_newton(double tolerance, double length, double& energy) {
   for (;;) {
-    const double next = inner_.chord(contacts_);
-    if (!(next < kChordRate * length)) return false;
+    const double next = inner_.simplified_newton_step(contacts_);
+    if (!(next < kSimplifiedRate * length)) return false;
     if (next < kNegligible * tolerance) return true;
     const T slope = inner_.slope_now(inner_.correction());
     remember_charts();
@@ -178,7 +178,7 @@ bool NewtonSolver<T>::converge_by_chords(double tolerance, double length, double
       energy = evaluate();
       return false;
     }
-    ++report_.chords;
+    ++report_.simplified_steps;
     energy = new_energy;
     if (last) return true;
     length = next;
@@ -262,8 +262,9 @@ SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accura
                        !lacks_energy(*trees_[0]) && length < kExactWithin * tolerance &&
                        kLeft * length * length < kCautious * tolerance;
     const bool near = length < (inner_.has_contacts() ? kStillValidInContact : kStillValid);
-    report_.converged = small || (outcome == Outcome::kFull &&
-                                  (exact || (near && converge_by_chords(tolerance, length, energy))));
+    report_.converged =
+        small || (outcome == Outcome::kFull &&
+                  (exact || (near && converge_by_simplified_newton(tolerance, length, energy))));
     if (outcome == Outcome::kRefused) break;
   }
   report_.factorisations = inner_.factorisations;

@@ -19,9 +19,9 @@ struct SolveReport {
   int factorisations = 0;
   int products = 0;  ///< matrix–vector, of conjugate gradients
   int evaluations = 0;
-  int plain_passes = 0;  ///< without the geometric terms, which make the matrix indefinite
-  int chords = 0;        ///< simplified Newton steps, with the matrix of the pass before
-  int corrections = 0;   ///< second-order corrections that saved a step
+  int plain_passes = 0;      ///< without the geometric terms, which make the matrix indefinite
+  int simplified_steps = 0;  ///< simplified Newton steps, with the matrix of the pass before
+  int corrections = 0;       ///< second-order corrections that saved a step
   bool converged = false;
   double energy = 0;  ///< J, of the incremental potential at the result
 
@@ -32,7 +32,7 @@ struct SolveReport {
     products += later.products;
     evaluations += later.evaluations;
     plain_passes += later.plain_passes;
-    chords += later.chords;
+    simplified_steps += later.simplified_steps;
     corrections += later.corrections;
     converged = later.converged;
     energy = later.energy;
@@ -45,10 +45,10 @@ class NewtonSolver {
   /// Set-up, before reserve(): the plan that the settings of solves will have.
   void declare(const StepPlan<T>& plan) { inner_.declare(plan); }
   /// Set-up for solves of at most that size; solving allocates nothing.
-  void reserve(const SolveRoom& room);
+  void reserve(const SolveCapacity& capacity);
   /// That reserve() takes.
-  std::size_t bytes(const SolveRoom& room) const {
-    return inner_.bytes(room) + room.dofs * sizeof(T) + room.bodies * sizeof(Transform<T>);
+  std::size_t bytes(const SolveCapacity& capacity) const {
+    return inner_.bytes(capacity) + capacity.dofs * sizeof(T) + capacity.bodies * sizeof(Transform<T>);
   }
 
   /// Minimises over the free degrees of freedom of all trees together, starting at their `local`. On return
@@ -71,7 +71,7 @@ class NewtonSolver {
   void remember_charts();
   void try_step(T t);
   void go_further(T slope, double& energy);
-  bool converge_by_chords(double tolerance, double length, double& energy);
+  bool converge_by_simplified_newton(double tolerance, double length, double& energy);
   bool accepted(T t, T slope, double energy, double new_energy, bool slight = false) const;
   T longest_correction() const;
   bool correct_step(T tolerance, double energy, double& new_energy);

@@ -5,17 +5,18 @@
 namespace sinew {
 
 // Of an outer pass (newton.h)
-/// m; after a shorter full step the pass's own matrix leads on. With contacts a chord may cost a
+/// m; after a shorter full step the pass's own matrix leads on. With contacts a simplified step may cost a
 /// factorisation, or conjugate gradients over all who touch: at 0.03 a pile of a crowd took four times as
 /// long.
 constexpr double kStillValid = 0.03, kStillValidInContact = 0.01;
-constexpr double kChordRate = 0.7;  ///< of the step before: chords that shrink less do not pay
-/// Of chords to come, however fast the last one shrank: contacts may have changed since the factor.
+constexpr double kSimplifiedRate = 0.7;  ///< of the step before: steps that shrink less do not pay
+/// Of simplified Newton steps to come, however fast the last one shrank: contacts may have changed since the
+/// factor.
 constexpr double kLeastRate = 0.25, kLeastRateInContact = 0.5;
 /// Change of a contact's curvature, by its largest, that a factor may have missed: more would leave errors
 /// above the tolerance.
 constexpr double kSameCurvature = 0.7;
-constexpr double kCautious = 0.1;  ///< of the tolerance, may be left after the last chord
+constexpr double kCautious = 0.1;  ///< of the tolerance, may be left after the last simplified step
 /// Of the forces that contacts bore in the last step, or of the weight: where those at the guess are so much
 /// larger, they are those of bodies that went through the floor, and their geometric terms mislead.
 constexpr double kMisleading = 1.5;

@@ -27,7 +27,7 @@ TreeProblem<T>::TreeProblem(const Tree<T>& t, const Skeleton& skeleton)
       composite(t.bodies),
       joint_curvature(t.bodies, Mat3<T>::Zero()) {
   pushes.reserve(64);
-  room = room_of(t, 0, 0, 0);
+  capacity = capacity_of(t, 0, 0, 0);
   this->rows.reserve(5 * t.dofs + 3 * t.bodies);  // muscle, friction, damping, two limits; a cone's
   this->ellipsoids.reserve(t.bodies);
 }

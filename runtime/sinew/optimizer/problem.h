@@ -13,7 +13,7 @@
 #include "sinew/effects/joint_step.h"
 #include "sinew/effects/step_plan.h"
 #include "sinew/optimizer/scheme.h"
-#include "sinew/optimizer/solve_room.h"
+#include "sinew/optimizer/solve_capacity.h"
 #include "sinew/residual/composite.h"
 
 namespace sinew {
@@ -41,7 +41,7 @@ struct TreeProblem : JointRowList<T> {
   std::vector<JointRow<T>> effect_rows;        ///< all of the effects'; those of unknowns are in `rows` too
   std::vector<SpatialStiffness<T>> stiffness;  ///< [body] of the effects; empty where there are none
   bool stiff = false;                          ///< some of them is not zero
-  SolveRoom room;                              ///< what this tree brings to a solve
+  SolveCapacity capacity;                      ///< what this tree brings to a solve
   double outside_energy = 0;    ///< J: energies of pushes and effects, which may cancel, without their signs
   T kink_width = T(1e-3) / 60;  ///< rad per step: muscles and dry friction are rounded over it
   int first_unknown_map = 0;    ///< where this tree's part of Unknowns::of_dof begins

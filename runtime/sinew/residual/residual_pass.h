@@ -90,7 +90,7 @@ template <class T, class Put>
       break;
     case JointType::kUniversal: {
       const Vec3<T> moment = body.turn * body.moment;
-      put(0, along(tree.held_axes[i].col(0), moment));
+      put(0, along(tree.parent_axes[i].col(0), moment));
       put(1, along(tree.axis2[i], body.moment));
       break;
     }
@@ -99,9 +99,9 @@ template <class T, class Put>
       break;
     case JointType::kPlanar: {
       const Vec3<T> force = body.turn * body.force, moment = body.turn * body.moment;
-      put(0, along(tree.held_axes[i].col(0), force));
-      put(1, along(tree.held_axes[i].col(1), force));
-      put(2, along(tree.held_axes[i].col(2), moment));
+      put(0, along(tree.parent_axes[i].col(0), force));
+      put(1, along(tree.parent_axes[i].col(1), force));
+      put(2, along(tree.parent_axes[i].col(2), moment));
       break;
     }
     case JointType::kFree: {

@@ -19,7 +19,7 @@ Mat3<double> pseudo_inverse(const Mat3<double>& inertia) {
 }
 
 /// Columns: axes of a joint that do not move with its child, rest axes.
-Mat3<double> held_by_parent(const Joint& joint) {
+Mat3<double> axes_of_parent(const Joint& joint) {
   Mat3<double> axes = Mat3<double>::Zero();
   if (joint.type == JointType::kUniversal) axes.col(0) = joint.axis;
   if (joint.type == JointType::kPlanar) {
@@ -52,7 +52,7 @@ Tree<T>::Tree(const Skeleton& skeleton) : bodies(skeleton.body_count) {
     inertia_at_joint.push_back(
         (joint.inertia + joint.mass * (c.squaredNorm() * Mat3<double>::Identity() - c * c.transpose()))
             .cast<T>());
-    held_axes.push_back((joint.rest.rotation * held_by_parent(joint)).cast<T>());
+    parent_axes.push_back((joint.rest.rotation * axes_of_parent(joint)).cast<T>());
     second_moment.push_back(
         (0.5 * joint.inertia.trace() * Mat3<double>::Identity() - joint.inertia).cast<T>());
     inverse_inertia.push_back(pseudo_inverse(joint.inertia).cast<T>());

@@ -70,7 +70,7 @@ void judge_undisturbed(const char* clip, double seconds, Findings& findings) {
     furthest = std::max(furthest, apart(grounded.recording, 0, led.recording, 0, static_cast<int>(f)));
   for (const scene::TelemetryRow& row : grounded.telemetry.rows) solved += row.report.unknown_dofs > 0;
   findings.at_most("frames that were solved", solved, 0);
-  findings.at_most("furthest from the led run (m)", furthest, 0);
+  findings.at_most("furthest from the driven run (m)", furthest, 0);
   findings.at_most("falls", aftermath(grounded.recording).outcome == Outcome::kFall ? 1 : 0, 0);
 }
 

@@ -42,7 +42,8 @@ struct HitPlan {
   static HitPlan quick() { return {{5, 20, 40}, {60}}; }
 };
 
-/// The mannequin (which must be there) stands on a led root and is hit. `progress(done, total)` may be empty.
+/// The mannequin (which must be there) stands on a driven root and is hit. `progress(done, total)` may be
+/// empty.
 std::vector<Hit> run_hits(const HitPlan& plan, const std::function<void(int, int)>& progress);
 
 /// One list of bounds for each tone ("hits_alert"), from what people's bodies do, and one for the rates

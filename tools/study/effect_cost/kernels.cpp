@@ -73,10 +73,10 @@ struct Pass : Work, private Solving {
   InnerProblem<float> inner;
 
   Pass(const std::string& name, int instances) : Solving(name, instances) {
-    SolveRoom room = room_of(tree, 0, 0, 0);
-    room.effect_rows = effect ? effect->most_rows() : 0;
+    SolveCapacity capacity = capacity_of(tree, 0, 0, 0);
+    capacity.effect_rows = effect ? effect->most_rows() : 0;
     inner.declare(plan);
-    inner.reserve(room);
+    inner.reserve(capacity);
     inner.begin(settings, trees);
   }
   void step() override {
@@ -100,15 +100,15 @@ struct OnePass : Work, private Solving {
   OnePass(const std::string& name, int instances) : Solving(name, instances) {
     once.max_iterations = 1;
     solver.declare(plan);
-    problem.room = room_of(tree, kRods, 2 * kRods, 0);
-    SolveRoom room = problem.room;
+    problem.capacity = capacity_of(tree, kRods, 2 * kRods, 0);
+    SolveCapacity capacity = problem.capacity;
     if (name == "character_contact") {
       below = std::make_unique<Solving>("none", 0, -0.099);
-      below->problem.room = problem.room;
+      below->problem.capacity = problem.capacity;
       all.push_back(&below->problem);
-      room += problem.room;
+      capacity += problem.capacity;
     }
-    solver.reserve(room);
+    solver.reserve(capacity);
     for (int i = 0; i < instances; ++i) {
       fresh.push_back(contact(name, i));
       const Kinematics<float>& other = below ? below->problem.kinematics : problem.kinematics;

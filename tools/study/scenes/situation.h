@@ -42,7 +42,7 @@ class Findings {
   void refuse(const std::string& reason) { refused_ = reason; }
 
   /// Finite, joints closed to 1 mm; `depth` m: most that anything may lie in floor and obstacles in any
-  /// frame. What is led goes where it is led: `skipped` is left out. Bodies in each other: see
+  /// frame. What is driven goes where it is driven: `skipped` is left out. Bodies in each other: see
   /// depth_between().
   void sound(const Played& played, double depth, int skipped = -1);
 

@@ -188,7 +188,7 @@ void back_from_ragdoll(const Scene& scene, bool, Findings& found) {
   found.at_most("away from its target a second later (m)", away, 1e-3);
 }
 
-void led_through(const Scene& scene, bool, Findings& found) {
+void driven_through(const Scene& scene, bool, Findings& found) {
   const Played played(scene);
   found.sound(played, 0.02);
   const Judge judge = played.judge();
@@ -646,7 +646,7 @@ std::vector<Situation> situations() {
       {"pile", "ten limp figures come to rest on each other", pile},
       {"crowd_pushed", "twenty figures are hit at once and stand up again", crowd_pushed},
       {"back_from_ragdoll", "who lay limp is on its animation a second after it may", back_from_ragdoll},
-      {"led_through", "a led figure walks through crates and over one who lies", led_through},
+      {"led_through", "a driven figure walks through crates and over one who lies", driven_through},
       {"in_one_another", "what was made in one another parts at a walking pace", in_one_another},
       {"collapse", "a giant and a mouse collapse as a human does, in their own time", collapse},
       {"hit_on_the_hand", "a hit has the effect of fine steps at 120, 60 and 30 Hz", hit_on_the_hand},
@@ -680,8 +680,8 @@ std::vector<Situation> situations() {
       {"rolling", "nothing brakes what rolls", rolling},
       {"thin_things", "books, boards and plates lie on each other on the floor", thin_things},
       {"getting_up", "who gets up does so on the floor, not through it", getting_up},
-      {"leash_too_short", "a loop yields to a led root", leash_too_short},
-      {"led_through_each_other", "who is led into something is led on", moves_at_walking_pace},
+      {"leash_too_short", "a loop yields to a driven root", leash_too_short},
+      {"led_through_each_other", "who is driven into something is driven on", moves_at_walking_pace},
   };
 }
 

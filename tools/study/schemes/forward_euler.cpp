@@ -92,7 +92,7 @@ struct TreeStep {
     p->prediction.weight = T(0);  // forces alone
   }
 
-  /// Of those that are led, by where they are led.
+  /// Of those that are driven, by where they are driven.
   Vector led_accelerations(T h) const {
     Vector a = Vector::Zero(p->tree->dofs);
     for (int i = 0; i < p->tree->bodies; ++i) {
@@ -104,7 +104,8 @@ struct TreeStep {
     return a;
   }
 
-  /// Under the forces of the instant that has been evaluated. Leaves in `gradient` what led joints ask for.
+  /// Under the forces of the instant that has been evaluated. Leaves in `gradient` what driven joints ask
+  /// for.
   void accelerate(T h) {
     const double instant = double(h * kInstant<T>);
     Vector asked = back * (Momenta<T>(*p).momentum * rates - before) / instant;

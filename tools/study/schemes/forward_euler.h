@@ -9,8 +9,8 @@
 
 namespace sinew::study {
 
-/// Driven joints go where they are led; of the others each has the torque that its muscles have at the start.
-/// Springs, contacts and friction are those of the runtime.
+/// Driven joints go where they are driven; of the others each has the torque that its muscles have at the
+/// start. Springs, contacts and friction are those of the runtime.
 template <class T>
 class ForwardEuler : public TimeScheme<T> {
  public:

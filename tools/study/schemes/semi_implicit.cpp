@@ -50,9 +50,9 @@ void SemiImplicit<T>::solve(const StepSettings<T>& settings, std::span<TreeProbl
                             std::span<Contact<T>> contacts, std::span<Coupling<T>* const> couplings) const {
   InnerProblem<T> inner;
   inner.declare(*settings.plan);
-  SolveRoom room;
-  for (const TreeProblem<T>* p : trees) room += p->room;
-  inner.reserve(room);
+  SolveCapacity capacity;
+  for (const TreeProblem<T>* p : trees) capacity += p->capacity;
+  inner.reserve(capacity);
   for (Contact<T>& c : contacts) c.expected_force = c.lagged_normal_force;
   const auto evaluate = [&] { evaluate_all<T>(settings, trees, contacts, couplings, inner.contacts()); };
   evaluate();

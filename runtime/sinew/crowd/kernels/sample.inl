@@ -15,13 +15,13 @@ namespace {
 constexpr detail::BsplineMonomials<float> kCubic(3), kQuintic(5);
 
 /// What sampling works in.
-struct SampleRoom {
+struct SampleScratch {
   float (*weights)[6][Instant::kGroups];  ///< [value, rate, acceleration][term][group]
   std::uint32_t *turning, *shifting;      ///< [joint] bit l: lane l's clip has a track of it
   TrackSum *turns, *shifts;               ///< [lane][joint] where a track is
   int joints;
 
-  SampleRoom(void* memory, int count) : joints(count) {
+  SampleScratch(void* memory, int count) : joints(count) {
     const auto take = [&]<class U>(U*& out, std::size_t n) {
       out = static_cast<U*>(memory);
       memory = out + n;
@@ -37,7 +37,7 @@ struct SampleRoom {
 
 /// Basis functions of all groups, a register of them at a time.
 template <class P>
-void weigh(const Instant& instant, const SampleRoom& room) {
+void weigh(const Instant& instant, const SampleScratch& scratch) {
   for (int g = 0; g < instant.group_count; g += P::kLanes) {
     const P u = P::load(instant.u + g), scale = P::load(instant.scale + g), bend = P::load(instant.bend + g);
     bool cubic = false, quintic = false;
@@ -58,25 +58,25 @@ void weigh(const Instant& instant, const SampleRoom& room) {
       }
     }
     for (int t = 0; t < 6; ++t) {
-      store<0, P::kLanes>(w.value[t], room.weights[0][t] + g);
-      store<0, P::kLanes>(scale * w.first[t], room.weights[1][t] + g);
-      store<0, P::kLanes>(scale * scale * w.second[t] + bend * w.first[t], room.weights[2][t] + g);
+      store<0, P::kLanes>(w.value[t], scratch.weights[0][t] + g);
+      store<0, P::kLanes>(scale * w.first[t], scratch.weights[1][t] + g);
+      store<0, P::kLanes>(scale * scale * w.second[t] + bend * w.first[t], scratch.weights[2][t] + g);
     }
   }
 }
 
 /// Sums of whole tracks: as many as fours fit into a register. `row(t)` loads them.
 template <class P, int kTerms, bool kDerivatives, class Row>
-[[gnu::always_inline]] inline void add_up(const SampleRoom& room, int g, const int* joints, TrackSum* out,
+[[gnu::always_inline]] inline void add_up(const SampleScratch& scratch, int g, const int* joints, TrackSum* out,
                                           Row row) {
   P value = P(0), rate = P(0), acceleration = P(0);
 #pragma GCC unroll 6
   for (int t = 0; t < kTerms; ++t) {
     const P control = row(t);
-    value += room.weights[0][t][g] * control;
+    value += scratch.weights[0][t][g] * control;
     if constexpr (kDerivatives) {
-      rate += room.weights[1][t][g] * control;
-      acceleration += room.weights[2][t][g] * control;
+      rate += scratch.weights[1][t][g] * control;
+      acceleration += scratch.weights[2][t][g] * control;
     }
   }
   for_each_index<P::kLanes / 4>([&](auto k) {
@@ -92,11 +92,11 @@ template <class P, int kTerms, bool kDerivatives, class Row>
 /// One group of one lane. Blocks of rotations that no body asks for are left out, as far as they may be; the
 /// last block begins early enough to be full.
 template <class P, int kTerms>
-void add_up_group(const TrackGroup& group, int g, int bodies, int end, const SampleRoom& room) {
+void add_up_group(const TrackGroup& group, int g, int bodies, int end, const SampleScratch& scratch) {
   using Four = Pack<float, 4>;
   constexpr int kBlock = P::kLanes / 4;
-  TrackSum* out = (group.rotation ? room.turns : room.shifts) + std::size_t(group.lane) * room.joints;
-  std::uint32_t* moving = group.rotation ? room.turning : room.shifting;
+  TrackSum* out = (group.rotation ? scratch.turns : scratch.shifts) + std::size_t(group.lane) * scratch.joints;
+  std::uint32_t* moving = group.rotation ? scratch.turning : scratch.shifting;
   for (int k = 0; k < group.tracks && group.lanes != 0; ++k)
     if (group.joints[k] < end) moving[group.joints[k]] |= group.lanes;
   const auto block = [&]<class Q>(Q, int first) {
@@ -105,13 +105,13 @@ void add_up_group(const TrackGroup& group, int g, int bodies, int end, const Sam
     for (int k = 0; k < Q::kLanes / 4; ++k)
       lowest = group.joints[first + k] < lowest ? group.joints[first + k] : lowest;
     if (lowest < bodies)
-      add_up<Q, kTerms, true>(room, g, group.joints + first, out, row);
+      add_up<Q, kTerms, true>(scratch, g, group.joints + first, out, row);
     else if (lowest < end)
-      add_up<Q, kTerms, false>(room, g, group.joints + first, out, row);
+      add_up<Q, kTerms, false>(scratch, g, group.joints + first, out, row);
   };
   if (!group.rotation) {
     for (int k = 0; k < group.tracks; ++k)
-      add_up<Four, kTerms, true>(room, g, group.joints + k, out, [&](int t) -> Four {
+      add_up<Four, kTerms, true>(scratch, g, group.joints + k, out, [&](int t) -> Four {
         const float* x = group.rows[t] + 3 * k;
         return typename Four::Vector{x[0], x[1], x[2], 0};
       });
@@ -134,12 +134,12 @@ template <class P, class At>
 template <class P>
 struct Shown {
   const Instant& instant;
-  const SampleRoom& room;
+  const SampleScratch& scratch;
   int first;               ///< lane
   std::uint32_t bits = 0;  ///< lanes whose clips are shown
   bool one_clip = true;    ///< the same constants for all
 
-  Shown(const Instant& at, const SampleRoom& in, int first_lane) : instant(at), room(in), first(first_lane) {
+  Shown(const Instant& at, const SampleScratch& in, int first_lane) : instant(at), scratch(in), first(first_lane) {
     for (int i = 0; i < P::kLanes; ++i) {
       bits |= 1u << lane(i);
       one_clip &= at.constants[first + i] == at.constants[first];
@@ -147,7 +147,7 @@ struct Shown {
   }
   int lane(int i) const { return instant.shows[first + i]; }
   const TrackSum& sum(const TrackSum* sums, int i, int joint) const {
-    return sums[std::size_t(lane(i)) * room.joints + joint];
+    return sums[std::size_t(lane(i)) * scratch.joints + joint];
   }
   /// Four numbers of what the clips say of a joint without a track.
   template <class Part>
@@ -169,13 +169,13 @@ struct Shown {
 template <class P>
 [[gnu::always_inline]] inline void turn(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
   const auto still = [](const kernels::PoseLayout<float>& pose) { return pose.rotation; };
-  const std::uint32_t moving = shown.room.turning[joint] & shown.bits;
+  const std::uint32_t moving = shown.scratch.turning[joint] & shown.bits;
   P q[4], omega[3], alpha[3];
   if (moving == 0) {
     shown.constants(joint, still, q);
     for (int c = 0; c < 3; ++c) omega[c] = alpha[c] = P(0);
   } else {
-    const TrackSum* sums = shown.room.turns;
+    const TrackSum* sums = shown.scratch.turns;
     P p[4], dp[4], ddp[4];
     for (int c = 0; c < 4; ++c) dp[c] = ddp[c] = P(0);
     gather([&](int i) { return shown.sum(sums, i, joint).value; }, p);
@@ -204,13 +204,13 @@ template <class P>
 template <class P>
 [[gnu::always_inline]] inline void shift(const Shown<P>& shown, int joint, bool body, JointJet<P>& jet) {
   const auto still = [](const kernels::PoseLayout<float>& pose) { return pose.translation; };
-  const std::uint32_t moving = shown.room.shifting[joint] & shown.bits;
+  const std::uint32_t moving = shown.scratch.shifting[joint] & shown.bits;
   P x[4], dx[4], ddx[4];
   for (int c = 0; c < 4; ++c) dx[c] = ddx[c] = P(0);
   if (moving == 0) {
     shown.constants(joint, still, x);
   } else {
-    const TrackSum* sums = shown.room.shifts;
+    const TrackSum* sums = shown.scratch.shifts;
     gather([&](int i) { return shown.sum(sums, i, joint).value; }, x);
     if (body) {
       gather([&](int i) { return shown.sum(sums, i, joint).rate; }, dx);
@@ -255,15 +255,15 @@ template <int kRegister, int kBatch>
 void sample_batch(const Instant& instant, const JetRows& out) {
   constexpr int kLanes = kRegister < kBatch ? kRegister : kBatch;
   using P = Pack<float, kLanes>;
-  const SampleRoom room(out.scratch, out.joints);
-  weigh<P>(instant, room);
+  const SampleScratch scratch(out.scratch, out.joints);
+  weigh<P>(instant, scratch);
   for (int g = 0; g < instant.group_count; ++g)
     if (instant.group[g].degree == 5)
-      add_up_group<P, 6>(instant.group[g], g, out.bodies, out.posed, room);
+      add_up_group<P, 6>(instant.group[g], g, out.bodies, out.posed, scratch);
     else
-      add_up_group<P, 4>(instant.group[g], g, out.bodies, out.posed, room);
+      add_up_group<P, 4>(instant.group[g], g, out.bodies, out.posed, scratch);
   for (int first = 0; first < kBatch; first += kLanes) {
-    const Shown<P> shown(instant, room, first);
+    const Shown<P> shown(instant, scratch, first);
     for (int joint = 0; joint < out.posed; ++joint) {
       const bool body = joint < out.bodies;
       JointJet<P> jet;

@@ -44,7 +44,7 @@ struct Batch {
 
 /// What a check of 16 lanes or fewer works in.
 constexpr std::size_t check_scratch_bytes(int bodies, int joints, int points) {
-  return kMaxLanes * (CheckRoom<float>::bytes(bodies, joints, points) +
+  return kMaxLanes * (CheckScratch<float>::bytes(bodies, joints, points) +
                       std::size_t(joints) * sizeof(Quat<float>));  // for model poses
 }
 

@@ -138,7 +138,7 @@ template <class P, class Source>
 void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
   const Tree<float>& tree = *rig.tree;
   const std::span orientation(static_cast<Quat<P>*>(batch.scratch), std::size_t(rig.joints));
-  const CheckRoom<P> scratch(orientation.data() + rig.joints, tree.bodies, rig.joints,
+  const CheckScratch<P> scratch(orientation.data() + rig.joints, tree.bodies, rig.joints,
                              rig.support ? int(rig.support->points.size()) : 0);
   const bool posed = batch.model[0], placed = rig.support || posed;
   const Vec3<P> gravity(P(rig.gravity[0]), P(rig.gravity[1]), P(rig.gravity[2]));

@@ -1,4 +1,4 @@
-// The muscles' targets: the animation, or the way back to it of a joint that was thrown off.
+// The muscles' targets: the animation, or the return to it of a joint that was thrown off.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
   return world.ground ? T(world.ground_height - origin_height) : -std::numeric_limits<T>::infinity();
 }
 
-/// Writes `problem.target` for a part of h seconds that ends at `state.wanted`. The way back is critically
+/// Writes `problem.target` for a part of h seconds that ends at `state.wanted`. The return is critically
 /// damped with time constant `return_time` (s, of a human), e(h) = (e₀ + (ė₀ + e₀/τ)·h)·exp(−h/τ), e the
 /// offset from the animation; and no faster than the muscle can stop again with a third of its strength, or a
 /// return time far below the step would fling the joint across. It leads no joint further beyond its limits
@@ -43,7 +43,7 @@ T inertia_of(const TreeProblem<T>& problem, int body, int dof);
 /// Whether an animation whose root is assisted, not led, takes feet so deep into the floor that its root has
 /// to be raised, at the end of the next step: it can't be played. Writes `wanted`. O(bodies).
 template <class T>
-bool leads_into_floor(CharacterState<T>& state, const WorldSettings& world);
+bool drives_into_floor(CharacterState<T>& state, const WorldSettings& world);
 
 /// Whether the rates (per frame) at both ends of a frame do not belong to the motion `whole` in it: a host
 /// that stopped its clip, or knows none. A motion that turns back has rates that are larger than what they
@@ -64,8 +64,8 @@ extern template JointJet<float> animation_within<float>(const JointJet<float>&, 
                                                         float);
 extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
                                                           double, double);
-extern template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
-extern template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
+extern template bool drives_into_floor<float>(CharacterState<float>&, const WorldSettings&);
+extern template bool drives_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 extern template void sum_subtrees<float>(CharacterState<float>&);
 extern template float inertia_of<float>(const TreeProblem<float>&, int, int);
 extern template void choose_targets<float>(CharacterState<float>&, float, float, float);

@@ -1,4 +1,4 @@
-#include "sinew/character/way_back.h"
+#include "sinew/character/return_to_animation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +54,8 @@ T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
   return most;
 }
 
-/// Where a way back goes in a step, no further beyond a joint's limits than the joint is or its animation
-/// wants. Where that carries the joint to its stop, the way back is as much shorter as it has to be.
+/// Where a return goes in a step, no further beyond a joint's limits than the joint is or its animation
+/// wants. Where that carries the joint to its stop, the return is as much shorter as it has to be.
 template <class T>
 std::array<T, 6> within_limits(const CharacterState<T>& s, int i, const std::array<T, 6>& offset) {
   constexpr int kHalvings = 10;
@@ -168,7 +168,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
       summed = true;
       const T inertia = inertia_of(p, i, dof);
       if (!(inertia > T(0))) continue;
-      // What carries it beyond its target is no way back that could be braked: it was thrown.
+      // What carries it beyond its target is no return that could be braked: it was thrown.
       const T beyond = now * d.rate[k] < T(0) ? h * std::abs(d.rate[k]) - std::abs(now) : T(0);
       const T most = std::max(h * stoppable<T>(now, T(kBraking) * limit / inertia, h), beyond);
       offset[k] = now > T(0) ? std::max(offset[k], now - most) : std::min(offset[k], now + most);
@@ -183,7 +183,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
 }
 
 template <class T>
-bool leads_into_floor(CharacterState<T>& s, const WorldSettings& world) {
+bool drives_into_floor(CharacterState<T>& s, const WorldSettings& world) {
   if (!is_raised_by_feet(s) || !world.ground) return false;
   for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
   s.problem.common_origin = s.wanted[0].translation;
@@ -195,8 +195,8 @@ template JointJet<float> animation_within<float>(const JointJet<float>&, const J
                                                  float);
 template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
                                                    double);
-template bool leads_into_floor<float>(CharacterState<float>&, const WorldSettings&);
-template bool leads_into_floor<double>(CharacterState<double>&, const WorldSettings&);
+template bool drives_into_floor<float>(CharacterState<float>&, const WorldSettings&);
+template bool drives_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 template void sum_subtrees<float>(CharacterState<float>&);
 template float inertia_of<float>(const TreeProblem<float>&, int, int);
 template void choose_targets<float>(CharacterState<float>&, float, float, float);

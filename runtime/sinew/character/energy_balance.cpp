@@ -1,4 +1,4 @@
-#include "sinew/character/energy_ledger.h"
+#include "sinew/character/energy_balance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,10 +24,10 @@ double total(const CharacterReport& r) {
   return r.kinetic_energy + r.potential_energy + r.elastic_energy;
 }
 
-/// What it has, without what was lent to it.
+/// What it has, without the work of depenetration that is not paid back to it.
 template <class T>
 double owned(const CharacterState<T>& s) {
-  return total(s.report) - s.lent;
+  return total(s.report) - s.depenetration_energy;
 }
 
 /// What rounded positions and momenta make of its energy, J: no gain. In T, wherever it is, for its place is
@@ -84,22 +84,23 @@ bool is_rigid(const CharacterState<T>& s) {
   return s.tree.dofs == 6 && s.tree.type[0] == JointType::kFree;
 }
 
-/// What was lent to a tree and is not stored any more has become motion, lost its way or lifted something:
-/// pays as much of it back, with this tree's motion relative to `still`, as the trees have above their
-/// ceiling.
+/// The work of depenetration that a tree has got and is not stored any more has become motion, lost its way
+/// or lifted something: pays as much of it back, with this tree's motion relative to `still`, as the trees
+/// have above their ceiling.
 template <class T>
 void pay_back(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity, double ceiling,
               const Vec3<double>& still) {
-  double excess = -ceiling;
-  for (const CharacterState<T>* s : states) excess += total(s->report);
+  double surplus = -ceiling;
+  for (const CharacterState<T>* s : states) surplus += total(s->report);
   for (CharacterState<T>* s : states) {
-    const double kinetic = kinetic_about(*s, still), spent = s->lent - s->report.elastic_energy;
-    const double paid = std::min({spent, excess, kinetic});
+    const double kinetic = kinetic_about(*s, still),
+                 spent = s->depenetration_energy - s->report.elastic_energy;
+    const double paid = std::min({spent, surplus, kinetic});
     if (!(paid > 0)) continue;
     slow(*s, std::sqrt(1 - paid / kinetic), still);
     s->report_totals(gravity);
-    s->lent -= paid;
-    excess -= paid;
+    s->depenetration_energy -= paid;
+    surplus -= paid;
   }
 }
 
@@ -139,7 +140,9 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
   const double slack = rigid ? ceiling - now : std::min(ceiling - now, kSlack * kinetic);
   const double spare = slack / double(states.size());  // below 0: rounding, which must not add up
   for (CharacterState<T>* s : states) {
-    s->lent = std::min(s->lent, s->report.elastic_energy);  // the rest has been lost, or has lifted something
+    s->depenetration_energy =
+        std::min(s->depenetration_energy,
+                 s->report.elastic_energy);  // the rest has been lost, or has lifted something
     s->energy_ceiling = owned(*s) + spare;
   }
   return above;
@@ -177,8 +180,8 @@ double rubbed(const CharacterState<T>& s) {
 /// the energy that it had but for what rubbed, and takes from any other what it gained, as far as the motion
 /// of its limbs against each other can bear the change.
 template <class T>
-void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity,
-                                     const Before& before) {
+void EnergyBalance<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& gravity,
+                                      const Before& before) {
   if (is_rigid(s) || s.tree.type[0] != JointType::kFree) return;
   const CharacterReport& r = s.report;
   Totals sums;
@@ -210,24 +213,26 @@ void EnergyLedger<T>::keep_in_flight(CharacterState<T>& s, const Vec3<double>& g
 }
 
 template <class T>
-double EnergyLedger<T>::open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
+double EnergyBalance<T>::open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity) {
   before_.clear();
   double sum = 0;
   for (const CharacterState<T>* s : states) {
     const Totals t = totals<T>(s->tree, s->history, gravity);
     const double energy = t.kinetic_energy + t.potential_energy + s->report.elastic_energy;
     const bool begins = s->history.step_before == T(0) && s->contact_signature == 0;
-    before_.push_back({energy - s->lent, t.angular_momentum, begins || s->lent > 0});
+    before_.push_back(
+        {energy - s->depenetration_energy, t.angular_momentum, begins || s->depenetration_energy > 0});
     sum += energy;
   }
   return sum;
 }
 
 template <class T>
-bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+bool EnergyBalance<T>::close(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
                              const Vec3<double>& gravity, bool strict, bool tied, bool exchanged) const {
   for (const Contact<T>& c : contacts)
-    if (before_[c.tree_a].borrows) states[c.tree_a]->lent += double(c.depenetration_work);
+    if (before_[c.tree_a].depenetrates)
+      states[c.tree_a]->depenetration_energy += double(c.depenetration_work);
   const bool touching =
       exchanged || std::any_of(states.begin(), states.end(),
                                [](const CharacterState<T>* s) { return s->report.contacts > 0; });
@@ -249,7 +254,7 @@ bool EnergyLedger<T>::settle(std::span<CharacterState<T>* const> states, std::sp
   return damped;
 }
 
-template class EnergyLedger<float>;
-template class EnergyLedger<double>;
+template class EnergyBalance<float>;
+template class EnergyBalance<double>;
 
 }  // namespace sinew

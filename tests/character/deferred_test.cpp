@@ -60,11 +60,11 @@ struct Scene {
 };
 
 template <class T>
-class Owed : public testing::Test {};
+class Deferred : public testing::Test {};
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(Owed, Scalars);
+TYPED_TEST_SUITE(Deferred, Scalars);
 
-TYPED_TEST(Owed, AskingAfterEveryStepOrNeverEndsInTheSameBits) {
+TYPED_TEST(Deferred, AskingAfterEveryStepOrNeverEndsInTheSameBits) {
   for (const int check_every : {1, 3}) {
     // Fading; before, at and after the push; on the way back; falling; recovered; before and after the leap.
     for (const int end : {15, 29, 30, 31, 40, 121, 149, 199, 200, 203}) {
@@ -81,7 +81,7 @@ TYPED_TEST(Owed, AskingAfterEveryStepOrNeverEndsInTheSameBits) {
   }
 }
 
-TYPED_TEST(Owed, LateAnswersAreThoseOfTheLastStep) {
+TYPED_TEST(Deferred, LateAnswersAreThoseOfTheLastStep) {
   Scene<TypeParam> early(1), late(1);
   early.step();
   late.step();

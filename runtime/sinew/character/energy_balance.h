@@ -16,31 +16,31 @@
 namespace sinew {
 
 template <class T>
-class EnergyLedger {
+class EnergyBalance {
  public:
   void reserve(int trees) { before_.reserve(trees); }
   /// Notes the energy of the trees before a step, J. Returns their sum.
   double open(std::span<CharacterState<T>* const> states, const Vec3<double>& gravity);
   /// Holds the trees of a passive island, stepped together since open(), under their ceiling. `strict` takes
   /// what they had before for the ceiling (a solve that did not converge); `tied`: they hang together;
-  /// `exchanged`: they may have struck each other, even where they are apart again. What obstacles lent
+  /// `exchanged`: they may have struck each other, even where they are apart again. What obstacles gave
   /// through `contacts` to a tree that began inside them is paid by its motion alone. True if motion was
   /// taken out.
-  bool settle(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
-              const Vec3<double>& gravity, bool strict, bool tied, bool exchanged) const;
+  bool close(std::span<CharacterState<T>* const> states, std::span<const Contact<T>> contacts,
+             const Vec3<double>& gravity, bool strict, bool tied, bool exchanged) const;
 
  private:
   struct Before {
-    double energy = 0;                                     ///< J, without what was lent
+    double energy = 0;  ///< J, without the work of depenetration that is not paid back
     Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
-    bool borrows = false;  ///< begins now, or has not paid yet: else it came in by itself
+    bool depenetrates = false;  ///< begins now, or has not paid yet: else it came in by itself
   };
   static void keep_in_flight(CharacterState<T>& state, const Vec3<double>& gravity, const Before& before);
 
   std::vector<Before> before_;  ///< [tree]
 };
 
-extern template class EnergyLedger<float>;
-extern template class EnergyLedger<double>;
+extern template class EnergyBalance<float>;
+extern template class EnergyBalance<double>;
 
 }  // namespace sinew
