@@ -60,12 +60,13 @@ format() {
 
 # A change of what follows makes clang-tidy look at every file again.
 tidy_settings() {
-  cat .clang-tidy tests/tidy/own_declarations.cpp tests/tidy/instead_of_compiler.sh tests/run.sh
+  cat .clang-tidy tests/tidy/own_declarations.cpp tests/tidy/*.sh tests/run.sh
   clang-tidy --version
 }
 
 # Looks at every file, the next time at those that changed or include what changed. Nothing is compiled or linked: ninja
-# and CMake only know who includes what. Without precompiled headers: an #include that is missing is found here.
+# and CMake only know who includes what. Without the build's precompiled headers: an #include of ours that is missing is
+# found here.
 tidy() {
   local settings plugin=build-tidy/own_declarations.so instead=$PWD/tests/tidy/instead_of_compiler.sh
   settings=$(tidy_settings | sha256sum)
@@ -75,10 +76,11 @@ tidy() {
     g++ -std=c++17 -O1 -fno-rtti -fPIC -shared -isystem "$(llvm-config --includedir)" tests/tidy/own_declarations.cpp -o $plugin
     echo "$settings" >build-tidy/settings
   fi
+  tests/tidy/clang_tidy.sh prepare
   configure build-tidy -DSINEW_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
     -DCMAKE_C_COMPILER_LAUNCHER="$instead" -DCMAKE_C_LINKER_LAUNCHER="$instead" \
     -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
-    -DCMAKE_CXX_CLANG_TIDY="clang-tidy;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
+    -DCMAKE_CXX_CLANG_TIDY="$PWD/tests/tidy/clang_tidy.sh;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
   mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
   build build-tidy "clang-tidy" -k 20 "${objects[@]}"
 }

@@ -14,7 +14,7 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy)
-lint=(clang-format clang-tidy libclang-dev llvm-dev)
+lint=(clang clang-format clang-tidy libclang-dev llvm-dev)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 
 missing() {  # missing PACKAGE…: those that are not installed

@@ -14,7 +14,7 @@ bool linear_step(InnerProblem<T>& inner, std::span<Contact<T>> contacts,
   for (const bool geometric : {true, false}) {
     inner.build(contacts, couplings, geometric);
     if (!inner.minimise(kAnything).solved) continue;
-    return std::isfinite(inner.chord(contacts));
+    return std::isfinite(inner.simplified_newton_step(contacts));
   }
   return false;
 }
