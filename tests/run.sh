@@ -4,7 +4,8 @@
 #   --all adds the format check, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
 #   each stage; the others run that stage alone. --nightly builds and runs 100000 random trees, an hour of soak in float
-#   and in double, all hard cases at full length, a batch on Slurm, and both of the README's commands on a bare machine: hours.
+#   and in double, all hard cases at full length, the page for browsers, a batch on Slurm, and both of the README's commands on
+#   a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -125,6 +126,9 @@ nightly() {
   # What fails is in the table; which of it is known to, in tools/study/known_failures.cpp.
   build/sinew study stability -o build/study >build/stability.log || true
   tail -n 1 build/stability.log
+  tools/setup.sh --web
+  samples/web/build.sh build/sinew build/web
+  run build -R '^sample_web$'
   SINEW_SLURM=1 run build -R BatchOnSlurm  # skipped where Slurm is not installed
   tests/fresh_machine.sh
 }

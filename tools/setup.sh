@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
-# Usage: tools/setup.sh [--tests] [--lint] [--peers]
+# Usage: tools/setup.sh [--tests] [--lint] [--peers] [--web]
 #   --tests: what the tests need     --lint: clang-format and clang-tidy
-#   --peers: for -DSINEW_PEERS=ON, several hundred MB
+#   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
 
@@ -16,6 +16,8 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy)
 lint=(clang clang-format clang-tidy libclang-dev llvm-dev)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
+web=(emscripten chromium brotli)
+command -v npm >/dev/null || web+=(npm)  # another's will do
 
 missing() {  # missing PACKAGE…: those that are not installed
   comm -23 <(printf '%s\n' "$@" | sort -u) \
@@ -72,7 +74,8 @@ for option in "$@"; do
     --tests) packages+=("${tests[@]}") ;;
     --lint) packages+=("${lint[@]}") ;;
     --peers) packages+=("${peers[@]}") ;;
-    *) echo "setup: no such option: $option (there are --tests, --lint and --peers)" >&2; exit 2 ;;
+    --web) packages+=("${web[@]}") ;;
+    *) echo "setup: no such option: $option (there are --tests, --lint, --peers and --web)" >&2; exit 2 ;;
   esac
 done
 mapfile -t wanted < <(missing "${packages[@]}")

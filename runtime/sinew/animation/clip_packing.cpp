@@ -296,7 +296,9 @@ bool pack_control(const Clip::Packing& packing, bool rotation, const float* cont
   float again[4];
   unpack_control(packing, rotation, numbers, again);
   for (int c = 0; c < components(rotation); ++c)
-    if (std::bit_cast<std::uint32_t>(again[c]) != std::bit_cast<std::uint32_t>(control[c])) return false;
+    if (Eigen::numext::bit_cast<std::uint32_t>(again[c]) !=
+        Eigen::numext::bit_cast<std::uint32_t>(control[c]))
+      return false;
   return true;
 }
 

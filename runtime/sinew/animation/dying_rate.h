@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/animation/time_jet.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -16,7 +17,7 @@ struct DyingRate {
   T of_rate[3], of_acceleration[3];
 
   static DyingRate at(T elapsed, T slowing, T loss) {
-    const T y = slowing, z = loss, slow = std::exp(-y * elapsed), fast = std::exp(-z * elapsed);
+    const T y = slowing, z = loss, slow = portable::exp(-y * elapsed), fast = portable::exp(-z * elapsed);
     const T gone_slow = -std::expm1(-y * elapsed) / y, gone_fast = -std::expm1(-z * elapsed) / z;
     const T lag[3] = {(gone_slow - gone_fast) / (z - y), (slow - fast) / (z - y),
                       (z * fast - y * slow) / (z - y)};

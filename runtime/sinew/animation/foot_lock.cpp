@@ -5,6 +5,7 @@
 
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/soft_limits.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -59,7 +60,7 @@ MovingPlane<T> plane_of(const FootState<T>& state, Grounds<T> grounds) {
 
 template <class T>
 bool is_wall(const GroundHit<T>& hit, T steepest) {
-  return !(hit.normal.z() > std::cos(steepest));
+  return !(hit.normal.z() > portable::cos(steepest));
 }
 template <class T>
 T height_at(const GroundHit<T>& hit, T steepest, T x, T y) {
@@ -171,7 +172,7 @@ MovingVector<T> present_pivot(const Stance<T>& s, const FootMotion<T>& motion, G
 
 template <class T>
 T apart_on_ground(const MovingVector<T>& a, const MovingVector<T>& b) {
-  return std::hypot(a.x().value - b.x().value, a.y().value - b.y().value);
+  return portable::hypot(a.x().value - b.x().value, a.y().value - b.y().value);
 }
 
 template <class T>

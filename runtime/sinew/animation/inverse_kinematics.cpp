@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sinew/animation/soft_limits.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -131,7 +132,7 @@ Status AimJob<T>::Run() const {
   if (!(far.value > T(0)) || value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.99999) * far.value)
     return Status::error(Code::kOutOfRange, "target at the joint, or straight behind it", joint);
   Quat<TimeJet<T>> turn = shortest_arc<T>(now, wanted);
-  const T widest = std::cos(limit / 2);
+  const T widest = portable::cos(limit / 2);
   if (turn.w().value < widest) {
     const TimeJet<T> sine = length<T>(turn.vec());
     turn.vec() = turn.vec() * (std::sqrt(1 - widest * widest) / sine);

@@ -4,17 +4,18 @@
 #include <cmath>
 
 #include "sinew/animation/time_jet.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
 template <class T>
 TimeJet<T> sine(const TimeJet<T>& a) {
-  const T s = std::sin(a.value), c = std::cos(a.value);
+  const T s = portable::sin(a.value), c = portable::cos(a.value);
   return {s, c * a.rate, c * a.acceleration - s * a.rate * a.rate};
 }
 template <class T>
 TimeJet<T> cosine(const TimeJet<T>& a) {
-  const T s = std::sin(a.value), c = std::cos(a.value);
+  const T s = portable::sin(a.value), c = portable::cos(a.value);
   return {c, -s * a.rate, -s * a.acceleration - c * a.rate * a.rate};
 }
 /// Angle of (x, y) from the x axis, rad, its value in (−π, π]. Not both 0.
@@ -24,7 +25,7 @@ TimeJet<T> angle_of(const TimeJet<T>& x, const TimeJet<T>& y) {
   const T growth = 2 * (x.value * x.rate + y.value * y.rate);
   const T rate = (x.value * y.rate - y.value * x.rate) / square;
   const T turn = x.value * y.acceleration - y.value * x.acceleration;
-  return {std::atan2(y.value, x.value), rate, (turn - rate * growth) / square};
+  return {portable::atan2(y.value, x.value), rate, (turn - rate * growth) / square};
 }
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include "sinew/animation/jet_angles.h"
 #include "sinew/animation/quintic_offset.h"
 #include "sinew/animation/soft_limits.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -106,7 +107,7 @@ Angles<T> Turn<T>::look(const MovingVector<T>& from, typename LookState<T>::Trac
   const Angles<T> shown = limited(see<T>(axes, old - from), side, s) + left, offset = shown - goal;
   track.offset[0] = offset.yaw;
   track.offset[1] = offset.pitch;
-  farthest = largest(farthest, std::hypot(offset.yaw.value, offset.pitch.value));
+  farthest = largest(farthest, portable::hypot(offset.yaw.value, offset.pitch.value));
   return shown;
 }
 

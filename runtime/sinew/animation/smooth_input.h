@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/animation/time_jet.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -20,7 +21,7 @@ struct SmoothInput {
   /// Moves `h` seconds on towards `goal`, which is taken as constant during them. `pole` (1/s, > 0): see
   /// `pole_of`.
   void step(const S& goal, const S& pole, const S& h) {
-    using std::exp;
+    using portable::exp;
     // Solution of (d/dt + y)³ e = 0 for e = x − goal: (j₀ + j₁ h + j₂ h²/2)·exp(−y h).
     const S e = x.value - goal, slope = x.rate + pole * e;
     const S bend = x.acceleration + pole * (x.rate + x.rate + pole * e);

@@ -37,17 +37,17 @@ struct TimeJet {
     return {s * a.value, s * a.rate, s * a.acceleration};
   }
   friend TimeJet operator/(const TimeJet& a, const TimeJet& b) {
-    const S value = a.value / b.value;
-    const S rate = (a.rate - value * b.rate) / b.value;
-    const S cross = rate * b.rate;
-    return {value, rate, (a.acceleration - (cross + cross) - value * b.acceleration) / b.value};
+    const S ratio = a.value / b.value;
+    const S slope = (a.rate - ratio * b.rate) / b.value;
+    const S cross = slope * b.rate;
+    return {ratio, slope, (a.acceleration - (cross + cross) - ratio * b.acceleration) / b.value};
   }
   friend TimeJet sqrt(const TimeJet& a) {
     using std::sqrt;
     const S root = sqrt(a.value), twice = root + root;
-    const S rate = a.rate / twice;
-    const S square = rate * rate;
-    return {root, rate, (a.acceleration - (square + square)) / twice};
+    const S slope = a.rate / twice;
+    const S square = slope * slope;
+    return {root, slope, (a.acceleration - (square + square)) / twice};
   }
   friend bool operator<(const TimeJet& a, const TimeJet& b) { return a.value < b.value; }
   friend bool operator>(const TimeJet& a, const TimeJet& b) { return a.value > b.value; }

@@ -69,7 +69,7 @@ std::uint64_t make_handle(Kind owner, void* object) {
 
 void* find_object(std::uint64_t handle, Kind kind) noexcept {
   if (kind_of(handle) != kind || (kind <= Kind::kWorld && index_of(handle) != 0)) return nullptr;
-  const Slot& slot = table.slots[field(handle, kSlotAt, kSlotBits)];
+  const Slot& slot = table.slots[std::size_t(field(handle, kSlotAt, kSlotBits))];
   if (slot.label.load(std::memory_order_acquire) != owner_handle(handle, owner_of(kind))) return nullptr;
   return slot.object.load(std::memory_order_relaxed);
 }

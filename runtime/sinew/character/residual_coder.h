@@ -61,7 +61,7 @@ class ResidualCoder {
   template <class Visit>
   void unpredicted(const Visit& visit) {
     Bits all = 0;
-    visit([&](V& v, V) { all |= std::bit_cast<Bits>(v); });
+    visit([&](V& v, V) { all |= Eigen::numext::bit_cast<Bits>(v); });
     auto rounded = static_cast<std::uint8_t>(std::min(std::countr_zero(all), kDigits));
     stream_.value(name_, rounded);
     rounded_ = stream_.bounding() ? 0 : std::min<int>(rounded, kDigits);
@@ -79,7 +79,8 @@ class ResidualCoder {
 
   /// Where runs are counted.
   bool is_as_predicted(V& v, V predicted) {
-    if (!runs_ || !is_exact(std::bit_cast<Bits>(v) == std::bit_cast<Bits>(predicted))) return false;
+    if (!runs_ || !is_exact(Eigen::numext::bit_cast<Bits>(v) == Eigen::numext::bit_cast<Bits>(predicted)))
+      return false;
     if (stream_.reading()) v = predicted;
     return true;
   }
@@ -105,10 +106,10 @@ class ResidualCoder {
       Bits bits = size == 0 ? 0 : Bits(size - 1) << kDigits;
       if (size > 0 && get_bits(1) != 0) bits |= sign;
       if (size > 0) bits |= get_bits(kept) << rounded_;
-      v = std::bit_cast<V>(bits);
+      v = Eigen::numext::bit_cast<V>(bits);
       return;
     }
-    const auto bits = std::bit_cast<Bits>(v);
+    const auto bits = Eigen::numext::bit_cast<Bits>(v);
     const int size = bits == 0 ? 0 : 1 + static_cast<int>((bits & ~sign) >> kDigits);
     if (stream_.bounding()) {
       put_bits(0, 2 * (kWidth - kDigits) + 1);  // exponent and sign
@@ -123,7 +124,7 @@ class ResidualCoder {
 
   /// In the order of the numbers.
   static Bits ordered(V v) {
-    const auto bits = std::bit_cast<Bits>(v);
+    const auto bits = Eigen::numext::bit_cast<Bits>(v);
     if constexpr (std::is_integral_v<V>) return bits;
     constexpr Bits sign = Bits(1) << (kWidth - 1);
     return bits & sign ? ~bits : bits | sign;
@@ -132,7 +133,7 @@ class ResidualCoder {
     const Bits all = in_order << rounded_, lost = (Bits(1) << rounded_) - 1;
     if constexpr (std::is_integral_v<V>) return V(all);
     constexpr Bits sign = Bits(1) << (kWidth - 1);
-    return std::bit_cast<V>(all & sign ? all ^ sign : ~(all | lost));
+    return Eigen::numext::bit_cast<V>(all & sign ? all ^ sign : ~(all | lost));
   }
 
   /// Bits that a distance is likely to need: the mean of what came so far.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sinew/muscle/joint_coordinates.h"
+#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew {
@@ -41,7 +42,7 @@ T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
   if (law.swing_limit[i] >= T(0)) {
     const Quat<T> relative = rest.rotation.conjugate() * local.rotation;
     const Vec3<T> a = law.swing_axis[i].template cast<T>(), b = relative * a;
-    most = std::max(most, std::atan2(T(a.cross(b).norm()), T(a.dot(b))) - T(law.swing_limit[i]));
+    most = std::max(most, portable::atan2(T(a.cross(b).norm()), T(a.dot(b))) - T(law.swing_limit[i]));
     const T twist = twist_angle<T>(relative, a);
     return std::max({most, twist - T(law.twist_upper[i]), T(law.twist_lower[i]) - twist});
   }
@@ -151,7 +152,7 @@ void choose_targets(CharacterState<T>& s, T return_time, T ground, T h) {
     return;
   }
   return_time *= s.tree.scale.time;
-  const T decay = std::exp(-h / return_time);
+  const T decay = portable::exp(-h / return_time);
   bool summed = false;
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Deviation<T>& d = s.deviation[i];

@@ -10,6 +10,7 @@
 #include "sinew/character/cut.h"
 #include "sinew/character/tone.h"
 #include "sinew/residual/tree_pass.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -450,7 +451,7 @@ void CharacterState<T>::update_deviation(int i, const std::array<T, 6>& measured
       !joint_is_driven(i) || length<T>(turn_of(tree.type[i], from_animation)) > T(1.5 * kHalfTurn);
   const T time = tree.scale.time;
   return_time *= time;
-  const T decay = std::exp(-h / return_time), same = T(kSamePath) * (h / time);
+  const T decay = portable::exp(-h / return_time), same = T(kSamePath) * (h / time);
   T offset = T(0), speed = T(0);
   d.on_path = true;
   for (int k = 0; k < tree.dof_count(i); ++k) {

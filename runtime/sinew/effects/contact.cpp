@@ -4,6 +4,7 @@
 
 #include "sinew/effects/solid_gap.h"
 #include "sinew/effects/static_shape.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -290,8 +291,8 @@ void roll(const Kinematics<T>& a, const Kinematics<T>* b, const Vec3<T>& turn, C
   const T angle = turn.norm();
   if (angle < T(kRollsLittle)) return;
   const T half = std::min(angle, T(kRollsFurthest)) / 2;
-  const Vec3<T> arm = Eigen::AngleAxis<T>(-half, turn / angle) * Vec3<T>(-c.radius * c.normal);
-  fix_material_points<T>(a, b, c.point + half / std::sin(half) * arm, c);
+  const Vec3<T> arm = rotation_exp<T>(-half / angle * turn) * Vec3<T>(-c.radius * c.normal);
+  fix_material_points<T>(a, b, c.point + half / portable::sin(half) * arm, c);
 }
 
 template <class T>

@@ -24,6 +24,7 @@
 
 #include "sinew/effects/carried_force.h"
 #include "sinew/residual/tree.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -200,7 +201,7 @@ struct ContactLaw {
   }
   /// How deep is what stores an energy: the inverse of energy(k, −depth).
   static T depth_storing(T k, T energy, T width) {
-    return energy < k * width * width / 6 ? std::cbrt(6 * width * energy / k)
+    return energy < k * width * width / 6 ? portable::cbrt(6 * width * energy / k)
                                           : width / 2 + std::sqrt(2 * energy / k - width * width / 12);
   }
   static T curvature(T k, T gap, T width) {

@@ -6,6 +6,7 @@
 
 #include "sinew/effects/joint_step.h"
 #include "sinew/effects/step_plan.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -68,7 +69,7 @@ struct JointLimitRows {
 /// changes by n·w, n = (a × b)/|a × b|, the twist by (a + b)·w/(1 + a·b); w in rest axes.
 template <class T, class Law, class Rows>
 void append_cone(const JointStep<T, Law>& joint, Rows& rows) {
-  using std::atan2;
+  using portable::atan2;
   const Law& law = joint.law;
   const int i = joint.body;
   const Quat<T> unrest = joint.tree.rest[i].rotation.conjugate().template cast<T>();
@@ -90,7 +91,7 @@ void append_cone(const JointStep<T, Law>& joint, Rows& rows) {
   const Number<T> limit = law.swing_limit[i], most = law.kUnlimited;
   const auto none = T(0) > T(0);
   if (limit - near < Number<T>(3.14159265)) {
-    const auto bent = both(sine > T(1e-6), cosine < T(std::cos(std::max(limit - near, Number<T>(0)))));
+    const auto bent = both(sine > T(1e-6), cosine < T(portable::cos(std::max(limit - near, Number<T>(0)))));
     if (any(bent)) {
       row.scalar = RowScalar::kSwing;
       set(across / sine);

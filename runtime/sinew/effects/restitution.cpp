@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
+
 namespace sinew {
 namespace {
 
@@ -134,7 +136,7 @@ void Restitution<T>::rub(std::size_t impact) {
   for (std::size_t k = 0; k < 2; ++k)
     if (const T own = delassus_[(row + 1 + k) * (m + 1)]; own > T(0))
       impulse_[row + 1 + k] += missing(row + 1 + k, -impacts_[impact].slip[k]) / own;
-  const T size = std::hypot(impulse_[row + 1], impulse_[row + 2]);
+  const T size = portable::hypot(impulse_[row + 1], impulse_[row + 2]);
   const T most = impacts_[impact].contact->friction * impulse_[row];
   if (!(size > most)) return;
   impulse_[row + 1] *= most / size;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/scalar.h"
 #include "sinew/skeleton/transform.h"
 
@@ -24,7 +25,7 @@ Mat3<T> skew(const Vec3<T>& a) {
 /// every machine.
 template <class T>
 Quat<T> rotation_exp(const Vec3<T>& d) {
-  using std::cos, std::sin, std::sqrt;
+  using portable::cos, portable::sin, std::sqrt;
   using Two = Eigen::Matrix<T, 2, 1>;
   const T angle2 = d.squaredNorm();
   const auto series = [&] {
@@ -59,7 +60,7 @@ Quat<T> rotation_exp(const Vec3<T>& d) {
 /// Rotation vector of q, the shorter way round: |result| ≤ π.
 template <class T>
 Vec3<T> rotation_log(const Quat<T>& q) {
-  using std::abs, std::atan2;
+  using std::abs, portable::atan2;
   const Vec3<T> v = select(q.w() < T(0), Vec3<T>(-q.vec()), Vec3<T>(q.vec()));
   const T sine = v.norm();
   const T cosine = abs(q.w());
@@ -106,8 +107,8 @@ Mat3<T> right_jacobian(const Vec3<T>& d) {
     c = T(1) / 6 - a2 / 120;
   } else {
     const T a = std::sqrt(a2);
-    b = (T(1) - std::cos(a)) / a2;
-    c = (a - std::sin(a)) / (a2 * a);
+    b = (T(1) - portable::cos(a)) / a2;
+    c = (a - portable::sin(a)) / (a2 * a);
   }
   const Mat3<T> s = skew(d);
   return Mat3<T>::Identity() - b * s + c * (s * s);
@@ -116,7 +117,7 @@ Mat3<T> right_jacobian(const Vec3<T>& d) {
 /// Inverse of the right Jacobian: log(exp(d)·exp(δ)) ≈ d + Jr⁻¹·δ. Valid for |d| < 2π.
 template <class T>
 Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
-  using std::cos, std::sin, std::sqrt;
+  using portable::cos, portable::sin, std::sqrt;
   const T a2 = d.squaredNorm();
   const auto series = [&] { return T(T(1) / 12 + a2 / 720); };
   const auto closed = [&] {
@@ -132,7 +133,7 @@ Mat3<T> right_jacobian_inverse(const Vec3<T>& d) {
 /// from its own tangent. From dθ/dt = Jr⁻¹(θ)·ω, once more by t.
 template <class T>
 Mat3<T> log_curvature(const Vec3<T>& d, const Vec3<T>& lambda) {
-  using std::cos, std::sin, std::sqrt;
+  using portable::cos, portable::sin, std::sqrt;
   using Two = Eigen::Matrix<T, 2, 1>;
   const T a2 = d.squaredNorm();
   const auto series = [&] { return Two(T(1) / 12 + a2 / 720, T(1) / 360 + a2 / 7560); };
@@ -154,7 +155,7 @@ Mat3<T> log_curvature(const Vec3<T>& d, const Vec3<T>& lambda) {
 /// Angle of the part of q that turns about the unit vector `axis` (swing–twist decomposition), in (−π, π].
 template <class T>
 T twist_angle(const Quat<T>& q, const Vec3<T>& axis) {
-  using std::atan2;
+  using portable::atan2;
   const T along = q.vec().dot(axis);
   const T angle = T(2) * atan2(along, q.w());
   constexpr Number<T> pi = Number<T>(3.14159265358979323846);

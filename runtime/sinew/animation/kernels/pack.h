@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/scalar.h"
 
 namespace sinew {
@@ -112,14 +113,14 @@ struct Pack {
   }
   // The library's, lane by lane: the same bits as a scalar's.
   friend Pack sin(const Pack& a) {
-    return each_lane(a, [](T x) { return std::sin(x); });
+    return each_lane(a, [](T x) { return portable::sin(x); });
   }
   friend Pack cos(const Pack& a) {
-    return each_lane(a, [](T x) { return std::cos(x); });
+    return each_lane(a, [](T x) { return portable::cos(x); });
   }
   friend Pack atan2(const Pack& y, const Pack& x) {
     Pack angle;
-    for (int i = 0; i < N; ++i) angle.v[i] = std::atan2(y.v[i], x.v[i]);
+    for (int i = 0; i < N; ++i) angle.v[i] = portable::atan2(y.v[i], x.v[i]);
     return angle;
   }
   template <class Function>
