@@ -18,7 +18,7 @@ constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face t
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
-constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is led
+constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is driven
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
@@ -546,7 +546,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   impact_depth_ = T(kImpactDepth);
   for (const CharacterState<T>* s : states) {
     most_ += static_cast<std::size_t>(s->problem.capacity.contacts);
-    if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) {  // led as a whole
+    if (s->root_is_kinematic() && s->tree.dofs == s->tree.dof_count(0)) {  // driven as a whole
       // It presses with whatever force it takes. With friction to match, what stands aslant between it and a
       // wall is jammed for good, and driven in until it comes out at the back.
       most_sunk_ = T(kMostGripped * world.accuracy.sink_depth);
