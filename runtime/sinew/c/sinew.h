@@ -337,7 +337,7 @@ typedef struct sinew_height_field {
 /// Signed distance (m, negative inside) of a world point from something that does not move, and the outward
 /// unit normal there. Called within steps, often, also from job threads: the same answer to the same point,
 /// no lock, no call of Sinew.
-typedef double (*sinew_distance)(void* context, const double* point, double* normal);
+typedef double (*sinew_distance)(void* context, const double point[3], double normal[3]);
 
 /// The host's own collision world.
 typedef struct sinew_host_shape {
@@ -488,17 +488,17 @@ SINEW_API sinew_status sinew_character_set_help(sinew_character character, doubl
 SINEW_API sinew_status sinew_character_set_detail(sinew_character character, double significance,
                                                   sinew_level most, int32_t check_every, int32_t bake);
 /// Where a grounded character follows its animation since something moved it: [3] x, y (m), yaw (rad).
-SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double* out);
+SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[3]);
 /// The host has moved the character's place itself: targets are given there from now on.
 SINEW_API sinew_status sinew_character_take_displacement(sinew_character character);
 /// Puts its animation elsewhere: by [3] x, y (m), yaw (rad).
-SINEW_API sinew_status sinew_character_displace(sinew_character character, const double* further);
+SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[3]);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
-                                                     const double* point, const double* impulse);
+                                                     const double point[3], const double impulse[3]);
 /// A load: force [3] (N, world) during the next step.
 SINEW_API sinew_status sinew_character_apply_force(sinew_character character, int32_t joint,
-                                                   const double* point, const double* force);
+                                                   const double point[3], const double force[3]);
 /// Out of the world, where it costs nothing and touches nobody; or back, onto its target, as by reset.
 SINEW_API sinew_status sinew_character_park(sinew_character character, int32_t parked);
 SINEW_API sinew_status sinew_character_get_report(sinew_character character, sinew_character_report* out);
@@ -576,10 +576,10 @@ SINEW_API sinew_status sinew_world_add_prop(sinew_world world, const sinew_prop_
                                             sinew_prop* out);
 SINEW_API sinew_status sinew_world_get_prop(sinew_world world, int32_t index, sinew_prop* out);
 /// Where it is, and how fast [3] (m/s); either may be null.
-SINEW_API sinew_status sinew_prop_get_state(sinew_prop prop, sinew_transform* pose, float* velocity);
+SINEW_API sinew_status sinew_prop_get_state(sinew_prop prop, sinew_transform* pose, float velocity[3]);
 /// Puts it there, moving so [3] (m/s and rad/s, world); brings a parked one back.
 SINEW_API sinew_status sinew_prop_set_state(sinew_prop prop, const sinew_transform* pose,
-                                            const float* velocity, const float* angular_velocity);
+                                            const float velocity[3], const float angular_velocity[3]);
 /// Out of the world until sinew_prop_set_state.
 SINEW_API sinew_status sinew_prop_park(sinew_prop prop);
 SINEW_API sinew_status sinew_prop_get_report(sinew_prop prop, sinew_character_report* out);
@@ -623,7 +623,7 @@ SINEW_API sinew_status sinew_world_add_loop(sinew_world world, const sinew_loop_
 /// Opens a loop (it costs nothing then), or closes it again.
 SINEW_API sinew_status sinew_loop_set_closed(sinew_loop loop, int32_t closed);
 /// m by which it is apart, and the force [3] (N) on side a; either may be null.
-SINEW_API sinew_status sinew_loop_get_state(sinew_loop loop, double* gap, float* force);
+SINEW_API sinew_status sinew_loop_get_state(sinew_loop loop, double* gap, float force[3]);
 
 // ---- Contacts ----
 
@@ -725,10 +725,10 @@ SINEW_API sinew_status sinew_world_overlap(sinew_world world, const sinew_query*
 // ---- Debug drawing ----
 
 /// Places [3] in m, world; colours are 0xRRGGBBAA. Words are valid during the call.
-typedef void (*sinew_draw_line)(void* context, const double* from, const double* to, uint32_t color);
-typedef void (*sinew_draw_triangle)(void* context, const double* a, const double* b, const double* c,
+typedef void (*sinew_draw_line)(void* context, const double from[3], const double to[3], uint32_t color);
+typedef void (*sinew_draw_triangle)(void* context, const double a[3], const double b[3], const double c[3],
                                     uint32_t color);
-typedef void (*sinew_draw_text)(void* context, const double* at, const char* words, uint32_t color);
+typedef void (*sinew_draw_text)(void* context, const double at[3], const char* words, uint32_t color);
 
 typedef struct sinew_draw_settings {
   uint32_t size;
