@@ -14,7 +14,9 @@ fn run(path: &str, frames: i32) -> sinew::Result<()> {
     let chest = asset.find_role(Role::CHEST)?;
     let world = World::create(None)?;
     let hero = world.add_character(&asset, None)?;
-    let mut ball = PropSettings { mass: 4.0, velocity: [0.0, -6.0, 0.0], ..Default::default() };
+    let mut ball = PropSettings::default();
+    ball.mass = 4.0;
+    ball.velocity = [0.0, -6.0, 0.0];
     ball.pose.translation = [0.0, 3.0, 1.5];
     world.add_prop(Some(&ball))?;
 
