@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
 # Usage: tools/setup.sh [--tests] [--lint] [--peers]
-#   --tests: what the tests need     --lint: clang-format and clang-tidy
+#   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
@@ -15,7 +15,7 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy
   mono-mcs mono-runtime)
-lint=(clang-format clang-tidy libclang-dev llvm-dev)
+lint=(clang-format clang-tidy libclang-dev llvm-dev doxygen)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 
 missing() {  # missing PACKAGE…: those that are not installed
