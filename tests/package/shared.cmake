@@ -1,7 +1,7 @@
 # With BUILD_SHARED_LIBS the layers are shared libraries, which an outside project finds installed, links and runs with.
 file(REMOVE_RECURSE ${WORK})
 foreach(command
-    "${CMAKE_COMMAND};-G;Ninja;-S;${SINEW};-B;${WORK};-DBUILD_SHARED_LIBS=ON;-DSINEW_TOOLS=OFF;-DSINEW_TESTS=OFF;-DSINEW_SAMPLES=OFF;-DCMAKE_CXX_VISIBILITY_PRESET=hidden"
+    "${CMAKE_COMMAND};-G;Ninja;-S;${SINEW};-B;${WORK};-DBUILD_SHARED_LIBS=ON;-DSINEW_TOOLS=OFF;-DSINEW_TESTS=OFF;-DSINEW_SAMPLES=OFF"
     "${CMAKE_COMMAND};--build;${WORK}"
     "${CMAKE_COMMAND};--install;${WORK};--prefix;${WORK}/prefix"
     "${CMAKE_COMMAND};-G;Ninja;-S;${OUTSIDE};-B;${WORK}/outside;-DCMAKE_PREFIX_PATH=${WORK}/prefix;-DCMAKE_BUILD_TYPE=Debug;-DEMBEDDING=${OUTSIDE}/main.cpp"

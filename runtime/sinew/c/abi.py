@@ -53,7 +53,7 @@ class Abi:
         return kind if name != kind and kind in self.structs else None
 
     def owner(self, name):
-        """What a function is a method of (a handle, a struct of settings, None), with the method's name: without the owner's in it."""
+        """What a function is a method of (a handle, a struct of settings, None), and the method's name: without the owner's."""
         function = self.functions[name]
         first = function["parameters"][0]["type"] if function["parameters"] else ""
         for owner in list(self.handles) + list(self.structs):

@@ -125,7 +125,7 @@ class Binding:
         yield f'        assert_eq!((size_of::<{kind}>(), align_of::<{kind}>()), ({struct["size"]}, {struct["alignment"]}), "{name}");'
         yield f"        let one = MaybeUninit::<{kind}>::uninit();"
         for field in struct["fields"]:
-            yield f"        // SAFETY: an address within `one`; nothing is read."
+            yield "        // SAFETY: an address within `one`; nothing is read."
             yield f"        let at = unsafe {{ addr_of!((*one.as_ptr()).{name_of(field)}) as usize }};"
             yield f'        assert_eq!(at - one.as_ptr() as usize, {field["offset"]}, "{name}.{field["name"]}");'
         if self.abi.initialiser(name):
