@@ -3,9 +3,9 @@
 # Usage: tests/run.sh [--all | --nightly | --format | --tidy | --sanitizers]
 #   --all adds the format check, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
-#   each stage; the others run that stage alone. --nightly builds and runs 100000 random trees, an hour of soak in float
-#   and in double, all hard cases at full length, the page for browsers, a batch on Slurm, and both of the README's commands on
-#   a bare machine: hours.
+#   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
+#   the sanitizers, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
+#   browsers, a batch on Slurm, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -90,9 +90,13 @@ tidy() {
 too_long_for_sanitizers='/(corner|pit|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood'
 
 # -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
+configure_sanitizers() {
+  configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
+}
+
 sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
-  configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
+  configure_sanitizers
   stage "sanitizers: build" build build-asan "building with sanitizers"
   stage "sanitizers: tests" run build-asan -E "$too_long_for_sanitizers"
   [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
@@ -118,8 +122,21 @@ at_length() {
   }
 }
 
+fuzz_c_interface() {  # random calls, every access of theirs checked
+  configure_sanitizers
+  build build-asan "building the C interface with sanitizers" c_fuzz_test
+  [ -e build-asan/sample.sinew ] || cp build/sample.sinew build-asan/  # what the tools write is the same
+  echo "random calls of the C interface …" >&2
+  SINEW_FUZZ_CALLS=${SINEW_FUZZ_CALLS:-1000000} build-asan/tests/c/c_fuzz_test >build/fuzz.log 2>&1 || {
+    tail -n 40 build/fuzz.log >&2
+    echo "tests: the C interface failed at random calls (whole log: build/fuzz.log)" >&2
+    exit 1
+  }
+}
+
 nightly() {
   build_tests
+  fuzz_c_interface
   SINEW_RANDOM_TREES=${SINEW_RANDOM_TREES:-100000} long random_trees
   SINEW_SOAK_SECONDS=${SINEW_SOAK_SECONDS:-3600} long soak
   echo "hard cases at full length …" >&2

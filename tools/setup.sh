@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
 # Usage: tools/setup.sh [--tests] [--lint] [--peers] [--web]
-#   --tests: what the tests need     --lint: clang-format and clang-tidy
+#   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
@@ -13,8 +13,9 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libavfilter-dev libcairo2-dev libpng-dev
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
-tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy)
-lint=(clang clang-format clang-tidy libclang-dev llvm-dev)
+tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy
+  mono-mcs mono-runtime)
+lint=(clang clang-format clang-tidy libclang-dev llvm-dev doxygen)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 web=(emscripten chromium brotli)
 command -v npm >/dev/null || web+=(npm)  # another's will do

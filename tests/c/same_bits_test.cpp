@@ -74,24 +74,43 @@ std::string hash_line(std::uint64_t hash) {
   return line;
 }
 
-TEST(CInterfaceSameBits, SampleInCGoesTheWayOfTheSameRunInCpp) {
+/// That a command, given the sample asset, prints the hash of the same run in C++.
+void expect_same_run(const std::string& command) {
   int most = 0;
   const std::string wanted = hash_line(sample_in_cpp(180, most));
   EXPECT_GT(most, 0) << "nothing disturbed the run";
-  const std::string printed = output_of(binary_dir() + "/samples/sample_c " + fixtures::sample_asset());
+  const std::string printed = output_of(command + " " + fixtures::sample_asset());
   EXPECT_NE(printed.find(wanted), std::string::npos) << printed << "wanted: " << wanted;
 }
 
-#ifdef SINEW_PYTHON
-TEST(CInterfaceSameBits, SampleInPythonGoesTheWayOfTheSameRunInCpp) {
-  int most = 0;
-  const std::string wanted = hash_line(sample_in_cpp(180, most));
-  const std::string printed =
-      output_of("PYTHONPATH=" + binary_dir() + "/python " SINEW_PYTHON " " + source_dir() +
-                "/samples/python/sample.py " + fixtures::sample_asset());
-  EXPECT_NE(printed.find(wanted), std::string::npos) << printed << "wanted: " << wanted;
+TEST(CInterfaceSameBits, SampleInCGoesTheWayOfTheSameRunInCpp) {
+  expect_same_run(binary_dir() + "/samples/sample_c");
 }
+
+TEST(CInterfaceSameBits, SampleInPythonGoesTheWayOfTheSameRunInCpp) {
+#ifdef SINEW_PYTHON
+  expect_same_run("PYTHONPATH=" + binary_dir() + "/python " SINEW_PYTHON " " + source_dir() +
+                  "/samples/python/sample.py");
+#else
+  GTEST_SKIP() << "without Python, and with the sanitizers";
 #endif
+}
+
+TEST(CInterfaceSameBits, SampleInCSharpGoesTheWayOfTheSameRunInCpp) {
+#ifdef SINEW_CSHARP_SAMPLE
+  expect_same_run(SINEW_MONO " " + binary_dir() + "/csharp/sample.exe");
+#else
+  GTEST_SKIP() << "without mono (apt-get install mono-mcs mono-runtime), and with the sanitizers";
+#endif
+}
+
+TEST(CInterfaceSameBits, SampleInRustGoesTheWayOfTheSameRunInCpp) {
+#ifdef SINEW_RUST_SAMPLE
+  expect_same_run(binary_dir() + "/rust/sample_rust");
+#else
+  GTEST_SKIP() << "without rustc (apt-get install rustc), and with the sanitizers";
+#endif
+}
 
 TEST(CInterfaceSameBits, DefaultsAreThoseOfCpp) {
   const sinew_world_settings c = initialised(sinew_world_settings_init);

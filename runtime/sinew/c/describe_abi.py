@@ -86,10 +86,13 @@ class Header:
             return []
         out = []
         for words in text.split(","):
-            match = re.fullmatch(r"(.*?[ *])(\w+)", words.strip())
+            match = re.fullmatch(r"(.*?[ *])(\w+)(?:\[(\d+)\])?", words.strip())
             if not match:
                 fail(f"parameter {words}")
-            out.append({"name": match[2], "type": self.type_of(match[1])})
+            if match[3]:  # so many numbers; to C it is a pointer
+                out.append({"name": match[2], "type": self.type_of(match[1]) + "*", "count": int(match[3])})
+            else:
+                out.append({"name": match[2], "type": self.type_of(match[1])})
         return out
 
     def callback(self, result, name, parameters, doc):

@@ -1,24 +1,23 @@
 #!/usr/bin/env python3
 """Writes the ctypes half of the Python package from the description of the C interface, or packs the package as a wheel.
 
-    make_binding.py sinew_abi.json > sinew/_abi.py
+    make_binding.py ctypes sinew_abi.json > sinew/_abi.py
     make_binding.py --wheel DIRECTORY VERSION > sinew.whl   # of DIRECTORY/sinew, with the shared library in it"""
 import base64
 import hashlib
 import io
-import json
 import os
 import sys
 import sysconfig
 import zipfile
 
+sys.dont_write_bytecode = True  # this folder is not written to
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import abi as described
+from abi import SIZES, camel
+
 CTYPES = {"int32_t": "c_int32", "uint32_t": "c_uint32", "uint64_t": "c_uint64", "uint8_t": "c_uint8", "size_t": "c_size_t",
           "float": "c_float", "double": "c_double"}
-SIZES = {"int32_t": 4, "uint32_t": 4, "uint64_t": 8, "uint8_t": 1, "size_t": 8, "float": 4, "double": 8}
-
-
-def camel(name):
-    return "".join(part.capitalize() for part in name.removeprefix("sinew_").split("_"))
 
 
 class Binding:
@@ -32,20 +31,18 @@ class Binding:
             return "ctypes.c_char_p"
         if kind.endswith("*"):
             return "ctypes.c_void_p"  # takes arrays, addresses and byref() alike
-        if kind in self.abi["handles"]:
+        if kind in self.abi.handles:
             return "ctypes.c_uint64"
-        if kind in self.abi["enums"]:
+        if kind in self.abi.enums:
             return "ctypes.c_int32"
-        if kind in self.abi["callbacks"] or kind in self.abi["structs"]:
+        if kind in self.abi.callbacks or kind in self.abi.structs:
             return camel(kind)
         return "ctypes." + CTYPES[kind]
 
-    def enum(self, name, values):
-        prefix = os.path.commonprefix(list(values))
-        prefix = prefix[:prefix.rindex("_") + 1]
+    def enum(self, name, _values):
         yield f"class {camel(name)}(enum.IntEnum):"
-        for value, number in values.items():
-            yield f"    {value.removeprefix(prefix)} = {number}"
+        for value, number in self.abi.enum_values(name).items():
+            yield f"    {value} = {number}"
 
     def callback(self, name, callback):
         types = [self.ctype(callback["result"])] + [self.ctype(p["type"]) for p in callback["parameters"]]
@@ -78,8 +75,8 @@ class Binding:
         yield '"""Written by make_binding.py from sinew_abi.json: what sinew.h declares, for ctypes."""'
         yield "import ctypes"
         yield "import enum"
-        for section, write in (("enums", self.enum), ("callbacks", self.callback), ("structs", self.struct)):
-            for name, thing in self.abi[section].items():
+        for things, write in ((self.abi.enums, self.enum), (self.abi.callbacks, self.callback), (self.abi.structs, self.struct)):
+            for name, thing in things.items():
                 yield ""
                 yield ""
                 yield from write(name, thing)
@@ -88,7 +85,7 @@ class Binding:
         yield "def load(path):"
         yield '    """The shared library, with the types of its functions."""'
         yield "    lib = ctypes.CDLL(path)"
-        for name, function in self.abi["functions"].items():
+        for name, function in self.abi.functions.items():
             yield from self.function(name, function)
         yield "    return lib"
 
@@ -122,10 +119,7 @@ def main():
     if len(sys.argv) == 4 and sys.argv[1] == "--wheel":
         sys.stdout.buffer.write(wheel(sys.argv[2], sys.argv[3]))
         return
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    with open(sys.argv[1], encoding="utf-8") as file:
-        print("\n".join(Binding(json.load(file)).lines()))
+    described.main({"ctypes": lambda abi: Binding(abi).lines()}, __doc__)
 
 
 main()

@@ -1,0 +1,27 @@
+# Pages made by doxygen: build/api/html. Every public name of what is listed as documented has words, or the target fails; of the
+# other headers only the words that are there are checked.
+find_program(SINEW_DOXYGEN doxygen)
+if(NOT SINEW_DOXYGEN)
+  return()
+endif()
+# skeleton/vector.h and scalar.h, the arithmetic within, and the layers that are not listed here have names without words yet.
+set(documented api_pages.dox sinew/c/sinew.h sinew/io/asset.h sinew/crowd/crowd.h sinew/crowd/population.h)
+foreach(header joint_type parallel_for principal_axes skeleton status transform version)
+  list(APPEND documented sinew/skeleton/${header}.h)
+endforeach()
+
+# doxygen_run(folder undocumented INPUT…): a configuration in build/api/folder.
+function(doxygen_run folder undocumented)
+  set(SINEW_DOXYGEN_OUTPUT ${CMAKE_BINARY_DIR}/api/${folder})
+  set(SINEW_DOXYGEN_UNDOCUMENTED ${undocumented})
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE SINEW_DOXYGEN_INPUT)
+  list(JOIN SINEW_DOXYGEN_INPUT " " SINEW_DOXYGEN_INPUT)
+  file(MAKE_DIRECTORY ${SINEW_DOXYGEN_OUTPUT})
+  configure_file(Doxyfile.in ${SINEW_DOXYGEN_OUTPUT}/Doxyfile @ONLY)
+endfunction()
+doxygen_run(. NO api_pages.dox sinew)
+doxygen_run(documented YES ${documented})
+add_custom_target(api_pages
+  COMMAND ${SINEW_DOXYGEN} ${CMAKE_BINARY_DIR}/api/documented/Doxyfile
+  COMMAND ${SINEW_DOXYGEN} ${CMAKE_BINARY_DIR}/api/Doxyfile
+  VERBATIM)
