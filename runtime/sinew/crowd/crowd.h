@@ -27,14 +27,14 @@ namespace sinew {
 
 /// Results have the same bits for every instruction set, number of lanes and number of chunks.
 struct CrowdSettings {
-  int capacity = 1000;  ///< characters
-  InstructionSet instruction_set = best_instruction_set();
+  int capacity = 1000;                                      ///< characters
+  InstructionSet instruction_set = best_instruction_set();  ///< what this machine has, or less
   int lanes = 0;   ///< characters per batch: 8, 16, or 0 for what the instruction set does best
   int chunks = 1;  ///< that a frame is divided into for the host's threads: a few per thread
-  Vec3<double> gravity{0, 0, -9.81};
-  bool ground = true;  ///< shares out its support; false: weights hang from the root
-  double ground_height = 0;
-  bool model_poses = true;  ///< write `model`
+  Vec3<double> gravity{0, 0, -9.81};  ///< m/s², world
+  bool ground = true;                 ///< shares out its support; false: weights hang from the root
+  double ground_height = 0;           ///< m, world
+  bool model_poses = true;            ///< write `model`
 };
 
 /// What a character plays.
@@ -44,6 +44,9 @@ struct CrowdTrack {
   Transform<float> place = {};  ///< clip → world
 };
 
+/// Many characters of one skeleton on their clips: sampled, checked against their muscles and posed in
+/// batches. Knows no contacts; Population hands who is overloaded to a world. Calls of one crowd do not
+/// overlap.
 class Crowd {
  public:
   /// Set-up: copies the skeleton and allocates everything. Null with `status` set if something cannot be
@@ -71,12 +74,12 @@ class Crowd {
   float peak_load(int character) const;
   /// N·m (N for translations), degrees of freedom as JointType orders them; the root's is what must hold it.
   float torque(int character, int dof) const;
-  int dof_count() const;
+  int dof_count() const;  ///< of one character
   /// [joint] local, the root's in the world. Those of a clip are made when asked for: a step keeps none.
   std::span<JointJet<float>> jets(int character);
   Vec3<float> root_velocity(int character) const;                ///< m/s, world
   std::span<const Transform<float>> model(int character) const;  ///< [joint] joint → world
-  const CrowdTrack& track(int character) const;
+  const CrowdTrack& track(int character) const;                  ///< what it plays, at the time that it is at
 
  private:
   struct Impl;

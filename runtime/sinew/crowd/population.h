@@ -20,6 +20,7 @@
 
 namespace sinew {
 
+/// Of a crowd, and of the world that its overloaded characters enter.
 struct PopulationSettings {
   CrowdSettings crowd;          ///< capacity, lanes, chunks; gravity and ground are the world's
   WorldSettings world;          ///< workers, level of detail, budget
@@ -27,6 +28,8 @@ struct PopulationSettings {
   int places = 64;              ///< characters that may be in the world at once; each takes memory
 };
 
+/// A crowd of which those whose muscles do not suffice, or who are pushed, are simulated in a world until
+/// they are back on their clips. Calls of one population do not overlap.
 class Population {
  public:
   /// Set-up: allocates everything. Null with `status` set if something cannot be meant.
@@ -48,14 +51,16 @@ class Population {
   std::span<const Transform<float>> model(int character) const;  ///< [joint] joint → world
   /// kChecked outside of the world.
   Level level(int character) const;
+  /// Whether it is simulated now.
   bool in_world(int character) const;
   /// Its handle while it is in the world.
   Character<float> solved(int character);
-  int solved_count() const;
+  int solved_count() const;  ///< characters that are in the world
   /// Characters that were called for in the last step and found no place: they stay on their clips.
   int turned_away() const;
   /// Props, obstacles, report. Its characters belong to the population.
   World<float>& world();
+  /// Those on their clips.
   Crowd& crowd();
 
  private:

@@ -18,27 +18,29 @@ namespace sinew {
 
 /// Triangle mesh in model space at the bind pose. Skinned when `joints` is not empty.
 struct Mesh {
-  std::string name;
+  std::string name;                    ///< as in the source file; may be empty
   std::vector<float> positions;        ///< [vertex][3], m
   std::vector<float> normals;          ///< [vertex][3], unit
   std::vector<float> uvs;              ///< [vertex][2] or empty; origin top left
   std::vector<std::uint32_t> indices;  ///< triangles, counter-clockwise seen from outside
   std::vector<std::uint16_t> joints;   ///< [vertex][4] skeleton joint of each influence
   std::vector<float> weights;          ///< [vertex][4], sum 1
-  int material = -1;
+  int material = -1;                   ///< index into Asset::materials; -1: none
 };
 
+/// What a mesh looks like.
 struct Material {
-  std::string name;
+  std::string name;                             ///< as in the source file; may be empty
   float base_color[4] = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGBA
   std::vector<std::uint8_t> texture;            ///< PNG or JPEG file bytes, or empty
 };
 
+/// All that a .sinew file holds. What is read is valid; what is made by hand, `write_asset` checks.
 struct Asset {
-  Skeleton skeleton;
-  std::vector<Clip> clips;
-  std::vector<Mesh> meshes;
-  std::vector<Material> materials;
+  Skeleton skeleton;                           ///< one character
+  std::vector<Clip> clips;                     ///< of that skeleton's joints
+  std::vector<Mesh> meshes;                    ///< its skin; may be empty
+  std::vector<Material> materials;             ///< of the meshes
   std::vector<Transform<float>> inverse_bind;  ///< [joint] model space at bind → joint; empty without meshes
   std::vector<CurveSlot> curve_slots;          ///< what Clip::curves move
   std::vector<std::string> event_names;        ///< all whose event_name() is in Clip::events

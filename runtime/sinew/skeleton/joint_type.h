@@ -21,6 +21,7 @@ enum class JointType : std::uint8_t {
   kTranslation
 };
 
+/// Degrees of freedom of a joint of that type, 0 to 6.
 constexpr int dof_count(JointType type) {
   constexpr int counts[] = {0, 1, 1, 2, 3, 3, 6, 3};
   return counts[static_cast<int>(type)];

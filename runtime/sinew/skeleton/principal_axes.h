@@ -6,6 +6,7 @@
 
 namespace sinew {
 
+/// What principal_axes() finds.
 struct PrincipalAxes {
   Vec3<double> values;  ///< ascending; units of the matrix
   Mat3<double>

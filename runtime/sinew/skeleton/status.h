@@ -5,8 +5,9 @@
 
 namespace sinew {
 
+/// Why a call was refused, or that it was not.
 enum class Code : std::uint8_t {
-  kOk,
+  kOk,               ///< done
   kInvalidArgument,  ///< a size, index or setting that can't be meant
   kNotFinite,        ///< NaN or infinity in an input
   kOutOfRange,       ///< finite, but absurd (|x| above what the step can carry)
@@ -18,12 +19,15 @@ enum class Code : std::uint8_t {
 /// Error code plus the culprit: which joint (or other element) and a static text that says why. Trivially
 /// copyable; `reason` points to a string literal and never needs to be freed.
 struct Status {
-  Code code = Code::kOk;
+  Code code = Code::kOk;    ///< what kind of error
   int index = -1;           ///< joint, effect, track, … the reason talks about; -1 if none
   const char* reason = "";  ///< one clause, e.g. "inertia breaks the triangle inequality"
 
+  /// Whether the call did what it should.
   constexpr bool ok() const { return code == Code::kOk; }
+  /// The same.
   constexpr explicit operator bool() const { return ok(); }
+  /// An error; `reason` is a string literal.
   static constexpr Status error(Code code, const char* reason, int index = -1) {
     return {code, index, reason};
   }
