@@ -16,7 +16,7 @@ const char* behaviour_known_to_fail(const std::string& scene) {
   static constexpr const char* kHelped =
       "hands and feet stand a little elsewhere than the clip's, and nothing moves the body over them before "
       "it "
-      "balances: it takes up to 120 N m of help about each axis; some try several clips, limp in between";
+      "balances: it takes up to 60 N m of help about each axis; some try several clips, limp in between";
   static constexpr Known kKnown[] = {
       {"get_up_flat", kHelped},
       {"get_up_interrupted", kHelped},
