@@ -5,7 +5,7 @@
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
 #   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
 #   the sanitizers, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
-#   browsers, a batch on Slurm, and both of the README's commands on a bare machine: hours.
+#   browsers, packages, a batch on Slurm, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -146,6 +146,7 @@ nightly() {
   tools/setup.sh --web
   samples/web/build.sh build/sinew build/web
   run build -R '^sample_web$'
+  SINEW_PACKAGES=1 run build -R 'taken_in_without_flatc|shared_layers|debian_packages'
   SINEW_SLURM=1 run build -R BatchOnSlurm  # skipped where Slurm is not installed
   tests/fresh_machine.sh
 }

@@ -1,4 +1,8 @@
 # Packages for Debian, in a root that holds nothing else: what they depend on, the tool, and a program built against them.
+if(NOT DEFINED ENV{${NEEDS}})
+  message("skipped: set ${NEEDS}=1 to run this")
+  return()
+endif()
 file(REMOVE_RECURSE ${WORK})
 set(root ${WORK}/root)
 
