@@ -129,9 +129,10 @@ TEST(GetUp, ItsClipsAskTheGroundForNoMoreThanItCanGive) {
       torque = std::max(torque, report.help_torque);
     }
   }
-  SINEW_FAILS_TODAY(solved == 0 && torque <= kHelp,
-                    "some frames are solved, and 12 N m are missing 2.08 s into the clip from the back, where "
-                    "the seat leaves the floor");
+  SINEW_FAILS_TODAY(
+      solved == 0 && torque <= kHelp,
+      "some frames are solved, and 12 N m are missing 2.08 s into the clip from the back, where "
+      "the seat leaves the floor");
 }
 
 TEST(GetUp, WhoFellStandsAgainOnItsAnimation) {

@@ -18,7 +18,8 @@ constexpr double kFacesDown = 0.7, kOnFloor = 0.02;  ///< cosine and m: a face t
 constexpr double kBelowFloor = 1;                    ///< m, that such a box goes on
 constexpr double kPiled =
     8;  ///< times the heaviest of those who touch: what a contact may have to bear of a pile
-constexpr double kMostGripped = 4;  ///< weights that a contact may have to bear, in friction by what is driven
+constexpr double kMostGripped =
+    4;  ///< weights that a contact may have to bear, in friction by what is driven
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store

@@ -40,8 +40,8 @@ void sum_subtrees(CharacterState<T>& state);
 template <class T>
 T inertia_of(const TreeProblem<T>& problem, int body, int dof);
 
-/// Whether an animation whose root is assisted, not driven, takes feet so deep into the floor that its root has
-/// to be raised, at the end of the next step: it can't be played. Writes `wanted`. O(bodies).
+/// Whether an animation whose root is assisted, not driven, takes feet so deep into the floor that its root
+/// has to be raised, at the end of the next step: it can't be played. Writes `wanted`. O(bodies).
 template <class T>
 bool drives_into_floor(CharacterState<T>& state, const WorldSettings& world);
 

@@ -69,10 +69,10 @@ struct Stencil {
   T shortened = T(0);               ///< m, the same of a rod or rope
   /// What was open when a loop was closed, world axes, m; closed at 0.45 m/s.
   Vec3<T> offset = Vec3<T>::Zero();
-  Vec3<T> offset_before = Vec3<T>::Zero();  ///< where the step began, which may be taken back
+  Vec3<T> offset_before = Vec3<T>::Zero();    ///< where the step began, which may be taken back
   Vec3<T> unclosed_offset = Vec3<T>::Zero();  ///< the offset before this step closed it further
-  bool yields = false;                      ///< to a driven root, in this step: see close_slowly()
-  CarriedForce<T> carried, carried_before;  ///< its pull, where a loop is rigid; the same
+  bool yields = false;                        ///< to a driven root, in this step: see close_slowly()
+  CarriedForce<T> carried, carried_before;    ///< its pull, where a loop is rigid; the same
 };
 
 /// Four nodes; the rest shape enters through the gradients of its linear shape functions.

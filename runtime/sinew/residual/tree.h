@@ -35,8 +35,8 @@ struct Tree {
   std::vector<Mat3<T>> inertia;           ///< [body] about the centre of mass, joint axes
   std::vector<Vec3<T>> first_moment;      ///< [body] mass · centre of mass, joint axes, kg·m
   std::vector<Mat3<T>> inertia_at_joint;  ///< [body] about the joint's origin, joint axes
-  std::vector<Mat3<T>> parent_axes;  ///< [body] columns: axes that stay with the parent, in its axes: the
-                                     ///< first of a universal joint, all of a planar one
+  std::vector<Mat3<T>> parent_axes;    ///< [body] columns: axes that stay with the parent, in its axes: the
+                                       ///< first of a universal joint, all of a planar one
   std::vector<Mat3<T>> second_moment;  ///< [body] P = ½ tr(I)·1 − I
 
   Scale<T> scale;  ///< that its settings and thresholds are given in

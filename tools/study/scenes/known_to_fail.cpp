@@ -17,8 +17,10 @@ const char* known_to_fail(const std::string& situation) {
        "one of twenty is caught by another's legs and does not come back, 0.22 m off; and a hand whirls at "
        "28 m/s, as one alone does in fine steps (17 to 49 m/s)"},
       {"back_from_ragdoll",
-       "a second later a foot is 66 mm from its place, 1 wanted, 0.3 s later there: the legs swing back about "
-       "the waist no faster than it can stop them (40 mm where it may use twice as much of its strength), and "
+       "a second later a foot is 66 mm from its place, 1 wanted, 0.3 s later there: the legs swing back "
+       "about "
+       "the waist no faster than it can stop them (40 mm where it may use twice as much of its strength), "
+       "and "
        "the return alone takes 0.92 s from a metre to a millimetre"},
       {"stairs",
        "one of the falls goes on for longer than the ten seconds: 2.2 m/s on the last steps, where 0.1 are "
