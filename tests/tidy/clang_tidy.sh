@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Stands before clang-tidy in build-tidy: third parties' headers are parsed once, not in each of 600 files. Called
 # as `clang_tidy.sh prepare` it makes them; else as clang-tidy, with the compiler's command after `--`.
-# Files that are compiled for another instruction set, or in C, are looked at without.
+# Files that are compiled for another instruction set, in C, or without Eigen are looked at without.
 set -euo pipefail
 folder=build-tidy/third_parties
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -26,7 +26,7 @@ fi
 command=" $* " header=plain
 [[ $command == *' -DGTEST_HAS_PTHREAD=1 '* ]] && header=tests
 other='( -m[a-z]| -DEIGEN| -fno-math-errno| -fvisibility|\.c )'
-if [[ $command =~ $other ]]; then exec clang-tidy "$@"; fi
+if [[ $command =~ $other || $command != *eigen3* ]]; then exec clang-tidy "$@"; fi
 before=()
 while [ "$1" != -- ]; do before+=("$1"); shift; done
 exec clang-tidy "${before[@]}" -- -include-pch "$top/$folder/$header.pch" "${@:2}" -fPIC
