@@ -22,7 +22,7 @@ struct BehaviourSettings {
   GetUpPolicy get_up = GetUpPolicy::kAuto;
   double gather = 0.6;  ///< s, of a human, from where it lies into the pose from which it rises
   /// N and N·m of a human, that an invisible hand may do while it rises; see the report.
-  double rise_force = 0, rise_torque = 60;  // N·m: with twice as much no more of the mannequin's falls stand
+  double rise_force = 0, rise_torque = 60;  // N·m: twice as much, 11 instead of 10 of 12 stand
 };
 
 }  // namespace sinew
