@@ -73,20 +73,6 @@ EMSCRIPTEN_KEEPALIVE const float* page_models(void) {
   return sinew_character_get_view(hero, SINEW_VIEW_MODEL, &view) == SINEW_OK ? view.data : NULL;
 }
 
-/* How much of a joint's strength is used, 0 to 1. */
-EMSCRIPTEN_KEEPALIVE float page_load(int joint) {
-  sinew_joint_info info = {.size = sizeof info};
-  sinew_view view;
-  if (sinew_asset_get_joint(asset, joint, &info) != SINEW_OK || info.first_dof < 0) return 0;
-  if (sinew_character_get_view(hero, SINEW_VIEW_LOAD, &view) != SINEW_OK) return 0;
-  float most = 0;
-  for (int d = info.first_dof; d < info.first_dof + info.dofs && d < view.count; ++d) {
-    const float load = *(const float*)((const char*)view.data + (size_t)d * (size_t)view.stride);
-    if (load > most) most = load;
-  }
-  return most < 1 ? most : 1;
-}
-
 EMSCRIPTEN_KEEPALIVE void page_strength(float of_its_own) {
   strength = of_its_own;
   if (down_for <= 0) sinew_character_set_strength(hero, strength);
@@ -129,4 +115,3 @@ EMSCRIPTEN_KEEPALIVE const char* page_step(float h) {
 
 EMSCRIPTEN_KEEPALIVE int page_unknowns(void) { return report.unknown_dofs; }
 EMSCRIPTEN_KEEPALIVE int page_dofs(void) { return report.dofs; }
-EMSCRIPTEN_KEEPALIVE double page_kinetic_energy(void) { return report.kinetic_energy; }

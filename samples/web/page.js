@@ -58,26 +58,26 @@ class Character {
 // Sinew's z is up, three.js's y is.
 const kUpright = new THREE.Matrix4().makeRotationX(-Math.PI / 2);
 
-/** The bones of a scene, each led by the joint of its name. */
+/** The bones of a scene, each driven by the joint of its name. */
 class Bones {
   constructor(character, model) {
     this.character = character;
     model.updateMatrixWorld(true);
-    this.led = [];
+    this.driven = [];
     character.names.forEach((name, joint) => {
       const bone = model.getObjectByName(THREE.PropertyBinding.sanitizeNodeName(name));
       if (!bone) return;
       // A joint's frame is turned against its bone's, once and for all.
       const rest = character.joint(joint, new THREE.Matrix4()).premultiply(kUpright);
-      this.led.push({ bone, joint, offset: rest.invert().multiply(bone.matrixWorld) });
+      this.driven.push({ bone, joint, offset: rest.invert().multiply(bone.matrixWorld) });
     });
-    if (this.led.length === 0) fail('no bone of the model has the name of a joint');
-    for (const { bone } of this.led) bone.updateMatrixWorld = () => {};  // what follow() wrote stays
+    if (this.driven.length === 0) fail('no bone of the model has the name of a joint');
+    for (const { bone } of this.driven) bone.updateMatrixWorld = () => {};  // what follow() wrote stays
     // Skinned vertices come out in the world: the mesh itself stays where it was bound.
     model.traverse((node) => { if (node.isSkinnedMesh) node.frustumCulled = false; });
   }
   follow() {
-    for (const { bone, joint, offset } of this.led)
+    for (const { bone, joint, offset } of this.driven)
       this.character.joint(joint, bone.matrixWorld).premultiply(kUpright).multiply(offset);
   }
 }

@@ -265,7 +265,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   visit_strengths("strength of a muscle", s.muscle_strength);
   stream.value("contacts that touched", s.contact_signature);
   stream.value("steps with the same contacts", s.steps_unchanged);
-  stream.value("steps of passing", s.collision_suspended);
+  stream.value("steps of suspended collision", s.collision_suspended);
   stream.value("energy ceiling", s.energy_ceiling);
   {
     ResidualCoder<double> coder("energy lent by surfaces, stored energy", stream, true);

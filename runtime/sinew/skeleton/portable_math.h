@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 
 namespace sinew::portable {
 
@@ -10,52 +11,30 @@ namespace sinew::portable {
 // results part once in 10⁸ calls. Flights and falls take as long with them (`dynamics_bench`). In double they
 // are the library's. Always inlined: files that are compiled for wider registers must leave no copy behind
 // that others would be linked to.
-#define SINEW_PORTABLE [[gnu::always_inline]] inline
 
-SINEW_PORTABLE float sin(float x) {
-  return static_cast<float>(std::sin(double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T sin(T x) {
+  return static_cast<T>(std::sin(double(x)));
 }
-SINEW_PORTABLE float cos(float x) {
-  return static_cast<float>(std::cos(double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T cos(T x) {
+  return static_cast<T>(std::cos(double(x)));
 }
-SINEW_PORTABLE float acos(float x) {
-  return static_cast<float>(std::acos(double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T atan2(T y, T x) {
+  return static_cast<T>(std::atan2(double(y), double(x)));
 }
-SINEW_PORTABLE float atan2(float y, float x) {
-  return static_cast<float>(std::atan2(double(y), double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T exp(T x) {
+  return static_cast<T>(std::exp(double(x)));
 }
-SINEW_PORTABLE float exp(float x) {
-  return static_cast<float>(std::exp(double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T cbrt(T x) {
+  return static_cast<T>(std::cbrt(double(x)));
 }
-SINEW_PORTABLE float cbrt(float x) {
-  return static_cast<float>(std::cbrt(double(x)));
+template <std::floating_point T>
+[[gnu::always_inline]] inline T hypot(T x, T y) {
+  return static_cast<T>(std::hypot(double(x), double(y)));
 }
-SINEW_PORTABLE float hypot(float x, float y) {
-  return static_cast<float>(std::sqrt(double(x) * double(x) + double(y) * double(y)));
-}
-
-SINEW_PORTABLE double sin(double x) {
-  return std::sin(x);
-}
-SINEW_PORTABLE double cos(double x) {
-  return std::cos(x);
-}
-SINEW_PORTABLE double acos(double x) {
-  return std::acos(x);
-}
-SINEW_PORTABLE double atan2(double y, double x) {
-  return std::atan2(y, x);
-}
-SINEW_PORTABLE double exp(double x) {
-  return std::exp(x);
-}
-SINEW_PORTABLE double cbrt(double x) {
-  return std::cbrt(x);
-}
-SINEW_PORTABLE double hypot(double x, double y) {
-  return std::hypot(x, y);
-}
-
-#undef SINEW_PORTABLE
 
 }  // namespace sinew::portable
