@@ -1,9 +1,11 @@
-"""Skeleton and mesh of the mannequin: a smooth union of limbs with elliptic sections, polygonised by surface nets.
+"""Skeleton and body of the mannequin: a smooth union of limbs with elliptic sections, polygonised by surface nets.
 
 Segment lengths: thigh 0.245, shank 0.246, foot 0.152, upper arm 0.166, forearm 0.146 of a stature of 1.75 m (Drillis & Contini,
 de Leva's joint centres).
 """
 import numpy as np
+
+from surface import surface_nets
 
 ARM = np.array([np.sqrt(0.5), -np.sqrt(0.5), 0.0])  # bind direction of the left arm
 
@@ -88,6 +90,9 @@ class Ball:
         return k0 * (k0 - 1) / np.maximum(1e-6, np.linalg.norm(q / self.radii, axis=-1))
 
 
+NOSE_AND_BROW = [Ball("head", [0, 1.624, 0.094], [0.010, 0.030, 0.022], -22), Ball("head", [0, 1.660, 0.070], [0.050, 0.016, 0.020])]
+
+
 def _shapes():
     """Sizes of a man of 1.75 m and 75 kg: breadths and girths as tailors and anthropometric tables give them."""
     at = {name: np.array(p, float) for name, _, p in JOINTS}
@@ -100,7 +105,7 @@ def _shapes():
             roundness=2.4, caps=(0.05, 0.03)),
         Loft("neck", [0, 0, 0], y, x, z, [(1.44, 0.060, 0.060, 0, -0.028), (1.49, 0.053, 0.056, 0, -0.023), (1.54, 0.050, 0.053, 0, -0.015), (1.60, 0.050, 0.054, 0, -0.008)]),
         Ball("head", [0, 1.670, -0.014], [0.076, 0.080, 0.094]), Ball("head", [0, 1.622, 0.026], [0.060, 0.080, 0.062], 8),
-        Ball("head", [0, 1.560, 0.056], [0.034, 0.024, 0.030]), Ball("head", [0, 1.624, 0.094], [0.010, 0.030, 0.022], -22), Ball("head", [0, 1.660, 0.070], [0.050, 0.016, 0.020]),
+        Ball("head", [0, 1.560, 0.056], [0.034, 0.024, 0.030]), *NOSE_AND_BROW,
     ]
     for tail, sign in (("_l", 1), ("_r", -1)):
         mirror = np.array([sign, 1, 1])
@@ -149,47 +154,10 @@ def field(p):
     return np.minimum(-BLEND * np.log(total[0] + total[1]), -BLEND * np.log(total[0] + total[-1]))
 
 
-def gradient(p, h=1.5e-3):
+def gradient(field, p, h):
+    """Unit normals of the surface, by differences over h metres."""
     g = np.stack([field(p + h * e) - field(p - h * e) for e in np.eye(3)], axis=-1)
     return g / np.maximum(1e-9, np.linalg.norm(g, axis=-1, keepdims=True))
-
-
-def surface_nets(values, origin, step):
-    """One vertex per cell that the surface crosses, a quad per crossed edge."""
-    inside = values < 0
-    corners = [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
-    n = np.array(values.shape) - 1
-    cut = lambda a, c: a[c[0]:c[0] + n[0], c[1]:c[1] + n[1], c[2]:c[2] + n[2]]
-    crossed = ~(np.all([cut(inside, c) for c in corners], axis=0) | np.all([~cut(inside, c) for c in corners], axis=0))
-    cells = np.argwhere(crossed)
-    index = -np.ones(n, np.int64)
-    index[tuple(cells.T)] = np.arange(len(cells))
-    total, count = np.zeros((len(cells), 3)), np.zeros(len(cells))
-    for a in corners:
-        for axis in range(3):
-            if a[axis]:
-                continue
-            b = tuple(c + (axis == k) for k, c in enumerate(a))
-            va, vb = values[tuple((cells + a).T)], values[tuple((cells + b).T)]
-            hit = (va < 0) != (vb < 0)
-            t = np.where(hit, va / np.where(hit, va - vb, 1), 0)
-            point = cells + a + t[:, None] * (np.array(b) - a)
-            total += np.where(hit[:, None], point, 0)
-            count += hit
-    vertices = origin + step * total / count[:, None]
-    quads = []
-    for axis in range(3):
-        u, v = np.eye(3, dtype=int)[(axis + 1) % 3], np.eye(3, dtype=int)[(axis + 2) % 3]
-        a = inside[tuple(slice(1, -1) for _ in range(3))]
-        b = np.roll(inside, -1, axis)[tuple(slice(1, -1) for _ in range(3))]
-        edge = np.argwhere(a != b) + 1
-        edge = edge[edge[:, axis] < n[axis]]
-        q = np.stack([index[tuple((edge - du * u - dv * v).T)] for du, dv in ((1, 1), (0, 1), (0, 0), (1, 0))], axis=1)
-        flip = ~inside[tuple(edge.T)]
-        q[flip] = q[flip][:, ::-1]
-        quads.append(q[(q >= 0).all(axis=1)])
-    quads = np.concatenate(quads)
-    return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 def _step(x, width):
@@ -263,13 +231,14 @@ def smoothed(weights_full, triangles, rounds=6):
     return weights_full
 
 
-def mesh(step=0.0115):
+STEP = 0.0115  # m, of the mesh
+LOW = np.array([-0.72, -0.03, -0.22])
+COUNTS = np.ceil((np.array([0.72, 1.80, 0.27]) - LOW) / STEP).astype(int)
+
+
+def skinned(field, gradient, boxes=()):
     """Positions, normals, triangles, four joints a vertex and their weights; bind pose."""
-    low, high = np.array([-0.72, -0.03, -0.22]), np.array([0.72, 1.80, 0.27])
-    counts = np.ceil((high - low) / step).astype(int)
-    grid = np.stack(np.meshgrid(*[low[k] + step * np.arange(counts[k]) for k in range(3)], indexing="ij"), axis=-1)
-    values = np.concatenate([field(slab) for slab in np.array_split(grid, 16)])
-    vertices, triangles = surface_nets(values, low, step)
+    vertices, triangles = surface_nets(field, LOW, COUNTS, STEP, boxes)
     for _ in range(3):  # onto the surface itself
         vertices = vertices - field(vertices)[:, None] * gradient(vertices)
     normals = gradient(vertices)
@@ -279,3 +248,8 @@ def mesh(step=0.0115):
     order = np.argsort(-weights, axis=1, kind="stable")[:, :4]
     top = np.take_along_axis(weights, order, axis=1)
     return vertices, normals, triangles, order, top / top.sum(axis=1, keepdims=True)
+
+
+def body_mesh():
+    """What the physical body is fitted to: hands are mittens, the head is round."""
+    return skinned(field, lambda p: gradient(field, p, 1.5e-3))

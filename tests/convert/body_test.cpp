@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "convert/human.h"
 #include "convert/muscles.h"
@@ -83,6 +84,34 @@ TEST(Body, MannequinsPartsWeighWhatHumanPartsDo) {
     const Vec3<double> principal = principal_axes(joint.inertia).values;
     EXPECT_GT(principal[0] + principal[1], principal[2]) << joint.name;
   }
+}
+
+// The mannequin's hands are mittens to its body and have fingers in pictures.
+TEST(Body, IsFittedToTheMeshThatIsNotDrawn) {
+  namespace fs = std::filesystem;
+  const std::string file = source_dir() + "/assets/character/mannequin.glb";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const auto converted = [&](const std::string& name, const std::string& instead, Asset& asset) {
+    for (std::size_t at = 0; (at = bytes.find(name, at)) != std::string::npos;)
+      bytes.replace(at, name.size(), instead);
+    const std::string renamed = (fs::temp_directory_path() / "sinew_not_drawn.glb").string();
+    std::ofstream(renamed, std::ios::binary) << bytes;
+    nlohmann::json report;
+    ASSERT_FALSE(convert_files({renamed}, {{"clips", {"stand"}}}, asset, report));
+    fs::remove(renamed);
+  };
+  Asset both, drawn;
+  converted("UCX_body", "UCX_body", both);
+  converted("UCX_body", "old_body", drawn);
+  ASSERT_EQ(both.meshes.size(), 1u);
+  EXPECT_EQ(both.meshes[0].name, "body");
+  ASSERT_EQ(drawn.meshes.size(), 2u);
+  EXPECT_GT(both.meshes[0].positions.size(), drawn.meshes[1].positions.size());
+  const int hand = both.skeleton.find("hand_l");
+  ASSERT_GE(hand, 0);
+  const auto mass = [&](const Asset& a) { return a.skeleton.joints[std::size_t(hand)].mass; };
+  EXPECT_NE(mass(both), mass(drawn)) << "fingers weigh, too, where they are of the body";
 }
 
 TEST(Body, ADollHasHumanDensityAndAChildIsSlight) {

@@ -1,4 +1,6 @@
 // Graphs as text and as files: what they say comes back, and what is wrong with them is said in one line.
+#include <array>
+
 #include "graph/attribution.h"
 #include "graph/describe.h"
 #include "graph_fixture.h"
@@ -154,6 +156,8 @@ TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
        "no joint has the role of a head"},
       {R"({"parameters": {"x": 0}, "graph": {"look": "idle", "at": ["x", "x", "x"], "joints": [["joint3", 1], ["joint2", 1]]}})",
        "joints are not one below the other"},
+      {R"({"parameters": {"x": 0}, "graph": {"look": "idle", "at": ["x", "x", "x"], "joints": [["joint3", 1], ["neck", 1]]}})",
+       "the asset has no joint of the look's names ('neck')"},
       {R"({"graph": {"layers": ["idle", {"node": "run", "mask": "lower"}]}})",
        "no mask of this name ('lower')"},
       {R"({"graph": {"layers": ["idle", {"node": "run", "mode": "additive", "reference": "rest"}]}})",
@@ -256,6 +260,32 @@ TEST(GraphDescribe, SaysWhatPlaysAndWhatItWaitsFor) {
   for (const auto& w : machine["waits"])
     if (w["to"] == "move") waits = w["condition"] == "(remaining < 0.2 && !(fading))" && w["holds"] == false;
   EXPECT_TRUE(waits) << machine.dump(2);
+}
+
+TEST(GraphDescribe, NamesEveryWayToFade) {
+  const Asset asset = fixtures::graph_asset();
+  for (const auto& [way, fade] :
+       std::initializer_list<std::array<const char*, 2>>{{"inertial", "offset"},
+                                                         {"dead", "left pose"},
+                                                         {"crossfade", "crossfade"},
+                                                         {"smoothstep", "smoothstep"},
+                                                         {"cut", "none"}}) {
+    Graph graph;
+    fixtures::bind_graph(
+        std::string(R"({"parameters": {"go": "trigger"}, "graph": {"states": {"a": "idle", "b": "walk"},
+      "transitions": [{"from": "a", "to": "b", "if": "go", "kind": ")") +
+            way + R"(", "duration": 0.2}]}})",
+        asset, graph);
+    fixtures::GraphPlayer<float> player(graph);
+    player.step(0);
+    player.trigger("go");
+    player.step(0.01);
+    const graph_tools::Json described = graph_tools::describe_state(graph, player.state);
+    if (described.contains("transition"))
+      EXPECT_EQ(described["transition"]["fade"], fade) << way;
+    else
+      EXPECT_STREQ(fade, "none") << way;
+  }
 }
 
 TEST(GraphAttribution, SharesAddUpToTheAcceleration) {

@@ -154,6 +154,38 @@ TEST(GraphMirror, TurnsAndStepsToTheOtherSide) {
     EXPECT_EQ(few.jets[j].rotation.coeffs(), all.jets[j].rotation.coeffs());
 }
 
+TEST(GraphMirror, EventsAreThoseOfTheOtherSide) {
+  Asset asset = fixtures::graph_asset();
+  asset.event_names = {"step_l", "step_r"};
+  asset.clips[1].events[0].name = event_name("step_l");
+  asset.clips[1].events[1].name = event_name("step_r");
+  asset.clips[1].events.push_back(asset.clips[1].events[0]);  // a part that is left before its end
+  asset.clips[1].events.back().end = 1.9f;
+  constexpr const char* kJson = R"({"parameters": {"end": "trigger"},
+    "graph": {"states": {"walk": {"mirror": "walk"}, "stop": "idle", "heard": "run"}, "transitions": [
+      {"from": "walk", "to": "stop", "if": "end"}, {"from": "walk", "to": "heard", "if": "event(step_l) && time > 0.5"}]}})";
+  Graph graph;
+  fixtures::bind_graph(kJson, asset, graph);
+  GraphPlayer<float> player(graph);
+  std::vector<std::pair<std::uint32_t, EventKind>> heard;
+  const auto listen = [&] {
+    for (int k = 0; k < player.events.count; ++k)
+      heard.emplace_back(player.hits[std::size_t(k)].event->name, player.hits[std::size_t(k)].kind);
+  };
+  for (int k = 0; k <= 20; ++k) player.step(k ? 0.01 : 0), listen();
+  player.trigger("end");
+  player.step(0.01);
+  listen();
+  const std::vector<std::pair<std::uint32_t, EventKind>> wanted = {
+      {event_name("step_r"), EventKind::kInstant},
+      {event_name("step_r"), EventKind::kBegin},
+      {event_name("step_r"), EventKind::kEnd}};
+  EXPECT_EQ(heard, wanted);
+  GraphPlayer<float> other(graph);
+  for (int k = 0; k <= 102; ++k) other.step(k ? 0.01 : 0);
+  EXPECT_EQ(other.in("graph"), "heard") << "conditions hear the other side too";
+}
+
 TEST(GraphContacts, FeetRestAsTheClipsSay) {
   Asset asset;
   ASSERT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset).ok());

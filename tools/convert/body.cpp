@@ -127,7 +127,7 @@ class BodyBuilder {
   }
 
   void choose_simulated() {
-    const bool skinned = !rig_.meshes.empty();
+    const bool skinned = !rig_.skin().empty();
     const double small = 0.012 * std::max(rig_.height, 0.1);
     const auto under_head = [](Role r) { return r == Role::kHead; };
     std::vector<std::string> controls, passengers;
@@ -159,7 +159,7 @@ class BodyBuilder {
   }
 
   void gather_vertices() {
-    for (const Mesh& mesh : rig_.meshes) {
+    for (const Mesh& mesh : rig_.skin()) {
       part_of_vertex_.emplace_back();
       for (std::size_t v = 0; v < mesh.positions.size() / 3; ++v) {
         std::size_t main = 0;
@@ -172,7 +172,7 @@ class BodyBuilder {
       }
     }
     const std::vector<Solid> solids =
-        part_solids(rig_.meshes, part_of_vertex_, static_cast<int>(parts_.size()));
+        part_solids(rig_.skin(), part_of_vertex_, static_cast<int>(parts_.size()));
     for (std::size_t j = 0; j < parts_.size(); ++j) parts_[j].solid = solids[j];
   }
 
@@ -319,7 +319,7 @@ class BodyBuilder {
     }
     const bool human = volume_of_role.count(Role::kThighL) && volume_of_role.count(Role::kUpperArmL) &&
                        volume_of_role.count(Role::kHead);
-    const bool by_shares = rig_.meshes.empty() && human;
+    const bool by_shares = rig_.skin().empty() && human;
     double sum = 0;
     for (std::size_t j = 0; j < parts_.size(); ++j) {
       Part& part = parts_[j];
@@ -339,7 +339,7 @@ class BodyBuilder {
     }
     for (Part& part : parts_) part.mass *= sum > 0 ? total_mass() / sum : 0;
     report_["masses_from"] = by_shares             ? "published segment masses"
-                             : rig_.meshes.empty() ? "fitted shapes"
+                             : rig_.skin().empty() ? "fitted shapes"
                                                    : "volume of the skin";
   }
 

@@ -287,9 +287,11 @@ std::string fault_in_size(const Rig& rig) {
   const std::string where = " is more than 10 km from the origin; is the unit right?";
   for (const Rig::Joint& joint : rig.joints)
     if (beyond(joint.rest.translation.norm())) return "joint '" + joint.name + "'" + where;
-  for (const Mesh& mesh : rig.meshes)
-    if (std::any_of(mesh.positions.begin(), mesh.positions.end(), [&](float x) { return beyond(double(x)); }))
-      return "mesh '" + mesh.name + "'" + where;
+  for (const std::vector<Mesh>* meshes : {&rig.meshes, &rig.body_meshes})
+    for (const Mesh& mesh : *meshes)
+      if (std::any_of(mesh.positions.begin(), mesh.positions.end(),
+                      [&](float x) { return beyond(double(x)); }))
+        return "mesh '" + mesh.name + "'" + where;
   for (const Rig::Motion& motion : rig.motions)
     for (const auto& frame : motion.samples)
       for (std::size_t j = 0; j < frame.size(); ++j)
@@ -402,6 +404,16 @@ std::vector<Matrix> node_transforms(const SourceScene& scene, const SourceClip* 
   return world;
 }
 
+namespace {
+
+/// By Unreal's name for it, of the mesh or of the node that carries it.
+bool is_of_body(const import::SourceMesh& mesh, const SourceScene& scene) {
+  const auto named = [](const std::string& name) { return name.compare(0, 4, "UCX_") == 0; };
+  return named(mesh.name) || (mesh.node >= 0 && named(scene.nodes[std::size_t(mesh.node)].name));
+}
+
+}  // namespace
+
 Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, Rig& out,
                 nlohmann::json& report) {
   report["notes"] = nlohmann::json::array();
@@ -436,13 +448,16 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   for (const import::SourceMesh& source : scene.meshes) {
     Mesh mesh;
     if (!bake_mesh(source, scene, world, to_model, joint_of_node, report, mesh)) continue;
+    (is_of_body(source, scene) ? rig.body_meshes : rig.meshes).push_back(std::move(mesh));
+  }
+  for (const Mesh& mesh : rig.skin())
     for (std::size_t k = 0; k < mesh.joints.size(); ++k)
       rig.joints[mesh.joints[k]].skin_weight += double(mesh.weights[k]);
-    rig.meshes.push_back(std::move(mesh));
-  }
+  for (const Mesh& mesh : rig.body_meshes)
+    report["notes"].push_back("the body is fitted to mesh '" + mesh.name + "', which is not drawn");
   // From the sole to the crown, where there is a skin.
   float low = 1e9f, high = -1e9f;
-  for (const Mesh& mesh : rig.meshes)
+  for (const Mesh& mesh : rig.skin())
     for (std::size_t v = 2; v < mesh.positions.size(); v += 3) {
       low = std::min(low, mesh.positions[v]);
       high = std::max(high, mesh.positions[v]);

@@ -2,6 +2,7 @@
 // over each clip.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,18 @@ struct Rig {
   };
   std::vector<Joint> joints;
   std::vector<Foreign> foreign;  ///< left out
-  std::vector<Mesh> meshes;      ///< model space at rest; Mesh::joints index `joints`
+  std::vector<Mesh> meshes;      ///< drawn; model space at rest; Mesh::joints index `joints`
+  std::vector<Mesh>
+      body_meshes;  ///< named UCX_…, as Unreal names them: the body is fitted to them, not drawn
   std::vector<Material> materials;
   std::vector<Motion> motions;
   double unit = 1;
   int up = 1;
   double turned = 0;  ///< rad about the vertical, so that it faces x
   double height = 0;  ///< m, at rest or in the first frame
+
+  /// What the physical body is fitted to.
+  std::span<const Mesh> skin() const { return body_meshes.empty() ? meshes : body_meshes; }
 };
 
 /// [node] transforms to the scene, at rest or (with a clip) t seconds into it; scale and shear included.

@@ -597,8 +597,11 @@ std::string bind_fault(const Compiled& compiled, const std::string& path, const 
   std::string where = path, what = status.reason;
   if (status.index >= 0 && std::size_t(status.index) < compiled.graph.nodes.size()) {
     const GraphNode& node = compiled.graph.nodes[std::size_t(status.index)];
-    where += ":" + std::to_string(compiled.lines[std::size_t(status.index)]) + ": " + node.name;
+    const int line = compiled.lines[std::size_t(status.index)];  // 0: of a compiled graph, which has no lines
+    where += (line > 0 ? ":" + std::to_string(line) : "") + ": " + node.name;
     if (!node.clip.empty()) what += " ('" + node.clip + "')";
+    for (const std::string& joint : node.look.joints)
+      if (asset.skeleton.find(joint.c_str()) < 0) what += " ('" + joint + "')";
     for (const GraphLayer& layer : node.layers)
       for (const std::string& name : {layer.mask, layer.reference})
         if (!name.empty() && asset.find_mask(name) < 0 && asset.find_clip(name) < 0)

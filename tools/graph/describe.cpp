@@ -180,7 +180,7 @@ class Description {
     out["state"] = n.states[std::size_t(m.state)].name;
     out["seconds"] = m.time;
     if (m.transition >= 0) {
-      static constexpr const char* kFades[] = {"none", "offset", "left pose", "crossfade"};
+      static constexpr const char* kFades[] = {"none", "offset", "left pose", "crossfade", "smoothstep"};
       out["transition"] = {{"condition", condition_text(n.transitions[std::size_t(m.transition)].condition,
                                                         graph_.definition())},
                            {"fade", kFades[static_cast<int>(m.fade)]},

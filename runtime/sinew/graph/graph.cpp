@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/animation/sampling_job.h"
+#include "sinew/animation/side_names.h"
 #include "sinew/graph/graph_file.h"
 #include "sinew/graph/graph_keep.h"
 #include "sinew/graph/graph_scratch.h"
@@ -113,7 +114,12 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   const GraphNode& in = node(index);
   const int found = asset.find_clip(in.clip);
   if (found < 0) return bad("the asset has no clip of this name", index);
-  BoundClip bound{&asset.clips[std::size_t(found)], {}, index};
+  BoundClip bound{.clip = &asset.clips[std::size_t(found)], .map = {}, .node = index, .mirrored_events = {}};
+  if (mirrored_[std::size_t(index)]) {
+    const EventMirror mirror = mirror_events(asset.event_names);
+    bound.mirrored_events = bound.clip->events;
+    for (ClipEvent& event : bound.mirrored_events) event.name = mirror(event.name);
+  }
   if (in.group < 0)
     bound.time = static_cast<int>(
         std::count_if(clips_.begin(), clips_.end(), [](const BoundClip& c) { return c.time >= 0; }));
@@ -128,7 +134,7 @@ Status Graph::bind_clip(int index, const Asset& asset) {
   }
   translated_ = std::max(translated_, translated_by(*bound.clip, rest_));
   slots_[std::size_t(index)] = static_cast<int>(clips_.size());
-  clips_.push_back(bound);
+  clips_.push_back(std::move(bound));
   return {};
 }
 

@@ -61,6 +61,11 @@ class Graph {
     PhaseMap map;  ///< of those in a group; of mirrored ones half a cycle on
     int node = 0;
     int time = -1;  ///< which of the block's times it plays by; −1: by its group's phase
+    std::vector<ClipEvent> mirrored_events;  ///< of mirrored ones, by the other side's names
+
+    std::span<const ClipEvent> events() const {
+      return mirrored_events.empty() ? std::span<const ClipEvent>(clip->events) : mirrored_events;
+    }
   };
   struct BoundLayer {
     int mask = -1;                            ///< of the asset

@@ -199,11 +199,12 @@ void Update<T>::leave(int index) {
   const GraphNode& node = graph_.node(index);
   if (node.type == NodeType::kClip) {
     const int clip = graph_.slot(index);
-    const Clip& c = *graph_.clips()[std::size_t(clip)].clip;
+    const Graph::BoundClip& bound = graph_.clips()[std::size_t(clip)];
+    const Clip& c = *bound.clip;
     const ClipTime time = clip_time(graph_, block_, clip);
     if (!events_ || block_.fresh(clip)) return;
     const int first = events_->count;
-    end_events(c.events, double(c.duration), c.loops, time.value, time.rate < 0, *events_);
+    end_events(bound.events(), double(c.duration), c.loops, time.value, time.rate < 0, *events_);
     for (int k = first; k < events_->count; ++k)
       events_->hits[std::size_t(k)].seconds_ago = static_cast<float>(h_);
     return;
@@ -496,16 +497,16 @@ void Update<T>::report_clip(int slot) {
   const bool starts = block_.fresh(slot);
   if (starts) block_.set_fresh(slot, false);
   const float share = s_.shares[std::size_t(slot)];
-  const Clip& c = *graph_.clips()[std::size_t(slot)].clip;
+  const Graph::BoundClip& bound = graph_.clips()[std::size_t(slot)];
+  const Clip& c = *bound.clip;
   if (share < 0 || c.events.empty()) return;
   const std::span<EventHit> hits(s_.hits);  // conditions see events whether the game wants them or not
   EventSink sink{hits};
-  const Graph::BoundClip& bound = graph_.clips()[std::size_t(slot)];
   const int group = graph_.node(bound.node).group;
   const double before =
       group < 0 ? s_.before[std::size_t(slot)] : bound.map.by_phase(s_.phases[std::size_t(group)]).value;
   const double now = group < 0 ? played_time(c, block_.time(bound.time)).value : s_.now[std::size_t(slot)];
-  EventJob job{c.events, double(c.duration), c.loops, before, now, starts};
+  EventJob job{bound.events(), double(c.duration), c.loops, before, now, starts};
   job.step = static_cast<float>(h_);
   job.weight = share;
   job.out = &sink;
