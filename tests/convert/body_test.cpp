@@ -93,7 +93,7 @@ TEST(Body, IsFittedToTheMeshThatIsNotDrawn) {
   std::ifstream in(file, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   const auto converted = [&](const std::string& name, const std::string& instead, Asset& asset) {
-    for (std::size_t at = 0; (at = bytes.find(name, at)) != std::string::npos;)
+    for (std::size_t at = 0; (at = bytes.find(name, at)) != std::string::npos; at += instead.size())
       bytes.replace(at, name.size(), instead);
     const std::string renamed = (fs::temp_directory_path() / "sinew_not_drawn.glb").string();
     std::ofstream(renamed, std::ios::binary) << bytes;

@@ -22,6 +22,48 @@ TEST(Skin, WeightsComeAsInTheFileWhateverTheirSum) {  // trap 27
   }
 }
 
+// Unreal's exporter writes bytes, which assimp 5.2.5 copies into floats as they stand.
+TEST(Skin, WeightsMayBeWholeNumbers) {  // trap 50
+  const std::vector<std::uint8_t> bytes = {255, 0, 0, 0, 51, 204, 0, 0, 0, 255, 0, 0};
+  const std::vector<std::uint16_t> words = {65535, 0, 0, 0, 13107, 52428, 0, 0, 0, 65535, 0, 0};
+  for (const bool wide : {false, true}) {
+    std::vector<float> values;
+    const Json gltf = skinned_by(wide ? packed(words) : packed(bytes), wide ? 5123 : 5121, {0}, values);
+    for (const std::string& file : {std::string("a.gltf"), std::string("a.glb")}) {
+      const Outcome outcome = read_content(file, file == "a.glb" ? as_glb(gltf, values) : gltf.dump());
+      ASSERT_TRUE(outcome.ok) << outcome.error;
+      double weights[2][3] = {};
+      for (const SourceMesh::Bone& bone : outcome.scene.meshes.at(0).bones)
+        for (const auto& [vertex, weight] : bone.weights)
+          weights[bone.node == index_of(outcome.scene, "leg")][vertex] = double(weight);
+      const double wanted[2][3] = {{1, 0.2, 0}, {0, 0.8, 1}};
+      for (const int bone : {0, 1})
+        for (const int vertex : {0, 1, 2})
+          EXPECT_NEAR(weights[bone][vertex], wanted[bone][vertex], 1e-6) << file << wide << bone << vertex;
+    }
+  }
+}
+
+TEST(Skin, WholeNumbersBeyondTheirBufferAreRefused) {
+  std::vector<float> values;
+  const std::vector<std::uint8_t> bytes(12, 255);
+  const Json whole = skinned_by(packed(bytes), 5121, {0}, values);
+  const std::size_t weights = whole["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"];
+  const auto error = [&](const char* key, const Json& value, bool of_view = false) {
+    Json gltf = whole;
+    (of_view ? gltf["bufferViews"][gltf["accessors"][weights]["bufferView"].get<std::size_t>()]
+             : gltf["accessors"][weights])[key] = value;
+    return read_content("a.gltf", gltf.dump()).error;
+  };
+  const std::string what = "accessor " + std::to_string(weights);
+  EXPECT_EQ(error("count", 4000000000u), what + " reaches beyond its view");
+  EXPECT_EQ(error("byteOffset", 4), what + " reaches beyond its view");
+  EXPECT_EQ(error("byteLength", 100000, true), what + " has a view that reaches beyond its buffer");
+  EXPECT_EQ(error("byteStride", 1, true), what + " reaches beyond its view");
+  EXPECT_EQ(error("sparse", {{"count", 1}}), what + " is sparse and normalised, which cannot be read");
+  EXPECT_NE(error("bufferView", 99), "");
+}
+
 TEST(Skin, BoneWithoutWeightsStays) {  // trap 12: control bones
   const Outcome outcome = read_content("a.gltf", skinned({1, 0, 0, 0}, {0}).dump());
   ASSERT_TRUE(outcome.ok) << outcome.error;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstring>
 
 #include "reading.h"
 
@@ -27,16 +28,26 @@ inline std::vector<float> binds(float x) {
   return all;
 }
 
-/// kicking_leg() with a triangle that hangs on hip and leg by `weights` of each vertex; one skin and mesh for
-/// each of `places`, the bind place along X.
-inline nlohmann::json skinned(const std::vector<float>& weights, const std::vector<float>& places) {
+/// Numbers of any type in the bits of floats.
+template <class Number>
+std::vector<float> packed(const std::vector<Number>& numbers) {
+  std::vector<float> bits((numbers.size() * sizeof(Number) + sizeof(float) - 1) / sizeof(float));
+  std::memcpy(bits.data(), numbers.data(), numbers.size() * sizeof(Number));
+  return bits;
+}
+
+/// kicking_leg() with a triangle that hangs on hip and leg by `weights` of its three vertices, which are of
+/// `component` type; one skin and mesh for each of `places`, the bind place along X. `values`: of its buffer.
+inline nlohmann::json skinned_by(const std::vector<float>& weights, int component,
+                                 const std::vector<float>& places, std::vector<float>& values) {
   nlohmann::json gltf = kicking_leg();
-  std::vector<float> values = kick_keys();
+  values = kick_keys();
   const std::size_t position = append(gltf, values, corners(), "VEC3", 3);
   gltf["accessors"][position].update({{"min", {0, 0, 0}}, {"max", {1, 1, 0}}});
   nlohmann::json attributes{{"POSITION", position},
                             {"JOINTS_0", append(gltf, values, indices(0x00000100), "VEC4", 3, 5121)},
-                            {"WEIGHTS_0", append(gltf, values, three_times(weights), "VEC4", 3)}};
+                            {"WEIGHTS_0", append(gltf, values, weights, "VEC4", 3, component)}};
+  if (component != 5126) gltf["accessors"].back()["normalized"] = true;
   for (std::size_t k = 0; k < places.size(); ++k) {
     gltf["skins"].push_back(
         {{"joints", {0, 1}}, {"inverseBindMatrices", append(gltf, values, binds(places[k]), "MAT4", 2)}});
@@ -47,6 +58,12 @@ inline nlohmann::json skinned(const std::vector<float>& weights, const std::vect
   }
   set_buffer(gltf, values);
   return gltf;
+}
+
+/// The same by float weights, the same for each vertex.
+inline nlohmann::json skinned(const std::vector<float>& weights, const std::vector<float>& places) {
+  std::vector<float> values;
+  return skinned_by(three_times(weights), 5126, places, values);
 }
 
 }  // namespace sinew::import::test

@@ -44,10 +44,16 @@ class ClosedWorld : public Assimp::IOSystem {
  public:
   ClosedWorld(std::string main_name, const std::string& main, const OpenFile& open_file, std::uint64_t most)
       : main_name_(std::move(main_name)), main_(main), open_file_(open_file), most_(most) {}
-  bool Exists(const char* file) const override { return file == main_name_ || descriptor_of(file) >= 0; }
+  /// One more file, instead of any of that name on disk.
+  void add(const std::string& name, std::string bytes) { added_[name] = std::move(bytes); }
+
+  bool Exists(const char* file) const override {
+    return file == main_name_ || added_.count(file) > 0 || descriptor_of(file) >= 0;
+  }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char*) override {
     if (file == main_name_) return new MemoryStream(main_);
+    if (const auto known = added_.find(file); known != added_.end()) return new MemoryStream(known->second);
     const int descriptor = descriptor_of(file);
     return descriptor < 0 ? nullptr : new MemoryStream(read_descriptor(descriptor, most_));
   }
@@ -69,6 +75,7 @@ class ClosedWorld : public Assimp::IOSystem {
   const std::string& main_;
   const OpenFile& open_file_;
   std::uint64_t most_;
+  std::map<std::string, std::string> added_;
   mutable std::map<std::string, int> descriptors_;  ///< open until the child ends
 };
 

@@ -33,7 +33,8 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
   for (Assimp::BaseImporter* other : others) importer.UnregisterLoader(other);
 }
 
-std::vector<std::uint8_t> read_texture(ClosedWorld& files, const std::string& name) {
+/// Empty where it cannot be read.
+std::vector<std::uint8_t> read_beside(ClosedWorld& files, const std::string& name) {
   const std::unique_ptr<Assimp::IOStream> stream(files.Open(name.c_str(), "rb"));
   if (!stream) return {};
   std::vector<std::uint8_t> bytes(stream->FileSize());
@@ -51,14 +52,19 @@ SourceScene read(const std::string& content, const std::string& format, const Op
   GltfDocument gltf;
   SceneBuilder::OriginalNames original_names;
   const bool is_gltf = format == "gltf" || format == "glb";
+  const std::string name = "source." + format;
   if (is_gltf) {
-    gltf = prepare_gltf(content, format == "glb", limits);
+    ClosedWorld beside(name, content, open_file, limits.max_file_bytes);
+    gltf = prepare_gltf(content, format == "glb", limits, [&](const std::string& file) {
+      const std::vector<std::uint8_t> bytes = read_beside(beside, file);
+      return std::string(bytes.begin(), bytes.end());
+    });
     for (std::size_t k = 0; k < gltf.node_names.size(); ++k) original_names[node_tag(k)] = gltf.node_names[k];
   }
-  const std::string name = "source." + format;
   Assimp::Importer importer;
   keep_only(importer, format);
   auto* files = new ClosedWorld(name, is_gltf ? gltf.content : content, open_file, limits.max_file_bytes);
+  if (!gltf.floats.empty()) files->add(kFloatsFile, std::move(gltf.floats));
   importer.SetIOHandler(files);  // owned by the importer from here on
   // Stick figures only for BVH, whose scenes would not pass validation without a mesh; SceneBuilder drops
   // them.
@@ -74,7 +80,7 @@ SourceScene read(const std::string& content, const std::string& format, const Op
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals | joined);
   if (!scene) fail(importer.GetErrorString());
   if (!scene->mRootNode) throw std::runtime_error("it has no nodes");
-  const auto texture = [files](const std::string& path) { return read_texture(*files, path); };
+  const auto texture = [files](const std::string& path) { return read_beside(*files, path); };
   SourceScene out = SceneBuilder(*scene, format, std::move(original_names), texture, limits).build();
   out.notes.insert(out.notes.end(), gltf.notes.begin(), gltf.notes.end());
   out.extras = std::move(gltf.extras);

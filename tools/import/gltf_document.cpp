@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "import/gltf_floats.h"
 #include "import/plain_words.h"
 #include "import/readers.h"
 
@@ -165,7 +166,45 @@ std::string extras_of(const Json& owner) {
                                   : std::string();
 }
 
-GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& limits) {
+using ReadBeside = std::function<std::string(const std::string& name)>;
+
+/// Of a GLB, what follows its JSON: one more chunk at most.
+std::string binary_chunk(const std::string& rest) {
+  if (rest.size() < kChunkHeader) return {};
+  return rest.substr(kChunkHeader, std::min<std::size_t>(word_at(rest, 0), rest.size() - kChunkHeader));
+}
+
+/// Up to the first letter that is none of base64's.
+std::string from_base64(std::string_view text) {
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    const std::size_t value = kLetters.find(letter);
+    if (value == std::string_view::npos) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xff);
+  }
+  return bytes;
+}
+
+std::string buffer_bytes(const Json& document, std::size_t number, const std::string& rest,
+                         const ReadBeside& read_beside) {
+  constexpr std::string_view kData = "data:";
+  const std::string uri = document.at("buffers").at(number).value("uri", "");
+  if (uri.empty()) return binary_chunk(rest);
+  if (uri.rfind(kData, 0) != 0) return read_beside(uri);
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos)
+    throw std::runtime_error("buffer " + std::to_string(number) + " has a data URI that is not base64");
+  return from_base64(std::string_view(uri).substr(comma + 1));
+}
+
+GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& limits,
+                     const ReadBeside& read_beside) {
   const std::size_t begin = binary ? kHeader + kChunkHeader : 0;
   const std::size_t length = binary ? json_length(content) : content.size();
   const std::string_view text(content.data() + begin, length);
@@ -193,10 +232,13 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
     }
   }
   decode_uris(document);
+  const std::string rest = content.substr(begin + length);
+  out.floats = widen_normalized(
+      document, [&](std::size_t k) { return buffer_bytes(document, k, rest, read_beside); }, kFloatsFile,
+      limits);
   out.content = document.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (binary) {
     out.content.resize((out.content.size() + 3) / 4 * 4, ' ');
-    const std::string rest = content.substr(begin + length);
     const std::size_t total = begin + out.content.size() + rest.size();
     out.content = "glTF" + as_bytes(2) + as_bytes(static_cast<std::uint32_t>(total)) +
                   as_bytes(static_cast<std::uint32_t>(out.content.size())) + as_bytes(kJsonChunk) +
@@ -211,9 +253,10 @@ std::string node_tag(std::size_t k) {
   return "node_" + std::to_string(k);
 }
 
-GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLimits& limits) {
+GltfDocument prepare_gltf(const std::string& content, bool binary, const ReadLimits& limits,
+                          const ReadBeside& read_beside) {
   try {
-    return prepare(content, binary, limits);
+    return prepare(content, binary, limits, read_beside);
   } catch (const Json::parse_error& e) {
     throw std::runtime_error("its JSON is damaged at byte " + std::to_string(e.byte));
   } catch (const Json::exception& e) {
