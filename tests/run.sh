@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs, builds and tests. Says how far it is; ends with one line (and, with CI set, ctest's own summary last).
 # Usage: tests/run.sh [--all | --nightly | --format | --tidy | --sanitizers]
-#   --all adds the format check, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
+#   --all adds the format check, a batch on Slurm, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
 #   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
-#   the sanitizers, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
-#   browsers, packages, a batch on Slurm, and both of the README's commands on a bare machine: hours.
+#   the sanitizers, a thousand killed conversions, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
+#   browsers, packages, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -137,6 +137,7 @@ fuzz_c_interface() {  # random calls, every access of theirs checked
 nightly() {
   build_tests
   fuzz_c_interface
+  SINEW_KILLS=1000 run build -R Folder.MayBeKilled
   SINEW_RANDOM_TREES=${SINEW_RANDOM_TREES:-100000} long random_trees
   SINEW_SOAK_SECONDS=${SINEW_SOAK_SECONDS:-3600} long soak
   echo "hard cases at full length …" >&2
@@ -147,7 +148,6 @@ nightly() {
   samples/web/build.sh build/sinew build/web
   run build -R '^sample_web$'
   SINEW_PACKAGES=1 run build -R 'taken_in_without_flatc|shared_layers|debian_packages'
-  SINEW_SLURM=1 run build -R BatchOnSlurm  # skipped where Slurm is not installed
   tests/fresh_machine.sh
 }
 
@@ -175,8 +175,11 @@ case ${1:-} in
   --nightly) one_stage "nightly" nightly ;;
   *) echo "tests: no such option: $1 (tests/README.md lists them, and says how to run one test)" >&2; exit 2 ;;
 esac
-stage "set-up" tools/setup.sh --tests ${all:+--lint}
-[ -z "$all" ] || stage "format" format
+stage "set-up" tools/setup.sh --tests ${all:+--lint --farm}
+if [ -n "$all" ]; then
+  stage "format" format
+  export SINEW_SLURM=1
+fi
 stage "build" build_tests
 stage "tests" run build
 if [ -n "$all" ]; then

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
-# Usage: tools/setup.sh [--tests] [--lint] [--peers] [--web]
+# Usage: tools/setup.sh [--tests] [--lint] [--farm] [--peers] [--web]
 #   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
+#   --farm: Slurm, for its test
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
@@ -16,6 +17,7 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy
   mono-mcs mono-runtime)
 lint=(clang clang-format clang-tidy libclang-dev llvm-dev doxygen)
+farm=(slurm-wlm munge)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 web=(emscripten chromium brotli)
 command -v npm >/dev/null || web+=(npm)  # another's will do
@@ -74,9 +76,10 @@ for option in "$@"; do
   case $option in
     --tests) packages+=("${tests[@]}") ;;
     --lint) packages+=("${lint[@]}") ;;
+    --farm) packages+=("${farm[@]}") ;;
     --peers) packages+=("${peers[@]}") ;;
     --web) packages+=("${web[@]}") ;;
-    *) echo "setup: no such option: $option (there are --tests, --lint, --peers and --web)" >&2; exit 2 ;;
+    *) echo "setup: no such option: $option (there are --tests, --lint, --farm, --peers and --web)" >&2; exit 2 ;;
   esac
 done
 mapfile -t wanted < <(missing "${packages[@]}")

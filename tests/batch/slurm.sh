@@ -2,14 +2,14 @@
 # A batch on Slurm: a controller and two nodes on this machine's loopback, in a directory of their own. A shard is killed in
 # mid-run, then a node with its work, then the controller; what is merged has to be the same bytes as that of one process
 # on one machine.
-# Usage: SINEW_SLURM=1 tests/batch/slurm.sh SINEW. As root (slurmd starts tasks as their owner). Takes a minute, most of it
-# until Slurm misses its node: a nightly test. Ends with 77, skipped, where Slurm is not installed (apt-get install slurm-wlm munge)
-# or SINEW_SLURM is not set.
+# Usage: SINEW_SLURM=1 tests/batch/slurm.sh SINEW. As root (slurmd starts tasks as their owner). Takes two minutes, most of them
+# until Slurm misses its node. Ends with 77, skipped, where Slurm is not installed (tools/setup.sh --farm), where its daemons
+# do not come up, or where SINEW_SLURM is not set.
 set -euo pipefail
 sinew=$(realpath "$1")
-[ -n "${SINEW_SLURM:-}" ] || { echo "skipped: a nightly test (SINEW_SLURM=1)"; exit 77; }
+[ -n "${SINEW_SLURM:-}" ] || { echo "skipped: for tests/run.sh --all (SINEW_SLURM=1)"; exit 77; }
 for program in munged slurmctld slurmd sbatch squeue scontrol; do
-  command -v $program >/dev/null || { echo "skipped: $program is not installed (apt-get install slurm-wlm munge)"; exit 77; }
+  command -v $program >/dev/null || { echo "skipped: $program is not installed (tools/setup.sh --farm)"; exit 77; }
 done
 [ "$(id -u)" -eq 0 ] || { echo "skipped: this needs root"; exit 77; }
 
@@ -17,6 +17,7 @@ farm=$(mktemp -d)
 export SLURM_CONF=$farm/slurm.conf
 port=$((20000 + $$ % 20000))
 declare -A daemons
+failure=1
 
 kill_tree() {  # kill_tree PID: with all that it started
   local child
@@ -92,11 +93,13 @@ start() {  # start NAME COMMAND…
 start_farm() {
   start munged munged --foreground --force --key-file "$farm/munge/key" --socket "$farm/munge/socket" \
     --pid-file "$farm/munge/pid" --log-file "$farm/munge/log" --seed-file "$farm/munge/seed"
+  failure=77  # Slurm's own failure, not ours
   until_true 10 "munged" test -S "$farm/munge/socket"
   start slurmctld slurmctld -D -f "$SLURM_CONF"
   start n1 slurmd -D -N n1 -f "$SLURM_CONF"
   start n2 slurmd -D -N n2 -f "$SLURM_CONF"
-  until_true 30 "two idle nodes" sh -c '[ "$(sinfo -h -o %D -t idle)" = 2 ]'
+  until_true 60 "two idle nodes" sh -c '[ "$(sinfo -h -o %D -t idle)" = 2 ]'
+  failure=1
 }
 
 until_true() {  # until_true SECONDS WHAT COMMAND…
@@ -106,8 +109,8 @@ until_true() {  # until_true SECONDS WHAT COMMAND…
     if [ $SECONDS -ge $end ]; then
       echo "slurm: no $what within $seconds s" >&2
       squeue -r 2>&1 | tail -n 30 >&2 || true
-      tail -n 20 "$farm"/*.log "$farm"/run/slurm/*.log >&2
-      exit 1
+      tail -n 20 "$farm"/*.log "$farm"/run/slurm/*.log >&2 || true
+      exit $failure
     fi
     sleep 0.2
   done
@@ -138,7 +141,7 @@ start_farm
 echo "farm is up: $SECONDS s"
 "$sinew" batch plan "$farm/manifest.json" -o "$farm/run"
 "$sinew" batch submit "$farm/run"
-until_true 30 "running task on n2" sh -c '[ -n "$(squeue -h -r -o %N -t RUNNING | grep n2)" ]'
+until_true 60 "running task on n2" sh -c '[ -n "$(squeue -h -r -o %N -t RUNNING | grep n2)" ]'
 sleep 0.5
 for shard in $(ps -e -o pid=,args= | awk -v run="batch run $farm/run" 'index($0, run) && !/awk/ {print $1}' | head -n 1); do
   kill -9 "$shard" && echo "a shard killed: $SECONDS s"  # its task runs it again
@@ -151,7 +154,7 @@ kill -9 "${daemons[slurmctld]}"
 echo "controller killed: $SECONDS s"
 sleep 1
 start slurmctld slurmctld -D -f "$SLURM_CONF"
-until_true 30 "controller" scontrol ping
+until_true 60 "controller" scontrol ping
 "$sinew" batch status "$farm/run" -q || [ $? = 4 ]
 until_true 60 "dead node noticed" sh -c '[ -n "$(sinfo -h -n n2 -t down)" ]'
 squeue -r -o '%i %T %r %S' || true
@@ -170,7 +173,7 @@ finished() {
   release
   [ -z "$(squeue -h)" ] && [ -e "$farm/run/merged/report.json" ]
 }
-until_true 180 "end of all jobs" finished
+until_true 300 "end of all jobs" finished
 echo "merged: $SECONDS s"
 "$sinew" batch status "$farm/run" || [ $? = 1 ]
 diff -r "$farm/alone/merged" "$farm/run/merged"
