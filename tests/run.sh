@@ -87,7 +87,7 @@ tidy() {
 }
 
 # Simulations that take minutes when every access is checked, of what others run through as well.
-too_long_for_sanitizers='/(corner|pit|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood'
+too_long_for_sanitizers='/(corner|pit|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood|Blender'
 
 # -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
 configure_sanitizers() {
@@ -175,7 +175,7 @@ case ${1:-} in
   --nightly) one_stage "nightly" nightly ;;
   *) echo "tests: no such option: $1 (tests/README.md lists them, and says how to run one test)" >&2; exit 2 ;;
 esac
-stage "set-up" tools/setup.sh --tests ${all:+--lint --farm}
+stage "set-up" tools/setup.sh --tests ${all:+--lint --farm --exports}
 if [ -n "$all" ]; then
   stage "format" format
   export SINEW_SLURM=1

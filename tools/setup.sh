@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
-# Usage: tools/setup.sh [--tests] [--lint] [--farm] [--peers] [--web]
+# Usage: tools/setup.sh [--tests] [--lint] [--farm] [--exports] [--peers] [--web]
 #   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
-#   --farm: Slurm, for its test
+#   --farm: Slurm, for its test      --exports: what tests open exported files with (Blender, and by npm, where that is, a validator)
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
@@ -18,6 +18,7 @@ tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrin
   mono-mcs mono-runtime)
 lint=(clang clang-format clang-tidy libclang-dev llvm-dev doxygen)
 farm=(slurm-wlm munge)
+exports=(blender)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 web=(emscripten chromium brotli)
 command -v npm >/dev/null || web+=(npm)  # another's will do
@@ -72,17 +73,26 @@ install() {  # install PACKAGE…
   rm -f "$log"
 }
 
+validator=
 for option in "$@"; do
   case $option in
     --tests) packages+=("${tests[@]}") ;;
     --lint) packages+=("${lint[@]}") ;;
     --farm) packages+=("${farm[@]}") ;;
+    --exports)
+      packages+=("${exports[@]}")
+      validator=gltf-validator@2.0.0-dev.3.10
+      ;;
     --peers) packages+=("${peers[@]}") ;;
     --web) packages+=("${web[@]}") ;;
-    *) echo "setup: no such option: $option (there are --tests, --lint, --farm, --peers and --web)" >&2; exit 2 ;;
+    *) echo "setup: no such option: $option (there are --tests, --lint, --farm, --exports, --peers and --web)" >&2; exit 2 ;;
   esac
 done
 mapfile -t wanted < <(missing "${packages[@]}")
-[ ${#wanted[@]} -eq 0 ] && exit 0
-may_install "${wanted[@]}"
-install "${wanted[@]}"
+if [ ${#wanted[@]} -gt 0 ]; then
+  may_install "${wanted[@]}"
+  install "${wanted[@]}"
+fi
+if [ -n "$validator" ] && command -v npm >/dev/null && ! npm ls -g "$validator" >/dev/null 2>&1; then
+  as_root npm install -g --silent "$validator" >&2 || echo "setup: no $validator; its tests are skipped" >&2
+fi
