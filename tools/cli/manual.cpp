@@ -7,7 +7,7 @@
 #include "cli/definitions.h"
 #include "cli/files.h"
 #include "cli/man_page.h"
-#include "cli/study_program.h"
+#include "cli/other_programs.h"
 
 namespace sinew::cli {
 
@@ -37,7 +37,7 @@ bool ManualCommand::parsed() const {
 
 nlohmann::json ManualCommand::described(const CLI::App& app) {
   nlohmann::json all = describe(app);
-  if (const nlohmann::json studies = describe_study_program(); !studies.is_null()) merge(all, studies);
+  for (const nlohmann::json& other : describe_other_programs()) merge(all, other);
   return all;
 }
 
