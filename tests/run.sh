@@ -80,7 +80,7 @@ tidy() {
   tests/tidy/clang_tidy.sh prepare
   configure build-tidy -DSINEW_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$instead" -DCMAKE_CXX_LINKER_LAUNCHER="$instead" \
     -DCMAKE_C_COMPILER_LAUNCHER="$instead" -DCMAKE_C_LINKER_LAUNCHER="$instead" \
-    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DSINEW_PYTHON_BINDING=OFF -DSINEW_CSHARP_BINDING=OFF -DSINEW_RUST_BINDING=OFF \
     -DCMAKE_CXX_CLANG_TIDY="$PWD/tests/tidy/clang_tidy.sh;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
   mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
   build build-tidy "clang-tidy" -k 20 "${objects[@]}"
