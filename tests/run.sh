@@ -4,7 +4,7 @@
 #   --all adds the format check, a batch on Slurm, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
 #   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
-#   the sanitizers, a thousand killed conversions, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
+#   the sanitizers, hard cases and situations with them, a thousand killed conversions, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
 #   browsers, packages, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
@@ -89,16 +89,20 @@ tidy() {
 # Simulations that take minutes when every access is checked, of what others run through as well.
 too_long_for_sanitizers='/(corner|pit|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood|Blender'
 
+asks_the_studies='@@@'
+
 # -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
-configure_sanitizers() {
-  configure build-asan -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
+configure_sanitizers() {  # configure_sanitizers STUDIES: ON or OFF
+  configure build-asan -DSINEW_STUDIES="$1" -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
 }
 
+# Without the studies and what tests of them (a quarter of the compiling, half of the running): hard cases and situations are
+# checked so at night.
 sanitizers() {
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
-  configure_sanitizers
+  configure_sanitizers OFF
   stage "sanitizers: build" build build-asan "building with sanitizers"
-  stage "sanitizers: tests" run build-asan -E "$too_long_for_sanitizers"
+  stage "sanitizers: tests" run build-asan -E "$too_long_for_sanitizers|$asks_the_studies"
   [ -z "${CI:-}" ] || rm -rf build-asan  # several GB that CI does not need again
 }
 
@@ -122,8 +126,14 @@ at_length() {
   }
 }
 
+sanitize_studies() {
+  configure_sanitizers ON
+  build build-asan "building the studies with sanitizers" tests/hard_cases/all tests/talk/all
+  for part in hard_cases talk; do run build-asan/tests/$part -E "$too_long_for_sanitizers"; done
+}
+
 fuzz_c_interface() {  # random calls, every access of theirs checked
-  configure_sanitizers
+  configure_sanitizers ON
   build build-asan "building the C interface with sanitizers" c_fuzz_test
   [ -e build-asan/sample.sinew ] || cp build/sample.sinew build-asan/  # what the tools write is the same
   echo "random calls of the C interface …" >&2
@@ -136,6 +146,8 @@ fuzz_c_interface() {  # random calls, every access of theirs checked
 
 nightly() {
   build_tests
+  export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
+  sanitize_studies
   fuzz_c_interface
   SINEW_KILLS=1000 run build -R Folder.MayBeKilled
   SINEW_RANDOM_TREES=${SINEW_RANDOM_TREES:-100000} long random_trees
