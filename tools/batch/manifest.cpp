@@ -238,7 +238,7 @@ std::string program_digest() {
   const fs::path here = fs::read_symlink("/proc/self/exe", unknown).parent_path();
   Digest digest;
   digest.add_file("/proc/self/exe");
-  digest.add_file(here / "sinew-study");
+  for (const char* beside : {"sinew-render", "sinew-study"}) digest.add_file(here / beside);
   return digest.text();
 }
 

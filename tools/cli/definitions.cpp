@@ -1,7 +1,10 @@
 #include "cli/definitions.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <string_view>
 
+#include "cli/files.h"
 #include "cli/terminal.h"
 
 namespace sinew::cli {
@@ -93,6 +96,18 @@ json describe(const CLI::App& app, const std::string& path) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     if (!command->get_group().empty()) out["commands"].push_back(describe(*command, path_of(path, *command)));
   return out;
+}
+
+std::optional<int> parse_or_describe(CLI::App& app, int argc, char** argv) try {
+  complete_definitions(app);
+  if (argc == 2 && std::string_view(argv[1]) == "--describe") {
+    std::puts(json_text(describe(app)).c_str());
+    return 0;
+  }
+  app.parse(argc, argv);
+  return {};
+} catch (const CLI::ParseError& error) {
+  return app.exit(error) == 0 ? 0 : 2;
 }
 
 void merge(json& description, const json& other) {

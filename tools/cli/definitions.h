@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ void complete_definitions(CLI::App& app, const std::string& path = "");
 ///
 /// Positionals are options whose only name has no dash. `value` is empty for flags.
 nlohmann::json describe(const CLI::App& app, const std::string& path = "");
+
+/// Of a program beside `sinew`: completes its definitions and parses, or prints its description where
+/// --describe asks for it. An exit code where that was all, or where the arguments are wrong.
+std::optional<int> parse_or_describe(CLI::App& app, int argc, char** argv);
 
 /// Adds to a description what another program understands for the same commands.
 void merge(nlohmann::json& description, const nlohmann::json& other);

@@ -176,17 +176,7 @@ int main(int argc, char** argv) try {
   cli::add_scheme(*r, render.scheme);
   render.source.add(*r);
 
-  cli::complete_definitions(app);
-  if (argc == 2 && std::string_view(argv[1]) == "--describe") {
-    std::puts(cli::json_text(cli::describe(app)).c_str());
-    return 0;
-  }
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto code = cli::parse_or_describe(app, argc, argv)) return *code;
   const Error error = render.run(*r);
   if (!error) return 0;
   cli::say_error(error.message);

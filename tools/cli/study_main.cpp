@@ -119,17 +119,7 @@ int main(int argc, char** argv) try {
   each->add_flag("--quick", effects.quick, "fewer timed steps");
   each->add_flag("--json", effects.json_output, "results on standard output as JSON");
 
-  cli::complete_definitions(app);
-  if (argc == 2 && std::string_view(argv[1]) == "--describe") {
-    std::puts(cli::json_text(cli::describe(app)).c_str());
-    return 0;
-  }
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto code = cli::parse_or_describe(app, argc, argv)) return *code;
   Error error;
   if (simulate->parsed())
     error = cli::run_mechanism(mechanism.file, mechanism.options, mechanism.output, mechanism.json_output);
