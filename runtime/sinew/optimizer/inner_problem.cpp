@@ -85,7 +85,11 @@ void InnerProblem<T>::build(std::span<const Contact<T>> contacts, std::span<Coup
     for (const JointRow<T>& row : p->rows)
       joint_rows_.push_back({row, unknown(*p, row.dof), row.value, T(0)});
   if (couplings_) couplings_->collect(trees_, couplings, unknowns_, axes_);
-  geometric_ = geometric && !(trees_.size() > 1 && contact_rows_->coupled());
+  const bool touch = trees_.size() > 1 && contact_rows_->coupled();
+  geometry_ = !geometric ? Geometry::kNone
+              : !touch   ? Geometry::kAll
+              : tied()   ? Geometry::kTies
+                         : Geometry::kNone;
   if (articulated_)
     assemble_articulated();
   else
@@ -112,24 +116,31 @@ void InnerProblem<T>::assemble(std::span<const Contact<T>> contacts,
                                std::span<Coupling<T>* const> couplings) {
   smooth_.set_zero();
   for (TreeProblem<T>* p : trees_) begin_composite(*settings_, *p);
-  if (geometric_) {
-    contact_rows_->add_forces(trees_, contacts, settings_->stick);
+  if (geometry_ == Geometry::kAll) contact_rows_->add_forces(trees_, contacts, settings_->stick);
+  if (geometry_ == Geometry::kTies)
+    for (TreeProblem<T>* p : trees_)
+      for (Composite<T>& body : p->composite) {
+        body.force.setZero();
+        body.couple.setZero();
+        body.virial.setZero();
+      }
+  if (geometric()) {
     for (const Coupling<T>* c : couplings)
       for (const CouplingNode<T>& node : c->nodes)
         if (node.tree >= 0) trees_[node.tree]->composite[node.body].add_force(node.point, node.gradient);
   }
   for (TreeProblem<T>* p : trees_) {
     assemble_tree_matrix<T>(*p->tree, p->kinematics, axes_, p->composite, unknowns_, p->first_unknown_map,
-                            geometric_, smooth_);
+                            geometric(), smooth_);
     add_floor<T>(*p->tree, p->kinematics, p->composite, unknowns_, p->first_unknown_map, smooth_);
     if (p->stiff)
       add_stiffness<T>(*p->tree, p->kinematics, axes_, p->stiffness, unknowns_, p->first_unknown_map, path_,
                        smooth_);
-    if (geometric_)
+    if (geometry_ == Geometry::kAll)
       add_joint_geometry(*p,
                          [&](int k, int l, T value) { smooth_.row(k)[unknowns_.pattern.depth[l]] += value; });
   }
-  if (geometric_) contact_rows_->add_bending(smooth_);
+  if (geometry_ == Geometry::kAll) contact_rows_->add_bending(smooth_);
   if (!tied()) return;
   local_.values() = smooth_.values();
   couplings_->add_curvature(local_);
@@ -140,8 +151,8 @@ template <class T>
 void InnerProblem<T>::assemble_articulated() {
   TreeProblem<T>& p = *trees_[0];
   begin_composite(*settings_, p);
-  joints_.assemble(*p.tree, p.kinematics, p.composite, unknowns_, geometric_);
-  if (geometric_ && !p.rows.empty())
+  joints_.assemble(*p.tree, p.kinematics, p.composite, unknowns_, geometric());
+  if (geometric() && !p.rows.empty())
     add_joint_geometry(p, [&](int k, int l, T value) { joints_.add(k, l, value); });
 }
 
@@ -216,7 +227,7 @@ template <class T>
 void InnerProblem<T>::multiply_smooth(std::span<const T> x, std::span<T> y) {
   if (articulated_) return joints_.multiply(x, y);
   smooth_.multiply(x, y);
-  if (geometric_ && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
+  if (geometry_ == Geometry::kAll && contact_rows_->coupled()) contact_rows_->multiply_bending(x, y);
   if (tied()) couplings_->multiply(x, y);
 }
 
@@ -227,7 +238,7 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
   if (ellipsoids_) ellipsoids_->multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = row.curvature(rows.value);
+    const T curvature = this->curvature(rows);
     if (curvature <= T(0)) continue;
     T along = T(0);
     for (int a = 0; a < row.count; ++a) along += row.gradient[a] * x[rows.unknown + a];
@@ -235,13 +246,25 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
   }
 }
 
-/// Curvature of the joints' rows at the inner solution so far.
+/// Of a joint's row at the inner solution so far. Beyond its kink a muscle pulls with the same force however
+/// far it gives way: a step runs on to where many have come back, and the line search stops at the first of
+/// them. Held, all come nearer at once.
+template <class T>
+T InnerProblem<T>::curvature(const JointRows& rows) const {
+  const JointRow<T>& row = rows.row;
+  const T curvature = row.curvature(rows.value);
+  const bool kinked = row.kind == RowKind::kKink || row.kind == RowKind::kTone;
+  if (hold_ == T(0) || !kinked || curvature > T(0) || rows.value == T(0)) return curvature;
+  return hold_ * row.slope(rows.value) / rows.value;
+}
+
+/// Adds the curvature of the joints' rows to a matrix.
 template <class T>
 template <class Add>
 void InnerProblem<T>::add_row_curvature(const Add& add) {
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = rows.in_factor = row.curvature(rows.value);
+    const T curvature = rows.in_factor = this->curvature(rows);
     if (curvature <= T(0)) continue;
     for (int i = 0; i < row.count; ++i)
       for (int j = 0; j <= i; ++j)
@@ -278,7 +301,7 @@ template <class T>
 bool InnerProblem<T>::factor_holds(T drag) const {
   return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(drag) &&
          std::all_of(joint_rows_.begin(), joint_rows_.end(),
-                     [](const JointRows& r) { return r.in_factor == r.row.curvature(r.value); });
+                     [this](const JointRows& r) { return r.in_factor == curvature(r); });
 }
 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far. May `reuse` the last factor.
@@ -319,7 +342,7 @@ bool InnerProblem<T>::conjugate_gradients() {
     } else {
       product_ = factored_;
       contact_rows_->multiply_coupling(direction_, product_);
-      if (geometric_) contact_rows_->multiply_bending(direction_, product_);
+      if (geometry_ == Geometry::kAll) contact_rows_->multiply_bending(direction_, product_);
     }
     ++products;
     const T curvature = dot<T>(direction_, product_);
@@ -362,6 +385,7 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
   add_row_gradient(inner_gradient_);
   double moved = 0;
   T drag = T(kLeastDrag);
+  hold_ = T(0);
   const auto enough = [&] { return kShrink * std::min(report.first_length, moved); };
   for (int iteration = 0; iteration < kMostInnerSteps; ++iteration) {
     if (!newton_step(drag, iteration > 0 && has_contacts())) return report;
@@ -398,7 +422,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
     moved += double(t * length);
-    if (t > T(kTooShort)) drag *= T(kRelease);
+    if (t > T(kTooShort)) drag *= T(kRelease), hold_ *= T(kRelease);
+    if (t < T(kCutShort) && coupled()) hold_ = T(1);
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
@@ -438,6 +463,7 @@ double InnerProblem<T>::simplified_newton_step(std::span<const Contact<T>> conta
       if (const int k = unknown(*p, dof); k >= 0) inner_gradient_[k] = p->gradient[dof];
   }
   if (n != joint_rows_.size()) return kNone;
+  hold_ = T(0);
   if (!newton_step(T(0), true)) return kNone;
   correction_ = step_;
   return double(displacement(correction_));

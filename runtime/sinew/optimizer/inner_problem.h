@@ -27,6 +27,9 @@ struct InnerReport {
   bool straight = false;    ///< that was all: no row had a kink on its way
 };
 
+/// Of which forces a model has geometric terms.
+enum class Geometry : std::uint8_t { kNone, kTies, kAll };
+
 template <class T>
 class InnerProblem {
  public:
@@ -52,10 +55,11 @@ class InnerProblem {
   }
 
   /// Model about the present pose, whose gradient and wrenches the trees hold. Trees in contact with each
-  /// other have no geometric terms, asked for or not: in a pile they led astray (README.md).
+  /// other have geometric terms of what ties them only, asked for all or not: in a pile they led astray
+  /// (README.md).
   void build(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings, bool geometric);
   /// Whether the model has geometric terms.
-  bool geometric() const { return geometric_; }
+  bool geometric() const { return geometry_ != Geometry::kNone; }
   /// Whether nothing but what joints do acts on the tree; it is one then.
   bool joints_only() const { return articulated_; }
   /// Minimises from the chart centres; the minimiser is correction().
@@ -111,6 +115,7 @@ class InnerProblem {
   void add_joint_geometry(TreeProblem<T>& tree, const Add& add);
   template <class Add>
   void add_row_curvature(const Add& add);
+  T curvature(const JointRows& rows) const;
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
@@ -132,13 +137,14 @@ class InnerProblem {
   TreeMatrix<T> factor_{unknowns_.pattern};  ///< of H₀ + rows, without what couples branches
   ArticulatedMatrix<T> joints_;              ///< in place of these where nothing but joints acts on a tree
   bool articulated_ = false;                 ///< it is
-  bool geometric_ = true;
+  Geometry geometry_ = Geometry::kAll;
   int most_entries_ = 0;  ///< of contact rows, that there is memory for
   std::unique_ptr<ContactModel<T>> contact_rows_ = std::make_unique<ContactModel<T>>();
   std::unique_ptr<CouplingModel<T>> couplings_;         ///< null: none are declared
   std::unique_ptr<EllipsoidModel<T>> ellipsoid_model_;  ///< the same
   EllipsoidModel<T>* ellipsoids_ = nullptr;             ///< that one; null too where no joint has any
   std::vector<JointRows> joint_rows_;
+  T hold_ = T(0);  ///< of a muscle's force by its way from its kink, that counts as curvature beyond it
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far

@@ -53,6 +53,13 @@ void note_times(const Played& played, Findings& found) {
   found.note("mean step (ms)", sum / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
 }
 
+void note_passes(const Played& played, Findings& found) {
+  double passes = 0;
+  for (const scene::TelemetryRow& row : played.telemetry.rows) passes += row.report.outer_passes;
+  found.note("passes of a step, mean",
+             passes / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
+}
+
 constexpr std::initializer_list<double> kRates = {30.0, 60.0, 120.0};  ///< Hz that a game may step at
 
 /// Plays a scene at each rate (Hz), everybody thrown in so many ways, for look(played, judge). Nothing may be
@@ -624,6 +631,45 @@ void getting_up(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// One of two columns, as many as the other.
+Scene column(Scene scene, bool second) {
+  const auto half = scene.characters.begin() + static_cast<std::ptrdiff_t>(scene.characters.size() / 2);
+  if (second)
+    scene.characters.erase(scene.characters.begin(), half);
+  else
+    scene.characters.erase(half, scene.characters.end());
+  return scene;
+}
+
+void columns(const Scene& scene, bool quick, Findings& found) {
+  const std::initializer_list<double> one_rate = {60.0}, rates = {60.0, 30.0, 120.0};
+  at_rates(scene, quick ? one_rate : rates, 1, 0.02, found, [&](const Played& played, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.03);
+    found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 15);
+    const int half = judge.members() / 2;
+    for (const bool second : {false, true}) {
+      Scene alone = column(scene, second);
+      alone.frame_rate = played.recording.frame_rate;
+      const Played undisturbed(alone);
+      for (int m = 0; m < half; ++m)
+        found.at_most("off its clip at the end (m)",
+                      apart(played.recording, m + (second ? half : 0), undisturbed.recording, m, end), 0.01);
+    }
+    note_times(played, found);
+    note_passes(played, found);
+  });
+}
+
+void hanging_bridge(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played& played, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    found.at_most("in each other (m)", deepest_between(judge, 1, end), 5e-3);
+    found.at_most("fastest at the end (m/s)", judge.fastest(end), 0.05);
+    note_passes(played, found);
+  });
+}
+
 void leash_too_short(const Scene& scene, bool, Findings& found) {
   at_rates(scene, {30.0, 60.0, 120.0, 240.0}, 1, 0.1, found, [&](const Played&, const Judge& judge) {
     const int end = judge.frames() - 1;
@@ -680,6 +726,8 @@ std::vector<Situation> situations() {
       {"rolling", "nothing brakes what rolls", rolling},
       {"thin_things", "books, boards and plates lie on each other on the floor", thin_things},
       {"getting_up", "who gets up does so on the floor, not through it", getting_up},
+      {"columns", "two columns walk into each other and on", columns},
+      {"hanging_bridge", "who falls on a hanging bridge comes to rest there", hanging_bridge},
       {"leash_too_short", "a loop yields to a driven root", leash_too_short},
       {"led_through_each_other", "who is driven into something is driven on", moves_at_walking_pace},
   };
