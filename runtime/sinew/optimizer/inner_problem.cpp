@@ -238,7 +238,7 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
   if (ellipsoids_) ellipsoids_->multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = this->curvature(rows);
+    const T curvature = held_curvature(rows);
     if (curvature <= T(0)) continue;
     T along = T(0);
     for (int a = 0; a < row.count; ++a) along += row.gradient[a] * x[rows.unknown + a];
@@ -250,7 +250,7 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
 /// far it gives way: a step runs on to where many have come back, and the line search stops at the first of
 /// them. Held, all come nearer at once.
 template <class T>
-T InnerProblem<T>::curvature(const JointRows& rows) const {
+T InnerProblem<T>::held_curvature(const JointRows& rows) const {
   const JointRow<T>& row = rows.row;
   const T curvature = row.curvature(rows.value);
   const bool kinked = row.kind == RowKind::kKink || row.kind == RowKind::kTone;
@@ -264,7 +264,7 @@ template <class Add>
 void InnerProblem<T>::add_row_curvature(const Add& add) {
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = rows.in_factor = this->curvature(rows);
+    const T curvature = rows.in_factor = held_curvature(rows);
     if (curvature <= T(0)) continue;
     for (int i = 0; i < row.count; ++i)
       for (int j = 0; j <= i; ++j)
@@ -301,7 +301,7 @@ template <class T>
 bool InnerProblem<T>::factor_holds(T drag) const {
   return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(drag) &&
          std::all_of(joint_rows_.begin(), joint_rows_.end(),
-                     [this](const JointRows& r) { return r.in_factor == curvature(r); });
+                     [this](const JointRows& r) { return r.in_factor == held_curvature(r); });
 }
 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far. May `reuse` the last factor.

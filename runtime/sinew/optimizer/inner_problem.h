@@ -115,7 +115,7 @@ class InnerProblem {
   void add_joint_geometry(TreeProblem<T>& tree, const Add& add);
   template <class Add>
   void add_row_curvature(const Add& add);
-  T curvature(const JointRows& rows) const;
+  T held_curvature(const JointRows& rows) const;
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
