@@ -25,6 +25,9 @@ const char* known_to_fail(const std::string& situation) {
       {"stairs",
        "one of the falls goes on for longer than the ten seconds: 2.2 m/s on the last steps, where 0.1 are "
        "wanted; which one is chaotic"},
+      {"columns",
+       "at 120 Hz two are 30.4 mm in each other, 30 wanted: of what clips press 27 mm may be; and when "
+       "they are through some are up to 12 mm off their clips, 10 wanted"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
   };
   for (const Known& known : kKnown)

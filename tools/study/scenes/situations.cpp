@@ -641,9 +641,8 @@ Scene column(Scene scene, bool second) {
   return scene;
 }
 
-void columns(const Scene& scene, bool quick, Findings& found) {
-  const std::initializer_list<double> one_rate = {60.0}, rates = {60.0, 30.0, 120.0};
-  at_rates(scene, quick ? one_rate : rates, 1, 0.02, found, [&](const Played& played, const Judge& judge) {
+void columns(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 0.02, found, [&](const Played& played, const Judge& judge) {
     const int end = judge.frames() - 1;
     found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.03);
     found.at_most("fastest body (m/s)", fastest_of(judge, 1, end), 15);
