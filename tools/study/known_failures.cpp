@@ -34,11 +34,7 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      true},
     {"figure_on_stairs", "one of 12 falls at 1/60 s rises by 1.24 mJ in double, 1 wanted: as tumbling_box",
      true},
-    {"contact_stiffness_sweep",
-     "in float 2.09 times as many passes and simplified Newton steps at one stiffness as at another, 2 "
-     "wanted",
-     true},
-    {"rope_with_heavy_tip", "in float at 1/30 s one step of 300 (0.33 %) unconverged, 0.1 % wanted", true},
+    {"rope_with_heavy_tip", "in float at 1/30 s two steps of 300 (0.67 %) unconverged, 0.1 % wanted", true},
     {"figures_in_a_pile",
      "of ten whose joints do not rub a hand still swings at 0.2 m/s after 15 s, 0.05 wanted, 4 % slower each "
      "second, "
@@ -56,9 +52,8 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "a few trees in a thousand leap, by some hundredths of their energy (seven to ten in a hundred, by any, "
      "before the way of a step was asked for its energy)"},
     {"soak_hour",
-     "in float 0.11 % of two minutes' steps unconverged, 0.1 wanted: people who fall over each other, by "
-     "chance; "
-     "of three seeds one has more",
+     "in double 0.10 % of two minutes' steps unconverged, 0.1 wanted (0.03 in float): people who fall over "
+     "each other, by chance",
      true},
     {"crowd_of_200",
      "close together, in a world with room for 100 degrees of freedom: 0.7 (float) and 1.3 % (double) of the "
@@ -89,6 +84,7 @@ constexpr std::initializer_list<KnownFailure> kKnownExcesses = {
     {"rope_with_heavy_tip", "p99 of 17 to 23 at 1/60 s, 92 at 1/30: a light rope's stiff directions"},
     {"n_four_bar", "N = 40 in float: p99 of 112, 129 at most: a float's digits do not reach along 81 bars"},
     {"bullet", "11 in the step in which it strikes, of 15 in a run"},
+    {"limp_fall_counts", "17 at most, in float at 1/30 s; p99 4", true},
     {"limp_fall_bdf1", "73 at most; p99 within 8", true},
     {"hands_on_a_wheel", "30 in one step in float at 1/60 s; p99 within 8"},
     {"limp_fall_bdf2", "47 at most; p99 within 8"},
