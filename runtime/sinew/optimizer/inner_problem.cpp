@@ -238,33 +238,20 @@ void InnerProblem<T>::multiply_full(std::span<const T> x, std::span<T> y) {
   if (ellipsoids_) ellipsoids_->multiply(x, y);
   for (const JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = held_curvature(rows);
-    if (curvature <= T(0)) continue;
+    if (rows.in_factor <= T(0)) continue;
     T along = T(0);
     for (int a = 0; a < row.count; ++a) along += row.gradient[a] * x[rows.unknown + a];
-    for (int a = 0; a < row.count; ++a) y[rows.unknown + a] += curvature * along * row.gradient[a];
+    for (int a = 0; a < row.count; ++a) y[rows.unknown + a] += rows.in_factor * along * row.gradient[a];
   }
-}
-
-/// Of a joint's row at the inner solution so far. Beyond its kink a muscle pulls with the same force however
-/// far it gives way: a step runs on to where many have come back, and the line search stops at the first of
-/// them. Held, all come nearer at once.
-template <class T>
-T InnerProblem<T>::held_curvature(const JointRows& rows) const {
-  const JointRow<T>& row = rows.row;
-  const T curvature = row.curvature(rows.value);
-  const bool kinked = row.kind == RowKind::kKink || row.kind == RowKind::kTone;
-  if (hold_ == T(0) || !kinked || curvature > T(0) || rows.value == T(0)) return curvature;
-  return hold_ * row.slope(rows.value) / rows.value;
 }
 
 /// Adds the curvature of the joints' rows to a matrix.
 template <class T>
 template <class Add>
-void InnerProblem<T>::add_row_curvature(const Add& add) {
+void InnerProblem<T>::add_row_curvature(T secant, const Add& add) {
   for (JointRows& rows : joint_rows_) {
     const JointRow<T>& row = rows.row;
-    const T curvature = rows.in_factor = held_curvature(rows);
+    const T curvature = rows.in_factor = rows.curvature(secant);
     if (curvature <= T(0)) continue;
     for (int i = 0; i < row.count; ++i)
       for (int j = 0; j <= i; ++j)
@@ -274,17 +261,18 @@ void InnerProblem<T>::add_row_curvature(const Add& add) {
 
 /// Of the model at the inner solution so far, but for what leaves the tree.
 template <class T>
-bool InnerProblem<T>::factorise(T drag) {
+bool InnerProblem<T>::factorise(const Secants& secants) {
   ++factorisations;
   if (articulated_) {
     joints_.begin_factor();
-    add_row_curvature([&](int k, int l, T value) { joints_.add_to_factor(k, l, value); });
+    add_row_curvature(secants.muscles, [&](int k, int l, T value) { joints_.add_to_factor(k, l, value); });
     return joints_.factorise();
   }
   factor_.values() = tied() ? local_.values() : smooth_.values();
-  contact_rows_->add_curvature(factor_, drag);
+  contact_rows_->add_curvature(factor_, secants.slips);
   if (ellipsoids_) ellipsoids_->add_curvature(unknowns_, factor_);
-  add_row_curvature([&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
+  add_row_curvature(secants.muscles,
+                    [&](int k, int l, T value) { factor_.row(k)[unknowns_.pattern.depth[l]] += value; });
   return factor_.factorise();
 }
 
@@ -298,17 +286,17 @@ void InnerProblem<T>::solve_factored(std::span<T> b) {
 
 /// Whether the last factor still holds what rows curve by now; what leaves the tree it never does.
 template <class T>
-bool InnerProblem<T>::factor_holds(T drag) const {
-  return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(drag) &&
+bool InnerProblem<T>::factor_holds(const Secants& secants) const {
+  return !ellipsoids_ && !(couplings_ && couplings_->coupled()) && contact_rows_->in_factor(secants.slips) &&
          std::all_of(joint_rows_.begin(), joint_rows_.end(),
-                     [this](const JointRows& r) { return r.in_factor == held_curvature(r); });
+                     [&](const JointRows& r) { return r.in_factor == r.curvature(secants.muscles); });
 }
 
 /// step_ = −H⁻¹·inner_gradient_ at the inner solution so far. May `reuse` the last factor.
 template <class T>
-bool InnerProblem<T>::newton_step(T drag, bool reuse) {
-  const bool holds = reuse && factor_holds(drag);
-  if (!holds && !factorise(drag)) return false;
+bool InnerProblem<T>::newton_step(const Secants& secants, bool reuse) {
+  const bool holds = reuse && factor_holds(secants);
+  if (!holds && !factorise(secants)) return false;
   if (!holds && coupled()) return conjugate_gradients();
   for (int k = 0; k < size(); ++k) step_[k] = -inner_gradient_[k];
   solve_factored(step_);
@@ -384,11 +372,10 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
   inner_gradient_ = smooth_gradient_;
   add_row_gradient(inner_gradient_);
   double moved = 0;
-  T drag = T(kLeastDrag);
-  hold_ = T(0);
+  Secants secants{T(kLeastDrag), T(0)};
   const auto enough = [&] { return kShrink * std::min(report.first_length, moved); };
   for (int iteration = 0; iteration < kMostInnerSteps; ++iteration) {
-    if (!newton_step(drag, iteration > 0 && has_contacts())) return report;
+    if (!newton_step(secants, iteration > 0 && has_contacts())) return report;
     const T length = displacement(step_);
     if (!std::isfinite(length)) return report;
     if (iteration == 0) report.first_length = double(length);
@@ -422,8 +409,8 @@ InnerReport InnerProblem<T>::minimise(T tolerance) {
       inner_gradient_[k] = smooth_gradient_[k] + correction_product_[k];
     }
     moved += double(t * length);
-    if (t > T(kTooShort)) drag *= T(kRelease), hold_ *= T(kRelease);
-    if (t < T(kCutShort) && coupled()) hold_ = T(1);
+    if (t > T(kTooShort)) secants = {secants.slips * T(kRelease), secants.muscles * T(kRelease)};
+    if (t < T(kCutShort) && coupled()) secants.muscles = T(1);
     contact_rows_->move(t);
     if (ellipsoids_) ellipsoids_->move(t);
     for (JointRows& rows : joint_rows_) rows.value += t * rows.d_value;
@@ -463,8 +450,7 @@ double InnerProblem<T>::simplified_newton_step(std::span<const Contact<T>> conta
       if (const int k = unknown(*p, dof); k >= 0) inner_gradient_[k] = p->gradient[dof];
   }
   if (n != joint_rows_.size()) return kNone;
-  hold_ = T(0);
-  if (!newton_step(T(0), true)) return kNone;
+  if (!newton_step({}, true)) return kNone;
   correction_ = step_;
   return double(displacement(correction_));
 }

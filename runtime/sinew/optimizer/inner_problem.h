@@ -98,12 +98,28 @@ class InnerProblem {
     T value = T(0), d_value = T(0);
     T in_factor = T(0);  ///< curvature that the last factor holds
 
+    /// At the inner solution so far. Beyond its kink a muscle pulls with the same force however far it gives
+    /// way; `secant` is the share of that force by its way from the kink that counts.
+    T curvature(T secant) const {
+      const T exact = row.curvature(value);
+      const bool beyond = secant > T(0) && exact == T(0) && value != T(0) &&
+                          (row.kind == RowKind::kKink || row.kind == RowKind::kTone);
+      return beyond ? secant * row.slope(value) / value : exact;
+    }
     /// Whether a whole step from the inner solution so far changes the slope otherwise than the factor has
     /// it.
     bool bends() const {
       const T from = row.slope(value), to = from + in_factor * d_value;
       return std::abs(row.slope(value + d_value) - to) > T(kSameSlope) * (std::abs(from) + std::abs(to));
     }
+  };
+
+  /// Shares of a secant stiffness that count as curvature where a force does not grow and the true one is
+  /// none. With that, steps run on to where many such forces have turned round, and a line search stops at
+  /// the first.
+  struct Secants {
+    T slips = T(0);    ///< of contacts: of what friction resists along a slip, by what it resists across it
+    T muscles = T(0);  ///< beyond their kinks
   };
 
   void assemble(std::span<const Contact<T>> contacts, std::span<Coupling<T>* const> couplings);
@@ -114,15 +130,14 @@ class InnerProblem {
   template <class Add>
   void add_joint_geometry(TreeProblem<T>& tree, const Add& add);
   template <class Add>
-  void add_row_curvature(const Add& add);
-  T held_curvature(const JointRows& rows) const;
+  void add_row_curvature(T secant, const Add& add);
   void add_row_gradient(std::span<T> gradient) const;
   T row_slope(T t) const;
   T exact_line_search(T quadratic, T linear) const;
-  bool factorise(T drag);
+  bool factorise(const Secants& secants);
   void solve_factored(std::span<T> b);
-  bool factor_holds(T drag) const;
-  bool newton_step(T drag, bool reuse);
+  bool factor_holds(const Secants& secants) const;
+  bool newton_step(const Secants& secants, bool reuse);
   bool conjugate_gradients();
   double remaining_step();
   void multiply_smooth(std::span<const T> x, std::span<T> y);
@@ -144,7 +159,6 @@ class InnerProblem {
   std::unique_ptr<EllipsoidModel<T>> ellipsoid_model_;  ///< the same
   EllipsoidModel<T>* ellipsoids_ = nullptr;             ///< that one; null too where no joint has any
   std::vector<JointRows> joint_rows_;
-  T hold_ = T(0);  ///< of a muscle's force by its way from its kink, that counts as curvature beyond it
   std::vector<T> base_gradient_;    ///< of the true energy at the chart centres
   std::vector<T> smooth_gradient_;  ///< the same without the rows
   std::vector<T> inner_gradient_;   ///< of the model at the inner solution so far

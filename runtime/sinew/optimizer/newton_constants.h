@@ -40,8 +40,8 @@ constexpr double kShrink = 0.1;
 constexpr double kLeastDrag = 0.3;
 /// A step that should have been longer by so much was held back by that: from then on by this share of it.
 constexpr double kTooShort = 1.1, kRelease = 0.3;
-/// Where kinks end a step at less than this share of it, muscles beyond theirs are held: see
-/// InnerProblem::held_curvature().
+/// Where kinks end a step at less than this share of it, among trees that touch, muscles beyond theirs count
+/// with their whole secant.
 constexpr double kCutShort = 0.03;
 constexpr double kSameSlope =
     1e-5;  ///< of its own size: a row whose slope is so near to what a factor says has no kink there
