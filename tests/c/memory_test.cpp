@@ -13,43 +13,65 @@ namespace {
 thread_local long left = -1;
 std::atomic<long> live{0};
 
-void* take(std::size_t bytes, std::size_t alignment) {
-  if (left == 0) throw std::bad_alloc();
+/// Null where none is to be had.
+void* take(void* /*context*/, std::size_t bytes, std::size_t alignment) {
+  if (left == 0) return nullptr;
   if (left > 0) --left;
   void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) throw std::bad_alloc();
-  ++live;
+  if (memory) ++live;
   return memory;
 }
 
-void give_back(void* memory) {
-  if (memory) --live;
+void give_back(void* /*context*/, void* memory) {
+  --live;
   std::free(memory);
+}
+
+void* take_or_throw(std::size_t bytes, std::size_t alignment) {
+  void* const memory = take(nullptr, bytes, alignment);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+void give_back_any(void* memory) {
+  if (memory) give_back(nullptr, memory);
 }
 
 }  // namespace
 
+// The library takes its memory here where it has no operator new of its own.
 void* operator new(std::size_t bytes) {
-  return take(bytes, alignof(std::max_align_t));
+  return take_or_throw(bytes, alignof(std::max_align_t));
 }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return take(bytes, std::size_t(alignment));
+  return take_or_throw(bytes, std::size_t(alignment));
 }
 void operator delete(void* memory) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 
 namespace sinew {
 namespace {
+
+/// Whether the library takes its memory from take() by sinew_set_memory.
+bool hooked() {
+  static const bool set = sinew_set_memory(take, give_back, nullptr) == SINEW_OK;
+  return set;
+}
+
+class CInterfaceMemory : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { hooked(); }
+};
 
 /// Lets the n-th allocation of set_up() fail for n = 0, 1, 2, … until it passes. Returns how many failed.
 template <class SetUp>
@@ -69,7 +91,7 @@ int fail_each_allocation(SetUp&& set_up) {
   return 0;
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
   const std::string path = fixtures::sample_asset();
   const long before = live;
   const int failures = fail_each_allocation([&] {
@@ -84,7 +106,7 @@ TEST(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
   EXPECT_EQ(live, before);
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
   sinew_asset asset = 0;
   ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
   const long before = live;
@@ -109,7 +131,24 @@ TEST(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
   EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
 }
 
-TEST(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
+TEST_F(CInterfaceMemory, ComesFromTheHostToTheLastByte) {
+  if (!hooked()) GTEST_SKIP() << "built without the C++ library within: " << sinew_last_reason();
+  EXPECT_EQ(sinew_memory_blocks(), 0u);
+  {
+    const long before = live;
+    const fixtures::CScene scene;
+    // What the test itself holds meanwhile: the names of a file.
+    EXPECT_GE(live - before, static_cast<long>(sinew_memory_blocks()));
+    EXPECT_GT(sinew_memory_blocks(), 20u);
+    EXPECT_EQ(sinew_set_memory(nullptr, nullptr, nullptr), SINEW_INVALID_ARGUMENT);
+    EXPECT_STREQ(sinew_last_reason(), "the library has memory: destroy its assets and worlds first");
+  }
+  EXPECT_EQ(sinew_memory_blocks(), 0u);
+  EXPECT_EQ(sinew_set_memory(take, nullptr, nullptr), SINEW_INVALID_ARGUMENT);
+  EXPECT_STREQ(sinew_last_reason(), "memory needs both functions, or none");
+}
+
+TEST_F(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
   fixtures::CScene scene;
   for (int frame = 0; frame < 10; ++frame) {
     scene.play(frame / 60.0);

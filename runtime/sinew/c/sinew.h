@@ -82,7 +82,8 @@ enum sinew_status_values {
   SINEW_NO_MEMORY = 9,   ///< a set-up call found no memory; a world that it should have changed is broken
   SINEW_NOT_FOUND = 10,  ///< no such name
   SINEW_TOO_SMALL = 11,  ///< the caller's memory; the size that it takes is told
-  SINEW_BROKEN = 12      ///< a world that ran out of memory while something was added: destroy it
+  SINEW_BROKEN = 12,     ///< a world that ran out of memory while something was added: destroy it
+  SINEW_UNSUPPORTED = 13 ///< this library was built without it
 };
 
 /// "0.2.0", of the library.
@@ -94,6 +95,49 @@ SINEW_API const char* sinew_status_name(sinew_status status);
 SINEW_API const char* sinew_last_reason(void);
 /// Which joint, clip or element that reason is about; -1 if none.
 SINEW_API int32_t sinew_last_index(void);
+
+// ---- Hooks of the whole library ----
+// Set them before anything else, or while no other call runs: they are read without a lock. What they call
+// must not call Sinew.
+
+/// Memory of so many bytes (at least 1) at a multiple of `alignment`, a power of two; null where there is
+/// none. Called by set-up, recordings and loading, on any thread; never by a step.
+typedef void* (*sinew_allocate)(void* context, size_t bytes, size_t alignment);
+/// Takes back what sinew_allocate gave.
+typedef void (*sinew_release)(void* context, void* memory);
+/// Every byte that the library takes from the heap comes from `allocate` from now on; both null: from malloc.
+/// Files that are loaded are mapped meanwhile, by the system. SINEW_INVALID_ARGUMENT while the library has
+/// memory, as a living asset or world; SINEW_UNSUPPORTED where the C++ library is not within it
+/// (BUILD_SHARED_LIBS, sanitizers, WebAssembly): operator new of the program serves then.
+SINEW_API sinew_status sinew_set_memory(sinew_allocate allocate, sinew_release release, void* context);
+/// Blocks that the library has now; 0 where sinew_set_memory is not supported.
+SINEW_API size_t sinew_memory_blocks(void);
+
+/// How bad it is.
+typedef int32_t sinew_log_level;
+/// Values of sinew_log_level.
+enum sinew_log_level_values {
+  SINEW_LOG_INFO = 0,     ///< a result is less exact than it should be
+  SINEW_LOG_WARNING = 1,  ///< something was given up: a contact left out, a body stopped
+  SINEW_LOG_ERROR = 2     ///< a call was refused; sinew_last_reason() says the same
+};
+/// `words` live for ever; `index` of the character, prop or element that they are about, -1 if none.
+typedef void (*sinew_log)(void* context, sinew_log_level level, const char* words, int32_t index);
+/// Who hears of every call that is refused, on its thread, and of what steps could not do, at their end; null:
+/// nobody.
+SINEW_API sinew_status sinew_set_log(sinew_log log, void* context);
+
+/// An assumption of the library's own that does not hold: its text and place. Where it returns, the call goes
+/// on.
+typedef void (*sinew_assertion)(void* context, const char* condition, const char* file, int32_t line);
+/// Null: written to stderr, and the program aborts. SINEW_UNSUPPORTED where the library does not check them
+/// (it does when built with SINEW_ASSERTS).
+SINEW_API sinew_status sinew_set_assertion(sinew_assertion failed, void* context);
+
+/// A part of a step begins, or ends: nested, each on one thread. `zone`: its name, which lives for ever.
+typedef void (*sinew_zone)(void* context, const char* zone);
+/// Both or none. SINEW_UNSUPPORTED where the library was built without SINEW_PROFILER.
+SINEW_API sinew_status sinew_set_profiler(sinew_zone begin, sinew_zone end, void* context);
 
 // ---- What is passed about ----
 

@@ -9,6 +9,7 @@
 #include "sinew/character/playback.h"
 #include "sinew/character/prop.h"
 #include "sinew/character/world_impl.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -380,8 +381,36 @@ void World<T>::Impl::keep_sleepers() {
     }
 }
 
+/// What the step could not do, in the order in which the bodies were added.
+template <class T>
+void World<T>::Impl::log_step() const {
+  const auto log = [&](const std::vector<int>& list, bool characters) {
+    for (std::size_t n = 0; n < list.size(); ++n) {
+      if (!islands.contains(list[n])) continue;
+      const CharacterReport& r = states[list[n]]->report;
+      const auto say = [&](LogLevel level, const char* character, const char* prop) {
+        write_log(level, characters ? character : prop, static_cast<int>(n));
+      };
+      if (r.frozen > 0)
+        say(LogLevel::kWarning, "a character was stopped where it stood: no pose could be found",
+            "a prop was stopped where it was: no pose could be found");
+      if (r.left_out > 0)
+        say(LogLevel::kWarning, "a character's furthest contacts were left out: no memory for so many",
+            "a prop's furthest contacts were left out: no memory for so many");
+      if (r.crowded)
+        say(LogLevel::kWarning, "a character may pass through another: more touch than island_dofs allows",
+            "a prop may pass through another: more touch than island_dofs allows");
+      if (!r.converged)
+        say(LogLevel::kInfo, "a character's step did not converge", "a prop's step did not converge");
+    }
+  };
+  log(characters, true);
+  log(props, false);
+}
+
 template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
+  SINEW_ZONE("step");
   h = step;
   for (const auto& s : states) {
     s->keep_deviations(h);
@@ -405,6 +434,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     (!capacity.fits(small_capacity) ? large : plays && capacity.trees == 1 ? light : heavy).push_back(i);
     first_lagged.push_back(first_lagged.back() + capacity.loaded);
   }
+  SINEW_ASSERT(static_cast<std::size_t>(first_lagged.back()) <= lagged_new.capacity());
   lagged_new.resize(first_lagged.back());
   if (reporter) reporter->begin_step(islands.count());
   next_heavy = next_light = 0;
@@ -419,6 +449,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
   if (reporter) report_contacts();
   controller.update(states, settings.detail, h, report);
+  if (logs()) log_step();
 }
 
 template <class T>
