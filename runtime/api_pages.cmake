@@ -4,11 +4,9 @@ find_program(SINEW_DOXYGEN doxygen)
 if(NOT SINEW_DOXYGEN)
   return()
 endif()
-# skeleton/vector.h and scalar.h, the arithmetic within, and the layers that are not listed here have names without words yet.
-set(documented api_pages.dox sinew/c/sinew.h sinew/io/asset.h sinew/crowd/crowd.h sinew/crowd/population.h)
-foreach(header joint_type parallel_for principal_axes skeleton status transform version)
-  list(APPEND documented sinew/skeleton/${header}.h)
-endforeach()
+set(documented ${SINEW_PUBLIC_HEADERS})
+list(TRANSFORM documented PREPEND sinew/)
+list(PREPEND documented api_pages.dox)
 
 # doxygen_run(folder undocumented INPUT…): a configuration in build/api/folder.
 function(doxygen_run folder undocumented)

@@ -405,7 +405,6 @@ bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
          (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;
 }
 
-/// The clip again, from where the feet stand now.
 /// What takes the clip's feet under those that stand.
 template <class T>
 Displacement Behaviour<T>::to_feet() const {
@@ -441,7 +440,7 @@ int Behaviour<T>::misplaced() const {
 /// The clip again, from where the feet stand now.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  character.displace(to_feet());
+  (void)character.displace(to_feet());
   risen_ = false;
   give_up(character);
   fades_ = true;
@@ -548,7 +547,7 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   see_clip(jets);
   swing_ = -1;
   choose_support(measure(character));
-  character.displace(to_feet());  // the animation faces as the body does
+  (void)character.displace(to_feet());  // the animation faces as the body does
   const MeasuredBody is = measure(character);
   spin_.setZero();
   root_before_ = is.root.rotation;

@@ -224,8 +224,9 @@ template <class T>
 int World<T>::add_prop(const PropSettings& prop, Status& status) {
   const Skeleton body = skeleton_of(prop);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
-  if (status && !(prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
-    status = Status::error(Code::kNotFinite, "prop velocity is not finite");
+  if (status && !(prop.pose.rotation.coeffs().allFinite() && prop.pose.translation.allFinite() &&
+                  prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
+    status = Status::error(Code::kNotFinite, "prop's pose or velocity is not finite");
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
@@ -246,6 +247,9 @@ Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& ve
                           const Vec3<T>& angular_velocity) {
   CharacterState<T>* const s = impl_->prop(index);
   if (!s) return no_such_prop(index);
+  if (!(pose.rotation.coeffs().allFinite() && pose.translation.allFinite() && velocity.allFinite() &&
+        angular_velocity.allFinite()))
+    return Status::error(Code::kNotFinite, "prop's pose or velocity is not finite", index);
   s->parked = false;
   JointJet<T>& jet = s->target[0];
   jet = {};
@@ -278,8 +282,7 @@ Status World<T>::unpark_character(int index) {
   CharacterState<T>* const s = impl_->character(index);
   if (!s) return no_such_character(index);
   s->parked = false;
-  s->reset_to_target(Vec3<T>::Zero());
-  return {};
+  return Character<T>(s).reset();
 }
 
 template <class T>
