@@ -122,8 +122,8 @@ int main(int argc, char** argv) {
   const int chest = std::max(0, asset.skeleton.find(sinew::Role::kChest));
   const long set_up = blocks;
   for (int frame = 0; frame < 120; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips[0], frame / 60.0, jets}.Run();
-    status = hero.set_target(jets);
+    status = sinew::SamplingJob<float>{&asset.clips[0], frame / 60.0, jets}.Run();
+    if (status) status = hero.set_target(jets);
     if (status && frame == 0) status = hero.reset();
     if (status && frame == 30)
       status = hero.apply_impulse(chest, hero.model()[std::size_t(chest)].translation, {0, 90, 0});
