@@ -5,7 +5,7 @@
 
 namespace sinew {
 
-/// What made it, or which call added it.
+/// Which setting or call put it into the world.
 enum class BodyKind : std::uint8_t {
   kGround,     ///< WorldSettings::ground
   kObstacle,   ///< World::add_obstacle(Collider)

@@ -38,7 +38,7 @@ namespace sinew {
 template <class T>
 class World;
 
-/// Where in its time a pair of bodies is.
+/// Whether a pair of bodies has come together, stays so, or has parted.
 enum class ContactPhase : std::uint8_t {
   kBegin,  ///< they did not touch after the last step
   kStay,   ///< they touched after the last step, and do after this one
@@ -96,7 +96,7 @@ class ContactRing {
 /// Which events a host wants.
 struct ContactReportSettings {
   bool begin = true;     ///< ContactPhase::kBegin
-  bool stay = false;     ///< ContactPhase::kStay: one a pair and step
+  bool stay = false;     ///< ContactPhase::kStay: one for each pair and step
   bool end = true;       ///< ContactPhase::kEnd
   bool animated = true;  ///< what a clip sets on the ground, too
   /// m of a figure of human size: colliders that an animation leads nearer to the ground than that touch it.

@@ -44,15 +44,14 @@ class DebugRenderer {
   virtual void text(const Vec3<double>& at, const char* words, DebugColor color) = 0;
 };
 
-/// What draw() marks by which color; muscles go from green over yellow to red by their load.
+/// What draw() uses for what; muscles go from green over yellow to red by their load.
 namespace debug_colors {
 constexpr DebugColor kBone{200, 200, 200, 255};    ///< from a joint to its parent
 constexpr DebugColor kStatic{110, 110, 110, 255};  ///< obstacles
 constexpr DebugColor kAsleep{90, 100, 140, 255};   ///< colliders whose owner sleeps
 constexpr DebugColor kPlayed{80, 160, 255, 255};   ///< colliders whose owner was played
-constexpr DebugColor kSolved{255, 160, 60,
-                             255};  ///< colliders whose owner was solved for; awake props, particles
-constexpr DebugColor kForce{255, 60, 60, 255};       ///< along a contact's normal
+constexpr DebugColor kSolved{255, 160, 60, 255};  ///< colliders of who was solved for, awake props, particles
+constexpr DebugColor kForce{255, 60, 60, 255};    ///< along a contact's normal
 constexpr DebugColor kFriction{255, 120, 220, 255};  ///< force across it
 constexpr DebugColor kTouch{255, 230, 80, 255};      ///< the point of a contact
 constexpr DebugColor kUnknown{255, 255, 60, 255};    ///< axis of a degree of freedom that was solved for

@@ -128,7 +128,7 @@ struct PropSettings {
   std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
 };
 
-/// What a world is made with; it stays so.
+/// What a world is made with; nothing changes it later.
 struct WorldSettings {
   Accuracy accuracy;                  ///< of all solves, against their time
   LevelOfDetail detail;               ///< when characters go up and down, and the budget of a step

@@ -115,9 +115,9 @@ enum class NodeType : std::uint8_t {
 
 /// What a layer does to the pose below it.
 enum class LayerMode : std::uint8_t {
-  kOverride,      ///< takes its place, by weight and mask; curves and travel, too
-  kAdditive,      ///< adds what differs from the reference, in the joints' own axes
-  kMeshAdditive,  ///< the same in model space (MeshAdditiveJob)
+  kOverride,     ///< takes its place, by weight and mask; curves and travel, too
+  kAdditive,     ///< adds what differs from the reference, in the joints' own axes
+  kMeshAdditive  ///< the same in model space (MeshAdditiveJob)
 };
 
 /// What lies upon the first child of a kLayers node.
