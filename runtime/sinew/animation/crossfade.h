@@ -29,14 +29,14 @@ template <class T>
 void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
                std::span<JointJet<T>> out, std::span<const Transform<T>> rest = {});
 
-/// \cond
+/// @cond
 extern template void crossfade<float>(std::span<const JointJet<float>>, std::span<const JointJet<float>>,
                                       const EaseWeight<float>&, std::span<JointJet<float>>,
                                       std::span<const Transform<float>>);
 extern template void crossfade<double>(std::span<const JointJet<double>>, std::span<const JointJet<double>>,
                                        const EaseWeight<double>&, std::span<JointJet<double>>,
                                        std::span<const Transform<double>>);
-/// \endcond
+/// @endcond
 
 /// Moves a pose in the world: the root's transform and motion are turned and shifted by `place`.
 template <class T>

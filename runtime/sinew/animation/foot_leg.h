@@ -29,9 +29,9 @@ Status find_foot_leg(const Skeleton& skeleton, Role foot, FootLeg<T>& out);
 /// is the sum of its clips' weights where they rest.
 bool in_contact(const Clip& clip, double time, int joint);
 
-/// \cond
+/// @cond
 extern template Status find_foot_leg<float>(const Skeleton&, Role, FootLeg<float>&);
 extern template Status find_foot_leg<double>(const Skeleton&, Role, FootLeg<double>&);
-/// \endcond
+/// @endcond
 
 }  // namespace sinew

@@ -31,13 +31,13 @@ template <class T>
 Status make_look_chain(const Skeleton& skeleton, std::span<const int> joints, std::span<const double> shares,
                        LookChain<T>& out);
 
-/// \cond
+/// @cond
 extern template Status make_look_chain<float>(const Skeleton&, std::span<const int>, std::span<const double>,
                                               LookChain<float>&);
 extern template Status make_look_chain<double>(const Skeleton&, std::span<const int>, std::span<const double>,
                                                LookChain<double>&);
 extern template Status find_look_chain<float>(const Skeleton&, LookChain<float>&);
 extern template Status find_look_chain<double>(const Skeleton&, LookChain<double>&);
-/// \endcond
+/// @endcond
 
 }  // namespace sinew

@@ -7,7 +7,7 @@
 #include "sinew/animation/clip.h"
 #include "sinew/animation/time_jet.h"
 
-/// \cond
+/// @cond
 /// Vectors and quaternions of TimeJets are Eigen's.
 template <class S>
 struct Eigen::NumTraits<sinew::TimeJet<S>> : Eigen::GenericNumTraits<sinew::TimeJet<S>> {
@@ -21,7 +21,7 @@ struct Eigen::NumTraits<sinew::TimeJet<S>> : Eigen::GenericNumTraits<sinew::Time
     MulCost = 9
   };
 };
-/// \endcond
+/// @endcond
 
 namespace sinew {
 

@@ -22,7 +22,7 @@ struct TimeJet {
   TimeJet(const S& p, const S& dp, const S& ddp) : value(p), rate(dp), acceleration(ddp) {}
 
   // Arithmetic, by the rules above.
-  /// \cond
+  /// @cond
   TimeJet& operator+=(const TimeJet& b) { return *this = *this + b; }
   TimeJet& operator-=(const TimeJet& b) { return *this = *this - b; }
   TimeJet& operator*=(const TimeJet& b) { return *this = *this * b; }
@@ -57,7 +57,7 @@ struct TimeJet {
   }
   friend bool operator<(const TimeJet& a, const TimeJet& b) { return a.value < b.value; }
   friend bool operator>(const TimeJet& a, const TimeJet& b) { return a.value > b.value; }
-  /// \endcond
+  /// @endcond
 };
 
 }  // namespace sinew

@@ -79,11 +79,11 @@ enum sinew_status_values {
   SINEW_IO = 6,                ///< the file could not be read
   SINEW_BAD_HANDLE = 7,        ///< null, destroyed, or of another kind
   SINEW_BUSY = 8,              ///< another call for the same world runs
-  SINEW_NO_MEMORY = 9,   ///< a set-up call found no memory; a world that it should have changed is broken
-  SINEW_NOT_FOUND = 10,  ///< no such name
-  SINEW_TOO_SMALL = 11,  ///< the caller's memory; the size that it takes is told
-  SINEW_BROKEN = 12,     ///< a world that ran out of memory while something was added: destroy it
-  SINEW_UNSUPPORTED = 13 ///< this library was built without it
+  SINEW_NO_MEMORY = 9,    ///< a set-up call found no memory; a world that it should have changed is broken
+  SINEW_NOT_FOUND = 10,   ///< no such name
+  SINEW_TOO_SMALL = 11,   ///< the caller's memory; the size that it takes is told
+  SINEW_BROKEN = 12,      ///< a world that ran out of memory while something was added: destroy it
+  SINEW_UNSUPPORTED = 13  ///< this library was built without it
 };
 
 /// "0.2.0", of the library.
@@ -123,8 +123,8 @@ enum sinew_log_level_values {
 };
 /// `words` live for ever; `index` of the character, prop or element that they are about, -1 if none.
 typedef void (*sinew_log)(void* context, sinew_log_level level, const char* words, int32_t index);
-/// Who hears of every call that is refused, on its thread, and of what steps could not do, at their end; null:
-/// nobody.
+/// Who hears of every call that is refused, on its thread, and of what steps could not do, at their end;
+/// null: nobody.
 SINEW_API sinew_status sinew_set_log(sinew_log log, void* context);
 
 /// An assumption of the library's own that does not hold: its text and place. Where it returns, the call goes

@@ -39,9 +39,9 @@ template <class T>
 Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight,
                       double unit);
 
-/// \cond
+/// @cond
 extern template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
 extern template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
-/// \endcond
+/// @endcond
 
 }  // namespace sinew

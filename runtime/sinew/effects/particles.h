@@ -64,9 +64,9 @@ std::vector<int> bodies_of_nodes(const ParticleBody& body);
 template <class T>
 Coupling<T> make_elements(const ParticleBody& body, int state, const Place& place);
 
-/// \cond
+/// @cond
 extern template Coupling<float> make_elements(const ParticleBody&, int, const Place&);
 extern template Coupling<double> make_elements(const ParticleBody&, int, const Place&);
-/// \endcond
+/// @endcond
 
 }  // namespace sinew

@@ -65,7 +65,7 @@ template <class T, class Left, class Right>
 }  // namespace vector
 
 // Each is Eigen's operator of its name: pages leave them out.
-/// \cond
+/// @cond
 
 template <class T>
 [[gnu::always_inline]] inline Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
@@ -145,6 +145,6 @@ template <class A, class T>
   const Mat3<T>& own = b.nestedExpression();
   return vector::product<T>(a, [&](int k, int j) -> const T& { return own(j, k); });
 }
-/// \endcond
+/// @endcond
 
 }  // namespace sinew
