@@ -1,7 +1,7 @@
 // Places in Godot's axes and in Sinew's.
 //
-// Sinew has X forward, Y left, Z up; Godot has Y up, and a model that came as glTF looks along Z. So Godot's x, y, z are
-// Sinew's y, z, x: the same numbers in another order, nothing is rounded.
+// Sinew has X forward, Y left, Z up; Godot has Y up, and a model that came as glTF looks along Z. So Godot's
+// x, y, z are Sinew's y, z, x: the same numbers in another order, nothing is rounded.
 #pragma once
 
 #include <sinew/c/sinew.h>
@@ -20,16 +20,26 @@ template <class T>
 Vector to_godot(const T* v) {
   return {float(v[1]), float(v[2]), float(v[0])};
 }
-inline std::array<double, 3> to_sinew(const Vector& v) { return {v[2], v[0], v[1]}; }
+inline std::array<double, 3> to_sinew(const Vector& v) {
+  return {v[2], v[0], v[1]};
+}
 
 /// The rotation as a matrix, in single precision: what Godot gets and keeps, to the bit.
 inline Transform to_godot(const sinew_transform& joint) {
   const float x = joint.rotation[1], y = joint.rotation[2], z = joint.rotation[0], w = joint.rotation[3];
   const Vector at = to_godot(joint.translation);
-  return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),      //
-          2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),      //
-          2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y),  //
-          at[0],                   at[1],                   at[2]};
+  return {1 - 2 * (y * y + z * z),
+          2 * (x * y - w * z),
+          2 * (x * z + w * y),  //
+          2 * (x * y + w * z),
+          1 - 2 * (x * x + z * z),
+          2 * (y * z - w * x),  //
+          2 * (x * z - w * y),
+          2 * (y * z + w * x),
+          1 - 2 * (x * x + y * y),  //
+          at[0],
+          at[1],
+          at[2]};
 }
 
 /// A rotation and a place, in Godot's axes: x_outer = rows * x + origin.

@@ -1,11 +1,12 @@
-// What this library uses of GDNative, the C interface of Godot 3 for native code. Debian has no headers of it.
+// What this library uses of GDNative, the C interface of Godot 3 for native code. Debian has no headers of
+// it.
 //
 // Godot hands over tables of function pointers. Their order is fixed by modules/gdnative/gdnative_api.json of
-// Godot's sources: a table never changes, what is new comes in a further table that `next` leads to. The places
-// below are those of Godot 3.2.3; why_not() says whether a table is the one that is described here.
+// Godot's sources: a table never changes, what is new comes in a further table that `next` leads to. The
+// places below are those of Godot 3.2.3; why_not() says whether a table is the one that is described here.
 //
-// Godot's values are bytes without alignment, of these sizes: as such they are passed, also by value, so none of
-// them may have members of another type.
+// Godot's values are bytes without alignment, of these sizes: as such they are passed, also by value, so none
+// of them may have members of another type.
 #pragma once
 
 #include <cstddef>
@@ -185,9 +186,11 @@ struct Signal {
   Variant* defaults;
 };
 
-inline constexpr Entry<void(void* library, const char* name, const char* base, CreateFunction, DestroyFunction)>
+inline constexpr Entry<void(void* library, const char* name, const char* base, CreateFunction,
+                            DestroyFunction)>
     register_class{0};
-inline constexpr Entry<void(void* library, const char* of, const char* name, MethodAttributes, MethodFunction)>
+inline constexpr Entry<void(void* library, const char* of, const char* name, MethodAttributes,
+                            MethodFunction)>
     register_method{2};
 inline constexpr Entry<void(void* library, const char* of, const char* name, PropertyAttributes*, SetFunction,
                             GetFunction)>

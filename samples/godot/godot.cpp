@@ -12,6 +12,7 @@ namespace {
 const AnyFunction* core = nullptr;    // of the core table
 const AnyFunction* script = nullptr;  // of NativeScript's
 void* library = nullptr;
+constexpr std::int64_t kNoSuchFile = 7;  // of Godot's errors
 
 /// A function of the core table.
 template <class F>
@@ -37,13 +38,20 @@ std::string to_utf8(String words) {
 
 const char* name_of(VariantType type) {
   switch (type) {
-    case kNil: return "null";
-    case kBool: return "bool";
-    case kInt: return "int";
-    case kReal: return "float";
-    case kString: return "String";
-    case kVector3: return "Vector3";
-    default: return "another type";
+    case kNil:
+      return "null";
+    case kBool:
+      return "bool";
+    case kInt:
+      return "int";
+    case kReal:
+      return "float";
+    case kString:
+      return "String";
+    case kVector3:
+      return "Vector3";
+    default:
+      return "another type";
   }
 }
 
@@ -61,10 +69,18 @@ void error(const char* method, const std::string& what) {
 
 // ---- Values ----
 
-Value::Value() { in_core(variant_new_nil)(&variant_); }
-Value::Value(bool value) { in_core(variant_new_bool)(&variant_, value); }
-Value::Value(std::int64_t value) { in_core(variant_new_int)(&variant_, value); }
-Value::Value(double value) { in_core(variant_new_real)(&variant_, value); }
+Value::Value() {
+  in_core(variant_new_nil)(&variant_);
+}
+Value::Value(bool value) {
+  in_core(variant_new_bool)(&variant_, value);
+}
+Value::Value(std::int64_t value) {
+  in_core(variant_new_int)(&variant_, value);
+}
+Value::Value(double value) {
+  in_core(variant_new_real)(&variant_, value);
+}
 Value::Value(const char* words) {
   const Words string(words);
   in_core(variant_new_string)(&variant_, &string.raw);
@@ -78,7 +94,9 @@ Value::Value(const Transform& value) {
   in_core(variant_new_transform)(&variant_, &bytes);
 }
 Value::Value(Value&& other) noexcept : variant_(other.release()) {}
-Value::~Value() { in_core(variant_destroy)(&variant_); }
+Value::~Value() {
+  in_core(variant_destroy)(&variant_);
+}
 
 Variant Value::release() {
   const Variant handed_over = variant_;
@@ -90,7 +108,9 @@ Words::Words(const std::string& utf8) {
   in_core(string_new)(&raw);
   in_core(string_parse_utf8)(&raw, utf8.c_str());
 }
-Words::~Words() { in_core(string_destroy)(&raw); }
+Words::~Words() {
+  in_core(string_destroy)(&raw);
+}
 
 // ---- Arguments ----
 
@@ -157,7 +177,8 @@ void emit(Object* self, const char* signal, std::initializer_list<const Value*> 
   std::vector<const Variant*> arguments{name.raw()};
   for (const Value* value : values) arguments.push_back(value->raw());
   CallError unused{};
-  Variant result = in_core(method_bind_call)(emit_signal, self, arguments.data(), int(arguments.size()), &unused);
+  Variant result =
+      in_core(method_bind_call)(emit_signal, self, arguments.data(), int(arguments.size()), &unused);
   in_core(variant_destroy)(&result);
 }
 
@@ -170,7 +191,7 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, cons
   open.call(file, {&name.raw, &to_read}, &code);
   std::optional<std::vector<std::uint8_t>> result;
   if (code != 0) {
-    error(method, path + ": Godot cannot open it (its error " + std::to_string(code) + ")");
+    error(method, path + (code == kNoSuchFile ? ": no such file" : ": it cannot be opened"));
   } else {
     ByteArray bytes;
     in_core(pool_byte_array_new)(&bytes);
@@ -190,20 +211,22 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, cons
 
 void register_class(const char* name, const char* base, void* (*create)(Object*, void*),
                     void (*destroy)(Object*, void*, void*)) {
-  gdnative::register_class.in(script)(library, name, base, {create, nullptr, nullptr}, {destroy, nullptr, nullptr});
+  gdnative::register_class.in(script)(library, name, base, {create, nullptr, nullptr},
+                                      {destroy, nullptr, nullptr});
 }
 
-void register_method(const char* of, const char* name, Variant (*call)(Object*, void*, void*, int, Variant**)) {
+void register_method(const char* of, const char* name,
+                     Variant (*call)(Object*, void*, void*, int, Variant**)) {
   gdnative::register_method.in(script)(library, of, name, {0}, {call, const_cast<char*>(name), nullptr});
 }
 
 void register_property(const char* of, const char* name, const Value& otherwise,
                        void (*set)(Object*, void*, void*, Variant*), Variant (*get)(Object*, void*, void*)) {
   const Words none("");
-  PropertyAttributes attributes{0, in_core(variant_get_type)(otherwise.raw()), 0, none.raw, kPropertyUsage,
-                                *otherwise.raw()};
-  gdnative::register_property.in(script)(library, of, name, &attributes, {set, const_cast<char*>(name), nullptr},
-                                         {get, nullptr, nullptr});
+  PropertyAttributes attributes{
+      0, in_core(variant_get_type)(otherwise.raw()), 0, none.raw, kPropertyUsage, *otherwise.raw()};
+  gdnative::register_property.in(script)(library, of, name, &attributes,
+                                         {set, const_cast<char*>(name), nullptr}, {get, nullptr, nullptr});
 }
 
 void register_signal(const char* of, const char* name, std::initializer_list<Argument> arguments) {
@@ -212,8 +235,8 @@ void register_signal(const char* of, const char* name, std::initializer_list<Arg
   std::vector<SignalArgument> list;
   std::deque<Words> names;  // until the call
   for (const Argument& argument : arguments)
-    list.push_back({names.emplace_back(argument.name).raw, argument.type, 0, none.raw, kPropertyUsage,
-                    *nothing.raw()});
+    list.push_back(
+        {names.emplace_back(argument.name).raw, argument.type, 0, none.raw, kPropertyUsage, *nothing.raw()});
   const Signal signal{its_name.raw, int(list.size()), list.data(), 0, nullptr};
   gdnative::register_signal.in(script)(library, of, &signal);
 }

@@ -1,5 +1,5 @@
-// Godot's values, errors, methods and signals in C++, over the table of gdnative.h: no more than the two classes of
-// this library need.
+// Godot's values, errors, methods and signals in C++, over the table of gdnative.h: no more than the two
+// classes of this library need.
 #pragma once
 
 #include <array>
@@ -49,8 +49,8 @@ class Value {
   gdnative::Variant variant_;
 };
 
-/// A call of one of this library's methods: its arguments, by number. One that is missing or of another type is
-/// told to Godot's error print, and `good` is false from then on.
+/// A call of one of this library's methods: its arguments, by number. One that is missing or of another type
+/// is told to Godot's error print, and `good` is false from then on.
 struct Call {
   const char* method;
   int count;
@@ -72,7 +72,8 @@ struct Call {
 class Method {
  public:
   Method(const char* of, const char* name) : of_(of), name_(name) {}
-  /// Arguments and result are memory of the exact types of Godot's: int64_t, double, bool, Object*, Transform, String.
+  /// Arguments and result are memory of the exact types of Godot's: int64_t, double, bool, Object*,
+  /// Transform, String.
   void call(Object* self, std::initializer_list<const void*> arguments, void* result = nullptr);
 
  private:
@@ -95,7 +96,8 @@ Object* parent_of(Object* node);
 /// A Spatial's place in the scene.
 Transform global_transform_of(Object* spatial);
 void emit(Object* self, const char* signal, std::initializer_list<const Value*> values);
-/// A file's bytes, wherever Godot finds it (res:// of an exported game, too); nothing, and told, if it does not.
+/// A file's bytes, wherever Godot finds it (res:// of an exported game, too); nothing, and told, if it does
+/// not.
 std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, const char* method);
 
 // ---- What the library registers ----

@@ -30,4 +30,6 @@ SINEW_GODOT_EXPORT void godot_nativescript_init(void* library) {
   SinewCharacter::register_with_godot();
 }
 
-SINEW_GODOT_EXPORT void godot_gdnative_terminate(void*) { core = nullptr; }
+SINEW_GODOT_EXPORT void godot_gdnative_terminate(void*) {
+  core = nullptr;
+}

@@ -1,6 +1,6 @@
 #include "sinew_character.h"
 
-#include <cstring>
+#include <utility>
 
 #include "sinew_world.h"
 
@@ -17,12 +17,18 @@ namespace {
 
 const char* name_of(sinew_body_kind kind) {
   switch (kind) {
-    case SINEW_BODY_GROUND: return "ground";
-    case SINEW_BODY_OBSTACLE: return "obstacle";
-    case SINEW_BODY_SHAPE: return "shape";
-    case SINEW_BODY_CHARACTER: return "character";
-    case SINEW_BODY_PROP: return "prop";
-    default: return "particles";
+    case SINEW_BODY_GROUND:
+      return "ground";
+    case SINEW_BODY_OBSTACLE:
+      return "obstacle";
+    case SINEW_BODY_SHAPE:
+      return "shape";
+    case SINEW_BODY_CHARACTER:
+      return "character";
+    case SINEW_BODY_PROP:
+      return "prop";
+    default:
+      return "particles";
   }
 }
 
@@ -77,7 +83,10 @@ SinewCharacter::~SinewCharacter() {
 
 Value SinewCharacter::enter_tree(Call& call) {
   if (character_) {  // it was here before
-    if (lives(call.method)) done(sinew_character_park(character_, 0), call.method, asset_path_);
+    if (SinewWorld::above(self_) != world_)
+      godot::error(call.method, asset_path_ + ": a character stays in the SinewWorld that it was in first");
+    else
+      done(sinew_character_park(character_, 0), call.method, asset_path_);
     return {};
   }
   world_ = SinewWorld::above(self_);
@@ -85,7 +94,12 @@ Value SinewCharacter::enter_tree(Call& call) {
     godot::error(call.method, "a SinewCharacter belongs below a SinewWorld");
     return {};
   }
-  if (!load(call.method) || !join(call.method)) world_ = nullptr;
+  if (load(call.method) && join(call.method)) return {};
+  if (character_) {
+    sinew_character_park(character_, 1);
+    world_->remove(this);
+  }
+  leave();
   return {};
 }
 
@@ -95,6 +109,7 @@ Value SinewCharacter::exit_tree(Call& call) {
 }
 
 bool SinewCharacter::load(const char* method) {
+  if (asset_) sinew_asset_destroy(std::exchange(asset_, 0));  // of an attempt before
   const auto bytes = godot::read_file(asset_path_, method);
   return bytes && done(sinew_asset_read(bytes->data(), bytes->size(), &asset_), method, asset_path_) &&
          choose_clip(clip_name_, method);
@@ -114,7 +129,8 @@ bool SinewCharacter::join(const char* method) {
     return false;
   world_->add(this);
   character_ = joined;
-  if (balance_ && !done(sinew_character_add_behaviour(character_, nullptr), method, asset_path_)) return false;
+  if (balance_ && !done(sinew_character_add_behaviour(character_, nullptr), method, asset_path_))
+    return false;
   jets_.resize(std::size_t(info.joints));
   place_ = axes::Place(Rigid(godot::global_transform_of(world_->self())).inverse() *
                        Rigid(godot::global_transform_of(self_)));
@@ -180,7 +196,8 @@ bool SinewCharacter::find_bones(const char* method) {
     bone_of_joint_[j] = int(bone);
     bones_[std::size_t(bone)].joint = int(j);
   }
-  if (!any) godot::error(method, asset_path_ + ": no bone of this Skeleton has the name of a joint of the asset");
+  if (!any)
+    godot::error(method, asset_path_ + ": no bone of this Skeleton has the name of a joint of the asset");
   // Joints and bones of a name are turned against each other once and for all: how, shows at rest.
   for (const int b : order_) {
     Bone& bone = bones_[std::size_t(b)];
@@ -253,7 +270,8 @@ Value SinewCharacter::play(Call& call) {
     const auto index = std::int32_t(call.whole(0, "clip"));
     sinew_clip_info info{};
     info.size = sizeof info;
-    if (!done(sinew_asset_get_clip(asset_, index, &info), call.method, "clip " + std::to_string(index))) return {};
+    if (!done(sinew_asset_get_clip(asset_, index, &info), call.method, "clip " + std::to_string(index)))
+      return {};
     clip_ = index;
     clip_name_ = info.name;
   } else {
@@ -273,7 +291,8 @@ bool SinewCharacter::aim(float h, double steps_per_second, const char* method) {
   next_time_ = began_ + steps_ * speed_ / steps_per_second;
   const auto count = std::int32_t(jets_.size());
   const std::string& what = asset_path_;
-  if (!done(sinew_clip_sample(asset_, clip_, time, speed_, 0, jets_.data(), count), method, what)) return false;
+  if (!done(sinew_clip_sample(asset_, clip_, time, speed_, 0, jets_.data(), count), method, what))
+    return false;
   if (!place_.is_none()) place_.put(jets_[0]);
   const bool set = balance_ && !fresh_ && !rising_
                        ? done(sinew_character_balance(character_, jets_.data(), count, h), method, what)
@@ -294,7 +313,8 @@ Value SinewCharacter::push(Call& call) {
   std::array<double, 3> point{at.translation[0], at.translation[1], at.translation[2]};
   if (call.has(2)) point = axes::to_sinew(call.vector(2, "at"));
   if (call.good)
-    done(sinew_character_apply_impulse(character_, joint, point.data(), impulse.data()), call.method, "the impulse");
+    done(sinew_character_apply_impulse(character_, joint, point.data(), impulse.data()), call.method,
+         "the impulse");
   return {};
 }
 
@@ -332,7 +352,9 @@ Value SinewCharacter::get_up(Call& call) {
   return {};
 }
 
-Value SinewCharacter::is_on_animation(Call& call) { return lives(call.method) && on_animation_; }
+Value SinewCharacter::is_on_animation(Call& call) {
+  return lives(call.method) && on_animation_;
+}
 
 Value SinewCharacter::unknown_dofs(Call& call) {
   sinew_character_report report{};
@@ -364,11 +386,13 @@ int SinewCharacter::joint_of(Call& call, int argument) const {
   if (call.is(argument, kInt)) {
     const auto bone = call.whole(argument, "bone");
     if (bone >= 0 && bone < std::int64_t(bones_.size())) joint = bones_[std::size_t(bone)].joint;
-    if (joint < 0) godot::error(call.method, "bone " + std::to_string(bone) + ": no joint of the asset leads it");
+    if (joint < 0)
+      godot::error(call.method, "bone " + std::to_string(bone) + ": no joint of the asset leads it");
     return joint;
   }
   const std::string name = call.words(argument, "bone");
-  if (call.good) done(sinew_asset_find_joint(asset_, name.c_str(), &joint), call.method, "bone \"" + name + "\"");
+  if (call.good)
+    done(sinew_asset_find_joint(asset_, name.c_str(), &joint), call.method, "bone \"" + name + "\"");
   return joint;
 }
 
@@ -381,17 +405,19 @@ sinew_view SinewCharacter::view(sinew_view_kind kind, const char* method) const 
 void SinewCharacter::set_asset_path(Call& call) {
   const std::string path = call.words(0, call.method);
   if (!call.good) return;
-  if (asset_) return godot::error(call.method, asset_path_ + ": an asset is chosen before the node enters the tree");
+  if (asset_)
+    return godot::error(call.method, asset_path_ + ": an asset is chosen before the node enters the tree");
   asset_path_ = path;
 }
 
 void SinewCharacter::set_clip_name(Call& call) {
   const std::string name = call.words(0, call.method);
   if (!call.good) return;
-  clip_name_ = name;
-  if (!character_) return;
-  Call played{"play", call.count, call.arguments};
-  play(played);
+  if (character_) {
+    play(call);
+  } else {
+    clip_name_ = name;
+  }
 }
 
 void SinewCharacter::set_speed(Call& call) {

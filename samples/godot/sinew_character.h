@@ -1,5 +1,5 @@
-// SinewCharacter, a script for a Skeleton below a SinewWorld: its bones are those of a character that follows a clip and
-// is simulated where its muscles do not suffice.
+// SinewCharacter, a script for a Skeleton below a SinewWorld: its bones are those of a character that follows
+// a clip and is simulated where its muscles do not suffice.
 #pragma once
 
 #include <sinew/c/sinew.h>
@@ -76,19 +76,19 @@ class SinewCharacter {
 
   int clip_ = 0;
   double speed_ = 1;
-  double began_ = 0;  // clip time (s) after `steps_` = 0
-  double steps_ = 0;  // since then
+  double began_ = 0;      // clip time (s) after `steps_` = 0
+  double steps_ = 0;      // since then
   double next_time_ = 0;  // of the clip, s: where it goes on if the speed changes
-  bool fresh_ = true;  // to be put on its clip at once
+  bool fresh_ = true;     // to be put on its clip at once
   bool on_animation_ = true;
   bool rising_ = false;
   float strength_ = 1;  // of all muscles
 
   axes::Place place_;
   std::vector<sinew_jet> jets_;
-  bool own_bones_ = false;        // made here: one for each joint, at rest without any rotation
-  std::vector<Bone> bones_;       // parents first only as far as order_ says
-  std::vector<int> order_;        // of bones_, parents first
+  bool own_bones_ = false;          // made here: one for each joint, at rest without any rotation
+  std::vector<Bone> bones_;         // parents first only as far as order_ says
+  std::vector<int> order_;          // of bones_, parents first
   std::vector<int> bone_of_joint_;  // -1: none
   std::vector<axes::Rigid> posed_;  // of bones_, in the skeleton's space
 };

@@ -43,7 +43,9 @@ void SinewWorld::register_with_godot() {
   godot::register_signal("SinewWorld", "stepped", {});
 }
 
-SinewWorld::SinewWorld(Object* self) : self_(self) { worlds()[self] = this; }
+SinewWorld::SinewWorld(Object* self) : self_(self) {
+  worlds()[self] = this;
+}
 
 SinewWorld::~SinewWorld() {
   worlds().erase(self_);
@@ -127,7 +129,8 @@ Value SinewWorld::throw_ball(Call& call) {
   sinew_prop_settings settings{};
   settings.size = sizeof settings;
   if (!done(sinew_prop_settings_init(&settings), call.method, "a ball")) return -1;
-  const auto at = axes::to_sinew(call.vector(0, "position")), velocity = axes::to_sinew(call.vector(1, "velocity"));
+  const auto at = axes::to_sinew(call.vector(0, "position")),
+             velocity = axes::to_sinew(call.vector(1, "velocity"));
   settings.mass = call.real(2, "mass", settings.mass);
   settings.extent[0] = call.real(3, "radius", settings.extent[0]);
   if (!call.good) return -1;
@@ -147,7 +150,8 @@ sinew_prop SinewWorld::ball(Call& call) const {
 
 Value SinewWorld::move_ball(Call& call) {
   const sinew_prop prop = ball(call);
-  const auto at = axes::to_sinew(call.vector(1, "position")), velocity = axes::to_sinew(call.vector(2, "velocity"));
+  const auto at = axes::to_sinew(call.vector(1, "position")),
+             velocity = axes::to_sinew(call.vector(2, "velocity"));
   if (!call.good || !prop) return {};
   sinew_transform pose{{0, 0, 0, 1}, {float(at[0]), float(at[1]), float(at[2])}};
   const float moves[3] = {float(velocity[0]), float(velocity[1]), float(velocity[2])}, turns[3] = {0, 0, 0};

@@ -1,4 +1,5 @@
-// SinewWorld, a script for a Spatial: a world of Sinew's, in the node's own space, and the steps that it takes.
+// SinewWorld, a script for a Spatial: a world of Sinew's, in the node's own space, and the steps that it
+// takes.
 #pragma once
 
 #include <sinew/c/sinew.h>

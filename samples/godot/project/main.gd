@@ -53,8 +53,7 @@ func _on_stepped():
 			hero.push("chest", Vector3(90, 0, 0))
 		180:
 			print_hash()
-			var chest = hero.get_bone_global_pose(hero.find_bone("chest")).origin
-			world.move_ball(ball, chest + Vector3(2, 0.3, 0), Vector3(-8, 0, 1.2))
+			world.move_ball(ball, Vector3(2, 1.6, 3.8), Vector3(-8, 0, 1.2))
 		240:
 			hero.knock_down()
 			bystander.knock_down()
