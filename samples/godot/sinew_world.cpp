@@ -7,8 +7,6 @@
 #include "axes.h"
 #include "sinew_character.h"
 
-using gdnative::kInt;
-using gdnative::kReal;
 using godot::Call;
 using godot::Object;
 using godot::Value;
