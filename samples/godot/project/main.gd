@@ -35,7 +35,7 @@ func _ready():
 		if out.open(argument("out"), File.WRITE) != OK:
 			give_up(argument("out") + " cannot be written")
 			return
-	ball = world.throw_ball(Vector3(3, 1.5, 0), Vector3(-6, 0, 0), 4)
+	ball = world.throw_ball(Vector3(3, 1.5, 0), Vector3(-6, 2, 1.2), 4)
 	world.connect("stepped", self, "_on_stepped")
 	hero.connect("contact_began", self, "_on_contact")
 	hero.connect("left_animation", self, "_on_told", ["physics takes over"])
