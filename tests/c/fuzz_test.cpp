@@ -280,6 +280,11 @@ class Sequence {
     std::vector<sinew_jet> jets(128);
     sinew_behaviour_settings s = settings(sinew_behaviour_settings_init);
     s.reaction = number(0, 0.3);
+    s.get_up = index(3);
+    s.gather = number(0.1, 1);
+    s.rise_torque = number(0, 100);
+    std::array<sinew_behaviour_event, 4> events;
+    std::int32_t count = 0;
     sinew_asset_info info{sizeof info, 0, 0, 0, 0, 0, 0};
     if (!assets_.empty()) {
       check(sinew_asset_get_info(assets_[0], &info));
@@ -287,13 +292,18 @@ class Sequence {
     }
     sinew_behaviour_report report{};
     report.size = sizeof report;
-    switch (below(5)) {
+    switch (below(7)) {
       case 0:
         return sinew_character_add_behaviour(handle(people_), or_null(&s));
       case 1:
-        return sinew_character_order(handle(people_), index(2));
+        return sinew_character_order(handle(people_), index(3));
       case 2:
         return sinew_character_get_behaviour(handle(people_), or_null(&report));
+      case 3:
+        return sinew_character_use_get_ups(handle(people_), handle(assets_));
+      case 4:
+        return sinew_character_get_behaviour_events(handle(people_), or_null(events.data()), index(5),
+                                                    or_null(&count));
       default:
         return sinew_character_balance(handle(people_), or_null(jets.data()), info.joints, real(0.005, 0.03));
     }

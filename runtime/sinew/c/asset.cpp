@@ -16,11 +16,12 @@ template <class Read>
 sinew_status make_asset(sinew_asset* out, Read&& read) noexcept {
   if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
   return caught([&] {
-    auto asset = std::make_unique<Asset>();
+    auto asset = std::make_shared<Asset>();
     if (const Status status = read(*asset); !status) return answer(status);
-    const sinew_asset handle = make_handle(Kind::kAsset, asset.get());
+    auto owned = std::make_unique<OwnedAsset>(OwnedAsset{std::move(asset)});
+    const sinew_asset handle = make_handle(Kind::kAsset, owned.get());
     if (handle == 0) return fail(SINEW_OUT_OF_RANGE, kTooMany);
-    static_cast<void>(asset.release());  // the handle's now
+    static_cast<void>(owned.release());  // the handle's now
     *out = handle;
     return sinew_status(SINEW_OK);
   });
@@ -72,7 +73,7 @@ sinew_status sinew_asset_read(const void* bytes, size_t size, sinew_asset* out) 
 }
 
 sinew_status sinew_asset_destroy(sinew_asset asset) {
-  const std::unique_ptr<Asset> found(static_cast<Asset*>(retire_handle(asset, Kind::kAsset)));
+  const std::unique_ptr<OwnedAsset> found(static_cast<OwnedAsset*>(retire_handle(asset, Kind::kAsset)));
   return found ? sinew_status(SINEW_OK) : refuse(asset, Kind::kAsset);
 }
 

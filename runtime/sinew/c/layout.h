@@ -22,6 +22,7 @@ static_assert(alignof(sinew_transform) == alignof(Transform<float>));
 static_assert(offsetof(sinew_transform, translation) == offsetof(Transform<float>, translation));
 
 constexpr const char* kTooMany = "65535 worlds and assets live already";
+constexpr const char* kOtherSkeleton = "the asset's skeleton has not the character's number of joints";
 
 /// `count` ≥ 0 jets at an aligned address.
 inline std::span<JointJet<float>> jets_of(sinew_jet* jets, int count) noexcept {

@@ -16,6 +16,21 @@
 
 namespace sinew::c {
 
+/// An asset; whoever plays its clips for long (a behaviour, a graph) shares it, so that its handle may go
+/// before.
+struct OwnedAsset {
+  std::shared_ptr<const Asset> asset;
+};
+
+/// A character's balance, and whose clips it gets up by.
+struct OwnedBehaviour {
+  OwnedBehaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status)
+      : behaviour(skeleton, settings, status) {}
+
+  std::shared_ptr<const Asset> clips;  ///< null: it stays down
+  Behaviour<float> behaviour;
+};
+
 /// A world and what the interface keeps for it.
 struct OwnedWorld {
   explicit OwnedWorld(const WorldSettings& settings) : world(settings) {}
@@ -26,8 +41,8 @@ struct OwnedWorld {
   World<float> world;
   ParallelFor jobs;
   int loops = 0;
-  std::vector<JointJet<float>> jets;  ///< of one character, as many as the largest has
-  std::vector<std::unique_ptr<Behaviour<float>>> behaviours;  ///< [character], or null
+  std::vector<JointJet<float>> jets;                        ///< of one character, as many as the largest has
+  std::vector<std::unique_ptr<OwnedBehaviour>> behaviours;  ///< [character], or null
   std::vector<ContactEvent> waiting;
   std::optional<ContactRing> ring;
   std::unique_ptr<Recorder<float>> recorder;

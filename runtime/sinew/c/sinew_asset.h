@@ -93,7 +93,7 @@ typedef struct sinew_muscle_info {
 SINEW_API sinew_status sinew_asset_load(const char* path, sinew_asset* out);
 /// The same from memory, which is copied.
 SINEW_API sinew_status sinew_asset_read(const void* bytes, size_t size, sinew_asset* out);
-/// Worlds keep what they need of it; only clips cannot be played any more.
+/// Worlds and graphs keep what they need of it; only clips cannot be played any more.
 SINEW_API sinew_status sinew_asset_destroy(sinew_asset asset);
 /// Sizes and mass.
 SINEW_API sinew_status sinew_asset_get_info(sinew_asset asset, sinew_asset_info* out);

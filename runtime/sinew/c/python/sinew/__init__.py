@@ -16,8 +16,8 @@ import os
 from ctypes import byref
 
 from . import _abi
-from ._abi import (AnchorKind, BehaviourOrder, BehaviourState, BodyKind, ContactPhase, JointType, Level, LoopKind, Role, RootDrive,
-                   Shape, SnapshotPart, Status)
+from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BodyKind, ContactPhase,
+                   GetUpPolicy, JointType, Level, LoopKind, Role, RootDrive, Shape, SnapshotPart, Status)
 
 try:
     import numpy
@@ -420,6 +420,10 @@ class Character(_InWorld):
         self._call(lib.sinew_character_add_behaviour,
                    byref(_settings(_abi.BehaviourSettings, lib.sinew_behaviour_settings_init, settings)))
 
+    def use_get_ups(self, asset):
+        """The clips by which it gets up: those of the asset named get_up... and roll..."""
+        self._call(lib.sinew_character_use_get_ups, asset.handle)
+
     def balance(self, jets, h):
         """Changes `jets` where the behaviour acts, and makes them the target."""
         self._call(lib.sinew_character_balance, _pointer(jets), len(jets), h)
@@ -430,6 +434,13 @@ class Character(_InWorld):
     @property
     def behaviour(self):
         return _report(_abi.BehaviourReport, lib.sinew_character_get_behaviour, self.handle)
+
+    @property
+    def behaviour_events(self):
+        """What happened in the last balance()."""
+        out, count = (_abi.BehaviourEvent * 4)(), ctypes.c_int32()
+        self._call(lib.sinew_character_get_behaviour_events, byref(out), 4, byref(count))
+        return out[:count.value]
 
     @property
     def report(self):
