@@ -101,6 +101,7 @@ sinew_status sinew_world_add_character(sinew_world world, sinew_asset asset,
     if (const sinew_status s = read_settings(settings, read, kSettings); s != SINEW_OK) return s;
     w.jets.resize(std::max(w.jets.size(), skeleton.joints.size()));
     w.behaviours.resize(std::size_t(w.world.character_count()) + 1);
+    w.graphs.resize(w.behaviours.size());
     Status status;
     const int index = w.world.add_character(skeleton, read, status);
     if (index >= 0) *out = handle_in(world, Kind::kCharacter, index);

@@ -141,10 +141,13 @@ typedef struct sinew_view {
 // What there is, by theme. Each part needs those before it.
 // clang-format off
 #include "sinew/c/sinew_asset.h"
+#include "sinew/c/sinew_pose.h"
 #include "sinew/c/sinew_world.h"
 #include "sinew/c/sinew_character.h"
 #include "sinew/c/sinew_behaviour.h"
+#include "sinew/c/sinew_graph.h"
 #include "sinew/c/sinew_prop.h"
+#include "sinew/c/sinew_effect.h"
 #include "sinew/c/sinew_query.h"
 #include "sinew/c/sinew_snapshot.h"
 // clang-format on

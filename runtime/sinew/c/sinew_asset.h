@@ -58,6 +58,10 @@ typedef struct sinew_asset_info {
   int32_t clips;    ///< of the asset; may be 0
   int32_t muscles;  ///< besides the one of every degree of freedom
   double mass;      ///< kg
+  int32_t events;   ///< names of what happens in clips
+  int32_t curves;   ///< numbers that clips move
+  int32_t masks;    ///< weights by joint, under a name
+  int32_t unused;   ///< 0
 } sinew_asset_info;
 
 /// One joint of a skeleton.
@@ -89,6 +93,20 @@ typedef struct sinew_muscle_info {
   const char* group;  ///< "": none
 } sinew_muscle_info;
 
+/// What happens in clips, by name.
+typedef struct sinew_event_info {
+  uint32_t size;     ///< bytes of this struct, as the caller knows it
+  uint32_t number;   ///< of the name: sinew_graph_event::name
+  const char* name;  ///< while the asset lives
+} sinew_event_info;
+
+/// A number that clips move.
+typedef struct sinew_curve_info {
+  uint32_t size;     ///< bytes of this struct, as the caller knows it
+  float rest;        ///< where clips say nothing
+  const char* name;  ///< while the asset lives
+} sinew_curve_info;
+
 /// Set-up: reads a file, checked throughout.
 SINEW_API sinew_status sinew_asset_load(const char* path, sinew_asset* out);
 /// The same from memory, which is copied.
@@ -111,6 +129,20 @@ SINEW_API sinew_status sinew_asset_find_role(sinew_asset asset, sinew_role role,
 SINEW_API sinew_status sinew_asset_find_clip(sinew_asset asset, const char* name, int32_t* out);
 /// Index of a name; SINEW_NOT_FOUND. O(muscles).
 SINEW_API sinew_status sinew_asset_find_muscle(sinew_asset asset, const char* name, int32_t* out);
+/// One event's name, by index.
+SINEW_API sinew_status sinew_asset_get_event(sinew_asset asset, int32_t event, sinew_event_info* out);
+/// Number of an event's name; SINEW_NOT_FOUND. O(events).
+SINEW_API sinew_status sinew_asset_find_event(sinew_asset asset, const char* name, uint32_t* out);
+/// One curve, by index.
+SINEW_API sinew_status sinew_asset_get_curve(sinew_asset asset, int32_t curve, sinew_curve_info* out);
+/// Index of a name; SINEW_NOT_FOUND. O(curves).
+SINEW_API sinew_status sinew_asset_find_curve(sinew_asset asset, const char* name, int32_t* out);
+/// Index of a name; SINEW_NOT_FOUND. O(masks).
+SINEW_API sinew_status sinew_asset_find_mask(sinew_asset asset, const char* name, int32_t* out);
+/// How far a mask reaches each joint, 0 to 1, for sinew_blend_layer::mask. `count`: of the skeleton's joints,
+/// also with SINEW_TOO_SMALL.
+SINEW_API sinew_status sinew_asset_get_mask(sinew_asset asset, int32_t mask, float* out, int32_t capacity,
+                                            int32_t* count);
 /// What a clip shows at a time (s), for whoever blends by himself. `rate`: how fast clip time goes, 1 at
 /// normal speed; `rate_change`, 1/s: exact velocities and accelerations while time is warped. Loops wrap,
 /// other clips hold their ends. `jets`: [count], aligned to 16 bytes; fewer than the skeleton's joints: only
