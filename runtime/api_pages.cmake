@@ -4,7 +4,9 @@ find_program(SINEW_DOXYGEN doxygen)
 if(NOT SINEW_DOXYGEN)
   return()
 endif()
-set(documented ${SINEW_PUBLIC_HEADERS})
+sinew_with_included(c_interface ${CMAKE_CURRENT_SOURCE_DIR} c/sinew.h)  # it includes its parts
+set(documented ${SINEW_PUBLIC_HEADERS} ${c_interface})
+list(REMOVE_DUPLICATES documented)
 list(TRANSFORM documented PREPEND sinew/)
 list(PREPEND documented api_pages.dox)
 

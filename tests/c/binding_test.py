@@ -1,6 +1,6 @@
 """The Python package: what cannot be meant, through every function that sinew_abi.json describes and through the classes.
 
-    PYTHONPATH=build/python python3 binding_test.py build/sample.sinew runtime/sinew/c/sinew_abi.json"""
+    PYTHONPATH=build/python python3 binding_test.py build/sample.sinew build/sample.sgraph runtime/sinew/c/sinew_abi.json"""
 import ctypes
 import gc
 import json
@@ -11,12 +11,17 @@ import unittest
 import sinew
 from sinew import _abi, lib
 
-ASSET = ABI = None
+ASSET = GRAPH = ABI = None
 # Pointers that may be null, as sinew.h says; all others are refused.
 NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "settings"), ("sinew_world_add_prop", "settings"),
             ("sinew_world_report_contacts", "settings"), ("sinew_world_set_jobs", "context"), ("sinew_prop_get_state", "pose"),
             ("sinew_prop_get_state", "velocity"), ("sinew_loop_get_state", "gap"), ("sinew_loop_get_state", "force"),
-            ("sinew_character_add_behaviour", "settings"), ("sinew_world_take_contacts", "dropped")}
+            ("sinew_character_add_behaviour", "settings"), ("sinew_world_take_contacts", "dropped"),
+            ("sinew_character_add_graph", "settings"), ("sinew_character_get_graph_events", "lost"),
+            ("sinew_character_add_wind", "settings"), ("sinew_character_add_buoyancy", "settings"),
+            ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
+            ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
+            ("sinew_prop_add_force_field", "settings")}
 
 
 class Everything:
@@ -24,15 +29,20 @@ class Everything:
 
     def __init__(self):
         self.asset = sinew.Asset(ASSET)
+        self.asset.prepare_mirror()
         self.world = sinew.World()
         self.character = self.world.add_character(self.asset, root=sinew.RootDrive.GROUNDED)
         self.character.add_behaviour()
+        self.graph = sinew.Graph(GRAPH, self.asset)
+        self.character.add_graph(self.graph)
         self.prop = self.world.add_prop(pose={"translation": (3, 0, 1)})
         self.loop = self.world.add_loop(
             kind=sinew.LoopKind.ROPE, length=5, a={"kind": sinew.AnchorKind.PROP, "handle": self.prop})
+        self.effect = self.prop.add_wind(velocity=(1, 0, 0))
         self.world.report_contacts()
         self.handles = {"sinew_asset": self.asset.handle, "sinew_world": self.world.handle,
-                        "sinew_character": self.character.handle, "sinew_prop": self.prop.handle, "sinew_loop": self.loop.handle}
+                        "sinew_character": self.character.handle, "sinew_prop": self.prop.handle, "sinew_loop": self.loop.handle,
+                        "sinew_graph": self.graph.handle, "sinew_effect": self.effect.handle}
 
 
 def meant(parameter, scene, memory):
@@ -82,6 +92,7 @@ class BadInput(unittest.TestCase):
         dead = Everything()
         stale = dict(dead.handles)
         dead.world.close()
+        dead.graph.close()
         dead.asset.close()
         checked = 0
         for name, parameters, n in functions(lambda kind: kind in ABI["handles"]):
@@ -210,6 +221,80 @@ class Classes(unittest.TestCase):
         self.assertEqual([hit.body.kind for hit in hits], [sinew.BodyKind.PROP, sinew.BodyKind.GROUND])
         self.assertEqual(len(scene.world.overlap((3, 0, 1), 0.2)), 1)
 
+    def test_graphs_are_followed(self):
+        scene = Everything()
+        asked = []
+
+        def below(point):
+            asked.append(point)
+            return 0.1
+
+        other = scene.world.add_character(scene.asset)
+        other.add_graph(scene.graph, below, place=(1, 0))
+        other.set_parameter("speed", 1.2)
+        for _ in range(60):
+            other.play_graph(1 / 60)
+            scene.world.step(1 / 60)
+        self.assertGreater(other.graph_place.place[0], 1.3)  # m, in a second, from 1 m on
+        machine = scene.graph.info.nodes - 1
+        self.assertEqual(scene.graph.node(machine).type, sinew.NodeType.MACHINE)
+        self.assertEqual(other.machine(machine).name, b"move")
+        self.assertEqual(asked, [])  # this graph has no feet
+        saved = other.save_graph()
+        other.play_graph(0.5)
+        place = other.graph_place.place[0]
+        other.restore_graph(saved)
+        other.play_graph(0.5)
+        self.assertEqual(other.graph_place.place[0], place)
+        with self.assertRaisesRegex(sinew.Error, "another size"):
+            other.restore_graph(saved[:-1])
+        with self.assertRaisesRegex(sinew.Error, "NOT_FOUND"):
+            other.trigger("jump")
+
+    def test_effects_act_and_are_taken_away(self):
+        scene = Everything()
+        with self.assertRaisesRegex(sinew.Error, "density"):
+            scene.effect.set(density=-1)
+        scene.effect.set(velocity=(0, 30, 0))
+        for _ in range(20):
+            scene.world.step(1 / 60)
+        self.assertGreater(scene.prop.state[2][1], 0.01)  # m/s
+        scene.effect.remove()
+        with self.assertRaisesRegex(sinew.Error, "BAD_HANDLE"):
+            scene.effect.set(density=1)
+        head = scene.asset.find_role(sinew.Role.HEAD)
+        scene.character.add_joint_spring([head], stiffness=5)
+        with self.assertRaisesRegex(sinew.Error, "not simulated"):
+            scene.character.add_wind([head, 1000])
+        scene.character.remove_effects()
+
+    def test_poses_are_blended_mirrored_and_corrected(self):
+        scene = Everything()
+        asset = scene.asset
+        a, b = asset.sample(0, 0.1), asset.sample(0, 0.5)
+        out = asset.blend([(a, 1.0), (b, 0.0)])
+        self.assertEqual(bytes(out), bytes(a))
+        half = asset.blend([sinew.Layer(a), sinew.Layer(b, 0.5, mode=sinew.BlendMode.OVERRIDE, mask=[0.0] * len(a))])
+        self.assertEqual(bytes(half), bytes(a))
+        with self.assertRaisesRegex(sinew.Error, "weight"):
+            asset.blend([sinew.Layer(a, -1.0)])
+        hand, forearm = (asset.find_role(role) for role in (sinew.Role.HAND_L, sinew.Role.FOREARM_L))
+        upper = asset.find_role(sinew.Role.UPPER_ARM_L)
+        at = asset.model(a)
+        target = [float(x) for x in at[hand][4:]]
+        target[2] += 0.05  # where the arm is bent, not nearly straight
+        asset.two_bone(a, upper, forearm, hand, target)
+        for is_, wanted in zip(asset.model(a)[hand][4:], target):
+            self.assertAlmostEqual(float(is_), wanted, 3)
+        self.assertEqual(asset.partner(hand), asset.find_role(sinew.Role.HAND_R))
+        asset.mirror(a)
+        self.assertAlmostEqual(float(asset.model(a)[asset.partner(hand)][5]), -target[1], 3)
+        look = sinew.Look()
+        look(asset, a, (5, 0, 1), step=1 / 60)
+        self.assertEqual(look.state.started, 1)
+        with self.assertRaisesRegex(sinew.Error, "0 to 1"):
+            look(asset, a, (5, 0, 1), 1 / 60, weight=2)
+
     def test_many_characters_in_one_call(self):
         scene = Everything()
         others = [scene.world.add_character(scene.asset) for _ in range(3)]
@@ -227,6 +312,7 @@ class Classes(unittest.TestCase):
 
 if __name__ == "__main__":
     ASSET = sys.argv[1]
-    with open(sys.argv[2], encoding="utf-8") as file:
+    GRAPH = sys.argv[2]
+    with open(sys.argv[3], encoding="utf-8") as file:
         ABI = json.load(file)
     unittest.main(argv=sys.argv[:1])

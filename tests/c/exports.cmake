@@ -1,9 +1,15 @@
-# Compares the names that LIBRARY exports (NM -D) with those that HEADER declares.
+# Compares the names that LIBRARY exports (NM -D) with those that HEADER and its parts (sinew_….h beside it) declare.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^ \n]+\n" exported "${listing}")
 list(TRANSFORM exported STRIP)
-file(READ ${HEADER} text)
+cmake_path(GET HEADER PARENT_PATH folder)
+file(GLOB parts ${folder}/sinew_*.h)
+set(text "")
+foreach(part ${HEADER} ${parts})
+  file(READ ${part} words)
+  string(APPEND text "${words}")
+endforeach()
 string(REGEX MATCHALL "SINEW_API [a-z0-9_ *]+ \\*?sinew_[a-z_]+\\(|SINEW_API [a-z0-9_ *]+sinew_[a-z_]+\\(" declared "${text}")
 list(TRANSFORM declared REPLACE "^.*[ *]([a-z_]+)\\($" "\\1")
 list(LENGTH declared count)

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "c/scene.h"
+#include "c/fuzz_motion.h"
 
 namespace sinew {
 namespace {
@@ -24,11 +24,12 @@ namespace {
 constexpr int kCallsOfASequence = 1000;
 constexpr int kSteps = 8;  ///< of a sequence, the dearest of its calls
 
-class Sequence {
+class Sequence : FuzzMotion {
  public:
-  explicit Sequence(unsigned seed) : random_(seed) { load(); }
+  explicit Sequence(unsigned seed) : FuzzMotion(seed) { load(); }
   ~Sequence() {
     for (const std::uint64_t world : worlds_) sinew_world_destroy(world);
+    for (const std::uint64_t graph : graphs_) sinew_graph_destroy(graph);
     for (const std::uint64_t asset : assets_) sinew_asset_destroy(asset);
   }
   Sequence(const Sequence&) = delete;
@@ -36,86 +37,18 @@ class Sequence {
 
   void call() {
     using Call = sinew_status (Sequence::*)();
-    static constexpr std::array kCalls{
-        &Sequence::step,    &Sequence::play,   &Sequence::play, &Sequence::target,  &Sequence::target,
-        &Sequence::push,    &Sequence::push,   &Sequence::set,  &Sequence::set,     &Sequence::world,
-        &Sequence::asset,   &Sequence::person, &Sequence::prop, &Sequence::move,    &Sequence::loop,
-        &Sequence::shape,   &Sequence::read,   &Sequence::read, &Sequence::ask,     &Sequence::contacts,
-        &Sequence::query,   &Sequence::draw,   &Sequence::save, &Sequence::restore, &Sequence::record,
-        &Sequence::balance, &Sequence::destroy};
-    const Call one = kCalls[std::size_t(below(kCalls.size()))];
+    static constexpr Call kCalls[] = {
+        &Sequence::step,    &Sequence::play,    &Sequence::play,  &Sequence::target,  &Sequence::target,
+        &Sequence::push,    &Sequence::push,    &Sequence::set,   &Sequence::set,     &Sequence::world,
+        &Sequence::asset,   &Sequence::person,  &Sequence::prop,  &Sequence::move,    &Sequence::loop,
+        &Sequence::shape,   &Sequence::read,    &Sequence::read,  &Sequence::ask,     &Sequence::contacts,
+        &Sequence::query,   &Sequence::draw,    &Sequence::save,  &Sequence::restore, &Sequence::record,
+        &Sequence::balance, &Sequence::destroy, &Sequence::graph, &Sequence::follow,  &Sequence::follow};
+    const Call one = kCalls[below(std::size(kCalls))];
     check((this->*one)());
   }
 
  private:
-  // Numbers, handles and pointers, most of which can be meant.
-  int below(std::size_t count) { return static_cast<int>(random_() % count); }
-  bool rarely() { return below(24) == 0; }
-  double number(double least, double most) {
-    constexpr double kOdd[] = {NAN, INFINITY, -INFINITY, 1e300, -1e30, 0, -1, 1e-300};
-    if (rarely()) return kOdd[below(std::size(kOdd))];
-    return std::uniform_real_distribution<double>(least, most)(random_);
-  }
-  float real(double least, double most) { return static_cast<float>(number(least, most)); }
-  std::int32_t index(int count) {
-    constexpr std::int32_t kOdd[] = {
-        -1,      -2,  std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max(),
-        1 << 20, 4097};
-    return rarely() ? kOdd[below(std::size(kOdd))] : below(std::size_t(count));
-  }
-  std::uint64_t handle(const std::vector<std::uint64_t>& of) {
-    if (rarely()) return random_() ^ random_() << 32;
-    if (rarely() && !gone_.empty()) return gone_[std::size_t(below(gone_.size()))];
-    if (rarely()) return worlds_.empty() ? 0 : worlds_.front() + std::uint64_t(below(3));
-    return of.empty() ? 0 : of[std::size_t(below(of.size()))];
-  }
-  template <class T>
-  T* or_null(T* pointer) {
-    return rarely() ? nullptr : pointer;
-  }
-  /// Three numbers within ±most.
-  const double* triple(double most) {
-    for (double& x : triples_[next_]) x = number(-most, most);
-    const double* const out = triples_[next_].data();
-    next_ = (next_ + 1) % triples_.size();
-    return or_null(out);
-  }
-  template <class S>
-  S settings(sinew_status (*init)(S*)) {
-    S s{};
-    s.size = rarely() ? std::uint32_t(below(2 * sizeof s)) : sizeof s;
-    check(init(&s));
-    return s;
-  }
-  void turn(sinew_pose& pose) {
-    const double angle = number(-3, 3);
-    pose.rotation[2] = std::sin(angle / 2);
-    pose.rotation[3] = rarely() ? number(-2, 2) : std::cos(angle / 2);
-    for (double& x : pose.translation) x = number(-2, 3);
-  }
-
-  void check(sinew_status status) {
-    ASSERT_GE(status, SINEW_OK);
-    ASSERT_LE(status, SINEW_BROKEN);
-    if (status == SINEW_OK) return;
-    ASSERT_STRNE(sinew_last_reason(), "") << sinew_status_name(status);
-    ASSERT_STRNE(sinew_status_name(status), "unknown status");
-    ASSERT_NE(status, SINEW_NO_MEMORY) << sinew_last_reason();
-  }
-  /// Poses are finite.
-  void check_poses(std::uint64_t world) {
-    for (int n = 0; n < 8; ++n) {
-      std::uint64_t someone = 0;
-      if (sinew_world_get_character(world, n, &someone) != SINEW_OK) return;
-      sinew_view view{};
-      ASSERT_EQ(sinew_character_get_view(someone, SINEW_VIEW_LOCAL, &view), SINEW_OK);
-      for (const sinew_transform& t :
-           std::span(static_cast<const sinew_transform*>(view.data), std::size_t(view.count)))
-        for (const float x : t.rotation) ASSERT_TRUE(std::isfinite(x));
-    }
-  }
-
-  // Calls.
   sinew_status load() {
     std::uint64_t asset = 0;
     const sinew_status status = sinew_asset_load(path_.c_str(), &asset);
@@ -124,7 +57,8 @@ class Sequence {
   }
   sinew_status asset() {
     std::uint64_t out = 0;
-    sinew_asset_info info{sizeof info, 0, 0, 0, 0, 0, 0};
+    sinew_asset_info info{};
+    info.size = sizeof info;
     sinew_joint_info joint{};
     joint.size = sizeof joint;
     sinew_clip_info clip{};
@@ -266,7 +200,8 @@ class Sequence {
   }
   sinew_status target() {
     std::vector<sinew_jet> jets(128);
-    sinew_asset_info info{sizeof info, 0, 0, 0, 0, 0, 0};
+    sinew_asset_info info{};
+    info.size = sizeof info;
     const std::uint64_t asset = handle(assets_);
     check(sinew_asset_get_info(asset, &info));
     check(sinew_clip_sample(asset, index(2), number(0, 5), 1, 0, or_null(jets.data()), info.joints));
@@ -280,20 +215,31 @@ class Sequence {
     std::vector<sinew_jet> jets(128);
     sinew_behaviour_settings s = settings(sinew_behaviour_settings_init);
     s.reaction = number(0, 0.3);
-    sinew_asset_info info{sizeof info, 0, 0, 0, 0, 0, 0};
+    s.get_up = index(3);
+    s.gather = number(0.1, 1);
+    s.rise_torque = number(0, 100);
+    std::array<sinew_behaviour_event, 4> events;
+    std::int32_t count = 0;
+    sinew_asset_info info{};
+    info.size = sizeof info;
     if (!assets_.empty()) {
       check(sinew_asset_get_info(assets_[0], &info));
       check(sinew_clip_sample(assets_[0], 0, number(0, 5), 1, 0, jets.data(), info.joints));
     }
     sinew_behaviour_report report{};
     report.size = sizeof report;
-    switch (below(5)) {
+    switch (below(7)) {
       case 0:
         return sinew_character_add_behaviour(handle(people_), or_null(&s));
       case 1:
-        return sinew_character_order(handle(people_), index(2));
+        return sinew_character_order(handle(people_), index(3));
       case 2:
         return sinew_character_get_behaviour(handle(people_), or_null(&report));
+      case 3:
+        return sinew_character_use_get_ups(handle(people_), handle(assets_));
+      case 4:
+        return sinew_character_get_behaviour_events(handle(people_), or_null(events.data()), index(5),
+                                                    or_null(&count));
       default:
         return sinew_character_balance(handle(people_), or_null(jets.data()), info.joints, real(0.005, 0.03));
     }
@@ -448,7 +394,7 @@ class Sequence {
     std::erase(of, one);
     gone_.push_back(one);
     if (world)
-      for (auto* inside : {&people_, &props_, &loops_}) {
+      for (auto* inside : {&people_, &props_, &loops_, &effects_}) {
         const auto gone = [&](std::uint64_t h) {
           return (h << 4 >> 24) == (one << 4 >> 24);
         };  // its slot and serial
@@ -458,12 +404,8 @@ class Sequence {
     return world ? sinew_world_destroy(one) : sinew_asset_destroy(one);  // twice
   }
 
-  std::mt19937_64 random_;
   const std::string path_ = fixtures::sample_asset();
-  std::vector<std::uint64_t> assets_, worlds_, people_, props_, loops_, gone_;
   std::uint64_t spare_ = 0;
-  std::array<std::array<double, 3>, 4> triples_{};
-  std::size_t next_ = 0;
   std::vector<char> bytes_, recording_;
   double depth_ = 0;
   long lines_ = 0;

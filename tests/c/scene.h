@@ -15,6 +15,11 @@ inline std::string sample_asset() {
   return binary_dir() + "/sample.sinew";
 }
 
+/// A graph for it.
+inline std::string sample_graph() {
+  return binary_dir() + "/sample.sgraph";
+}
+
 /// A struct that says its size, filled by `init`.
 template <class S>
 S initialised(sinew_status (*init)(S*)) {

@@ -86,7 +86,7 @@ class Abi:
         if kind == "const char*":
             return Argument("text", name, base)
         if kind.endswith("*"):
-            if after["name"] in ("count", "size", "capacity") and not after["type"].endswith("*"):
+            if (after["name"] in ("count", "size", "capacity") or after["name"].endswith("_count")) and not after["type"].endswith("*"):
                 if after["name"] == "capacity":
                     return Argument("fill", name, base, length=after["type"], filled=last["type"].rstrip("*"))
                 return Argument("read" if kind.startswith("const") else "write", name, base, length=after["type"])
@@ -94,7 +94,7 @@ class Abi:
                 return Argument("array" if "count" in one else "struct", name, base, one.get("count", 0))
             if base == "void":
                 return Argument("pointer", name, kind)
-            if name in ("settings", "query"):
+            if name in ("settings", "query", "state"):
                 return Argument("edit", name, base)
             return Argument("out", name, base, one.get("count", 0))
         if kind in self.callbacks:

@@ -1,14 +1,21 @@
 // Assets of the C interface, and the sampling of their clips.
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 
+#include "sinew/animation/clip_event.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/c/call.h"
 #include "sinew/c/layout.h"
 
 namespace sinew::c {
+
+template <>
+inline constexpr std::uint32_t kFirstSize<sinew_asset_info> = 32;  // up to mass
+
 namespace {
 
 /// read(Asset&) makes an asset that `out` then names.
@@ -16,11 +23,12 @@ template <class Read>
 sinew_status make_asset(sinew_asset* out, Read&& read) noexcept {
   if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
   return caught([&] {
-    auto asset = std::make_unique<Asset>();
+    auto asset = std::make_shared<Asset>();
     if (const Status status = read(*asset); !status) return answer(status);
-    const sinew_asset handle = make_handle(Kind::kAsset, asset.get());
+    auto owned = std::make_unique<OwnedAsset>(std::move(asset));
+    const sinew_asset handle = make_handle(Kind::kAsset, owned.get());
     if (handle == 0) return fail(SINEW_OUT_OF_RANGE, kTooMany);
-    static_cast<void>(asset.release());  // the handle's now
+    static_cast<void>(owned.release());  // the handle's now
     *out = handle;
     return sinew_status(SINEW_OK);
   });
@@ -49,6 +57,15 @@ constexpr const char* kNoClip = "no such clip";
 
 }  // namespace
 
+OwnedAsset::OwnedAsset(std::shared_ptr<const Asset> read) : asset(std::move(read)) {
+  for (const Joint& joint : asset->skeleton.joints) {
+    parents.push_back(joint.parent);
+    rest.push_back(joint.rest.cast<float>());
+  }
+  LookChain<float> chain;
+  if (find_look_chain(asset->skeleton, chain)) look = chain;
+}
+
 sinew_status sample(const Asset& asset, int clip, const ClipTime& time, std::span<JointJet<float>> jets) {
   if (clip < 0 || std::size_t(clip) >= asset.clips.size()) return fail(SINEW_INVALID_ARGUMENT, kNoClip, clip);
   return answer(SamplingJob<float>{&asset.clips[std::size_t(clip)], time, jets}.Run());
@@ -72,7 +89,7 @@ sinew_status sinew_asset_read(const void* bytes, size_t size, sinew_asset* out) 
 }
 
 sinew_status sinew_asset_destroy(sinew_asset asset) {
-  const std::unique_ptr<Asset> found(static_cast<Asset*>(retire_handle(asset, Kind::kAsset)));
+  const std::unique_ptr<OwnedAsset> found(static_cast<OwnedAsset*>(retire_handle(asset, Kind::kAsset)));
   return found ? sinew_status(SINEW_OK) : refuse(asset, Kind::kAsset);
 }
 
@@ -85,6 +102,9 @@ sinew_status sinew_asset_get_info(sinew_asset asset, sinew_asset_info* out) {
       info.clips = static_cast<int32_t>(a.clips.size());
       info.muscles = static_cast<int32_t>(a.skeleton.muscles.size());
       info.mass = a.skeleton.total_mass();
+      info.events = static_cast<int32_t>(a.event_names.size());
+      info.curves = static_cast<int32_t>(a.curve_slots.size());
+      info.masks = static_cast<int32_t>(a.masks.size());
     });
   });
 }
@@ -148,6 +168,64 @@ sinew_status sinew_asset_find_clip(sinew_asset asset, const char* name, int32_t*
 
 sinew_status sinew_asset_find_muscle(sinew_asset asset, const char* name, int32_t* out) {
   return found(asset, name, out, [&](const Asset& a) { return a.skeleton.find_muscle(name); });
+}
+
+sinew_status sinew_asset_get_event(sinew_asset asset, int32_t event, sinew_event_info* out) {
+  return with_asset(asset, [&](const Asset& a) {
+    if (const sinew_status s = check_size(out); s != SINEW_OK) return s;
+    if (event < 0 || std::size_t(event) >= a.event_names.size())
+      return fail(SINEW_INVALID_ARGUMENT, "no such event", event);
+    return fill_sized(out, [&](sinew_event_info& info) {
+      const std::string& name = a.event_names[std::size_t(event)];
+      info.number = event_name(name);
+      info.name = name.c_str();
+    });
+  });
+}
+
+sinew_status sinew_asset_find_event(sinew_asset asset, const char* name, uint32_t* out) {
+  int32_t index = 0;
+  if (!out) return with_asset(asset, [](const Asset&) { return fail(SINEW_INVALID_ARGUMENT, kNull); });
+  const sinew_status status = found(asset, name, &index, [&](const Asset& a) {
+    const auto at = std::find(a.event_names.begin(), a.event_names.end(), name);
+    return at == a.event_names.end() ? -1 : static_cast<int>(at - a.event_names.begin());
+  });
+  if (status == SINEW_OK) *out = event_name(name);
+  return status;
+}
+
+sinew_status sinew_asset_get_curve(sinew_asset asset, int32_t curve, sinew_curve_info* out) {
+  return with_asset(asset, [&](const Asset& a) {
+    if (const sinew_status s = check_size(out); s != SINEW_OK) return s;
+    if (curve < 0 || std::size_t(curve) >= a.curve_slots.size())
+      return fail(SINEW_INVALID_ARGUMENT, "no such curve", curve);
+    return fill_sized(out, [&](sinew_curve_info& info) {
+      info.rest = a.curve_slots[std::size_t(curve)].rest;
+      info.name = a.curve_slots[std::size_t(curve)].name.c_str();
+    });
+  });
+}
+
+sinew_status sinew_asset_find_curve(sinew_asset asset, const char* name, int32_t* out) {
+  return found(asset, name, out, [&](const Asset& a) { return a.find_curve(name); });
+}
+
+sinew_status sinew_asset_find_mask(sinew_asset asset, const char* name, int32_t* out) {
+  return found(asset, name, out, [&](const Asset& a) { return a.find_mask(name); });
+}
+
+sinew_status sinew_asset_get_mask(sinew_asset asset, int32_t mask, float* out, int32_t capacity,
+                                  int32_t* count) {
+  return with_asset(asset, [&](const Asset& a) {
+    if (!count || (!out && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (mask < 0 || std::size_t(mask) >= a.masks.size())
+      return fail(SINEW_INVALID_ARGUMENT, "no such mask", mask);
+    const std::size_t joints = a.skeleton.joints.size();
+    *count = static_cast<int32_t>(joints);
+    if (capacity < *count) return fail(SINEW_TOO_SMALL, "room for fewer joints than the skeleton has");
+    a.masks[std::size_t(mask)].write(std::span(out, joints));
+    return sinew_status(SINEW_OK);
+  });
 }
 
 sinew_status sinew_clip_sample(sinew_asset asset, int32_t clip, double time, double rate, double rate_change,

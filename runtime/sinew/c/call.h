@@ -90,12 +90,32 @@ sinew_status with_character(sinew_character handle, Act&& act, bool breaks = fal
   });
 }
 
+/// act(OwnedAsset&) of an asset.
+template <class Act>
+sinew_status with_owned_asset(sinew_asset handle, Act&& act) noexcept {
+  auto* const owned = static_cast<OwnedAsset*>(find_object(handle, Kind::kAsset));
+  if (!owned) return refuse(handle, Kind::kAsset);
+  return caught([&] { return act(*owned); });
+}
+
+/// act(const std::shared_ptr<const Asset>&) of an asset, for who keeps it.
+template <class Act>
+sinew_status with_shared_asset(sinew_asset handle, Act&& act) noexcept {
+  return with_owned_asset(handle, [&](const OwnedAsset& owned) { return act(owned.asset); });
+}
+
 /// act(const Asset&) of an asset.
 template <class Act>
 sinew_status with_asset(sinew_asset handle, Act&& act) noexcept {
-  const auto* const asset = static_cast<const Asset*>(find_object(handle, Kind::kAsset));
-  if (!asset) return refuse(handle, Kind::kAsset);
-  return caught([&] { return act(*asset); });
+  return with_shared_asset(handle, [&](const std::shared_ptr<const Asset>& asset) { return act(*asset); });
+}
+
+/// act(const std::shared_ptr<const BoundGraph>&) of a graph.
+template <class Act>
+sinew_status with_graph(sinew_graph handle, Act&& act) noexcept {
+  const auto* const owned = static_cast<const OwnedGraph*>(find_object(handle, Kind::kGraph));
+  if (!owned) return refuse(handle, Kind::kGraph);
+  return caught([&] { return act(owned->bound); });
 }
 
 /// Bytes of a struct in the version that brought it. Once it grows: the number that its size was.

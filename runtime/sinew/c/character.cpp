@@ -57,8 +57,7 @@ sinew_status play(const sinew_play& play) noexcept {
   return with_character(play.character, [&](OwnedWorld& w, Character<float> character) {
     return with_asset(play.asset, [&](const Asset& asset) {
       const std::size_t joints = character.local().size();
-      if (asset.skeleton.joints.size() != joints)
-        return fail(SINEW_INVALID_ARGUMENT, "the asset's skeleton has not the character's number of joints");
+      if (asset.skeleton.joints.size() != joints) return fail(SINEW_INVALID_ARGUMENT, kOtherSkeleton);
       const std::span<JointJet<float>> jets = std::span(w.jets).first(joints);
       const sinew_status status = sample(asset, play.clip, {play.time, play.rate, play.rate_change}, jets);
       return status == SINEW_OK ? answer(character.set_target(jets)) : status;
@@ -95,14 +94,16 @@ sinew_status sinew_world_add_character(sinew_world world, sinew_asset asset,
                                        const sinew_character_settings* settings, sinew_character* out) {
   return set_up(world, [&](OwnedWorld& w) {
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    const auto* const of = static_cast<const Asset*>(find_object(asset, Kind::kAsset));
+    const auto* const of = static_cast<const OwnedAsset*>(find_object(asset, Kind::kAsset));
     if (!of) return refuse(asset, Kind::kAsset);
+    const Skeleton& skeleton = of->asset->skeleton;
     CharacterSettings read;
     if (const sinew_status s = read_settings(settings, read, kSettings); s != SINEW_OK) return s;
-    w.jets.resize(std::max(w.jets.size(), of->skeleton.joints.size()));
+    w.jets.resize(std::max(w.jets.size(), skeleton.joints.size()));
     w.behaviours.resize(std::size_t(w.world.character_count()) + 1);
+    w.graphs.resize(w.behaviours.size());
     Status status;
-    const int index = w.world.add_character(of->skeleton, read, status);
+    const int index = w.world.add_character(skeleton, read, status);
     if (index >= 0) *out = handle_in(world, Kind::kCharacter, index);
     return answer(status);
   });

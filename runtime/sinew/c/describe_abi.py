@@ -10,6 +10,7 @@ are those of a 64-bit machine."""
 import argparse
 import difflib
 import json
+import os
 import re
 import sys
 
@@ -19,6 +20,18 @@ POINTER = 8
 
 def fail(words):
     sys.exit(f"describe_abi: {words}")
+
+
+def with_parts(path):
+    """Text of the header, with that of its parts in place of their includes. Directives in parts are their guards alone."""
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+
+    def part(match):
+        with open(os.path.join(os.path.dirname(path), match[1]), encoding="utf-8") as file:
+            return re.sub(r"(?m)^#.*$", "", file.read())
+
+    return re.sub(r'#include "sinew/c/(sinew_\w+\.h)"', part, text)
 
 
 class Header:
@@ -170,9 +183,11 @@ def main():
     arguments.add_argument("--check", metavar="JSON")
     arguments.add_argument("--asserts", metavar="C")
     given = arguments.parse_args()
-    with open(given.source, encoding="utf-8") as file:
-        text = file.read()
-    abi = json.loads(text) if given.source.endswith(".json") else Header(text).describe()
+    if given.source.endswith(".json"):
+        with open(given.source, encoding="utf-8") as file:
+            abi = json.load(file)
+    else:
+        abi = Header(with_parts(given.source)).describe()
     if given.asserts:
         with open(given.asserts, "w", encoding="utf-8") as file:
             file.write(asserts(abi))

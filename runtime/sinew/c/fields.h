@@ -29,6 +29,8 @@ template <>
 inline constexpr Level kLast<Level> = Level::kSubsteps;
 template <>
 inline constexpr LoopKind kLast<LoopKind> = LoopKind::kRope;
+template <>
+inline constexpr GetUpPolicy kLast<GetUpPolicy> = GetUpPolicy::kNever;
 
 /// C++ → C.
 struct ToC {

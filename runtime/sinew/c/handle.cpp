@@ -8,6 +8,7 @@ namespace sinew::c {
 namespace {
 
 constexpr int kIndexBits = 20, kSerialBits = 24, kSlotBits = 16;
+static_assert(kMostInWorld == 1u << kIndexBits);
 constexpr int kSerialAt = kIndexBits, kSlotAt = kSerialAt + kSerialBits, kKindAt = kSlotAt + kSlotBits;
 constexpr std::uint32_t kSlots = 1u << kSlotBits, kLastSerial = (1u << kSerialBits) - 1;
 
@@ -15,14 +16,20 @@ constexpr std::uint64_t field(std::uint64_t handle, int at, int bits) {
   return handle >> at & ((std::uint64_t(1) << bits) - 1);
 }
 
-/// The world's or asset's own handle, without what in it is meant; that is what a slot is labelled with.
+/// The world's, asset's or graph's own handle, without what in it is meant; that is what a slot is labelled
+/// with.
 constexpr std::uint64_t label(Kind owner, std::uint32_t slot, std::uint32_t serial) {
   return std::uint64_t(owner) << kKindAt | std::uint64_t(slot) << kSlotAt |
          std::uint64_t(serial) << kSerialAt;
 }
 
+/// What has a slot of its own; all else is in a world.
+constexpr bool is_owner(Kind kind) {
+  return kind == Kind::kAsset || kind == Kind::kGraph || kind == Kind::kWorld;
+}
+
 constexpr Kind owner_of(Kind kind) {
-  return kind == Kind::kAsset ? Kind::kAsset : Kind::kWorld;
+  return is_owner(kind) ? kind : Kind::kWorld;
 }
 
 constexpr Kind kind_of(std::uint64_t handle) {
@@ -68,7 +75,7 @@ std::uint64_t make_handle(Kind owner, void* object) {
 }
 
 void* find_object(std::uint64_t handle, Kind kind) noexcept {
-  if (kind_of(handle) != kind || (kind <= Kind::kWorld && index_of(handle) != 0)) return nullptr;
+  if (kind_of(handle) != kind || (is_owner(kind) && index_of(handle) != 0)) return nullptr;
   const Slot& slot = table.slots[std::size_t(field(handle, kSlotAt, kSlotBits))];
   if (slot.label.load(std::memory_order_acquire) != owner_handle(handle, owner_of(kind))) return nullptr;
   return slot.object.load(std::memory_order_relaxed);

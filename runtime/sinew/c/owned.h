@@ -3,18 +3,58 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <variant>
 #include <vector>
 
+#include "sinew/animation/look_chain.h"
+#include "sinew/animation/mirror_job.h"
 #include "sinew/behaviour/behaviour.h"
+#include "sinew/c/graph_player.h"
 #include "sinew/c/handle.h"
 #include "sinew/character/contact_events.h"
 #include "sinew/character/recording.h"
 #include "sinew/character/world.h"
+#include "sinew/effects/buoyancy.h"
+#include "sinew/effects/force_field.h"
+#include "sinew/effects/joint_spring.h"
 #include "sinew/effects/static_shape.h"
+#include "sinew/effects/wind.h"
 #include "sinew/io/asset.h"
 
 namespace sinew::c {
+
+/// An asset; whoever plays its clips for long (a behaviour, a graph) shares it, so that its handle may go
+/// before.
+struct OwnedAsset {
+  explicit OwnedAsset(std::shared_ptr<const Asset> read);
+
+  std::shared_ptr<const Asset> asset;
+  // What jobs on poses need of it.
+  std::vector<int> parents;                              ///< [joint]
+  std::vector<Transform<float>> rest;                    ///< [joint]
+  std::optional<LookChain<float>> look;                  ///< of a skeleton with a head
+  std::mutex mutex;                                      ///< of what follows
+  std::unique_ptr<MirrorMap<float>> mirror_map;          ///< once somebody has asked for it
+  std::atomic<const MirrorMap<float>*> mirror{nullptr};  ///< the same, without the mutex
+};
+
+/// A character's balance, and whose clips it gets up by.
+struct OwnedBehaviour {
+  OwnedBehaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status)
+      : behaviour(skeleton, settings, status) {}
+
+  std::shared_ptr<const Asset> clips;  ///< null: it stays down
+  Behaviour<float> behaviour;
+};
+
+/// An effect that was added, and what it is.
+struct OwnedEffect {
+  EffectId id;
+  std::variant<std::monostate, Wind<float>*, Buoyancy<float>*, ForceField<float>*, JointSpring<float>*>
+      effect;  ///< the world's; gone where World::effect() says so
+};
 
 /// A world and what the interface keeps for it.
 struct OwnedWorld {
@@ -23,11 +63,14 @@ struct OwnedWorld {
   std::atomic<bool> busy{false};                     ///< a call runs
   bool broken = false;                               ///< an exception left something half added
   std::vector<std::unique_ptr<StaticShape>> shapes;  ///< the world refers to them: they go after it
+  std::vector<std::unique_ptr<GraphPlayer>>
+      graphs;  ///< [character], or null; likewise: it saves their blocks
   World<float> world;
   ParallelFor jobs;
   int loops = 0;
-  std::vector<JointJet<float>> jets;  ///< of one character, as many as the largest has
-  std::vector<std::unique_ptr<Behaviour<float>>> behaviours;  ///< [character], or null
+  std::vector<JointJet<float>> jets;                        ///< of one character, as many as the largest has
+  std::vector<std::unique_ptr<OwnedBehaviour>> behaviours;  ///< [character], or null
+  std::vector<OwnedEffect> effects;  ///< in the order in which they were added, those that are gone too
   std::vector<ContactEvent> waiting;
   std::optional<ContactRing> ring;
   std::unique_ptr<Recorder<float>> recorder;

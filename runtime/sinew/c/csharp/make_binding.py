@@ -134,6 +134,8 @@ class Binding:
         if one.role == "struct":
             return (f"{kind}? {name}", [f"var {plain}_ = {name}.GetValueOrDefault();"], "",
                     f"{name}.HasValue ? &{plain}_ : null")
+        if one.role == "edit":
+            return f"ref {kind} {name}", [], f"{kind}* {plain}_ = &{name}", f"{plain}_"
         if one.role in ("read", "write", "fill"):
             before = [f"{self.native(one.filled)} filled;"] if one.role == "fill" else []
             after = ", &filled" if one.role == "fill" else ""
@@ -155,8 +157,8 @@ class Binding:
             if one.role == "fill":
                 yield "int", "(int)filled", "filled"
             elif one.role == "out" and one.type in self.abi.handles:
-                owned = self.abi.owned(one.type)
-                yield camel(one.type), f"new {camel(one.type)}({'' if owned else 'this, '}{one.name}_)", one.name
+                world = "this, " if arguments[0].type == "sinew_world" else "World, "
+                yield camel(one.type), f"new {camel(one.type)}({'' if self.abi.owned(one.type) else world}{one.name}_)", one.name
             elif one.role == "out":
                 yield self.native(one.type) + ("[]" if one.count else ""), f"{one.name}_", one.name
 

@@ -77,6 +77,13 @@ class Binding:
             yield "}"
         if self.abi.initialiser(name):
             yield from self.default(name)
+        elif hidden and not self.abi.sized(name):
+            yield f"impl Default for {camel(name)} {{"
+            yield "    /// Zeros, null pointers and no functions."
+            yield "    fn default() -> Self {"
+            yield "        Self::zeroed()"
+            yield "    }"
+            yield "}"
 
     def beginning(self, name):
         yield "    /// Zeros."
@@ -220,6 +227,8 @@ class Binding:
             return f"{name}: {out}", "", f"{name}.as_ptr()"
         if one.role == "struct":
             return f"{name}: Option<&{kind}>", "", f"{name}.map_or(core::ptr::null(), |s| s as *const _)"
+        if one.role == "edit":
+            return f"{name}: &mut {kind}", "", name
         if one.role in ("read", "write"):
             return f"{name}: &{'mut ' if one.role == 'write' else ''}[{element}]", "", memory
         if one.role == "fill":

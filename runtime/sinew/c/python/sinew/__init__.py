@@ -16,8 +16,9 @@ import os
 from ctypes import byref
 
 from . import _abi
-from ._abi import (AnchorKind, BehaviourOrder, BehaviourState, BodyKind, ContactPhase, JointType, Level, LoopKind, Role, RootDrive,
-                   Shape, SnapshotPart, Status)
+from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BlendMode, BodyKind, ContactPhase,
+                   EventKind, GetUpPolicy, GroundKind, JointType, Level, LoopKind, NodeType, ParameterType, Role, RootDrive, Shape,
+                   SnapshotPart, Status)
 
 try:
     import numpy
@@ -71,10 +72,30 @@ def _settings(kind, init, values):
     return _set(struct, values)
 
 
+def _effect(kind, init, joints, values):
+    struct = _settings(kind, init, values)
+    if joints is not None:
+        numbers = (ctypes.c_int32 * len(joints))(*joints)
+        struct.joints, struct.joint_count = ctypes.addressof(numbers), len(joints)
+        struct.keep = numbers
+    return struct
+
+
 def _report(kind, get, handle):
     struct = kind(size=ctypes.sizeof(kind))
     check(get(handle, byref(struct)))
     return struct
+
+
+def _saved(save, *arguments):
+    """Bytes of a save that tells how many they are."""
+    size = ctypes.c_size_t()
+    status = save(*arguments, None, 0, byref(size))
+    if status != Status.TOO_SMALL:
+        raise Error(status)
+    out = ctypes.create_string_buffer(size.value)
+    check(save(*arguments, out, len(out), byref(size)))
+    return out.raw[:size.value]
 
 
 def _three(values):
@@ -105,6 +126,7 @@ class _Native:
 
     def __init__(self, handle, destroy):
         self.handle, self.destroy = handle, destroy
+        self.kept = []  # callbacks that the library may still call
 
     def __del__(self):
         self.destroy(self.handle)
@@ -134,7 +156,56 @@ class _Owned(_Handle):
         self.close()
 
 
-class Asset(_Owned):
+class Layer:
+    """One of the motions that Asset.blend mixes: jets, weight (a number, or value, rate and acceleration: ease()), mode, mask."""
+
+    def __init__(self, jets, weight=1.0, mode=BlendMode.MIX, mask=None):
+        self.jets, self.mode = jets, mode
+        self.weight = (weight, 0.0, 0.0) if isinstance(weight, (int, float)) else tuple(weight)
+        self.mask = None if mask is None else (ctypes.c_float * len(mask))(*mask)
+
+    def _write(self, layer, count):
+        if len(self.jets) < count or self.mask is not None and len(self.mask) < count:
+            raise TypeError("a layer with fewer joints than are blended")
+        layer.jets, layer.mode = _pointer(self.jets), self.mode
+        layer.mask = None if self.mask is None else ctypes.addressof(self.mask)
+        layer.weight, layer.weight_rate, layer.weight_acceleration = self.weight
+
+
+def ease(elapsed, duration):
+    """A weight from 0 to 1, with its rate and acceleration."""
+    out = (ctypes.c_float * 3)()
+    check(lib.sinew_ease(elapsed, duration, byref(out)))
+    return tuple(out)
+
+
+class Look:
+    """What a character's look remembers: `state`, a struct that may be copied."""
+
+    def __init__(self):
+        self.state = _abi.LookState()
+
+    def __call__(self, asset, jets, target, step, **settings):
+        """Turns spine, neck and head of `jets` to the target (m, model space), `step` s after the last call."""
+        struct = _settings(_abi.Look, lib.sinew_look_init, {"target": target, "step": step, **settings})
+        check(lib.sinew_asset_look(asset.handle, byref(struct), byref(self.state), _pointer(jets), len(jets)))
+
+
+class _Described(_Owned):
+    """What has parts that are asked for by number or name."""
+
+    def _element(self, kind, get, *index):
+        struct = kind(size=ctypes.sizeof(kind))
+        check(get(self.handle, *index, byref(struct)))
+        return struct
+
+    def _find(self, find, what):
+        out = ctypes.c_int32()
+        check(find(self.handle, what, byref(out)))
+        return out.value
+
+
+class Asset(_Described):
     """A skeleton and its clips, from a path or from the bytes of a file."""
 
     def __init__(self, source):
@@ -146,11 +217,6 @@ class Asset(_Owned):
         super().__init__(out.value, lib.sinew_asset_destroy)
         self.info = _report(_abi.AssetInfo, lib.sinew_asset_get_info, self.handle)
 
-    def _element(self, kind, get, index):
-        struct = kind(size=ctypes.sizeof(kind))
-        check(get(self.handle, index, byref(struct)))
-        return struct
-
     def joint(self, index):
         return self._element(_abi.JointInfo, lib.sinew_asset_get_joint, index)
 
@@ -160,10 +226,17 @@ class Asset(_Owned):
     def muscle(self, index):
         return self._element(_abi.MuscleInfo, lib.sinew_asset_get_muscle, index)
 
-    def _find(self, find, what):
-        out = ctypes.c_int32()
-        check(find(self.handle, what, byref(out)))
-        return out.value
+    def event(self, index):
+        return self._element(_abi.EventInfo, lib.sinew_asset_get_event, index)
+
+    def curve(self, index):
+        return self._element(_abi.CurveInfo, lib.sinew_asset_get_curve, index)
+
+    def mask(self, index):
+        """How far it reaches each joint, 0 to 1."""
+        out, count = (ctypes.c_float * self.info.joints)(), ctypes.c_int32()
+        check(lib.sinew_asset_get_mask(self.handle, index, byref(out), len(out), byref(count)))
+        return list(out)
 
     def find_joint(self, name):
         return self._find(lib.sinew_asset_find_joint, name.encode())
@@ -177,11 +250,94 @@ class Asset(_Owned):
     def find_muscle(self, name):
         return self._find(lib.sinew_asset_find_muscle, name.encode())
 
+    def find_event(self, name):
+        """The number of its name, as GraphEvent.name has it."""
+        out = ctypes.c_uint32()
+        check(lib.sinew_asset_find_event(self.handle, name.encode(), byref(out)))
+        return out.value
+
+    def find_curve(self, name):
+        return self._find(lib.sinew_asset_find_curve, name.encode())
+
+    def find_mask(self, name):
+        return self._find(lib.sinew_asset_find_mask, name.encode())
+
+    def blend(self, layers, jets=None):
+        """Of Layers, or pairs of jets and weight; into `jets` where given."""
+        layers = [one if isinstance(one, Layer) else Layer(*one) for one in layers]
+        jets = jets_for(self.info.joints) if jets is None else jets
+        structs = (_abi.BlendLayer * max(len(layers), 1))()
+        for struct, layer in zip(structs, layers):
+            layer._write(struct, len(jets))
+        check(lib.sinew_asset_blend(self.handle, byref(structs), len(layers), _pointer(jets), len(jets)))
+        return jets
+
+    def subtract(self, jets, reference=None):
+        """Makes `jets` the difference from a pose, or from rest, as additive layers are."""
+        address, count = (None, 0) if reference is None else (_pointer(reference), len(reference))
+        check(lib.sinew_asset_subtract(self.handle, address, count, _pointer(jets), len(jets)))
+
+    def prepare_mirror(self):
+        check(lib.sinew_asset_prepare_mirror(self.handle))
+
+    def partner(self, joint):
+        """The joint on the other side, after prepare_mirror(); -1: none."""
+        return self._find(lib.sinew_asset_get_partner, joint)
+
+    def mirror(self, jets):
+        """Exchanges left and right, after prepare_mirror()."""
+        check(lib.sinew_asset_mirror(self.handle, _pointer(jets), len(jets)))
+
+    def two_bone(self, jets, upper, middle, end, target, **settings):
+        """Turns two joints of a limb so that its end comes to the target (m, model space)."""
+        struct = _settings(_abi.TwoBone, lib.sinew_two_bone_init,
+                           {"upper": upper, "middle": middle, "end": end, "target": target, **settings})
+        check(lib.sinew_asset_two_bone(self.handle, byref(struct), _pointer(jets), len(jets)))
+
+    def aim(self, jets, joint, target, **settings):
+        """Turns a joint so that its axis points to the target (m, model space)."""
+        struct = _settings(_abi.Aim, lib.sinew_aim_init, {"joint": joint, "target": target, **settings})
+        check(lib.sinew_asset_aim(self.handle, byref(struct), _pointer(jets), len(jets)))
+
+    def model(self, jets):
+        """[joint] rotation x y z w, translation: joint to model."""
+        out, count = (_abi.Transform * len(jets))(), ctypes.c_int32()
+        check(lib.sinew_asset_get_model(self.handle, _pointer(jets), len(jets), byref(out), len(jets), byref(count)))
+        return _floats(out, count.value, 8, 7)
+
     def sample(self, clip, time, rate=1.0, rate_change=0.0, jets=None):
         """Jets of all joints, into `jets` where given."""
         jets = jets_for(self.info.joints) if jets is None else jets
         check(lib.sinew_clip_sample(self.handle, clip, time, rate, rate_change, _pointer(jets), len(jets)))
         return jets
+
+
+class Graph(_Described):
+    """What may be done with an asset's clips (`sinew graph compile`), from a path or from the bytes of a file."""
+
+    def __init__(self, source, asset):
+        out = ctypes.c_uint64()
+        if isinstance(source, (bytes, bytearray)):
+            check(lib.sinew_graph_read(bytes(source), len(source), asset.handle, byref(out)))
+        else:
+            check(lib.sinew_graph_load(os.fsencode(source), asset.handle, byref(out)))
+        super().__init__(out.value, lib.sinew_graph_destroy)
+        self.info = _report(_abi.GraphInfo, lib.sinew_graph_get_info, self.handle)
+
+    def parameter(self, index):
+        return self._element(_abi.ParameterInfo, lib.sinew_graph_get_parameter, index)
+
+    def node(self, index):
+        return self._element(_abi.NodeInfo, lib.sinew_graph_get_node, index)
+
+    def state(self, machine, index):
+        return self._element(_abi.StateInfo, lib.sinew_graph_get_state, machine, index)
+
+    def find_parameter(self, name):
+        return self._find(lib.sinew_graph_find_parameter, name.encode())
+
+    def find_node(self, name):
+        return self._find(lib.sinew_graph_find_node, name.encode())
 
 
 class Plays:
@@ -319,13 +475,7 @@ class World(_Owned):
         check(lib.sinew_world_draw(self.handle, byref(struct)))
 
     def save(self, part=SnapshotPart.STATE):
-        size = ctypes.c_size_t()
-        status = lib.sinew_world_save(self.handle, part, None, 0, byref(size))
-        if status != Status.TOO_SMALL:
-            raise Error(status)
-        out = ctypes.create_string_buffer(size.value)
-        check(lib.sinew_world_save(self.handle, part, out, len(out), byref(size)))
-        return out.raw[:size.value]
+        return _saved(lib.sinew_world_save, self.handle, part)
 
     def restore(self, snapshot, part=SnapshotPart.STATE):
         check(lib.sinew_world_restore(self.handle, part, bytes(snapshot), len(snapshot)))
@@ -360,6 +510,33 @@ class _InWorld(_Handle):
 
     def _call(self, function, *arguments):
         check(function(self.handle, *arguments))
+
+
+    def _add_effect(self, add, effect, joints, settings):
+        struct, out = _effect(*effect[:2], joints, settings), ctypes.c_uint64()
+        self._call(add, byref(struct), byref(out))
+        return Effect(self.world, out.value, *effect)
+
+
+class Effect(_InWorld):
+    """What acts on a character or prop."""
+
+    def __init__(self, world, handle, kind, init, change):
+        super().__init__(world, handle)
+        self._kind, self._init, self._change = kind, init, change
+
+    def set(self, **settings):
+        """From the next step on; what is not named has its default."""
+        self._call(self._change, byref(_settings(self._kind, self._init, settings)))
+
+    def remove(self):
+        self._call(lib.sinew_effect_remove)
+
+
+_WIND = (_abi.Wind, lib.sinew_wind_init, lib.sinew_effect_set_wind)
+_BUOYANCY = (_abi.Buoyancy, lib.sinew_buoyancy_init, lib.sinew_effect_set_buoyancy)
+_FORCE_FIELD = (_abi.ForceField, lib.sinew_force_field_init, lib.sinew_effect_set_force_field)
+_JOINT_SPRING = (_abi.JointSpring, lib.sinew_joint_spring_init, lib.sinew_effect_set_joint_spring)
 
 
 class Character(_InWorld):
@@ -420,6 +597,10 @@ class Character(_InWorld):
         self._call(lib.sinew_character_add_behaviour,
                    byref(_settings(_abi.BehaviourSettings, lib.sinew_behaviour_settings_init, settings)))
 
+    def use_get_ups(self, asset):
+        """The clips by which it gets up: those of the asset named get_up... and roll..."""
+        self._call(lib.sinew_character_use_get_ups, asset.handle)
+
     def balance(self, jets, h):
         """Changes `jets` where the behaviour acts, and makes them the target."""
         self._call(lib.sinew_character_balance, _pointer(jets), len(jets), h)
@@ -430,6 +611,116 @@ class Character(_InWorld):
     @property
     def behaviour(self):
         return _report(_abi.BehaviourReport, lib.sinew_character_get_behaviour, self.handle)
+
+    @property
+    def behaviour_events(self):
+        """What happened in the last balance()."""
+        out, count = (_abi.BehaviourEvent * 4)(), ctypes.c_int32()
+        self._call(lib.sinew_character_get_behaviour_events, byref(out), 4, byref(count))
+        return out[:count.value]
+
+    def add_wind(self, joints=None, **settings):
+        """On the colliders of these joints (numbers), or of all."""
+        return self._add_effect(lib.sinew_character_add_wind, _WIND, joints, settings)
+
+    def add_buoyancy(self, joints=None, **settings):
+        return self._add_effect(lib.sinew_character_add_buoyancy, _BUOYANCY, joints, settings)
+
+    def add_force_field(self, joints=None, **settings):
+        return self._add_effect(lib.sinew_character_add_force_field, _FORCE_FIELD, joints, settings)
+
+    def add_joint_spring(self, joints=None, **settings):
+        return self._add_effect(lib.sinew_character_add_joint_spring, _JOINT_SPRING, joints, settings)
+
+    def remove_effects(self):
+        self._call(lib.sinew_character_remove_effects)
+
+    def add_graph(self, graph, below=None, **settings):
+        """It follows the graph from now on. `below`(point) answers None, or the height of the ground or its point, normal and body
+        (m, world)."""
+        struct = _settings(_abi.GraphSettings, lib.sinew_graph_settings_init, settings)
+        if below:
+            def ask(_, point, hit):
+                found = below(tuple((ctypes.c_float * 3).from_address(point)))
+                if found is None:
+                    return 0
+                answer = _abi.GroundHit.from_address(hit)
+                if isinstance(found, (int, float)):
+                    answer.point[2] = found
+                else:
+                    answer.point[:], answer.normal[:], answer.body = found
+                return 1
+
+            struct.ground, struct.below = _abi.GroundKind.HOST, _abi.GroundBelow(ask)
+            self.world._native.kept.append(struct.below)
+        self._call(lib.sinew_character_add_graph, graph.handle, byref(struct))
+
+    def play_graph(self, h):
+        """What its graph wants h seconds later is wanted at the end of the next step."""
+        self._call(lib.sinew_character_play_graph, h)
+
+    def sample_graph(self, h, jets):
+        """The same, into `jets` instead."""
+        self._call(lib.sinew_character_sample_graph, h, _pointer(jets), len(jets))
+        return jets
+
+    def set_parameter(self, parameter, value):
+        """Of its graph, by number or name."""
+        if isinstance(parameter, str):
+            self._call(lib.sinew_character_set_named_parameter, parameter.encode(), value)
+        else:
+            self._call(lib.sinew_character_set_parameter, parameter, value)
+
+    def trigger(self, parameter):
+        """Asks its graph for something once, by number or name."""
+        if isinstance(parameter, str):
+            self._call(lib.sinew_character_trigger_named, parameter.encode())
+        else:
+            self._call(lib.sinew_character_trigger, parameter)
+
+    def _get(self, kind, get, *arguments):
+        out = kind()
+        self._call(get, *arguments, byref(out))
+        return out
+
+    def parameter(self, index):
+        return self._get(_abi.ParameterValue, lib.sinew_character_get_parameter, index)
+
+    def machine(self, node):
+        """Which state a machine of its graph is in."""
+        report = _abi.MachineReport(size=ctypes.sizeof(_abi.MachineReport))
+        self._call(lib.sinew_character_get_machine, node, byref(report))
+        return report
+
+    @property
+    def graph_place(self):
+        """Where root motion has brought it."""
+        return self._get(_abi.GraphPlace, lib.sinew_character_get_graph_place)
+
+    def put_graph(self, x, y, heading):
+        self._call(lib.sinew_character_put_graph, (ctypes.c_double * 2)(x, y), heading)
+
+    def set_grounds(self, jets):
+        """The bodies that `below` of add_graph tells of."""
+        self._call(lib.sinew_character_set_grounds, _pointer(jets), len(jets))
+
+    def graph_events(self, most=64):
+        """What happened in its clips in the last frame."""
+        out, count = (_abi.GraphEvent * most)(), ctypes.c_int32()
+        self._call(lib.sinew_character_get_graph_events, byref(out), most, byref(count), None)
+        return out[:count.value]
+
+    def graph_curves(self, most=256):
+        """[Asset.find_curve] as of the last frame."""
+        out, count = (_abi.CurveValue * most)(), ctypes.c_int32()
+        self._call(lib.sinew_character_get_graph_curves, byref(out), most, byref(count))
+        return out[:count.value]
+
+    def save_graph(self):
+        return _saved(lib.sinew_character_save_graph, self.handle)
+
+    def restore_graph(self, saved):
+        self._call(lib.sinew_character_restore_graph, bytes(saved), len(saved))
 
     @property
     def report(self):
@@ -479,6 +770,15 @@ class Character(_InWorld):
 
 
 class Prop(_InWorld):
+    def add_wind(self, **settings):
+        return self._add_effect(lib.sinew_prop_add_wind, _WIND, None, settings)
+
+    def add_buoyancy(self, **settings):
+        return self._add_effect(lib.sinew_prop_add_buoyancy, _BUOYANCY, None, settings)
+
+    def add_force_field(self, **settings):
+        return self._add_effect(lib.sinew_prop_add_force_field, _FORCE_FIELD, None, settings)
+
     @property
     def state(self):
         """Rotation x y z w, translation, velocity."""

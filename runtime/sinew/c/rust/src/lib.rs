@@ -102,6 +102,18 @@ unsafe fn copied<T: Copy>(view: &View) -> Vec<T> {
     unsafe { std::slice::from_raw_parts(view.data().cast::<T>(), view.count as usize) }.to_vec()
 }
 
+/// What `save` writes, with the memory that it takes.
+fn with_room(save: impl Fn(&mut [u8]) -> Result<usize>) -> Result<Vec<u8>> {
+    let most = match save(&mut []) {
+        Err(error) if error.status == Status::TOO_SMALL => error.needed,
+        other => other?,
+    };
+    let mut bytes = vec![0; most];
+    let size = save(&mut bytes)?;
+    bytes.truncate(size);
+    Ok(bytes)
+}
+
 impl Character {
     /// Copies: joint to world, by joint.
     pub fn model(&self) -> Result<Vec<Transform>> {
@@ -120,18 +132,16 @@ impl Character {
         // SAFETY: floats, as the kind of view says.
         self.view(ViewKind::LOAD).map(|view| unsafe { copied(&view) })
     }
+
+    /// Copies all that its graph remembers, for `restore_graph`.
+    pub fn graph_snapshot(&self) -> Result<Vec<u8>> {
+        with_room(|bytes| self.save_graph(bytes))
+    }
 }
 
 impl World {
     /// Copies the snapshot, with the memory that it takes.
     pub fn snapshot(&self, part: SnapshotPart) -> Result<Vec<u8>> {
-        let most = match self.save(part, &mut []) {
-            Err(error) if error.status == Status::TOO_SMALL => error.needed,
-            other => other?,
-        };
-        let mut bytes = vec![0; most];
-        let size = self.save(part, &mut bytes)?;
-        bytes.truncate(size);
-        Ok(bytes)
+        with_room(|bytes| self.save(part, bytes))
     }
 }

@@ -1,0 +1,145 @@
+/// @file
+/// Jobs on poses in the caller's memory: blending, limbs that reach, looks, left and right exchanged. Part of
+/// sinew.h.
+///
+/// Between sinew_clip_sample or sinew_character_sample_graph and sinew_character_set_target. All keep
+/// velocities and accelerations exact, where weights and targets come with theirs (0: they stay as they are),
+/// so that what the muscles are asked for is what the pose does. Jets are one for each joint of the asset's
+/// skeleton, or of its first joints, aligned to 16 bytes. Model space: the axes of the root's parent. Nothing
+/// here allocates but sinew_asset_prepare_mirror; assets are read by any number of threads.
+#ifndef SINEW_C_SINEW_POSE_H
+#define SINEW_C_SINEW_POSE_H
+
+#ifndef SINEW_C_SINEW_H
+#error "include sinew/c/sinew.h"
+#endif
+
+// ---- Poses ----
+
+/// How a layer joins what is below it; w is its weight times its mask at a joint.
+typedef int32_t sinew_blend_mode;
+/// Values of sinew_blend_mode.
+enum sinew_blend_mode_values {
+  SINEW_BLEND_MIX = 0,       ///< weighted mean of all mixed layers, which come first
+  SINEW_BLEND_OVERRIDE = 1,  ///< (1 - w) of what is below, w of the layer
+  SINEW_BLEND_ADDITIVE = 2   ///< w of the layer, which is a difference (sinew_asset_subtract), on top
+};
+
+/// One of the motions that are blended.
+typedef struct sinew_blend_layer {
+  const sinew_jet* jets;      ///< as many as come out
+  const float* mask;          ///< as many, 0 to 1; null: 1 everywhere
+  sinew_blend_mode mode;      ///< how it joins what is below
+  float weight;               ///< at least 0
+  float weight_rate;          ///< 1/s
+  float weight_acceleration;  ///< 1/s2
+} sinew_blend_layer;
+
+/// A limb whose end comes to a target: hip, knee and ankle, shoulder, elbow and wrist. Fields mean what those
+/// of TwoBoneJob do.
+typedef struct sinew_two_bone {
+  uint32_t size;                  ///< bytes of this struct, as the caller knows it
+  int32_t upper;                  ///< joint
+  int32_t middle;                 ///< joint below it
+  int32_t end;                    ///< joint below that; what is between them rides along
+  double target[3];               ///< m, model space
+  double target_velocity[3];      ///< m/s
+  double target_acceleration[3];  ///< m/s2
+  double pole[3];  ///< model direction in which the middle points; zero: as the animation bends it
+  double
+      hinge[3];   ///< axis about which the middle bends, in its own axes; zero: the upper turns the short way
+  double weight;  ///< 0 to 1
+  double weight_rate;          ///< 1/s
+  double weight_acceleration;  ///< 1/s2
+  double softness;             ///< part of the limb's length, before its end, in which it slows down
+  int32_t keep_end;            ///< flag: the end keeps its orientation in model space
+  int32_t unused;              ///< 0
+} sinew_two_bone;
+
+/// A joint an axis of which points to a target. Fields mean what those of AimJob do.
+typedef struct sinew_aim {
+  uint32_t size;                  ///< bytes of this struct, as the caller knows it
+  int32_t joint;                  ///< that turns
+  double target[3];               ///< m, model space; not at the joint's origin
+  double target_velocity[3];      ///< m/s
+  double target_acceleration[3];  ///< m/s2
+  double axis[3];                 ///< unit, in the joint's axes
+  double weight;                  ///< 0 to 1
+  double weight_rate;             ///< 1/s
+  double weight_acceleration;     ///< 1/s2
+  double limit;                   ///< rad, of the turn away from the animation
+} sinew_aim;
+
+/// Spine, neck and head that look at a target. Fields mean what those of LookAtJob and LookSettings do.
+typedef struct sinew_look {
+  uint32_t size;                  ///< bytes of this struct, as the caller knows it
+  int32_t changed;                ///< flag: another target than in the last call; `before` tells of that
+  double target[3];               ///< m, model space
+  double target_velocity[3];      ///< m/s
+  double target_acceleration[3];  ///< m/s2
+  double before[3];               ///< m, where the target up to now is at this instant
+  double before_velocity[3];      ///< m/s
+  double before_acceleration[3];  ///< m/s2
+  double weight;                  ///< 0 to 1
+  double weight_rate;             ///< 1/s
+  double weight_acceleration;     ///< 1/s2
+  double step;                    ///< s since the last call
+  double yaw;                     ///< rad, to either side
+  double pitch_down;              ///< rad
+  double pitch_up;                ///< rad
+  double softness;                ///< rad, before and beyond limits
+  double behind;                  ///< rad, that a target behind has to pass for the side to change
+  double fastest;                 ///< rad/s, of a turn to another target
+  double least_time;              ///< s, of such a turn
+  double half_life;               ///< s, by which all turns lag; 0: the aim is exact
+} sinew_look;
+
+/// What a look remembers from one call to the next, the caller's: zeros for a character that appears, a copy
+/// for a snapshot.
+typedef struct sinew_look_state {
+  int32_t started;    ///< flag
+  int32_t side;       ///< 1 left, -1 right
+  float numbers[26];  ///< of the turns that fade
+} sinew_look_state;
+
+/// A weight that goes from 0 to 1 within `duration` (s), `elapsed` (s) after it began, with its rate and
+/// acceleration: [3], as layers take them. C2.
+SINEW_API sinew_status sinew_ease(float elapsed, float duration, float out[3]);
+/// Blends at most 16 layers into `jets`, which may be one of theirs. Where a joint has no mixed layer it
+/// rests. sinew_last_index(): the layer at fault.
+SINEW_API sinew_status sinew_asset_blend(sinew_asset asset, const sinew_blend_layer* layers,
+                                         int32_t layer_count, sinew_jet* jets, int32_t count);
+/// Makes of `jets` what an additive layer is: the difference from the pose of `reference`, as many, or from
+/// rest where that is none.
+SINEW_API sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
+                                            int32_t reference_count, sinew_jet* jets, int32_t count);
+/// Set-up, once an asset: finds left and right by names, roles and places.
+SINEW_API sinew_status sinew_asset_prepare_mirror(sinew_asset asset);
+/// The joint on the other side; itself in the middle, -1 where there is none. After
+/// sinew_asset_prepare_mirror.
+SINEW_API sinew_status sinew_asset_get_partner(sinew_asset asset, int32_t joint, int32_t* out);
+/// Exchanges left and right of jets of all joints. After sinew_asset_prepare_mirror.
+SINEW_API sinew_status sinew_asset_mirror(sinew_asset asset, sinew_jet* jets, int32_t count);
+/// The library's defaults; joints are none.
+SINEW_API sinew_status sinew_two_bone_init(sinew_two_bone* settings);
+/// Turns two joints of a limb so that its end comes to the target.
+SINEW_API sinew_status sinew_asset_two_bone(sinew_asset asset, const sinew_two_bone* settings,
+                                            sinew_jet* jets, int32_t count);
+/// The library's defaults; the joint is none.
+SINEW_API sinew_status sinew_aim_init(sinew_aim* settings);
+/// Turns one joint so that its axis points to the target. Refused where that is at the joint or straight
+/// behind.
+SINEW_API sinew_status sinew_asset_aim(sinew_asset asset, const sinew_aim* settings, sinew_jet* jets,
+                                       int32_t count);
+/// The library's defaults.
+SINEW_API sinew_status sinew_look_init(sinew_look* settings);
+/// Turns spine, neck and head, by their roles, to look at the target within limits. Refused of a skeleton
+/// without a head, and where the target is in the eyes.
+SINEW_API sinew_status sinew_asset_look(sinew_asset asset, const sinew_look* settings,
+                                        sinew_look_state* state, sinew_jet* jets, int32_t count);
+/// Where joints are in model space: out[capacity] of the first joints. `count`: of `jets`, also with
+/// SINEW_TOO_SMALL.
+SINEW_API sinew_status sinew_asset_get_model(sinew_asset asset, const sinew_jet* jets, int32_t jet_count,
+                                             sinew_transform* out, int32_t capacity, int32_t* count);
+
+#endif

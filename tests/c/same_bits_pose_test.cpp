@@ -1,0 +1,253 @@
+// Jobs on poses through the C interface are those of C++, to the bit.
+#include <cmath>
+#include <cstring>
+
+#include "c/scene.h"
+#include "sinew/animation/blending_job.h"
+#include "sinew/animation/crossfade.h"
+#include "sinew/animation/inverse_kinematics.h"
+#include "sinew/animation/look_at_job.h"
+#include "sinew/animation/mirror_job.h"
+#include "sinew/animation/sampling_job.h"
+#include "sinew/io/asset.h"
+
+namespace sinew {
+namespace {
+
+using fixtures::initialised;
+
+using Jets = std::vector<JointJet<float>>;
+
+/// The sample asset on both sides, and poses of its clips, which have the same bytes on both.
+struct CInterfacePoses : ::testing::Test {
+  Asset cpp;
+  sinew_asset asset = 0;
+  std::vector<int> parents;
+  std::vector<Transform<float>> rest;
+  int joints = 0;
+
+  void SetUp() override {
+    ASSERT_TRUE(load_asset(fixtures::sample_asset().c_str(), cpp));
+    ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
+    for (const Joint& joint : cpp.skeleton.joints) {
+      parents.push_back(joint.parent);
+      rest.push_back(joint.rest.cast<float>());
+    }
+    joints = static_cast<int>(parents.size());
+  }
+  void TearDown() override { EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK); }
+
+  Jets pose(const char* clip, double time) const {
+    Jets jets(parents.size());
+    EXPECT_TRUE((SamplingJob<float>{&cpp.clips[std::size_t(cpp.find_clip(clip))], time, jets}.Run()));
+    return jets;
+  }
+  static sinew_jet* c(Jets& jets) { return reinterpret_cast<sinew_jet*>(jets.data()); }
+  static const sinew_jet* c(const Jets& jets) { return reinterpret_cast<const sinew_jet*>(jets.data()); }
+  int joint(Role role) const { return cpp.skeleton.find(role); }
+  std::vector<sinew_transform> model(const Jets& jets) const {
+    std::vector<sinew_transform> out(jets.size());
+    std::int32_t count = 0;
+    EXPECT_EQ(sinew_asset_get_model(asset, c(jets), joints, out.data(), joints, &count), SINEW_OK)
+        << sinew_last_reason();
+    EXPECT_EQ(count, joints);
+    return out;
+  }
+};
+
+void expect_same(const Jets& a, const Jets& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t j = 0; j < a.size(); ++j) {
+    EXPECT_EQ(a[j].rotation.coeffs(), b[j].rotation.coeffs()) << j;
+    EXPECT_EQ(a[j].omega, b[j].omega) << j;
+    EXPECT_EQ(a[j].alpha, b[j].alpha) << j;
+    EXPECT_EQ(a[j].translation, b[j].translation) << j;
+    EXPECT_EQ(a[j].velocity, b[j].velocity) << j;
+    EXPECT_EQ(a[j].acceleration, b[j].acceleration) << j;
+  }
+}
+
+void expect_refused(sinew_status status, sinew_status wanted, const char* reason) {
+  EXPECT_EQ(status, wanted) << reason;
+  EXPECT_NE(std::string(sinew_last_reason()).find(reason), std::string::npos) << sinew_last_reason();
+}
+
+TEST_F(CInterfacePoses, BlendsAreThoseOfCpp) {
+  const Jets walk = pose("walk", 0.3), run = pose("run", 0.2), stand = pose("stand", 1);
+  std::vector<float> mask(parents.size());
+  for (std::size_t j = 0; j < mask.size(); ++j) mask[j] = float(j % 3) / 2;
+  Jets added = pose("walk", 0.9);
+  Jets added_cpp = added;
+  subtract_reference<float>(rest, added_cpp, added_cpp);
+  ASSERT_EQ(sinew_asset_subtract(asset, nullptr, 0, c(added), joints), SINEW_OK) << sinew_last_reason();
+  expect_same(added, added_cpp);
+
+  float w[3];
+  ASSERT_EQ(sinew_ease(0.1f, 0.3f, w), SINEW_OK);
+  const EaseWeight<float> ease = EaseWeight<float>::at(0.1f, 0.3f);
+  EXPECT_EQ(w[2], ease.acceleration);
+  const std::array<BlendLayer<float>, 4> wanted_layers{
+      BlendLayer<float>{walk, TimeJet<float>(0.4f)}, BlendLayer<float>{run, TimeJet<float>(0.6f)},
+      BlendLayer<float>{stand, ease, mask, BlendMode::kOverride},
+      BlendLayer<float>{added_cpp, TimeJet<float>(0.5f), {}, BlendMode::kAdditive}};
+  Jets wanted(parents.size()), blended(parents.size());
+  ASSERT_TRUE((BlendingJob<float>{wanted_layers, rest, wanted}.Run()));
+  sinew_blend_layer layers[4] = {{c(walk), nullptr, SINEW_BLEND_MIX, 0.4f, 0, 0},
+                                 {c(run), nullptr, SINEW_BLEND_MIX, 0.6f, 0, 0},
+                                 {c(stand), mask.data(), SINEW_BLEND_OVERRIDE, w[0], w[1], w[2]},
+                                 {c(added), nullptr, SINEW_BLEND_ADDITIVE, 0.5f, 0, 0}};
+  ASSERT_EQ(sinew_asset_blend(asset, layers, 4, c(blended), joints), SINEW_OK) << sinew_last_reason();
+  expect_same(blended, wanted);
+
+  layers[1].weight = -1;
+  expect_refused(sinew_asset_blend(asset, layers, 4, c(blended), joints), SINEW_OUT_OF_RANGE, "weight");
+  EXPECT_EQ(sinew_last_index(), 1);
+  layers[1].mode = 3;
+  expect_refused(sinew_asset_blend(asset, layers, 4, c(blended), joints), SINEW_INVALID_ARGUMENT, "mode");
+  layers[2].jets = nullptr;
+  layers[1].mode = SINEW_BLEND_MIX;
+  expect_refused(sinew_asset_blend(asset, layers, 4, c(blended), joints), SINEW_INVALID_ARGUMENT, "null");
+  EXPECT_EQ(sinew_last_index(), 2);
+  expect_refused(sinew_asset_blend(asset, layers, 17, c(blended), joints), SINEW_INVALID_ARGUMENT, "16");
+  expect_refused(sinew_asset_blend(asset, layers, 1, c(blended), joints + 1), SINEW_INVALID_ARGUMENT, "jets");
+  expect_refused(sinew_asset_subtract(asset, c(walk), joints - 1, c(blended), joints), SINEW_INVALID_ARGUMENT,
+                 "another number");
+  expect_same(blended, wanted);
+}
+
+TEST_F(CInterfacePoses, MirrorsAreThoseOfCpp) {
+  Jets mirrored = pose("walk", 0.3);
+  expect_refused(sinew_asset_mirror(asset, c(mirrored), joints), SINEW_INVALID_ARGUMENT, "prepare_mirror");
+  ASSERT_EQ(sinew_asset_prepare_mirror(asset), SINEW_OK) << sinew_last_reason();
+  ASSERT_EQ(sinew_asset_prepare_mirror(asset), SINEW_OK) << "again";
+  ASSERT_EQ(sinew_asset_mirror(asset, c(mirrored), joints), SINEW_OK) << sinew_last_reason();
+  MirrorMap<float> map;
+  ASSERT_TRUE(build_mirror_map<float>(cpp.skeleton, map));
+  Jets wanted = pose("walk", 0.3);
+  ASSERT_TRUE((MirrorJob<float>{&map, wanted, wanted}.Run()));
+  expect_same(mirrored, wanted);
+  int partner = -5;
+  ASSERT_EQ(sinew_asset_get_partner(asset, joint(Role::kFootL), &partner), SINEW_OK);
+  EXPECT_EQ(partner, joint(Role::kFootR));
+  expect_refused(sinew_asset_get_partner(asset, joints, &partner), SINEW_INVALID_ARGUMENT, "joint");
+  expect_refused(sinew_asset_mirror(asset, c(mirrored), joints - 1), SINEW_INVALID_ARGUMENT, "fewer joints");
+}
+
+TEST_F(CInterfacePoses, LimbsReachAsInCpp) {
+  Jets reached = pose("walk", 0.3), wanted = reached;
+  const int upper = joint(Role::kUpperArmL), middle = joint(Role::kForearmL), end = joint(Role::kHandL);
+  const sinew_transform hand = model(reached)[std::size_t(end)];
+  sinew_two_bone limb = initialised(sinew_two_bone_init);
+  EXPECT_EQ(limb.keep_end, 1);
+  limb.upper = upper;
+  limb.middle = middle;
+  limb.end = end;
+  for (int k = 0; k < 3; ++k) limb.target[k] = double(hand.translation[k]);
+  limb.target[2] += 0.0625;
+  limb.target_velocity[2] = 0.5;
+  limb.weight_rate = 0.25;
+  ASSERT_EQ(sinew_asset_two_bone(asset, &limb, c(reached), joints), SINEW_OK) << sinew_last_reason();
+  TwoBoneJob<float> job{parents, wanted, upper, middle, end};
+  job.target = still<float>(Vec3<double>(limb.target).cast<float>());
+  job.target.z().rate = 0.5f;
+  job.weight = {1, 0.25f, 0};
+  ASSERT_TRUE(job.Run());
+  expect_same(reached, wanted);
+  const sinew_transform there = model(reached)[std::size_t(end)];
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(double(there.translation[k]), limb.target[k], 1e-4) << "m";
+
+  limb.middle = upper;
+  expect_refused(sinew_asset_two_bone(asset, &limb, c(reached), joints), SINEW_INVALID_ARGUMENT, "below");
+  limb.target[0] = NAN;
+  expect_refused(sinew_asset_two_bone(asset, &limb, c(reached), joints), SINEW_NOT_FINITE, "target");
+  expect_same(reached, wanted);
+}
+
+TEST_F(CInterfacePoses, JointsAimAsInCpp) {
+  Jets aimed = pose("stand", 0), wanted = aimed;
+  sinew_aim aim = initialised(sinew_aim_init);
+  aim.joint = joint(Role::kHead);
+  aim.target[0] = 2;
+  aim.target[1] = 1;
+  aim.target[2] = 1.5;
+  aim.weight = 0.5;
+  ASSERT_EQ(sinew_asset_aim(asset, &aim, c(aimed), joints), SINEW_OK) << sinew_last_reason();
+  AimJob<float> job{parents, wanted, aim.joint};
+  job.target = still<float>(Vec3<float>(2, 1, 1.5f));
+  job.weight = TimeJet<float>(0.5f);
+  ASSERT_TRUE(job.Run());
+  expect_same(aimed, wanted);
+  aim.axis[0] = 0;
+  expect_refused(sinew_asset_aim(asset, &aim, c(aimed), joints), SINEW_INVALID_ARGUMENT, "unit");
+}
+
+TEST_F(CInterfacePoses, LooksAreThoseOfCpp) {
+  LookChain<float> chain;
+  ASSERT_TRUE(find_look_chain(cpp.skeleton, chain));
+  LookState<float> remembered;
+  sinew_look_state state{};
+  sinew_look look = initialised(sinew_look_init);
+  EXPECT_EQ(look.behind, LookSettings<double>().behind);
+  look.half_life = 0.1;
+  look.step = 1 / 60.;
+  for (int frame = 0; frame < 60; ++frame) {
+    const double now = frame / 60.;
+    const bool other = frame >= 30;
+    Jets looked = pose("stand", now), wanted = looked;
+    look.target[0] = 2;
+    look.target[1] = other ? -1.5 : 1.0;
+    look.target[2] = 1;
+    look.changed = frame == 30;
+    look.before[0] = 2;
+    look.before[1] = 1;
+    look.before[2] = 1;
+    ASSERT_EQ(sinew_asset_look(asset, &look, &state, c(looked), joints), SINEW_OK) << sinew_last_reason();
+    const MovingVector<float> before = still<float>(Vec3<float>(2, 1, 1));
+    LookAtJob<float> job{parents, wanted, &chain, &remembered};
+    job.target = still<float>(Vec3<float>(2, other ? -1.5f : 1.f, 1));
+    job.before = frame == 30 ? &before : nullptr;
+    job.step = float(1 / 60.);
+    job.settings.half_life = 0.1f;
+    ASSERT_TRUE(job.Run());
+    expect_same(looked, wanted);
+    if (HasFailure()) return;
+  }
+  Jets jets = pose("stand", 0);
+  const sinew_look_state whole = state;
+  look.weight = 2;
+  expect_refused(sinew_asset_look(asset, &look, &state, c(jets), joints), SINEW_INVALID_ARGUMENT, "weight");
+  EXPECT_EQ(std::memcmp(&state, &whole, sizeof state), 0);
+  look.weight = 1;
+  state.numbers[7] = NAN;
+  expect_refused(sinew_asset_look(asset, &look, &state, c(jets), joints), SINEW_NOT_FINITE, "state");
+  expect_refused(sinew_asset_look(asset, &look, nullptr, c(jets), joints), SINEW_INVALID_ARGUMENT, "null");
+}
+
+TEST_F(CInterfacePoses, MasksAreReadByName) {
+  sinew_asset_info info{};
+  info.size = sizeof info;
+  ASSERT_EQ(sinew_asset_get_info(asset, &info), SINEW_OK);
+  EXPECT_EQ(info.masks, static_cast<int>(cpp.masks.size()));
+  EXPECT_EQ(info.events, static_cast<int>(cpp.event_names.size()));
+  int mask = -1, count = 0;
+  EXPECT_EQ(sinew_asset_find_mask(asset, "no such mask", &mask), SINEW_NOT_FOUND);
+  if (!cpp.masks.empty()) {
+    ASSERT_EQ(sinew_asset_find_mask(asset, cpp.masks[0].name.c_str(), &mask), SINEW_OK);
+    std::vector<float> weights(parents.size()), wanted(parents.size());
+    ASSERT_EQ(sinew_asset_get_mask(asset, mask, weights.data(), joints, &count), SINEW_OK);
+    cpp.masks[0].write(std::span(wanted));
+    EXPECT_EQ(weights, wanted);
+  }
+  for (std::size_t n = 0; n < cpp.event_names.size(); ++n) {
+    sinew_event_info event{};
+    event.size = sizeof event;
+    ASSERT_EQ(sinew_asset_get_event(asset, static_cast<int>(n), &event), SINEW_OK);
+    EXPECT_EQ(event.name, cpp.event_names[n]);
+    std::uint32_t number = 0;
+    ASSERT_EQ(sinew_asset_find_event(asset, event.name, &number), SINEW_OK);
+    EXPECT_EQ(number, event.number);
+  }
+}
+
+}  // namespace
+}  // namespace sinew
