@@ -1,7 +1,7 @@
 // A walker with a sword in its right hand and a lantern in its left. The sword is in a socket: it moves
 // exactly as the hand does, weighs nothing, and becomes a prop with the hand's velocity when it is let go.
-// The lantern is a prop from the beginning, and a loop welds it to the hand: muscles bear it. Usage: attach
-// ASSET.sinew [LANTERN in kg]
+// The lantern is a prop from the beginning, and a loop welds it to the hand: muscles bear it.
+// Usage: attach ASSET.sinew [LANTERN in kg]
 #include <sinew/animation/model_motion_job.h>
 #include <sinew/animation/sampling_job.h>
 #include <sinew/animation/socket.h>
@@ -58,8 +58,8 @@ int main(int argc, char** argv) {
   walker.set_target(jets);
   walker.reset();
 
-  // The sword: a socket in the palm, in which the blade (its z axis) points ahead at first, and a prop for
-  // later.
+  // The sword: a socket in the palm, in which the blade (its z axis) points ahead at first, and a prop that
+  // is put aside until it is thrown.
   sinew::Socket<float> palm{right, {}};
   palm.offset.translation = skeleton.joints[right].center_of_mass.cast<float>();
   palm.offset.rotation =
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
   if (status) status = world.park_prop(sword);
   if (!status) return fail("sword", status.reason);
 
-  // The lantern: below the hand, upright at first, as which it stays welded.
+  // The lantern: below the hand and upright when it is welded.
   sinew::PropSettings ball;
   ball.size.x() = 0.06;
   ball.mass = lantern_mass;
@@ -114,6 +114,7 @@ int main(int argc, char** argv) {
       // Over the last frame it went at v − a·h/2 in the mean, to second order.
       const sinew::Vec3<float> mean = thrown.velocity - kStep / 2 * sinew::acceleration_of(item.translation);
       slip = double(((place(item) - before) / kStep - mean).norm());
+      slip += double((world.prop_velocity(sword) - thrown.velocity).norm());
       std::printf("%5.2f s  lets the sword go at %.2f m/s\n", frame / 60.0, double(thrown.velocity.norm()));
     }
     before = place(item);

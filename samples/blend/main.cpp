@@ -41,8 +41,8 @@ struct Mixer {
     sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();
   }
   sinew::Status sample(double time, Jets& out) {
-    // As many strides as the walk: a clip's time is a motion, its rate goes into velocities and
-    // accelerations.
+    // The run takes as long strides as the walk: its clip's time is a motion, whose rate goes into velocities
+    // and accelerations.
     const double pace = double(run.duration) / double(walk.duration);
     sinew::SamplingJob<float>{&walk, time, lower}.Run();
     sinew::SamplingJob<float>{&run, {time * pace, pace}, upper}.Run();
@@ -88,6 +88,7 @@ int main(int argc, char** argv) {
   if (upper_body < 0) return fail("upper_body", "the asset has no such mask");
   Mixer mixer(asset, asset.masks[upper_body], argc > 2 ? std::atof(argv[2]) : 4);
   const std::size_t joints = asset.skeleton.joints.size();
+
   sinew::Status status;
   sinew::World<float> world({});
   sinew::Character<float> hero = world.character(world.add_character(asset.skeleton, {}, status));

@@ -1,6 +1,6 @@
 // A standing character is knocked over, falls, lies, and gets up by the clips of the asset that begin nearest
-// to how it lies. Prints what it tells of itself. Usage: fall_and_get_up ASSET.sinew [IMPULSE in N·s,
-// forward]
+// to how it lies. Prints what the behaviour tells.
+// Usage: fall_and_get_up ASSET.sinew [IMPULSE in N·s, forward]
 #include <sinew/animation/sampling_job.h>
 #include <sinew/behaviour/behaviour.h>
 #include <sinew/character/world.h>

@@ -1,6 +1,6 @@
 // A standing character follows a butterfly with its spine, neck and head, and after a second reaches for it,
-// too. Both correct the clip's jets, with exact velocities and accelerations. Usage: look_at ASSET.sinew
-// [SECONDS]
+// too. Both correct the clip's jets, with exact velocities and accelerations.
+// Usage: look_at ASSET.sinew [SECONDS, at least 4]
 #include <sinew/animation/inverse_kinematics.h>
 #include <sinew/animation/jet_angles.h>
 #include <sinew/animation/look_at_job.h>
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   if (sinew::Status s = sinew::load_asset(argv[1], asset); !s) return fail(argv[1], s.reason);
   const int stand = asset.find_clip("stand");
   if (stand < 0) return fail(argv[1], "the asset has no clip stand");
-  const double seconds = argc > 2 ? std::atof(argv[2]) : 6;
+  const double seconds = argc > 2 ? std::max(4.0, std::atof(argv[2])) : 6;
 
   // Set-up: who looks, and which limb reaches, by the roles of joints.
   const sinew::Skeleton& skeleton = asset.skeleton;

@@ -14,7 +14,7 @@ struct GrabSettings {
   double damping = 0;                                    ///< N·s/m
 };
 
-/// Energy ½ k |x − to|², and the dissipation c/2 |v|² as the potential of a step, h·c/2·|(x − x₀)/h|².
+/// Energy ½ k |x − to|², and the damping as the potential of a step of h, h·c/2·|(x − x₀)/h|².
 template <class T>
 class Grab final : public sinew::Effect<T> {
  public:
@@ -34,23 +34,22 @@ class Grab final : public sinew::Effect<T> {
   /// Measured once a step, when it begins.
   void begin_step(const sinew::EffectPose<T>& start) override { start_ = held(start); }
   double add_gradient(const sinew::EffectPose<T>& pose, const sinew::Wrenches<T>& out) const override {
-    const Vec x = held(pose), stretch = x - goal(pose), speed = (x - start_) / pose.h;
-    out.add(settings.joint, x, T(settings.stiffness) * stretch + T(settings.damping) * speed);
-    return double(T(settings.stiffness) / 2 * stretch.squaredNorm() +
+    const Vec x = held(pose), speed = (x - start_) / pose.h;
+    out.add(settings.joint, x, gradient(pose, x, speed));
+    return double(T(settings.stiffness) / 2 * (x - goal(pose)).squaredNorm() +
                   pose.h * T(settings.damping) / 2 * speed.squaredNorm());
   }
   void add_curvature(const sinew::EffectPose<T>& pose, const sinew::Curvature<T>& out) const override {
-    const Vec x = held(pose), speed = (x - start_) / pose.h;
+    const Vec x = held(pose);
     const T change = T(settings.stiffness) + T(settings.damping) / pose.h;
-    out.add(settings.joint, x, T(settings.stiffness) * (x - goal(pose)) + T(settings.damping) * speed,
-            change * sinew::Mat3<T>::Identity());
+    out.add(settings.joint, x, gradient(pose, x, (x - start_) / pose.h), change * sinew::Mat3<T>::Identity());
   }
   /// What the muscles of a character on its animation have to bear; decides whether anything is simulated.
   void add_load(const sinew::EffectPose<T>& pose, const sinew::Motion<T>& motion,
                 const sinew::Wrenches<T>& out) const override {
     const Vec x = held(pose), arm = x - pose.kinematics.center[settings.joint];
     const Vec speed = motion.velocity[settings.joint] + motion.omega[settings.joint].cross(arm);
-    out.add(settings.joint, x, T(settings.stiffness) * (x - goal(pose)) + T(settings.damping) * speed);
+    out.add(settings.joint, x, gradient(pose, x, speed));
   }
   std::size_t bytes() const override { return sizeof *this; }
 
@@ -65,5 +64,9 @@ class Grab final : public sinew::Effect<T> {
     return (settings.to - pose.common_origin).template cast<T>();
   }
 
-  Vec start_ = Vec::Zero();
+  Vec gradient(const sinew::EffectPose<T>& pose, const Vec& x, const Vec& speed) const {
+    return T(settings.stiffness) * (x - goal(pose)) + T(settings.damping) * speed;
+  }
+
+  Vec start_ = Vec::Zero();  ///< where it is held when the step begins, from the common origin
 };

@@ -1,6 +1,6 @@
 // An effect of one's own (grab.h) pulls at the chest of a standing character, harder and harder: muscles bear
-// it, until what they cannot bear is simulated. Then it lifts the character, limp. Usage: own_effect
-// ASSET.sinew
+// it, until what they cannot bear is simulated. Then it lifts the character, limp.
+// Usage: own_effect ASSET.sinew
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>

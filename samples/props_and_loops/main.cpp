@@ -1,5 +1,5 @@
 // Things and what ties them: a stack of crates, a ball on a rope that swings against a door on a hinge, and a
-// limp character that hangs by its hands from a bar. Usage: props_and_loops ASSET.sinew [SECONDS]
+// limp character that hangs by its hands from a bar. Usage: props_and_loops ASSET.sinew [SECONDS, at least 3]
 #include <sinew/animation/inverse_kinematics.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
@@ -95,8 +95,7 @@ int main(int argc, char** argv) {
     stack[n] = world.add_prop(crate, status);
   }
 
-  // A door that turns about the z axis of its hinge, and a ball on a rope, pulled back until the rope is
-  // level.
+  // A door that turns about the z axis of its hinge.
   sinew::PropSettings slab;
   slab.shape = sinew::Shape::kBox;
   slab.size = {0.02, 0.4, 1};
@@ -107,7 +106,9 @@ int main(int argc, char** argv) {
   hinge.kind = sinew::LoopKind::kHinge;
   hinge.a = on_prop(door, {0, 0.4, 0});
   hinge.b = in_world({2, 0.4, 1.02});
-  const int hinged = status ? world.add_loop(hinge, status) : -1;
+  if (status) (void)world.add_loop(hinge, status);
+
+  // A ball on a rope, pulled back until the rope is level.
   const V hook(1.9, -0.2, 3.2);
   sinew::PropSettings bob;
   bob.mass = 10;
@@ -123,23 +124,29 @@ int main(int argc, char** argv) {
 
   // Both hands to where they are: the bar.
   const int hanging = add_hanging(world, asset.skeleton, status);
+  std::array<sinew::LoopSettings, 2> grips;  // points, unless told otherwise
   std::array<int, 2> hands{};
   for (int side = 0; side < 2 && status; ++side) {
     const int hand = asset.skeleton.find(side == 0 ? sinew::Role::kHandL : sinew::Role::kHandR);
-    sinew::LoopSettings grip;  // a point, unless told otherwise
-    grip.a = {sinew::AnchorKind::kCharacter, hanging, hand, {}};
-    grip.a.frame.translation = asset.skeleton.joints[hand].center_of_mass;
-    grip.b = in_world(world.character(hanging).model()[hand].cast<double>() * grip.a.frame.translation);
-    hands[side] = world.add_loop(grip, status);
+    const V palm = asset.skeleton.joints[hand].center_of_mass;
+    grips[side].a = {sinew::AnchorKind::kCharacter, hanging, hand, {}};
+    grips[side].a.frame.translation = palm;
+    grips[side].b = in_world(world.character(hanging).model()[hand].cast<double>() * palm);
+    hands[side] = world.add_loop(grips[side], status);
   }
   if (!status) return fail(argv[1], status.reason);
 
+  // World::loop_gap() tells how far a loop is open; here it is measured from what is shown.
+  const auto gap = [](const sinew::Transform<float>& body, const sinew::LoopSettings& loop) {
+    return (body.cast<double>() * loop.a.frame.translation - loop.b.frame.translation).norm();
+  };
   double open = 0, longer = 0, borne = 0, turned = 0;  // m, m, N, degrees
   for (int frame = 1; frame <= frames; ++frame) {
     if (status = world.step(kStep); !status) return fail("step", status.reason);
-    for (const int loop : {hinged, hands[0], hands[1]}) open = std::max(open, world.loop_gap(loop));
-    const V string = world.prop_pose(ball).translation.cast<double>() - hook;
-    longer = std::max(longer, string.norm() - kRope);
+    open = std::max(open, gap(world.prop_pose(door), hinge));
+    for (const sinew::LoopSettings& grip : grips)
+      open = std::max(open, gap(world.character(hanging).model()[grip.a.joint], grip));
+    longer = std::max(longer, gap(world.prop_pose(ball), rope) - kRope);
     const V across = world.prop_pose(door).rotation.cast<double>() * V::UnitX();
     const double angle = std::atan2(across.y(), across.x()) * 57.3;
     turned = std::max(turned, std::abs(angle));

@@ -1,6 +1,6 @@
 // A game over a network guesses what another player does, goes on, hears better and goes back: a snapshot,
-// the same frames again with the same inputs to the bit, and with the right input to another end. Then a
-// recording of it all, played back in a world of its own. Usage: rollback ASSET.sinew
+// the same frames again with the same inputs to the bit, and with the right input to another end. Then frames
+// are recorded and played back in another world. Usage: rollback ASSET.sinew
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/recording.h>
 #include <sinew/character/world.h>
