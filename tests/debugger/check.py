@@ -97,6 +97,7 @@ class Natvis:
 def main():
     gdb.execute("set print pretty off")
     gdb.execute("set print frame-arguments none")
+    gdb.execute("set startup-with-shell off")
     gdb.execute("break look_here", to_string=True)
     try:
         gdb.execute("run", to_string=True)
