@@ -3,11 +3,11 @@
 set(SINEW_PUBLIC_HEADERS
   c/sinew.h io/asset.h
   # skeleton
-  skeleton/hooks.h skeleton/parallel_for.h skeleton/skeleton.h skeleton/status.h skeleton/version.h
+  skeleton/hooks.h skeleton/parallel_for.h skeleton/rotation.h skeleton/skeleton.h skeleton/status.h skeleton/version.h
   # animation
   animation/blend_space.h animation/blending_job.h animation/clip.h animation/crossfade.h animation/curve_job.h
   animation/event_job.h animation/foot_lock.h animation/foot_placement_job.h animation/inertialize_job.h
-  animation/inverse_kinematics.h animation/joint_mask.h animation/look_at_job.h animation/look_chain.h
+  animation/inverse_kinematics.h animation/jet_angles.h animation/joint_mask.h animation/look_at_job.h animation/look_chain.h
   animation/mesh_additive_job.h animation/mirror_job.h animation/model_motion_job.h animation/model_pose_job.h
   animation/morph_job.h animation/phase_map.h animation/root_motion.h animation/sampling_job.h animation/skinning_job.h
   animation/smooth_input.h animation/socket.h animation/soft_limits.h

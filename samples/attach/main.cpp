@@ -54,9 +54,10 @@ int main(int argc, char** argv) {
   for (const sinew::Joint& joint : skeleton.joints) parents.push_back(joint.parent);
   std::vector<sinew::JointJet<float>> jets(parents.size());
   std::vector<sinew::MovingTransform<float>> model(parents.size());
-  sinew::SamplingJob<float>{&asset.clips.front(), 0, jets}.Run();
-  walker.set_target(jets);
-  walker.reset();
+  status = sinew::SamplingJob<float>{&asset.clips.front(), 0, jets}.Run();
+  if (status) status = walker.set_target(jets);
+  if (status) status = walker.reset();
+  if (!status) return fail(argv[1], status.reason);
 
   // The sword: a socket in the palm, in which the blade (its z axis) points ahead at first, and a prop that
   // is put aside until it is thrown.
@@ -95,12 +96,14 @@ int main(int argc, char** argv) {
   double lag = 0, slip = 0, gap = 0, pull = 0;             // m, m/s, m, N
   sinew::Vec3<float> before = sinew::Vec3<float>::Zero();  // where the sword was a frame ago
   for (int frame = 1; frame <= kLast; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
-    walker.set_target(jets);
-    if (status = world.step(kStep); !status) return fail("step", status.reason);
+    status = sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
+    if (status) status = walker.set_target(jets);
+    if (status) status = world.step(kStep);
+    if (!status) return fail("step", status.reason);
 
     // Where the sword is at the end of this frame, how fast it is and how that changes: no lag of a frame.
-    sinew::ModelMotionJob<float>{parents, jets, {}, model}.Run();
+    status = sinew::ModelMotionJob<float>{parents, jets, {}, model}.Run();
+    if (!status) return fail("hands", status.reason);
     using Model = std::span<const sinew::MovingTransform<float>>;
     const auto item = sinew::attached<float>(sinew::socket_motion<float>(palm, Model(model)), grip);
     if (frame <= kThrown) {

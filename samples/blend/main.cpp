@@ -38,15 +38,16 @@ struct Mixer {
         breath(mask.size()) {
     reach.write<float>(mask);
     for (const sinew::Joint& joint : asset.skeleton.joints) rest.push_back(joint.rest.cast<float>());
-    sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();
+    (void)sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();
   }
   sinew::Status sample(double time, Jets& out) {
     // The run takes as long strides as the walk: its clip's time is a motion, whose rate goes into velocities
     // and accelerations.
     const double pace = double(run.duration) / double(walk.duration);
-    sinew::SamplingJob<float>{&walk, time, lower}.Run();
-    sinew::SamplingJob<float>{&run, {time * pace, pace}, upper}.Run();
-    sinew::SamplingJob<float>{&stand, time, breath}.Run();
+    sinew::Status status = sinew::SamplingJob<float>{&walk, time, lower}.Run();
+    if (status) status = sinew::SamplingJob<float>{&run, {time * pace, pace}, upper}.Run();
+    if (status) status = sinew::SamplingJob<float>{&stand, time, breath}.Run();
+    if (!status) return status;
     sinew::subtract_reference<float>(still, breath, breath);
 
     // In from 0.5 s on, out in the last second, in 0.5 s each. Weights bring their rates along: those of the
@@ -113,11 +114,9 @@ int main(int argc, char** argv) {
       fastest = std::max(fastest, jets[j].omega.norm());
       strongest = std::max(strongest, jets[j].alpha.norm());
     }
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
     solved += hero.report().unknown_dofs > 0;
     if (frame % 30 == 0)
       std::printf("%5.2f s  busiest muscle at %3.0f %%, unknown DOFs %d\n", now,

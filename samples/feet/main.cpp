@@ -95,7 +95,8 @@ int main(int argc, char** argv) {
   constexpr float h = 1 / 60.f;
   for (int frame = 0; frame <= 300; ++frame) {
     const double now = frame / 60.0;
-    sinew::SamplingJob<float>{&clip, now, jets}.Run();
+    status = sinew::SamplingJob<float>{&clip, now, jets}.Run();
+    if (!status) return fail("walk", status.reason);
     // The game moves the root over the ramp, and says by how much, with the rates of that.
     sinew::MovingTransform<float> root = sinew::moving_transform(jets[0]);
     const sinew::TimeJet<float> level = slope * root.translation.x();
@@ -118,11 +119,9 @@ int main(int argc, char** argv) {
     place.level = level;
     place.step = frame == 0 ? 0 : h;
     if (status = place.Run(); !status) return fail("feet", status.reason);
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
 
     // How the feet that are shown stand on the ramp.
     for (int side = 0; side < 2; ++side) {

@@ -68,7 +68,8 @@ int main(int argc, char** argv) {
   for (int frame = 0; frame <= seconds * 60; ++frame) {
     const double now = frame / 60.0;
     const sinew::MovingVector<float> target = butterfly(now);
-    sinew::SamplingJob<float>{&asset.clips[stand], now, jets}.Run();
+    status = sinew::SamplingJob<float>{&asset.clips[stand], now, jets}.Run();
+    if (!status) return fail("stand", status.reason);
 
     // The look first: it carries the shoulders, from which the arm then reaches.
     sinew::LookAtJob<float> look{parents, jets, &chain, &look_state, target};
@@ -81,11 +82,9 @@ int main(int argc, char** argv) {
     arm.weight = reach.x;
     if (status = arm.Run(); !status) return fail("arm", status.reason);
 
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
     solved += hero.report().unknown_dofs > 0;
 
     // What the world shows, not what was asked of it: how far are gaze and hand off?
