@@ -48,7 +48,7 @@ constexpr bool kOwn = false;
 }  // namespace
 }  // namespace sinew::c
 
-// The other forms, of arrays, of known size and those that do not throw, call these.
+// The other forms, of arrays and those that do not throw, call these.
 #ifdef SINEW_OWN_MEMORY
 void* operator new(std::size_t bytes) {
   return sinew::c::take(bytes, alignof(std::max_align_t));
@@ -59,7 +59,13 @@ void* operator new(std::size_t bytes, std::align_val_t alignment) {
 void operator delete(void* taken) noexcept {
   sinew::c::give_back(taken);
 }
+void operator delete(void* taken, std::size_t /*bytes*/) noexcept {
+  sinew::c::give_back(taken);
+}
 void operator delete(void* taken, std::align_val_t /*alignment*/) noexcept {
+  sinew::c::give_back(taken);
+}
+void operator delete(void* taken, std::size_t /*bytes*/, std::align_val_t /*alignment*/) noexcept {
   sinew::c::give_back(taken);
 }
 #endif

@@ -387,12 +387,12 @@ void World<T>::Impl::keep_sleepers() {
 /// What the step could not do, in the order in which the bodies were added.
 template <class T>
 void World<T>::Impl::log_step() const {
-  const auto log = [&](const std::vector<int>& list, bool characters) {
+  const auto log = [&](const std::vector<int>& list, bool are_characters) {
     for (std::size_t n = 0; n < list.size(); ++n) {
       if (!islands.contains(list[n])) continue;
       const CharacterReport& r = states[list[n]]->report;
       const auto say = [&](LogLevel level, const char* character, const char* prop) {
-        write_log(level, characters ? character : prop, static_cast<int>(n));
+        write_log(level, are_characters ? character : prop, static_cast<int>(n));
       };
       if (r.frozen > 0)
         say(LogLevel::kWarning, "a character was stopped where it stood: no pose could be found",
