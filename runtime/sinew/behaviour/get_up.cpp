@@ -129,7 +129,8 @@ GetUpOutcome GetUp<T>::gather(Character<T>& character, std::span<JointJet<T>> je
   const double before = strong_from_;
   strong_from_ += h / (kStrong * std::sqrt(unit_));
   if (before < 1)
-    (void)character.set_strength(T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
+    (void)character.set_strength(
+        T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
   fade_.elapsed += T(h);
   const Fit fit = clips_.fit(entry_, is_);
   off_ = fit.off;
