@@ -7,7 +7,6 @@
 #include <sinew/animation/socket.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@ namespace {
 constexpr float kStep = 1 / 60.f;              // s
 constexpr int kThrown = 75, kLast = 240;       // frames
 constexpr float kBlade = 0.4f, kGrip = 0.55f;  // m: half of the blade; from its middle to the grip
+constexpr float kQuarter = 1.5707964f;         // rad, of a turn
 constexpr double kHandle = 0.15;               // m, from the lantern's middle up to its handle
 
 int fail(const char* what, const char* why) {
@@ -54,17 +54,17 @@ int main(int argc, char** argv) {
   for (const sinew::Joint& joint : skeleton.joints) parents.push_back(joint.parent);
   std::vector<sinew::JointJet<float>> jets(parents.size());
   std::vector<sinew::MovingTransform<float>> model(parents.size());
-  sinew::SamplingJob<float>{&asset.clips.front(), 0, jets}.Run();
-  walker.set_target(jets);
-  walker.reset();
+  status = sinew::SamplingJob<float>{&asset.clips.front(), 0, jets}.Run();
+  if (status) status = walker.set_target(jets);
+  if (status) status = walker.reset();
+  if (!status) return fail("walk", status.reason);
 
   // The sword: a socket in the palm, in which the blade (its z axis) points ahead at first, and a prop that
   // is put aside until it is thrown.
   sinew::Socket<float> palm{right, {}};
   palm.offset.translation = skeleton.joints[right].center_of_mass.cast<float>();
   palm.offset.rotation =
-      walker.model()[right].rotation.conjugate() *
-      sinew::rotation_between<float>(sinew::Vec3<float>::UnitZ(), sinew::Vec3<float>::UnitX());
+      walker.model()[right].rotation.conjugate() * Eigen::AngleAxisf(kQuarter, sinew::Vec3<float>::UnitY());
   sinew::Transform<float> grip;  // grip → sword, whose origin is its centre of mass
   grip.translation = {0, 0, -kGrip};
   sinew::PropSettings blade;
@@ -95,12 +95,13 @@ int main(int argc, char** argv) {
   double lag = 0, slip = 0, gap = 0, pull = 0;             // m, m/s, m, N
   sinew::Vec3<float> before = sinew::Vec3<float>::Zero();  // where the sword was a frame ago
   for (int frame = 1; frame <= kLast; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
-    walker.set_target(jets);
-    if (status = world.step(kStep); !status) return fail("step", status.reason);
+    status = sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
+    if (status) status = walker.set_target(jets);
+    if (status) status = world.step(kStep);
 
     // Where the sword is at the end of this frame, how fast it is and how that changes: no lag of a frame.
-    sinew::ModelMotionJob<float>{parents, jets, {}, model}.Run();
+    if (status) status = sinew::ModelMotionJob<float>{parents, jets, {}, model}.Run();
+    if (!status) return fail("step", status.reason);
     using Model = std::span<const sinew::MovingTransform<float>>;
     const auto item = sinew::attached<float>(sinew::socket_motion<float>(palm, Model(model)), grip);
     if (frame <= kThrown) {

@@ -6,7 +6,6 @@
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <array>
@@ -38,15 +37,16 @@ struct Mixer {
         breath(mask.size()) {
     reach.write<float>(mask);
     for (const sinew::Joint& joint : asset.skeleton.joints) rest.push_back(joint.rest.cast<float>());
-    sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();
+    (void)sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();  // clips of an asset are valid
   }
   sinew::Status sample(double time, Jets& out) {
     // The run takes as long strides as the walk: its clip's time is a motion, whose rate goes into velocities
     // and accelerations.
     const double pace = double(run.duration) / double(walk.duration);
-    sinew::SamplingJob<float>{&walk, time, lower}.Run();
-    sinew::SamplingJob<float>{&run, {time * pace, pace}, upper}.Run();
-    sinew::SamplingJob<float>{&stand, time, breath}.Run();
+    sinew::Status status = sinew::SamplingJob<float>{&walk, time, lower}.Run();
+    if (status) status = sinew::SamplingJob<float>{&run, {time * pace, pace}, upper}.Run();
+    if (status) status = sinew::SamplingJob<float>{&stand, time, breath}.Run();
+    if (!status) return status;
     sinew::subtract_reference<float>(still, breath, breath);
 
     // In from 0.5 s on, out in the last second, in 0.5 s each. Weights bring their rates along: those of the
@@ -105,19 +105,16 @@ int main(int argc, char** argv) {
       touched += mixer.mask[j] == 0 && !same_bits(jets[j], mixer.lower[j]);
       if (mixer.mask[j] == 0) continue;
       // Are the derivatives those of the pose that is shown? Differences of it over ±0.5 ms say so.
-      const sinew::Vec3<float> turned =
-          sinew::rotation_log<float>(before[j].rotation.conjugate() * after[j].rotation);
-      off = std::max(off, (turned / (2 * little) - jets[j].omega).norm());
+      const Eigen::AngleAxisf turn(before[j].rotation.conjugate() * after[j].rotation);
+      off = std::max(off, (turn.angle() / (2 * little) * turn.axis() - jets[j].omega).norm());
       alpha_off =
           std::max(alpha_off, ((after[j].omega - before[j].omega) / (2 * little) - jets[j].alpha).norm());
       fastest = std::max(fastest, jets[j].omega.norm());
       strongest = std::max(strongest, jets[j].alpha.norm());
     }
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
     solved += hero.report().unknown_dofs > 0;
     if (frame % 30 == 0)
       std::printf("%5.2f s  busiest muscle at %3.0f %%, unknown DOFs %d\n", now,

@@ -81,13 +81,14 @@ int main(int argc, char** argv) {
   int tries = 0;
   double lowest = 10;  // m, of the root
   for (int frame = 0; frame < kLongest && !(standing && hero.on_animation()); ++frame) {
-    sinew::SamplingJob<float>{&asset.clips[stand], frame / 60.0, jets}.Run();
-    if (status = balance.update(hero, jets, h); !status) return fail("behaviour", status.reason);
-    hero.set_target(jets);  // what the clip wants, or what the behaviour made of it
-    if (frame == 0) hero.reset();
-    if (frame >= kPush && frame < kPush + kPushed)
-      hero.apply_force(chest, hero.model()[chest].translation, {impulse / (h * kPushed), 0, 0});
-    if (status = world.step(h); !status) return fail("step", status.reason);
+    status = sinew::SamplingJob<float>{&asset.clips[stand], frame / 60.0, jets}.Run();
+    if (status) status = balance.update(hero, jets, h);
+    if (status) status = hero.set_target(jets);  // what the clip wants, or what the behaviour made of it
+    if (status && frame == 0) status = hero.reset();
+    if (status && frame >= kPush && frame < kPush + kPushed)
+      status = hero.apply_force(chest, hero.model()[chest].translation, {impulse / (h * kPushed), 0, 0});
+    if (status) status = world.step(h);
+    if (!status) return fail("step", status.reason);
     lowest = std::min(lowest, hero.position().z());
     for (const sinew::BehaviourEvent& event : balance.events()) {
       std::printf("%5.2f s  %s%s\n", frame / 60.0, name(event.kind), why(event));

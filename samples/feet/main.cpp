@@ -6,7 +6,6 @@
 #include <sinew/character/queries.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <array>
@@ -77,7 +76,7 @@ int main(int argc, char** argv) {
   sinew::Collider ramp;
   ramp.shape = sinew::Shape::kBox;
   ramp.size = {20, 3, 0.5};
-  ramp.local.rotation = sinew::rotation_exp<double>({0, -std::atan(double(slope)), 0});
+  ramp.local.rotation = Eigen::AngleAxisd(-std::atan(double(slope)), sinew::Vec3<double>::UnitY());
   ramp.local.translation = ramp.local.rotation * sinew::Vec3<double>(0, 0, -0.5);
   if (status = world.add_obstacle(ramp); !status) return fail("ramp", status.reason);
   const float length = std::sqrt(1 + slope * slope);
@@ -95,7 +94,8 @@ int main(int argc, char** argv) {
   constexpr float h = 1 / 60.f;
   for (int frame = 0; frame <= 300; ++frame) {
     const double now = frame / 60.0;
-    sinew::SamplingJob<float>{&clip, now, jets}.Run();
+    if (status = sinew::SamplingJob<float>{&clip, now, jets}.Run(); !status)
+      return fail("walk", status.reason);
     // The game moves the root over the ramp, and says by how much, with the rates of that.
     sinew::MovingTransform<float> root = sinew::moving_transform(jets[0]);
     const sinew::TimeJet<float> level = slope * root.translation.x();
@@ -118,11 +118,9 @@ int main(int argc, char** argv) {
     place.level = level;
     place.step = frame == 0 ? 0 : h;
     if (status = place.Run(); !status) return fail("feet", status.reason);
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
 
     // How the feet that are shown stand on the ramp.
     for (int side = 0; side < 2; ++side) {

@@ -2,7 +2,6 @@
 // too. Both correct the clip's jets, with exact velocities and accelerations.
 // Usage: look_at ASSET.sinew [SECONDS, at least 4]
 #include <sinew/animation/inverse_kinematics.h>
-#include <sinew/animation/jet_angles.h>
 #include <sinew/animation/look_at_job.h>
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
@@ -17,10 +16,11 @@ namespace {
 
 /// Where it flies, m: a loop in front of the right shoulder. Its rates come with it.
 sinew::MovingVector<float> butterfly(double time) {
-  using Jet = sinew::TimeJet<float>;
-  const auto phase = [&](float rate) { return Jet(float(time) * rate, rate, 0); };  // rad, rad/s
-  return {Jet(0.38f) + 0.06f * sine(phase(1.9f)), Jet(-0.22f) + 0.18f * sine(phase(1.3f)),
-          Jet(1.5f) + 0.1f * cosine(phase(2.3f))};
+  const auto swing = [&](float middle, float amplitude, float rate) {  // m, m, rad/s
+    const float s = amplitude * std::sin(rate * float(time)), c = amplitude * std::cos(rate * float(time));
+    return sinew::TimeJet<float>(middle + s, rate * c, -rate * rate * s);
+  };
+  return {swing(0.38f, 0.06f, 1.9f), swing(-0.22f, 0.18f, 1.3f), swing(1.5f, 0.1f, 2.3f)};
 }
 
 int fail(const char* what, const char* why) {
@@ -68,7 +68,8 @@ int main(int argc, char** argv) {
   for (int frame = 0; frame <= seconds * 60; ++frame) {
     const double now = frame / 60.0;
     const sinew::MovingVector<float> target = butterfly(now);
-    sinew::SamplingJob<float>{&asset.clips[stand], now, jets}.Run();
+    status = sinew::SamplingJob<float>{&asset.clips[stand], now, jets}.Run();
+    if (!status) return fail("stand", status.reason);
 
     // The look first: it carries the shoulders, from which the arm then reaches.
     sinew::LookAtJob<float> look{parents, jets, &chain, &look_state, target};
@@ -81,11 +82,9 @@ int main(int argc, char** argv) {
     arm.weight = reach.x;
     if (status = arm.Run(); !status) return fail("arm", status.reason);
 
-    hero.set_target(jets);
-    if (frame == 0)
-      hero.reset();
-    else if (status = world.step(h); !status)
-      return fail("step", status.reason);
+    status = hero.set_target(jets);
+    if (status) status = frame == 0 ? hero.reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
     solved += hero.report().unknown_dofs > 0;
 
     // What the world shows, not what was asked of it: how far are gaze and hand off?

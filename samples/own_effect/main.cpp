@@ -36,9 +36,10 @@ int main(int argc, char** argv) {
   sinew::Character<float> hero = world.character(world.add_character(asset.skeleton, {}, status));
   if (!status) return fail(argv[1], status.reason);
   std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
-  sinew::SamplingJob<float>{&asset.clips[stand], 0, jets}.Run();
-  hero.set_target(jets);
-  hero.reset();
+  status = sinew::SamplingJob<float>{&asset.clips[stand], 0, jets}.Run();
+  if (status) status = hero.set_target(jets);
+  if (status) status = hero.reset();
+  if (!status) return fail("stand", status.reason);
   GrabSettings settings;
   settings.joint = chest;
   settings.at = asset.skeleton.joints[chest].center_of_mass;
@@ -52,17 +53,19 @@ int main(int argc, char** argv) {
   double borne = 0, overcome = 0;  // N/m, over 1 m: N
   for (int frame = 1; frame <= 240 && overcome == 0; ++frame) {
     grab.settings.stiffness = 5.0 * frame;
-    sinew::SamplingJob<float>{&asset.clips[stand], frame / 60.0, jets}.Run();
-    hero.set_target(jets);
-    if (status = world.step(1 / 60.f); !status) return fail("step", status.reason);
+    status = sinew::SamplingJob<float>{&asset.clips[stand], frame / 60.0, jets}.Run();
+    if (status) status = hero.set_target(jets);
+    if (status) status = world.step(1 / 60.f);
+    if (!status) return fail("step", status.reason);
     (hero.report().unknown_dofs == 0 ? borne : overcome) = grab.settings.stiffness;
   }
   std::printf("muscles bear a pull of %.0f N; %.0f N overcomes %d degrees of freedom\n", borne, overcome,
               hero.report().unknown_dofs);
 
   // Limp, lifted by the chest: the spring becomes as long as the weight makes it.
-  hero.set_strength(0);
-  hero.set_root_drive(sinew::RootDrive::kFree);
+  status = hero.set_strength(0);
+  if (status) status = hero.set_root_drive(sinew::RootDrive::kFree);
+  if (!status) return fail("limp", status.reason);
   grab.settings.stiffness = 10000;
   grab.settings.damping = 300;
   grab.settings.to = {0, 0, 2.5};

@@ -37,14 +37,14 @@ struct Game {
     if (status) (void)world.add_prop(ball, status);
     if (!status) return;
     set_inputs(0, 0);
-    status = world.character(hero).reset();
+    if (status) status = world.character(hero).reset();
     bytes.resize(world.snapshot_capacity());
   }
   /// Targets and pushes are inputs, a function of the frame: they are given again when it is played again.
   void set_inputs(int frame, float push) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
     sinew::Character<float> walker = world.character(hero);
-    status = walker.set_target(jets);
+    status = sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
+    if (status) status = walker.set_target(jets);
     const int chest = asset.skeleton.find(sinew::Role::kChest);
     if (status && frame == kPushed && push > 0)
       status = walker.apply_impulse(chest, walker.model()[chest].translation, {0, push, 0});
