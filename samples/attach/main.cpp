@@ -7,7 +7,6 @@
 #include <sinew/animation/socket.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@ namespace {
 constexpr float kStep = 1 / 60.f;              // s
 constexpr int kThrown = 75, kLast = 240;       // frames
 constexpr float kBlade = 0.4f, kGrip = 0.55f;  // m: half of the blade; from its middle to the grip
+constexpr float kQuarter = 1.5707964f;         // rad, of a turn
 constexpr double kHandle = 0.15;               // m, from the lantern's middle up to its handle
 
 int fail(const char* what, const char* why) {
@@ -64,8 +64,7 @@ int main(int argc, char** argv) {
   sinew::Socket<float> palm{right, {}};
   palm.offset.translation = skeleton.joints[right].center_of_mass.cast<float>();
   palm.offset.rotation =
-      walker.model()[right].rotation.conjugate() *
-      sinew::rotation_between<float>(sinew::Vec3<float>::UnitZ(), sinew::Vec3<float>::UnitX());
+      walker.model()[right].rotation.conjugate() * Eigen::AngleAxisf(kQuarter, sinew::Vec3<float>::UnitY());
   sinew::Transform<float> grip;  // grip → sword, whose origin is its centre of mass
   grip.translation = {0, 0, -kGrip};
   sinew::PropSettings blade;

@@ -6,7 +6,6 @@
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <array>
@@ -106,9 +105,8 @@ int main(int argc, char** argv) {
       touched += mixer.mask[j] == 0 && !same_bits(jets[j], mixer.lower[j]);
       if (mixer.mask[j] == 0) continue;
       // Are the derivatives those of the pose that is shown? Differences of it over ±0.5 ms say so.
-      const sinew::Vec3<float> turned =
-          sinew::rotation_log<float>(before[j].rotation.conjugate() * after[j].rotation);
-      off = std::max(off, (turned / (2 * little) - jets[j].omega).norm());
+      const Eigen::AngleAxisf turn(before[j].rotation.conjugate() * after[j].rotation);
+      off = std::max(off, (turn.angle() / (2 * little) * turn.axis() - jets[j].omega).norm());
       alpha_off =
           std::max(alpha_off, ((after[j].omega - before[j].omega) / (2 * little) - jets[j].alpha).norm());
       fastest = std::max(fastest, jets[j].omega.norm());

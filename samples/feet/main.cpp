@@ -6,7 +6,6 @@
 #include <sinew/character/queries.h>
 #include <sinew/character/world.h>
 #include <sinew/io/asset.h>
-#include <sinew/skeleton/rotation.h>
 
 #include <algorithm>
 #include <array>
@@ -77,7 +76,7 @@ int main(int argc, char** argv) {
   sinew::Collider ramp;
   ramp.shape = sinew::Shape::kBox;
   ramp.size = {20, 3, 0.5};
-  ramp.local.rotation = sinew::rotation_exp<double>({0, -std::atan(double(slope)), 0});
+  ramp.local.rotation = Eigen::AngleAxisd(-std::atan(double(slope)), sinew::Vec3<double>::UnitY());
   ramp.local.translation = ramp.local.rotation * sinew::Vec3<double>(0, 0, -0.5);
   if (status = world.add_obstacle(ramp); !status) return fail("ramp", status.reason);
   const float length = std::sqrt(1 + slope * slope);

@@ -2,7 +2,6 @@
 // too. Both correct the clip's jets, with exact velocities and accelerations.
 // Usage: look_at ASSET.sinew [SECONDS, at least 4]
 #include <sinew/animation/inverse_kinematics.h>
-#include <sinew/animation/jet_angles.h>
 #include <sinew/animation/look_at_job.h>
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
@@ -17,10 +16,11 @@ namespace {
 
 /// Where it flies, m: a loop in front of the right shoulder. Its rates come with it.
 sinew::MovingVector<float> butterfly(double time) {
-  using Jet = sinew::TimeJet<float>;
-  const auto phase = [&](float rate) { return Jet(float(time) * rate, rate, 0); };  // rad, rad/s
-  return {Jet(0.38f) + 0.06f * sine(phase(1.9f)), Jet(-0.22f) + 0.18f * sine(phase(1.3f)),
-          Jet(1.5f) + 0.1f * cosine(phase(2.3f))};
+  const auto swing = [&](float middle, float amplitude, float rate) {  // m, m, rad/s
+    const float s = amplitude * std::sin(rate * float(time)), c = amplitude * std::cos(rate * float(time));
+    return sinew::TimeJet<float>(middle + s, rate * c, -rate * rate * s);
+  };
+  return {swing(0.38f, 0.06f, 1.9f), swing(-0.22f, 0.18f, 1.3f), swing(1.5f, 0.1f, 2.3f)};
 }
 
 int fail(const char* what, const char* why) {
