@@ -21,7 +21,7 @@ NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "s
             ("sinew_character_add_wind", "settings"), ("sinew_character_add_buoyancy", "settings"),
             ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
             ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
-            ("sinew_prop_add_force_field", "settings")}
+            ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings")}
 
 
 class Everything:
@@ -38,11 +38,13 @@ class Everything:
         self.prop = self.world.add_prop(pose={"translation": (3, 0, 1)})
         self.loop = self.world.add_loop(
             kind=sinew.LoopKind.ROPE, length=5, a={"kind": sinew.AnchorKind.PROP, "handle": self.prop})
+        self.particles = self.world.add_strand(particles=3, frame={"pose": {"translation": (5, 0, 2)}})
         self.effect = self.prop.add_wind(velocity=(1, 0, 0))
         self.world.report_contacts()
         self.handles = {"sinew_asset": self.asset.handle, "sinew_world": self.world.handle,
                         "sinew_character": self.character.handle, "sinew_prop": self.prop.handle, "sinew_loop": self.loop.handle,
-                        "sinew_graph": self.graph.handle, "sinew_effect": self.effect.handle}
+                        "sinew_graph": self.graph.handle, "sinew_effect": self.effect.handle,
+                        "sinew_particles": self.particles.handle}
 
 
 def meant(parameter, scene, memory):
@@ -294,6 +296,22 @@ class Classes(unittest.TestCase):
         self.assertEqual(look.state.started, 1)
         with self.assertRaisesRegex(sinew.Error, "0 to 1"):
             look(asset, a, (5, 0, 1), 1 / 60, weight=2)
+
+    def test_strands_cloth_and_tissue_hang(self):
+        scene = Everything()
+        corners = [(0, 0, 2), (1, 0, 2), (0, 1, 2), (0, 0, 3)]
+        cloth = scene.world.add_cloth(corners[:3], [(0, 1, 2)], fixed=[0])
+        tissue = scene.world.add_soft_tissue(corners, [(0, 1, 2, 3)], fixed=[3])
+        for _ in range(10):
+            scene.world.step(1 / 60)
+        self.assertEqual((len(cloth.nodes), len(tissue.nodes)), (3, 4))
+        self.assertAlmostEqual(cloth.nodes[0].position[2], 2, 5)
+        self.assertLess(cloth.nodes[1].position[2], 1.999)
+        cloth.reset()
+        with self.assertRaisesRegex(sinew.Error, "element"):
+            scene.world.add_cloth(corners, [(0, 1, 7)])
+        scene.character.set_tone(sinew.Tone.BRACED)
+        self.assertGreater(scene.character.stiffness(8)[0], 0)
 
     def test_many_characters_in_one_call(self):
         scene = Everything()

@@ -85,7 +85,7 @@ class FuzzInputs {
   }
 
   std::mt19937_64 random_;
-  std::vector<std::uint64_t> assets_, graphs_, worlds_, people_, props_, loops_, effects_, gone_;
+  std::vector<std::uint64_t> assets_, graphs_, worlds_, people_, props_, loops_, effects_, bodies_, gone_;
 
  private:
   std::array<std::array<double, 3>, 4> triples_{};

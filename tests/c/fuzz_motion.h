@@ -1,4 +1,5 @@
-// Random calls of the C interface for what moves characters besides clips: graphs, effects, jobs on poses.
+// Random calls of the C interface for what moves characters besides clips: graphs, effects, jobs on poses,
+// tones, and what hangs on them.
 #pragma once
 
 #include <algorithm>
@@ -249,6 +250,71 @@ class FuzzMotion : protected FuzzInputs {
     if (rarely()) look_.numbers[below(26)] = real(-1, 1);
     if (rarely()) look_ = {};
     return sinew_asset_look(asset, or_null(&look), or_null(&look_), or_null(jets.data()), count);
+  }
+
+  sinew_status particles() {
+    if (bodies_.size() > 2) return read_particles();
+    sinew_strand strand = settings(sinew_strand_init);
+    strand.particles = 1 + below(4);
+    strand.frame.kind = index(3);
+    strand.frame.handle = strand.frame.kind == SINEW_ANCHOR_CHARACTER ? handle(people_) : handle(props_);
+    strand.frame.joint = index(22);
+    strand.length = number(0.01, 0.5);
+    constexpr double kCorners[12] = {0, 0, 1, 0.2, 0, 1, 0, 0.2, 1, 0, 0, 1.2};
+    const std::int32_t elements[4] = {index(4), index(4), index(4), index(4)}, fixed[1] = {index(4)};
+    sinew_cloth cloth = settings(sinew_cloth_init);
+    sinew_soft_tissue tissue = settings(sinew_soft_tissue_init);
+    cloth.positions = tissue.positions = or_null(kCorners);
+    cloth.node_count = tissue.node_count = rarely() ? -1 : below(5);
+    cloth.triangles = tissue.tetrahedra = or_null(elements);
+    cloth.triangle_count = tissue.tetrahedron_count = below(2);
+    cloth.fixed = tissue.fixed = or_null(fixed);
+    cloth.fixed_count = tissue.fixed_count = below(2);
+    std::uint64_t out = 0;
+    const sinew_status status = particles(strand, cloth, tissue, out);
+    if (status == SINEW_OK && out != 0) bodies_.push_back(out);
+    return status;
+  }
+  sinew_status particles(const sinew_strand& strand, const sinew_cloth& cloth,
+                         const sinew_soft_tissue& tissue, std::uint64_t& out) {
+    switch (below(3)) {
+      case 0:
+        return sinew_world_add_strand(handle(worlds_), or_null(&strand), or_null(&out));
+      case 1:
+        return sinew_world_add_cloth(handle(worlds_), or_null(&cloth), or_null(&out));
+      default:
+        return sinew_world_add_soft_tissue(handle(worlds_), or_null(&tissue), or_null(&out));
+    }
+  }
+  sinew_status read_particles() {
+    std::array<sinew_particle, 8> nodes;
+    std::int32_t count = 0;
+    const float velocity[3] = {real(-1, 1), 0, 0};
+    sinew_character_report report{};
+    report.size = sizeof report;
+    switch (below(3)) {
+      case 0:
+        return sinew_particles_get_nodes(handle(bodies_), or_null(nodes.data()), rarely() ? -1 : below(9),
+                                         or_null(&count));
+      case 1:
+        return sinew_particles_reset(handle(bodies_), or_null(velocity));
+      default:
+        return sinew_particles_get_report(handle(bodies_), or_null(&report));
+    }
+  }
+  sinew_status tone() {
+    double stiffness = 0, ratio = 0;
+    switch (below(4)) {
+      case 0:
+        return sinew_character_set_tone(handle(people_), index(4));
+      case 1:
+        return sinew_character_set_joint_tone(handle(people_), index(22), index(4));
+      case 2:
+        return sinew_character_set_joint_stiffness(handle(people_), index(22), number(1, 1e3), number(0, 1));
+      default:
+        return sinew_character_get_stiffness(handle(people_), index(40), or_null(&stiffness),
+                                             or_null(&ratio));
+    }
   }
 
   std::vector<char> remembered_;

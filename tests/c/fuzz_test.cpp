@@ -394,7 +394,7 @@ class Sequence : FuzzMotion {
     std::erase(of, one);
     gone_.push_back(one);
     if (world)
-      for (auto* inside : {&people_, &props_, &loops_, &effects_}) {
+      for (auto* inside : {&people_, &props_, &loops_, &effects_, &bodies_}) {
         const auto gone = [&](std::uint64_t h) {
           return (h << 4 >> 24) == (one << 4 >> 24);
         };  // its slot and serial

@@ -126,6 +126,9 @@ TEST_F(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
     if (status == SINEW_OK) status = sinew_character_use_get_ups(hero, asset);
     sinew_effect wind = 0;
     if (status == SINEW_OK) status = sinew_character_add_wind(hero, nullptr, &wind);
+    sinew_particles strand = 0;
+    if (status == SINEW_OK) status = sinew_world_add_strand(world, nullptr, &strand);
+    if (status == SINEW_OK) status = sinew_character_set_tone(hero, SINEW_TONE_ALERT);
     // A behaviour is made aside and then taken; everything else is added to the world.
     if (status != SINEW_OK) {
       EXPECT_EQ(sinew_world_step(world, 0.01f), whole && !behaves ? SINEW_OK : SINEW_BROKEN);

@@ -9,7 +9,14 @@
 #include "sinew/c/report.h"
 
 namespace sinew::c {
+
+template <>
+inline constexpr std::uint32_t kFirstSize<sinew_character_settings> = 80;  // up to bake
+
 namespace {
+
+static_assert(int(Tone::kRigid) == SINEW_TONE_RIGID && int(Tone::kRelaxed) == SINEW_TONE_RELAXED &&
+              int(Tone::kAlert) == SINEW_TONE_ALERT && int(Tone::kBraced) == SINEW_TONE_BRACED);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -27,6 +34,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("significance must be finite", c.significance, s.detail.significance);
   f("check_every must be 1 to 1000000", c.check_every, s.detail.check_every, 1, 1e6);
   f("", c.bake, s.detail.bake);
+  f("no such tone", c.tone, s.tone);
 };
 
 constexpr const char* kOutside = "no such character in this world";
@@ -78,6 +86,29 @@ sinew_status push(sinew_character handle, const double* point, const double* vec
 template <class Change>
 sinew_status change(sinew_character handle, Change&& change) noexcept {
   return with_character(handle, [&](OwnedWorld&, Character<float> c) { return answer(change(c)); });
+}
+
+/// The same of muscles of a group, where there is one of that name. `breaks`: as of in_world.
+template <class Change>
+sinew_status change_group(sinew_character handle, const char* group, bool breaks, Change&& change) noexcept {
+  const auto act = [&](OwnedWorld&, Character<float> c) {
+    if (!group) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    const std::vector<Muscle>& muscles = c.skeleton().muscles;
+    if (*group == 0 ||
+        std::none_of(muscles.begin(), muscles.end(), [&](const Muscle& m) { return m.group == group; }))
+      return fail(SINEW_NOT_FOUND, "the skeleton has no muscle of that group");
+    return answer(change(c));
+  };
+  return with_character(handle, act, breaks);
+}
+
+/// change(character) → Status, which may allocate, with a tone that there is.
+template <class Change>
+sinew_status change_tone(sinew_character handle, sinew_tone tone, Change&& change) noexcept {
+  if (tone < SINEW_TONE_RIGID || tone > SINEW_TONE_BRACED)
+    return fail(SINEW_INVALID_ARGUMENT, "no such tone", tone);
+  return with_character(
+      handle, [&](OwnedWorld&, Character<float> c) { return answer(change(c)); }, true);
 }
 
 }  // namespace
@@ -152,8 +183,43 @@ sinew_status sinew_character_set_muscle_strength(sinew_character character, int3
 
 sinew_status sinew_character_set_group_strength(sinew_character character, const char* group,
                                                 float strength) {
-  if (!group) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  return change(character, [&](Character<float> c) { return c.set_group_strength(group, strength); });
+  return change_group(character, group, false,
+                      [&](Character<float> c) { return c.set_group_strength(group, strength); });
+}
+
+sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone) {
+  return change_tone(character, tone, [&](Character<float> c) { return c.set_tone(Tone(tone)); });
+}
+
+sinew_status sinew_character_set_joint_tone(sinew_character character, int32_t joint, sinew_tone tone) {
+  return change_tone(character, tone, [&](Character<float> c) { return c.set_tone(joint, Tone(tone)); });
+}
+
+sinew_status sinew_character_set_group_tone(sinew_character character, const char* group, sinew_tone tone) {
+  if (tone < SINEW_TONE_RIGID || tone > SINEW_TONE_BRACED)
+    return fail(SINEW_INVALID_ARGUMENT, "no such tone", tone);
+  return change_group(character, group, true,
+                      [&](Character<float> c) { return c.set_group_tone(group, Tone(tone)); });
+}
+
+sinew_status sinew_character_set_joint_stiffness(sinew_character character, int32_t joint, double stiffness,
+                                                 double damping_ratio) {
+  return change_tone(character, SINEW_TONE_RIGID, [&](Character<float> c) {
+    return c.set_tone(joint, Stiffness{stiffness, damping_ratio});
+  });
+}
+
+sinew_status sinew_character_get_stiffness(sinew_character character, int32_t dof, double* stiffness,
+                                           double* damping_ratio) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!stiffness || !damping_ratio) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (dof < 0 || std::size_t(dof) >= c.torque().size())
+      return fail(SINEW_INVALID_ARGUMENT, "no such degree of freedom", dof);
+    const Stiffness of = c.tone(dof);
+    *stiffness = of.stiffness;
+    *damping_ratio = of.damping_ratio;
+    return sinew_status(SINEW_OK);
+  });
 }
 
 sinew_status sinew_character_get_muscle_torque(sinew_character character, int32_t muscle, float* out) {

@@ -30,6 +30,8 @@ inline constexpr Level kLast<Level> = Level::kSubsteps;
 template <>
 inline constexpr LoopKind kLast<LoopKind> = LoopKind::kRope;
 template <>
+inline constexpr Tone kLast<Tone> = Tone::kBraced;
+template <>
 inline constexpr GetUpPolicy kLast<GetUpPolicy> = GetUpPolicy::kNever;
 
 /// C++ → C.

@@ -10,7 +10,17 @@
 
 namespace sinew::c {
 
-enum class Kind : std::uint8_t { kNone, kAsset, kWorld, kCharacter, kProp, kLoop, kGraph, kEffect };
+enum class Kind : std::uint8_t {
+  kNone,
+  kAsset,
+  kWorld,
+  kCharacter,
+  kProp,
+  kLoop,
+  kGraph,
+  kEffect,
+  kParticles
+};
 
 constexpr std::size_t kMostInWorld = 1u << 20;  ///< of a kind, that handles can tell apart
 
@@ -21,7 +31,7 @@ void* find_object(std::uint64_t handle, Kind kind) noexcept;
 /// From now on the handle, and those of what is in it, name nothing. Returns what it named, so that of two
 /// threads which destroy something one gets it; null where it named nothing.
 void* retire_handle(std::uint64_t handle, Kind owner);
-/// Of a character, prop, loop or effect in the world that `world` names.
+/// Of a character, prop, loop, effect or body of particles in the world that `world` names.
 std::uint64_t handle_in(std::uint64_t world, Kind kind, int index) noexcept;
 /// Handle of the world that something is in.
 std::uint64_t world_of(std::uint64_t handle) noexcept;

@@ -68,6 +68,7 @@ struct OwnedWorld {
   World<float> world;
   ParallelFor jobs;
   int loops = 0;
+  std::vector<int> nodes;                                   ///< [body of particles] how many it has
   std::vector<JointJet<float>> jets;                        ///< of one character, as many as the largest has
   std::vector<std::unique_ptr<OwnedBehaviour>> behaviours;  ///< [character], or null
   std::vector<OwnedEffect> effects;  ///< in the order in which they were added, those that are gone too

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/c/anchor.h"
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/report.h"
@@ -67,20 +68,6 @@ sinew_status check_state(const sinew_transform& pose, const float* velocity, con
     return fail(SINEW_OUT_OF_RANGE, "a prop's place must be within 1e6 m");
   if (!are_within(velocity, 3, 1e5f) || !are_within(angular_velocity, 3, 1e5f))
     return fail(SINEW_OUT_OF_RANGE, "a prop's velocities must be below 1e5 m/s and rad/s");
-  return SINEW_OK;
-}
-
-/// What an anchor hangs on; its frame is read already.
-sinew_status find_anchor(sinew_world world, const sinew_anchor& from, Anchor& to) {
-  if (from.kind == SINEW_ANCHOR_WORLD) return SINEW_OK;
-  const Kind kind = from.kind == SINEW_ANCHOR_CHARACTER ? Kind::kCharacter : Kind::kProp;
-  if (kind == Kind::kProp && from.kind != SINEW_ANCHOR_PROP)
-    return fail(SINEW_INVALID_ARGUMENT, "no such kind of anchor", from.kind);
-  if (!find_object(from.handle, kind)) return refuse(from.handle, kind);
-  if (world_of(from.handle) != world) return fail(SINEW_INVALID_ARGUMENT, "the anchor is in another world");
-  to.kind = kind == Kind::kCharacter ? AnchorKind::kCharacter : AnchorKind::kProp;
-  to.index = index_of(from.handle);
-  to.joint = from.joint;
   return SINEW_OK;
 }
 

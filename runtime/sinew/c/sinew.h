@@ -150,6 +150,7 @@ typedef struct sinew_view {
 #include "sinew/c/sinew_graph.h"
 #include "sinew/c/sinew_prop.h"
 #include "sinew/c/sinew_effect.h"
+#include "sinew/c/sinew_particles.h"
 #include "sinew/c/sinew_query.h"
 #include "sinew/c/sinew_snapshot.h"
 // clang-format on

@@ -30,6 +30,16 @@ enum sinew_level_values {
   SINEW_LEVEL_SUBSTEPS = 5  ///< all or some are, in parts of a step
 };
 
+/// How stiffly muscles stay with the animation below their limits.
+typedef int32_t sinew_tone;
+/// Values of sinew_tone.
+enum sinew_tone_values {
+  SINEW_TONE_RIGID = 0,    ///< as stiffly as the limit allows
+  SINEW_TONE_RELAXED = 1,  ///< at ease: rings for a while
+  SINEW_TONE_ALERT = 2,    ///< stands or walks attentively
+  SINEW_TONE_BRACED = 3    ///< expects the blow
+};
+
 /// What a character begins with. Fields mean what those of CharacterSettings do.
 typedef struct sinew_character_settings {
   uint32_t size;           ///< bytes of this struct, as the caller knows it
@@ -46,6 +56,8 @@ typedef struct sinew_character_settings {
   double significance;     ///< the budget takes from the least significant first
   int32_t check_every;     ///< steps from one check of the muscles to the next, at least 1
   int32_t bake;            ///< flag: hands, feet and toes dynamic now and then
+  sinew_tone tone;         ///< of all muscles
+  int32_t unused;          ///< 0
 } sinew_character_settings;
 
 /// What the last step did with a character or prop: CharacterReport.
@@ -136,6 +148,21 @@ SINEW_API sinew_status sinew_character_set_muscle_strength(sinew_character chara
 /// The same of all muscles of a group; SINEW_NOT_FOUND if there are none.
 SINEW_API sinew_status sinew_character_set_group_strength(sinew_character character, const char* group,
                                                           float strength);
+/// Tone of all muscles. The first that is not rigid allocates; so with the others.
+SINEW_API sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone);
+/// The same of the muscles of a joint and of those below it.
+SINEW_API sinew_status sinew_character_set_joint_tone(sinew_character character, int32_t joint,
+                                                      sinew_tone tone);
+/// The same of the degrees of freedom that a group of muscles works on; SINEW_NOT_FOUND if there are none.
+SINEW_API sinew_status sinew_character_set_group_tone(sinew_character character, const char* group,
+                                                      sinew_tone tone);
+/// Of one joint alone, all of its degrees of freedom: above 0 (N m/rad, infinite: rigid), and a damping
+/// ratio.
+SINEW_API sinew_status sinew_character_set_joint_stiffness(sinew_character character, int32_t joint,
+                                                           double stiffness, double damping_ratio);
+/// What was asked for of a degree of freedom: N m/rad (infinite: rigid), and the damping ratio.
+SINEW_API sinew_status sinew_character_get_stiffness(sinew_character character, int32_t dof,
+                                                     double* stiffness, double* damping_ratio);
 /// N m, what a muscle gives of its joint's torque.
 SINEW_API sinew_status sinew_character_get_muscle_torque(sinew_character character, int32_t muscle,
                                                          float* out);

@@ -14,7 +14,7 @@ from abi import camel
 CSHARP = {"int32_t": "int", "uint32_t": "uint", "uint64_t": "ulong", "uint8_t": "byte", "size_t": "UIntPtr", "float": "float",
           "double": "double", "void": "void", "char": "byte"}
 NUMBERS = ("int32_t", "uint32_t", "uint64_t", "uint8_t", "float", "double")
-KEYWORDS = ("byte", "event", "object", "out", "params", "ref")
+KEYWORDS = ("byte", "event", "fixed", "object", "out", "params", "ref")
 
 
 def name_of(thing):

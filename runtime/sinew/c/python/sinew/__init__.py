@@ -18,7 +18,7 @@ from ctypes import byref
 from . import _abi
 from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BlendMode, BodyKind, ContactPhase,
                    EventKind, GetUpPolicy, GroundKind, JointType, Level, LoopKind, NodeType, ParameterType, Role, RootDrive, Shape,
-                   SnapshotPart, Status)
+                   SnapshotPart, Status, Tone)
 
 try:
     import numpy
@@ -401,6 +401,31 @@ class World(_Owned):
     def add_loop(self, **settings):
         return Loop(self, self._add(_abi.LoopSettings, lib.sinew_loop_settings_init, lib.sinew_world_add_loop, settings))
 
+    def add_strand(self, **settings):
+        return Particles(self, self._add(_abi.Strand, lib.sinew_strand_init, lib.sinew_world_add_strand, settings))
+
+    def _add_mesh(self, kind, init, add, positions, elements, names, fixed, settings):
+        """Nodes, elements of them, and which are fixed, as the C structs hold them."""
+        struct, out = _settings(kind, init, settings), ctypes.c_uint64()
+        nodes = (ctypes.c_double * (3 * len(positions)))(*(x for p in positions for x in p))
+        indices = (ctypes.c_int32 * sum(map(len, elements)))(*(n for e in elements for n in e))
+        held = (ctypes.c_int32 * len(fixed))(*fixed)
+        struct.positions, struct.node_count = ctypes.addressof(nodes), len(positions)
+        struct.fixed, struct.fixed_count = ctypes.addressof(held), len(fixed)
+        setattr(struct, names[0], ctypes.addressof(indices))
+        setattr(struct, names[1], len(elements))
+        check(add(self.handle, byref(struct), byref(out)))
+        return Particles(self, out.value)
+
+    def add_cloth(self, positions, triangles, fixed=(), **settings):
+        """`positions` m, `triangles` of three nodes, `fixed`: nodes that ride on `frame`."""
+        return self._add_mesh(_abi.Cloth, lib.sinew_cloth_init, lib.sinew_world_add_cloth, positions, triangles,
+                              ("triangles", "triangle_count"), fixed, settings)
+
+    def add_soft_tissue(self, positions, tetrahedra, fixed=(), **settings):
+        return self._add_mesh(_abi.SoftTissue, lib.sinew_soft_tissue_init, lib.sinew_world_add_soft_tissue, positions, tetrahedra,
+                              ("tetrahedra", "tetrahedron_count"), fixed, settings)
+
     def add_obstacle(self, **settings):
         check(lib.sinew_world_add_obstacle(self.handle, byref(_settings(_abi.Obstacle, lib.sinew_obstacle_init, settings))))
 
@@ -561,6 +586,24 @@ class Character(_InWorld):
             self._call(lib.sinew_character_set_group_strength, group.encode(), strength)
         else:
             self._call(lib.sinew_character_set_strength, strength)
+
+    def set_tone(self, tone, joint=None, group=None):
+        """How stiffly muscles stay with the animation: of all, those below a joint, or a group."""
+        if joint is not None:
+            self._call(lib.sinew_character_set_joint_tone, joint, tone)
+        elif group is not None:
+            self._call(lib.sinew_character_set_group_tone, group.encode(), tone)
+        else:
+            self._call(lib.sinew_character_set_tone, tone)
+
+    def set_stiffness(self, joint, stiffness, damping_ratio):
+        self._call(lib.sinew_character_set_joint_stiffness, joint, stiffness, damping_ratio)
+
+    def stiffness(self, dof):
+        """N m/rad (infinite: rigid), and the damping ratio."""
+        stiffness, ratio = ctypes.c_double(), ctypes.c_double()
+        self._call(lib.sinew_character_get_stiffness, dof, byref(stiffness), byref(ratio))
+        return stiffness.value, ratio.value
 
     def set_root_drive(self, drive):
         self._call(lib.sinew_character_set_root_drive, drive)
@@ -809,3 +852,25 @@ class Loop(_InWorld):
         gap, force = ctypes.c_double(), (ctypes.c_float * 3)()
         self._call(lib.sinew_loop_get_state, byref(gap), byref(force))
         return gap.value, tuple(force)
+
+
+class Particles(_InWorld):
+    """A strand, cloth or soft tissue."""
+
+    @property
+    def nodes(self):
+        """Where they are (m, world), and how fast (m/s): a copy."""
+        count = ctypes.c_int32()
+        status = lib.sinew_particles_get_nodes(self.handle, None, 0, byref(count))
+        if status not in (Status.OK, Status.TOO_SMALL):
+            raise Error(status)
+        out = (_abi.Particle * count.value)()
+        self._call(lib.sinew_particles_get_nodes, byref(out), count.value, byref(count))
+        return out[:]
+
+    def reset(self, velocity=(0, 0, 0)):
+        self._call(lib.sinew_particles_reset, (ctypes.c_float * 3)(*velocity))
+
+    @property
+    def report(self):
+        return _report(_abi.CharacterReport, lib.sinew_particles_get_report, self.handle)
