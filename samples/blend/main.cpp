@@ -37,7 +37,7 @@ struct Mixer {
         breath(mask.size()) {
     reach.write<float>(mask);
     for (const sinew::Joint& joint : asset.skeleton.joints) rest.push_back(joint.rest.cast<float>());
-    (void)sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();
+    (void)sinew::SamplingJob<float>{&stand, 0, {}, still}.Run();  // clips of an asset are valid
   }
   sinew::Status sample(double time, Jets& out) {
     // The run takes as long strides as the walk: its clip's time is a motion, whose rate goes into velocities
