@@ -1,6 +1,7 @@
 // Blend of two poses with exact velocities and accelerations.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "sinew/animation/blending_job.h"
@@ -18,7 +19,8 @@ struct EaseWeight : TimeJet<T> {
     if (duration <= T(0) || elapsed >= duration) return {T(1), T(0), T(0)};
     if (elapsed <= T(0)) return {};
     const T u = elapsed / duration, u2 = u * u;
-    return {u2 * u * (T(10) - T(15) * u + T(6) * u2), T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
+    const T value = std::min(T(1), u2 * u * (T(10) - T(15) * u + T(6) * u2));  // near 1 it rounds above it
+    return {value, T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
             T(60) * u * (T(1) - u) * (T(1) - T(2) * u) / (duration * duration)};
   }
 };
