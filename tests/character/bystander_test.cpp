@@ -28,7 +28,7 @@ struct Scene {
     EXPECT_TRUE(status.ok()) << status.reason;
     const std::vector<JointJet<float>> jets = fixtures::upright_jets(body, static_cast<int>(seed), place);
     EXPECT_TRUE(world.character(n).set_target(jets).ok());
-    world.character(n).reset();
+    (void)world.character(n).reset();
     return n;
   }
   int box(const Vec3<double>& place, const Vec3<double>& velocity, const Vec3<double>& spin) {
@@ -191,7 +191,7 @@ int solved_of_two(const std::function<void(int, float, JointJet<float>&)>& lead)
       std::vector<JointJet<float>> jets = fixtures::idle<float>(body, double(time) + n);
       lead(n, time, jets[0]);
       EXPECT_TRUE(world.character(n).set_target(jets).ok());
-      if (step == 0) world.character(n).reset();
+      if (step == 0) (void)world.character(n).reset();
     }
     EXPECT_TRUE(world.step(kStep).ok());
     for (int n = 0; n < 2; ++n) solved += world.character(n).report().substeps > 0;

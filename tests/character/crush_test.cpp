@@ -43,7 +43,7 @@ TEST(Crush, LimbsThatAPistonHasJammedComeFreeWhenItGoesBack) {
     Status status;
     ASSERT_EQ(world.add_character(piston(), led, status), 1) << status.reason;
     ASSERT_TRUE(world.character(1).set_target(piston_at<float>(-0.6, 0)).ok());
-    world.character(1).reset();
+    (void)world.character(1).reset();
     // At 1 m/s until 1 cm is left to the wall, where it stays for a second, and back; two seconds more.
     double deepest = 0;
     for (int n = 1; n <= 360; ++n) {

@@ -18,7 +18,7 @@ struct Scene {
     settings.detail.check_every = check_every;
     EXPECT_EQ(world.add_character(skeleton, settings, status), 0) << status.reason;
     EXPECT_TRUE(hero().set_target(fixtures::idle<T>(skeleton, 0)).ok());
-    hero().reset();
+    (void)hero().reset();
   }
   Character<T> hero() { return world.character(0); }
   void step() {
@@ -34,11 +34,11 @@ struct Scene {
       EXPECT_TRUE(hero().apply_impulse(chest, hero().model()[chest].translation, {T(30), T(20), T(0)}).ok());
     }
     if (frame == 120) {
-      hero().set_root_drive(RootDrive::kFree);
+      (void)hero().set_root_drive(RootDrive::kFree);
       EXPECT_TRUE(hero().set_strength(T(0.02)).ok());
     }
     if (frame == 150) {
-      hero().set_root_drive(RootDrive::kKinematic);
+      (void)hero().set_root_drive(RootDrive::kKinematic);
       EXPECT_TRUE(hero().set_strength(T(1)).ok());
     }
     ASSERT_TRUE(world.step(T(1) / 60).ok());
@@ -95,7 +95,7 @@ TYPED_TEST(Deferred, LateAnswersAreThoseOfTheLastStep) {
   back.step();
   EXPECT_TRUE(weak.hero().set_strength(TypeParam(0.5)).ok());
   EXPECT_EQ(weak.answers(), answers) << "after the muscles changed";
-  back.hero().reset();
+  (void)back.hero().reset();
   EXPECT_EQ(back.answers(), answers) << "after a reset";
 }
 

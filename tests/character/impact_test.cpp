@@ -206,13 +206,13 @@ TYPED_TEST(Impact, ParkedPropNeitherMovesNorTouchesUntilItIsPlaced) {
   Props<T> scene;
   scene.add(ball(0.1, 1, {0, 0, 0.1}));
   scene.add(ball(0.1, 5, {0.05, 0, 0.15}));  // inside the first
-  scene.world.park_prop(1);
+  (void)scene.world.park_prop(1);
   for (int n = 0; n < 30; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
   EXPECT_NEAR(double(scene.world.prop_pose(0).translation.x()), 0, 1e-6);
   EXPECT_EQ(scene.world.prop_pose(1).translation.z(), T(0.15));
   Transform<T> above;
   above.translation = {T(0), T(0), T(1)};
-  scene.world.set_prop(1, above, Vec3<T>::Zero(), Vec3<T>::Zero());
+  (void)scene.world.set_prop(1, above, Vec3<T>::Zero(), Vec3<T>::Zero());
   for (int n = 0; n < 6; ++n) ASSERT_TRUE(scene.world.step(T(1) / 60).ok());
   EXPECT_LT(scene.height(1), 0.96);
 }
@@ -243,7 +243,7 @@ TEST(Impact, FiguresCaughtInEachOtherComeFreeAndFall) {
     std::vector<JointJet<float>> jets = fixtures::idle<float>(skeleton, 0);
     jets[0].translation += Vec3<float>(0.05f, 0.02f, 0) * float(n);
     ASSERT_TRUE(world.character(n).set_target(jets).ok());
-    world.character(n).reset();
+    (void)world.character(n).reset();
   }
   const float height = world.character(0).model()[0].translation.z();
   int held = 0;

@@ -64,7 +64,7 @@ struct Scene {
     Status status;
     const int index = world.add_character(l.skeleton, passive(), status);
     EXPECT_GE(index, 0) << status.reason;
-    world.character(index).reset();
+    (void)world.character(index).reset();
     return index;
   }
   int add_ball(const V& at, const V& velocity = V::Zero(), double mass = 1) {
@@ -282,10 +282,10 @@ TEST(Loop, OpenedAndClosedAgain) {
   const int loop = scene.tie(LoopKind::kPoint, prop_anchor(0), world_anchor({0, 0, 0}));
   scene.run(30);
   EXPECT_LT(scene.world.prop_pose(0).translation.norm(), 2e-4f);
-  scene.world.set_loop(loop, false);
+  (void)scene.world.set_loop(loop, false);
   scene.run(30);
   EXPECT_NEAR(scene.world.prop_pose(0).translation.z(), -0.5 * 9.81 * 0.25, 0.1);
-  scene.world.set_loop(loop, true);
+  (void)scene.world.set_loop(loop, true);
   scene.run(240);
   EXPECT_LT(scene.world.prop_pose(0).translation.norm(), 2e-3f) << "brought back, hanging still";
 }

@@ -156,7 +156,7 @@ double landed(double h) {
     jets[0].translation.z() = 1.05 + 0.004 * n;
     jets[0].velocity.z() = -4;
     EXPECT_TRUE(world.character(0).set_target(jets).ok());
-    world.character(0).reset();
+    (void)world.character(0).reset();
     for (int k = 0; k < std::lround(0.1 / h); ++k) EXPECT_TRUE(world.step(h).ok());
     sum += world.character(0).report().momentum.z() / kHeights;
   }
@@ -220,7 +220,7 @@ std::vector<Vec3<float>> struck_in_flight(const std::vector<double>& places, dou
       jets[i].translation = body.joints[i].rest.translation.cast<float>();
     jets[0].translation += Vec3<float>(float(places[n]), 0, 3);
     EXPECT_TRUE(world.character(static_cast<int>(n)).set_target(jets).ok());
-    world.character(static_cast<int>(n)).reset();
+    (void)world.character(static_cast<int>(n)).reset();
   }
   for (int k = 0; k < 30; ++k) {
     for (std::size_t n = 0; n < places.size(); ++n) {
@@ -283,11 +283,11 @@ struct Play {
       EXPECT_TRUE(hero.apply_impulse(2, hero.model()[2].translation, Vec3<T>(120, 40, 0)).ok());
     }
     if (frame == 60) {
-      hero.set_root_drive(RootDrive::kFree);
+      (void)hero.set_root_drive(RootDrive::kFree);
       EXPECT_TRUE(hero.set_strength(T(0)).ok());
     }
     if (frame == 150) {
-      hero.set_root_drive(RootDrive::kAssisted);
+      (void)hero.set_root_drive(RootDrive::kAssisted);
       EXPECT_TRUE(hero.set_strength(T(1)).ok());
     }
     playing.step();
@@ -343,7 +343,7 @@ std::vector<Transform<double>> swung(int parts, bool as_steps) {
     }
     Character<double> hero = playing.character();
     EXPECT_TRUE(hero.set_target(jets).ok());
-    if (n == 0) hero.reset();
+    if (n == 0) (void)hero.reset();
     if (n / steps == 6) {
       EXPECT_TRUE(hero.apply_force(2, hero.model()[2].translation, 60 * Vec3<double>(60, 20, 0)).ok());
     }

@@ -132,7 +132,7 @@ TEST(Strand, WhatHangsOnABodyPullsIt) {
     Scene<float> scene(airborne());
     Status status;
     ASSERT_EQ(scene.world.add_character(l.skeleton, limp, status), 0) << status.reason;
-    scene.world.character(0).reset();
+    (void)scene.world.character(0).reset();
     StrandSettings s;
     s.frame = l.anchor(0, {1, 0, 0});
     s.mass = 0.1;
@@ -153,7 +153,7 @@ TEST(Strand, FreePairOfParticlesKeepsItsMomentum) {
   for (ParticleNode& node : body.nodes)
     if (node.fixed) node = {node.position, 0.002, false};
   Scene<double> scene(body, settings);
-  scene.world.reset_particles(0, {1, 2, 3});
+  (void)scene.world.reset_particles(0, {1, 2, 3});
   scene.run(1);
   double mass = 0;
   for (const ParticleNode& node : body.nodes) mass += node.mass;
@@ -276,7 +276,7 @@ TEST(Particles, FixedNodesRideOnTheirFrame) {
   Scene<float> scene(airborne());
   Status status;
   ASSERT_EQ(scene.world.add_character(l.skeleton, {}, status), 0) << status.reason;
-  scene.world.character(0).reset();
+  (void)scene.world.character(0).reset();
   StrandSettings s;
   s.frame = l.anchor(0, {1, 0, 0});
   scene.add(make_strand(s));

@@ -78,7 +78,7 @@ double gain_of_entangled(double h) {
     Character<float> figure = world->character(i);
     const Vec3<float> place(0, 0, 1 + 1.2f * float(i));  // feet in the next one's chest
     EXPECT_TRUE(figure.set_target(fixtures::upright_jets(figure.skeleton(), i, place)).ok());
-    figure.reset();
+    (void)figure.reset();
   }
   for (int n = 0; n * h < 1; ++n) {
     EXPECT_TRUE(world->step(float(h)).ok());

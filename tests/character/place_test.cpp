@@ -28,7 +28,7 @@ struct Fall {
     jets[0].translation += Vec3<float>(float(away), float(away), 1.1f);
     jets[0].omega = {0.f, 2.f, 0.f};
     EXPECT_TRUE(world.character(0).set_target(jets).ok());
-    world.character(0).reset();
+    (void)world.character(0).reset();
   }
 };
 
@@ -103,7 +103,7 @@ TEST(Teleport, LimpArmSwingsOnAsIfTheRootHadStoodThereAllAlong) {
 
 TEST(Teleport, FreeRootIsNotMovedByItsTarget) {
   Swinging figure;
-  figure.world.character(0).set_root_drive(RootDrive::kFree);
+  (void)figure.world.character(0).set_root_drive(RootDrive::kFree);
   const Vec3<double> before = figure.world.character(0).position();
   figure.put({1000, 0, 0}, 0);
   EXPECT_FALSE(figure.world.character(0).report().carried);

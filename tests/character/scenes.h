@@ -43,7 +43,7 @@ struct Playing {
     Status status;
     EXPECT_EQ(world.add_character(skeleton, {}, status), 0) << status.reason;
     EXPECT_TRUE(character().set_target(idle<T>(skeleton, 0)).ok());
-    character().reset();
+    (void)character().reset();
   }
   Character<T> character() { return world.character(0); }
   void step(T h = T(1) / 60) {
@@ -89,7 +89,7 @@ struct Limp {
     }
     jets[0].translation.z() += T(height);
     EXPECT_TRUE(world.character(0).set_target(jets).ok());
-    world.character(0).reset();
+    (void)world.character(0).reset();
   }
   double energy() {
     const CharacterReport& r = world.character(0).report();

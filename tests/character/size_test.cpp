@@ -111,11 +111,11 @@ Course run(Scene scene, double s, double h, int steps) {
     jets[0].translation.x() = T(0.5 * s);
     jets[0].velocity = Vec3<T>(T(-2 * speed), T(0), T(0));
     EXPECT_TRUE(other.set_target(jets).ok());
-    other.reset();
+    (void)other.reset();
     jets = still;
   }
   EXPECT_TRUE(figure.set_target(jets).ok());
-  figure.reset();
+  (void)figure.reset();
   Course result;
   for (int n = 0; n < steps; ++n) {
     if (!limp) {

@@ -23,7 +23,7 @@ struct Story {
     ball.pose.translation = {0.3, 0.1, 0.2};
     EXPECT_EQ(world.add_prop(ball, status), 0) << status.reason;
     EXPECT_TRUE(hero().set_target(fixtures::idle<T>(skeleton, 0)).ok());
-    hero().reset();
+    (void)hero().reset();
   }
   Character<T> hero() { return world.character(0); }
 
@@ -36,11 +36,11 @@ struct Story {
       EXPECT_TRUE(hero().apply_impulse(chest, hero().model()[chest].translation, {T(30), T(20), T(0)}).ok());
     }
     if (frame == 60) {
-      hero().set_root_drive(RootDrive::kFree);
+      (void)hero().set_root_drive(RootDrive::kFree);
       EXPECT_TRUE(hero().set_strength(T(0.02)).ok());
     }
     if (frame == 180) {
-      hero().set_root_drive(RootDrive::kAssisted);
+      (void)hero().set_root_drive(RootDrive::kAssisted);
       EXPECT_TRUE(hero().set_strength(T(1)).ok());
     }
   }
@@ -128,7 +128,7 @@ TYPED_TEST(Snapshot, StepsTakenAheadOfEachStepAndTakenBackChangeNothing) {
   };
   Story<T> plain(0), predicted(0);
   for (Story<T>* story : {&plain, &predicted}) {
-    story->hero().set_root_drive(RootDrive::kFree);
+    (void)story->hero().set_root_drive(RootDrive::kFree);
     add_boxes(story->world);
   }
   std::vector<std::byte> before(predicted.world.snapshot_capacity());
@@ -185,7 +185,7 @@ TEST(SnapshotBytes, OfAHumanoidAreAtMostTwoKilobytesInWhateverStateLimpOnesAtMos
       ASSERT_EQ(world.add_character(skeleton, settings, status), 0) << status.reason;
       Character<float> hero = world.character(0);
       ASSERT_TRUE(hero.set_target(fixtures::idle<float>(skeleton, 0)).ok());
-      hero.reset();
+      (void)hero.reset();
       for (int frame = 1; frame <= 240; ++frame) {
         ASSERT_TRUE(hero.set_target(fixtures::idle<float>(skeleton, frame / 60.0)).ok());
         if (frame % 20 == 0) {

@@ -34,7 +34,7 @@ TEST(SpareAcceleration, OfALevelRodIsWhatItsHingeHasLeftOverItsInertia) {
   std::vector<JointJet<double>> still(2);
   for (int k = 0; k < 3; ++k) {
     ASSERT_TRUE(world.character(0).set_target(still).ok());
-    if (k == 0) world.character(0).reset();
+    if (k == 0) (void)world.character(0).reset();
     ASSERT_TRUE(world.step(1 / 60.0).ok());
   }
   std::vector<double> spare(2);
@@ -55,7 +55,7 @@ TEST(SpareAcceleration, OfATiredFigureIsLess) {
     std::vector<float> spare(skeleton.joints.size());
     for (int k = 0; k < 3; ++k) {
       EXPECT_TRUE(world.character(0).set_target(fixtures::idle<float>(skeleton, k / 60.0)).ok());
-      if (k == 0) world.character(0).reset();
+      if (k == 0) (void)world.character(0).reset();
       EXPECT_TRUE(world.step(1 / 60.f).ok());
     }
     spare_acceleration<float>(world.character(0), spare);

@@ -67,7 +67,7 @@ struct Played {
       EXPECT_EQ(world.add_character(rigs[n % 3 == 2], how, status), n) << status.reason;
     }
     aim();
-    for (int n = 0; n < count; ++n) world.character(n).reset();
+    for (int n = 0; n < count; ++n) (void)world.character(n).reset();
   }
   void aim() {
     for (int n = 0; n < count; ++n) {

@@ -35,7 +35,7 @@ struct Sleeper {
   explicit Sleeper(const Skeleton& skeleton = humanoid()) : settings(sleepy()), world(settings) {
     Status status;
     EXPECT_EQ(world.add_character(skeleton, passive(), status), 0) << status.reason;
-    world.character(0).reset();
+    (void)world.character(0).reset();
     for (int n = 0; n < 1200 && level() != Level::kAsleep; ++n) EXPECT_TRUE(world.step(kStep).ok());
     EXPECT_EQ(level(), Level::kAsleep) << "never came to rest";
   }
@@ -124,7 +124,7 @@ TEST(Sleep, BoxesOfAStackSleepTogetherAndTheUpperOneWakesWhenTheLowerIsTaken) {
   for (int n = 0; n < 120; ++n) ASSERT_TRUE(world.step(kStep).ok());
   EXPECT_EQ(world.prop_report(0).level, Level::kAsleep);
   EXPECT_EQ(world.prop_report(1).level, Level::kAsleep);
-  world.park_prop(0);
+  (void)world.park_prop(0);
   for (int n = 0; n < 30; ++n) ASSERT_TRUE(world.step(kStep).ok());
   EXPECT_LT(world.prop_pose(1).translation.z(), 0.15f) << "hangs in the air";
 }
@@ -317,7 +317,7 @@ struct Plaza {
       character.detail.significance = n;
       EXPECT_EQ(world.add_character(skeleton, character, status), n) << status.reason;
       aim(n);
-      world.character(n).reset();
+      (void)world.character(n).reset();
     }
   }
   void aim(int n) {
@@ -331,9 +331,9 @@ struct Plaza {
     for (int n = 0; n < count; ++n)
       if (n < active && world.parked(n)) {
         aim(n);
-        world.unpark_character(n);
+        (void)world.unpark_character(n);
       } else if (n >= active && !world.parked(n)) {
-        world.park_character(n);
+        (void)world.park_character(n);
       }
   }
   void step(int active, const ParallelFor& parallel_for = {}) {

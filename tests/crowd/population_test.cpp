@@ -93,7 +93,7 @@ TEST(Population, NeighboursOfOneWhoFallsAreCalledBeforeTheyAreTouched) {
   People people(3, 1.2f);
   people.step();
   ASSERT_TRUE(people.population->push(0, 0, {0, 250, 0}).ok());  // at its neighbour, however it falls
-  people.population->solved(0).set_root_drive(RootDrive::kFree);
+  (void)people.population->solved(0).set_root_drive(RootDrive::kFree);
   ASSERT_TRUE(people.population->solved(0).set_strength(0.02f).ok());
   bool called = false, moved = false;
   for (int n = 0; n < 90; ++n) {

@@ -68,7 +68,7 @@ struct Scene {
     for (int n = 0; n < kCharacters; ++n) {
       EXPECT_EQ(world.add_character(skeleton, {}, status), n) << status.reason;
       EXPECT_TRUE(world.character(n).set_target(targets[n]).ok());
-      world.character(n).reset();
+      (void)world.character(n).reset();
       if (n % 2 == 0) {
         EXPECT_GE(add_plait(world, n, status), 0) << status.reason;
       }
@@ -160,9 +160,9 @@ TEST(Ties, WhoWearsParticlesIsSolvedEvenWhereItMayOnlyPlay) {
       jets[0].translation += Vec3<float>(float(frame) / 60, 4.f * float(n), 0);
       jets[0].velocity = {1, 0, 0};
       ASSERT_TRUE(world.character(n).set_target(jets).ok());
-      if (frame == 0) world.character(n).reset();
+      if (frame == 0) (void)world.character(n).reset();
     }
-    if (frame == 0) world.reset_particles(0, {1, 0, 0});
+    if (frame == 0) (void)world.reset_particles(0, {1, 0, 0});
     ASSERT_TRUE(world.step(kStep).ok());
   }
   EXPECT_GT(world.character(0).report().substeps, 0) << "the wearer was not solved";
@@ -180,11 +180,11 @@ TEST(Ties, ClosingALoopBetweenSleepersWakesBothAndOpeningItLetsThemFallAsleep) {
   // Boxes: balls would roll on.
   const int one = add_ball(world, {0, 0, 0.1}, Shape::kBox), two = add_ball(world, {3, 0, 0.1}, Shape::kBox);
   const int loop = add_rope(world, one, two, 2.5);
-  world.set_loop(loop, false);
+  (void)world.set_loop(loop, false);
   const auto asleep = [&](int n) { return world.prop_report(n).level == Level::kAsleep; };
   for (int n = 0; n < 300 && !(asleep(one) && asleep(two)); ++n) ASSERT_TRUE(world.step(kStep).ok());
   ASSERT_TRUE(asleep(one) && asleep(two));
-  world.set_loop(loop, true);
+  (void)world.set_loop(loop, true);
   ASSERT_TRUE(world.step(kStep).ok());
   EXPECT_FALSE(asleep(one) || asleep(two));
   for (int n = 0; n < 120; ++n) {
@@ -192,7 +192,7 @@ TEST(Ties, ClosingALoopBetweenSleepersWakesBothAndOpeningItLetsThemFallAsleep) {
     EXPECT_FALSE(world.loop_gap(loop) > 0.01 && asleep(one)) << "while the rope was pulled in";
   }
   EXPECT_LT((world.prop_pose(two).translation - world.prop_pose(one).translation).norm(), 2.6f);
-  world.set_loop(loop, false);
+  (void)world.set_loop(loop, false);
   for (int n = 0; n < 1200 && !(asleep(one) && asleep(two)); ++n) ASSERT_TRUE(world.step(kStep).ok());
   EXPECT_TRUE(asleep(one) && asleep(two));
 }
@@ -205,7 +205,7 @@ TEST(Ties, WhatIsTiedTogetherStaysTogetherBeyondTheLimitOfAnIsland) {
   World<float> world(settings);
   for (int n = 0; n < kBalls; ++n) add_ball(world, {double(n), 0, 5});
   for (int n = 1; n < kBalls; ++n) add_rope(world, n - 1, n, 1, LoopKind::kDistance);
-  world.set_prop(0, world.prop_pose(0), {0, 0, 6}, Vec3<float>::Zero());
+  (void)world.set_prop(0, world.prop_pose(0), {0, 0, 6}, Vec3<float>::Zero());
   for (int n = 0; n < 60; ++n) ASSERT_TRUE(world.step(kStep).ok());
   for (int n = 0; n + 1 < kBalls; ++n) EXPECT_LT(world.loop_gap(n), 5e-3) << "rod " << n;
 }
@@ -214,10 +214,10 @@ TEST(Ties, ParkedCharacterStaysOutOfTheWorldInASnapshot) {
   World<float> world({});
   Status status;
   ASSERT_EQ(world.add_character(humanoid(), {}, status), 0);
-  world.park_character(0);
+  (void)world.park_character(0);
   std::vector<std::byte> bytes(world.snapshot_capacity());
   bytes.resize(world.save(bytes));
-  world.unpark_character(0);
+  (void)world.unpark_character(0);
   ASSERT_TRUE(world.restore(bytes).ok());
   EXPECT_TRUE(world.parked(0));
 }

@@ -28,7 +28,7 @@ struct Scene {
       }
       EXPECT_EQ(world.add_character(skeleton, character, status), n) << status.reason;
       aim(n);
-      world.character(n).reset();
+      (void)world.character(n).reset();
     }
     for (int n = 0; n < 3; ++n) {
       PropSettings ball;
@@ -131,7 +131,7 @@ TEST(WorldThreads, AnIslandBeyondTheLimitIsCutAndSaysSo) {
     std::vector<JointJet<float>> jets = fixtures::idle<float>(skeleton, 0);
     jets[0].translation += Vec3<float>(0.5f * float(n), 0, 0);
     ASSERT_TRUE(world.character(n).set_target(jets).ok());
-    world.character(n).reset();
+    (void)world.character(n).reset();
   }
   bool crowded = false;
   for (int n = 0; n < 90; ++n) {  // until they fall upon each other

@@ -48,7 +48,7 @@ void add(World<float>& world, const Skeleton& body, double strength, int count =
     jets[0].translation += Vec3<float>(5 * float(n), 0, 10);
     for (JointJet<float>& jet : jets) jet.omega += Vec3<float>(1, float(n) / 8, -1);
     ASSERT_TRUE(world.character(n).set_target(jets).ok());
-    world.character(n).reset();
+    (void)world.character(n).reset();
   }
 }
 
@@ -168,7 +168,7 @@ TEST(Declare, FloorAndObstaclesAreRefusedWhereNoContactsAreDeclared) {
   auto jets = fixtures::idle<float>(fixtures::humanoid(), 0);
   for (int n = 0; n < 2; ++n) {
     ASSERT_TRUE(world.character(n).set_target(jets).ok());
-    world.character(n).reset();
+    (void)world.character(n).reset();
   }
   run(world, 5);
   EXPECT_EQ(world.character(0).report().contacts, 0);

@@ -206,7 +206,7 @@ struct Swing {
     std::vector<JointJet<double>> jets(2);
     jets[1].rotation = rotation_exp<double>(Vec3<double>(0, angle, 0));
     EXPECT_TRUE(world.character(0).set_target(jets).ok());
-    world.character(0).reset();
+    (void)world.character(0).reset();
   }
   double angle() {
     return twist_angle<double>(world.character(0).local()[1].rotation, Vec3<double>::UnitY());
@@ -301,7 +301,7 @@ TEST(Effects, OnOneCharacterChangeNoBitOfAnother) {
       auto jets = fixtures::idle<float>(body, 0);
       jets[0].translation.x() += 10 * float(c);
       EXPECT_TRUE(world.character(c).set_target(jets).ok());
-      world.character(c).reset();
+      (void)world.character(c).reset();
     }
     WindSettings gale;
     gale.velocity = {150, 40, 0};
@@ -366,7 +366,7 @@ TEST(Effects, RemovedOnesLeaveTheWorldAsIfTheyHadNeverBeen) {
       EXPECT_TRUE(scene.world.add_effect(0, std::make_unique<Wind<float>>(gale)).ok());
       EXPECT_TRUE(
           scene.world.add_effect(0, std::make_unique<JointSpring<float>>(JointSpringSettings{})).ok());
-      scene.world.remove_effects(0);
+      (void)scene.world.remove_effects(0);
     }
     for (int n = 0; n < 10; ++n) scene.step();
     return std::vector<float>(scene.character().torque().begin(), scene.character().torque().end());

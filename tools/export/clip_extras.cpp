@@ -51,7 +51,7 @@ json curve(const Asset& asset, const Clip& clip, const FloatCurve& curve) {
     job.time = double(clip.duration) * double(k) / double(knots);
     job.slots = asset.curve_slots;
     job.values = values;
-    job.Run();  // clip and slots are valid: the asset is
+    (void)job.Run();  // clip and slots are valid: the asset is
     keys.push_back({job.time.value, values[static_cast<std::size_t>(curve.slot)].value});
   }
   return {{"keys", keys}, {"smooth", true}};

@@ -32,7 +32,7 @@ Motion sample_clip(const Asset& asset, const Clip& clip, double rate, Keys keys)
     job.clip = &clip;
     job.time = t;
     job.jets = frame;
-    job.Run();  // clip and sizes are valid: the asset is
+    (void)job.Run();  // clip and sizes are valid: the asset is
     motion.frames.push_back(std::move(frame));
   }
   return motion;

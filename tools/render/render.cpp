@@ -293,7 +293,7 @@ scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const C
   rec.characters = {asset};
   for (int n = 0; n < frames; ++n) {
     const double time = o.start + n / o.fps;
-    if (clip) SamplingJob<float>{clip, time, jets}.Run();
+    if (clip) (void)SamplingJob<float>{clip, time, jets}.Run();
     scene::CharacterFrame pose;
     pose.load.assign(s.joints.size(), 0);
     for (std::size_t i = 0; i < jets.size(); ++i) {

@@ -17,15 +17,15 @@ convert::Error Play<T>::set_up() {
     starts_.push_back(players_[c].start(character.local()));
     if (const Status status = character.set_target(starts_.back()); !status)
       return {"character '" + s_.characters[c].name + "' at the start: " + status.reason};
-    character.reset();
+    (void)character.reset();
     CharacterDetail detail;
     detail.bake = s_.characters[c].bake;
-    character.set_detail(detail);
+    (void)character.set_detail(detail);
     for (const auto& [joint, factor] : s_.characters[c].group_strength)
-      character.set_strength(joint, T(asked_[c].groups.emplace_back(ramp_at(factor, 0))));
+      (void)character.set_strength(joint, T(asked_[c].groups.emplace_back(ramp_at(factor, 0))));
     set_tones(static_cast<int>(c), 0);
   }
-  for (int p = 0; p < world_.particles_count(); ++p) world_.reset_particles(p);
+  for (int p = 0; p < world_.particles_count(); ++p) (void)world_.reset_particles(p);
   return {};
 }
 
@@ -43,7 +43,8 @@ convert::Error Play<T>::add_all() {
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
-    if (behaviour) behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down
+    if (behaviour)
+      (void)behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down
     asked_.push_back({settings.strength, {}, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)
@@ -52,7 +53,7 @@ convert::Error Play<T>::add_all() {
     const int prop = world_.add_prop(p.settings, status);
     if (prop < 0) return {"prop '" + p.name + "': " + status.reason};
     launched_.push_back(p.launch_time <= 0);
-    if (!launched_.back()) world_.park_prop(prop);
+    if (!launched_.back()) (void)world_.park_prop(prop);
   }
   if (convert::Error error = add_effects()) return error;
   for (const LoopSettings& loop : s_.loops)
@@ -103,7 +104,7 @@ convert::Error Play<T>::drive(int c, double t, double h) {
     std::span<const JointJet<T>> wanted = players_[c].at(t, felt);
     if (behaviours_[c]) {
       jets_.assign(wanted.begin(), wanted.end());
-      behaviours_[c]->update(character, jets_, T(h));
+      (void)behaviours_[c]->update(character, jets_, T(h));
       wanted = jets_;
     }
     asked.acceleration = 0;
@@ -115,13 +116,13 @@ convert::Error Play<T>::drive(int c, double t, double h) {
     asked.still = !players_[c].moves() && !behaviours_[c];
   }
   if (const double strength = ramp_at(source.strength, t); strength != asked.strength)
-    character.set_strength(T(asked.strength = strength));
+    (void)character.set_strength(T(asked.strength = strength));
   for (std::size_t g = 0; g < source.group_strength.size(); ++g)
     if (const double factor = ramp_at(source.group_strength[g].second, t); factor != asked.groups[g])
-      character.set_strength(source.group_strength[g].first, T(asked.groups[g] = factor));
+      (void)character.set_strength(source.group_strength[g].first, T(asked.groups[g] = factor));
   set_tones(c, t);
   if (const RootDrive root = value_at(source.root, t, RootDrive::kKinematic); root != asked.root)
-    character.set_root_drive(asked.root = root);
+    (void)character.set_root_drive(asked.root = root);
   return {};
 }
 
@@ -135,13 +136,13 @@ void Play<T>::set_tones(int c, double t) {
   if (tones == asked) return;
   asked = tones;
   Character<T> character = world_.character(c);
-  character.set_tone(tones[0]);
+  (void)character.set_tone(tones[0]);
   for (std::size_t n = 0; n < source.part_tones.size(); ++n) {
     const PartTone& part = source.part_tones[n];
     if (part.joint < 0)
-      character.set_group_tone(part.group.c_str(), tones[n + 1]);
+      (void)character.set_group_tone(part.group.c_str(), tones[n + 1]);
     else
-      character.set_tone(part.joint, tones[n + 1]);
+      (void)character.set_tone(part.joint, tones[n + 1]);
   }
 }
 
@@ -178,8 +179,8 @@ void Play<T>::launch(double t) {
     launched_[p] = true;
     Vec3<double> from = prop.settings.pose.translation, velocity = prop.settings.velocity;
     if (prop.target_character >= 0) aim(prop, t, from, velocity);
-    world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
-                    Vec3<T>::Zero());
+    (void)world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
+                          Vec3<T>::Zero());
   }
 }
 

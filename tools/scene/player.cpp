@@ -71,7 +71,7 @@ const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transfor
     }
     const SamplingJob<T> job{
         &c_.asset->clips[chosen_[i]], {use.offset + (t - use.start) * use.rate, use.rate}, b_};
-    job.Run();
+    (void)job.Run();
     place_root<T>(places_[i].template cast<T>(), b_[0]);
     const EaseWeight<T> w =
         any ? EaseWeight<T>::at(T(t - use.start), T(use.blend)) : EaseWeight<T>{T(1), T(0), T(0)};
@@ -127,7 +127,7 @@ void Player<T>::begin(std::size_t i, std::span<const Transform<T>> pose) {
   const bool prone = (from_rest * Vec3<double>::UnitX()).z() < 0;
   if (prone && use.clip_when_prone >= 0) chosen_[i] = use.clip_when_prone;
   if (!use.align) return;
-  SamplingJob<T>{&c_.asset->clips[chosen_[i]], use.offset, b_}.Run();
+  (void)SamplingJob<T>{&c_.asset->clips[chosen_[i]], use.offset, b_}.Run();
   const double turn = turn_between(b_[0].rotation.template cast<double>(), now.rotation);
   const Transform<double> turned = upright(Vec3<double>::Zero(), turn);
   Vec3<double> shift = now.translation - turned * b_[0].translation.template cast<double>();

@@ -154,7 +154,7 @@ AccuracyScene tracking(const char* name, const char* clip_name, const std::vecto
   if (clip < 0) return s;
   const auto sample = [asset, clip](double time) {
     std::vector<JointJet<double>> jets(asset->skeleton.joints.size());
-    SamplingJob<double>{&asset->clips[clip], time, jets}.Run();
+    (void)SamplingJob<double>{&asset->clips[clip], time, jets}.Run();
     return jets;
   };
   s.scene.figures.push_back({asset->skeleton, sample(0), true});

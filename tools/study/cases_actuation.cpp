@@ -134,8 +134,8 @@ double speed_after_jump(bool declared, const Trial& t, Measurement& measured, in
   std::vector<JointJet<T>> jets = rest_jets<T>(body);
   jets[0].translation.x() += T(1000);
   jets[0].rotation = Quat<T>(Eigen::AngleAxis<T>(T(kPi / 2), Vec3<T>::UnitZ()));
-  stage.character(0).set_target(jets);
-  if (declared) stage.character(0).reset();
+  (void)stage.character(0).set_target(jets);
+  if (declared) (void)stage.character(0).reset();
   stage.forget();
   double fastest = 0;
   std::vector<Transform<T>> last(stage.character(0).local().begin(), stage.character(0).local().end());
@@ -195,10 +195,11 @@ struct Struck {
   Struck(bool bake, double strength_of_hands) {
     stage.add(body, {});
     for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) limbs.push_back(body.find(name));
-    for (int n = 0; n < 4; ++n) stage.character(0).set_strength(limbs[n], T(n < 2 ? strength_of_hands : 0.3));
+    for (int n = 0; n < 4; ++n)
+      (void)stage.character(0).set_strength(limbs[n], T(n < 2 ? strength_of_hands : 0.3));
     CharacterDetail detail;
     detail.bake = bake;
-    stage.character(0).set_detail(detail);
+    (void)stage.character(0).set_detail(detail);
   }
   void step(double h, bool strikes) {
     const char* const struck[] = {"forearm_r", "shin_l", "forearm_l", "shin_r"};

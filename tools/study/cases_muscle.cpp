@@ -176,7 +176,7 @@ Verdict several_muscles(const Trial& t) {
   const double held = strength(54.5);
   const bool playing = c.on_animation();
   const double most = strength(57), shared = double(c.muscle_torque(0) + c.muscle_torque(1));
-  c.set_group_strength("biceps", T(0));
+  (void)c.set_group_strength("biceps", T(0));
   const double own = strength(57), weakened = std::abs(double(c.muscle_torque(0)));
   Verdict v(link.stage.measured());
   v.sound();
@@ -195,7 +195,7 @@ Verdict limit_toggled_every_frame(const Trial& t) {
   Stage<T> stage(t.scene);
   bool on = false;
   stage.run(5, t.h, [&](double) {
-    stage.character(0).set_strength(T(on ? 1 : 0));
+    (void)stage.character(0).set_strength(T(on ? 1 : 0));
     on = !on;
   });
   Verdict v(stage.measured());
@@ -258,7 +258,7 @@ Verdict ragdoll_and_back_each_second(const Trial& t) {
     const bool is_limp = std::fmod(time, 2) < 0.5;
     if (is_limp && !was_limp && time > 1) ++cycles, returned += stage.character(0).on_animation();
     was_limp = is_limp;
-    stage.character(0).set_strength(T(is_limp ? 0 : 1));
+    (void)stage.character(0).set_strength(T(is_limp ? 0 : 1));
     if (is_limp)
       stage.press(0, 0, stage.character(0).model()[0].translation.template cast<double>(),
                   Vec3<double>(50, 20 * std::sin(time), 0), t.h);
@@ -292,8 +292,8 @@ Verdict ragdoll_and_back(const Trial& t) {
     lowest = std::min(lowest, stage.center_of_mass(0).z());
     if (!limp && was_limp) fallen += lowest < 0.5, lowest = 1;
     if (limp != was_limp) {
-      stage.character(0).set_root_drive(limp ? RootDrive::kFree : RootDrive::kAssisted);
-      stage.character(0).set_strength(T(limp ? 0 : 1));
+      (void)stage.character(0).set_root_drive(limp ? RootDrive::kFree : RootDrive::kAssisted);
+      (void)stage.character(0).set_strength(T(limp ? 0 : 1));
     }
     was_limp = limp;
   });

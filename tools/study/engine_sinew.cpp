@@ -40,7 +40,7 @@ class SinewEngine : public Engine {
         refusal_ = status.reason;
         return;
       }
-      world_.character(index).reset();
+      (void)world_.character(index).reset();
     }
     for (const Figure& figure : scene.figures) {
       const Energy e = energy_of<double>(figure.skeleton, figure.jets, scene.gravity);

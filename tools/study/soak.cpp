@@ -28,20 +28,20 @@ void disturb(Character<T> c, std::vector<JointJet<T>>& jets, int index, std::mt1
   const int joint = static_cast<int>(random() % jets.size());
   if (event < 6) {
     const Vec3<T> impulse(T(uniform(-60, 60)), T(uniform(-60, 60)), T(uniform(-30, 30)));
-    c.apply_impulse(joint, c.model()[joint].translation, impulse);
+    (void)c.apply_impulse(joint, c.model()[joint].translation, impulse);
   } else if (event < 8) {
-    c.set_strength(T(uniform(0, 2)));
+    (void)c.set_strength(T(uniform(0, 2)));
   } else if (event < 10) {
-    c.set_strength(joint, T(uniform(0, 1)));
+    (void)c.set_strength(joint, T(uniform(0, 1)));
   } else if (event < 12) {
-    c.set_root_drive(event == 10 ? RootDrive::kFree : RootDrive::kAssisted);
+    (void)c.set_root_drive(event == 10 ? RootDrive::kFree : RootDrive::kAssisted);
   } else if (event < 13) {
     const int column = index % 5, row = index / 5;
     jets[0].translation =
         Vec3<T>(T(kApart * column + uniform(-0.2, 0.2)), T(kApart * row + uniform(-0.2, 0.2)), T(1.42));
-    c.set_root_drive(RootDrive::kKinematic);
-    c.set_target(jets);
-    c.reset();
+    (void)c.set_root_drive(RootDrive::kKinematic);
+    (void)c.set_target(jets);
+    (void)c.reset();
   }
 }
 
@@ -72,8 +72,8 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
     const int row = i / 5;
     jets[i][0].translation += Vec3<T>(T(kApart * (i % 5)), T(kApart * row), T(0));
     world.add_character(body, {}, status);
-    world.character(i).set_target(jets[i]);
-    world.character(i).reset();
+    (void)world.character(i).set_target(jets[i]);
+    (void)world.character(i).reset();
   }
   SoakReport report;
   report.frames = static_cast<int>(std::lround(seconds / h));
@@ -84,7 +84,7 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
   for (int frame = 0; frame < report.frames; ++frame) {
     for (int i = 0; i < kCharacters; ++i) disturb(world.character(i), jets[i], i, random);
     const auto begin = std::chrono::steady_clock::now();
-    world.step(T(h));
+    (void)world.step(T(h));
     times.push_back(
         std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - begin).count());
     ++m.steps;

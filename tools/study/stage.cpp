@@ -190,7 +190,7 @@ int Stage<T>::add(const Skeleton& skeleton, const CharacterSettings& settings,
   const std::vector<JointJet<T>> start = jets.empty() ? rest_jets<T>(skeleton) : jets;
   status = world_->character(index).set_target(start);
   if (!status) m_.refused = status.reason;
-  world_->character(index).reset();
+  (void)world_->character(index).reset();
   enter(skeleton, start, settings);
   return index;
 }

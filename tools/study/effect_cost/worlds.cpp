@@ -46,7 +46,7 @@ struct Checked : Work {
     (void)world.add_character(s, figure, status);
     check(status);
     check(world.character(0).set_target(at_rest(s)));
-    world.character(0).reset();
+    (void)world.character(0).reset();
     for (int i = instances; effect == "muscles" && i < kRods; ++i)
       check(world.character(0).set_strength(i + 1, boundless));
     if (effect == "none" || effect == "gravity" || declared_by_type) return;
@@ -119,7 +119,7 @@ struct Solved : Work {
     (void)world.add_character(s, limp, status);
     check(status);
     check(world.character(0).set_target(at_rest(s)));
-    world.character(0).reset();
+    (void)world.character(0).reset();
   }
   void add_props(int i) {
     Status status;
@@ -157,8 +157,8 @@ struct Solved : Work {
     if (!has_balls()) return;
     const bool drop = effect == "restitution";
     for (int i = 0; i < world.prop_count(); ++i)
-      world.set_prop(i, place(i, radii[i] + 0.01).cast<float>(),
-                     drop ? Vec3<float>(0, 0, -3) : Vec3<float>(4, 0, 0), Vec3<float>::Zero());
+      (void)world.set_prop(i, place(i, radii[i] + 0.01).cast<float>(),
+                           drop ? Vec3<float>(0, 0, -3) : Vec3<float>(4, 0, 0), Vec3<float>::Zero());
   }
   void step() override { (void)world.step(kStep); }
   std::size_t bytes() const override { return world.memory().characters - without; }
