@@ -178,8 +178,8 @@ TEST(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
     sinew_view view{};
     EXPECT_EQ(sinew_character_get_view(scene.hero, SINEW_VIEW_MODEL, &view), SINEW_OK);
     EXPECT_EQ(scene.report().frozen, 0);
-    EXPECT_EQ(sinew_character_set_named_parameter(other, "physics.face_up", 1), SINEW_OK);
-    EXPECT_EQ(sinew_character_set_named_parameter(other, "limp", frame > 30), SINEW_OK);
+    EXPECT_EQ(sinew_character_set_parameter_by_name(other, "physics.face_up", 1), SINEW_OK);
+    EXPECT_EQ(sinew_character_set_parameter_by_name(other, "limp", frame > 30), SINEW_OK);
     EXPECT_EQ(sinew_character_play_graph(other, 1 / 60.f), SINEW_OK);
     EXPECT_EQ(sinew_character_sample_graph(other, 1 / 60.f, jets.data(), scene.joints), SINEW_OK);
     const sinew_blend_layer layers[2] = {{jets.data(), nullptr, SINEW_BLEND_MIX, 0.5f, 0, 0},
