@@ -4,13 +4,11 @@ find_program(SINEW_DOXYGEN doxygen)
 if(NOT SINEW_DOXYGEN)
   return()
 endif()
-# skeleton/vector.h and scalar.h, the arithmetic within, and the layers that are not listed here have names without words yet.
-set(documented api_pages.dox sinew/io/asset.h sinew/crowd/crowd.h sinew/crowd/population.h)
-file(GLOB c_interface RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS sinew/c/sinew*.h)
-list(APPEND documented ${c_interface})
-foreach(header joint_type parallel_for principal_axes skeleton status transform version)
-  list(APPEND documented sinew/skeleton/${header}.h)
-endforeach()
+sinew_with_included(c_interface ${CMAKE_CURRENT_SOURCE_DIR} c/sinew.h)  # it includes its parts
+set(documented ${SINEW_PUBLIC_HEADERS} ${c_interface})
+list(REMOVE_DUPLICATES documented)
+list(TRANSFORM documented PREPEND sinew/)
+list(PREPEND documented api_pages.dox)
 
 # doxygen_run(folder undocumented INPUT…): a configuration in build/api/folder.
 function(doxygen_run folder undocumented)

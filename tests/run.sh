@@ -94,7 +94,7 @@ asks_the_studies='^MechanismCommand|^Manners|^Batch\.|^BatchOnSlurm|BrokenJson.R
 
 # -O1: instrumented code compiles in three quarters of the time that it takes with -O2, its kernels in a third.
 configure_sanitizers() {  # configure_sanitizers STUDIES: ON or OFF
-  configure build-asan -DSINEW_STUDIES="$1" -DSINEW_SANITIZE=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
+  configure build-asan -DSINEW_STUDIES="$1" -DSINEW_SANITIZE=ON -DSINEW_PROFILER=ON -DSINEW_ASSERTS=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -DNDEBUG"
 }
 
 # Without the studies and what tests of them (a quarter of the compiling, half of the running): hard cases and situations are

@@ -15,7 +15,7 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   libjpeg62-turbo-dev zlib1g-dev libseccomp-dev libsdl2-dev libtbb-dev fonts-inter fonts-dejavu-core gnuplot-nox ffmpeg
   assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy
-  mono-mcs mono-runtime)
+  mono-mcs mono-runtime godot3-server gdb)
 lint=(clang clang-format clang-tidy libclang-dev llvm-dev doxygen)
 farm=(slurm-wlm munge)
 exports=(blender)

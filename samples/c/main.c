@@ -40,7 +40,9 @@ int main(int argc, char** argv) {
   thrown.mass = 4;
   thrown.pose.translation[1] = 3;
   thrown.pose.translation[2] = 1.5;
+  thrown.velocity[0] = 1.2;  /* as the walker */
   thrown.velocity[1] = -6;
+  thrown.velocity[2] = 2;
   check(sinew_world_add_prop(world, &thrown, &ball), "ball");
 
   const float h = 1 / 60.f;

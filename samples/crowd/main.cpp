@@ -71,7 +71,7 @@ void hit(sinew::Population& people, int count, int chest, int number, std::mt199
   const float impulse = knocked_out ? 150.f : 60.f;
   if (!people.push(n, chest, {impulse * std::cos(angle), impulse * std::sin(angle), 0})) return;
   if (!knocked_out) return;
-  people.solved(n).set_root_drive(sinew::RootDrive::kFree);
+  (void)people.solved(n).set_root_drive(sinew::RootDrive::kFree);
   (void)people.solved(n).set_strength(0.02f);
 }
 

@@ -18,7 +18,9 @@ static unsafe class Sample {
     ball.mass = 4;
     ball.pose.translation[1] = 3;
     ball.pose.translation[2] = 1.5;
+    ball.velocity[0] = 1.2;  // as the walker
     ball.velocity[1] = -6;
+    ball.velocity[2] = 2;
     return ball;
   }
 

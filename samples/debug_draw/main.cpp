@@ -124,9 +124,9 @@ int main(int argc, char** argv) {
   std::string picture;
   int most = -1, hits = 0, drawn = 0;
   for (int frame = 0; frame < kFrames && status; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
-    status = hero.set_target(jets);
-    if (frame == 0 && status) status = hero.reset();
+    status = sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
+    if (status) status = hero.set_target(jets);
+    if (status && frame == 0) status = hero.reset();
     if (status) status = world.step(1 / 60.f);
     for (sinew::ContactEvent e; ring.take(e);) {
       if (e.phase != sinew::ContactPhase::kBegin || !e.solved || !(e.impulse > 1)) continue;

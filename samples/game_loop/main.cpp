@@ -76,22 +76,26 @@ int main(int argc, char** argv) {
       if (event.type == SDL_QUIT) running = false;
       if (event.type != SDL_KEYDOWN) continue;
       const auto at = hero.model()[static_cast<std::size_t>(pushed)].translation;
-      if (event.key.keysym.sym == SDLK_LEFT) hero.apply_impulse(pushed, at, {-60, 0, 0});
-      if (event.key.keysym.sym == SDLK_RIGHT) hero.apply_impulse(pushed, at, {60, 0, 0});
-      if (event.key.keysym.sym == SDLK_r) hero.reset();
+      if (event.key.keysym.sym == SDLK_LEFT) status = hero.apply_impulse(pushed, at, {-60, 0, 0});
+      if (event.key.keysym.sym == SDLK_RIGHT) status = hero.apply_impulse(pushed, at, {60, 0, 0});
+      if (event.key.keysym.sym == SDLK_r) status = hero.reset();
       if (event.key.keysym.sym == SDLK_ESCAPE) running = false;
     }
     const std::uint64_t now = SDL_GetTicks64();
     accumulator += std::min(0.1, double(now - last) / 1000);
     last = now;
-    for (; accumulator >= kStep; accumulator -= kStep) {
+    for (; status && accumulator >= kStep; accumulator -= kStep) {
       before.assign(hero.model().begin(), hero.model().end());
       clock += kStep;
-      sinew::SamplingJob<float>{&asset.clips.front(), clock, jets}.Run();
-      hero.set_target(jets);
-      if (fresh) hero.reset();
+      status = sinew::SamplingJob<float>{&asset.clips.front(), clock, jets}.Run();
+      if (status) status = hero.set_target(jets);
+      if (status && fresh) status = hero.reset();
       fresh = false;
-      world.step(static_cast<float>(kStep));
+      if (status) status = world.step(static_cast<float>(kStep));
+    }
+    if (!status) {
+      std::fprintf(stderr, "game_loop: %s\n", status.reason);
+      running = false;
     }
     draw(renderer, hero, before, static_cast<float>(accumulator / kStep));
     SDL_Delay(2);
@@ -99,5 +103,5 @@ int main(int argc, char** argv) {
   SDL_DestroyRenderer(renderer);
   SDL_DestroyWindow(window);
   SDL_Quit();
-  return 0;
+  return status ? 0 : 1;
 }

@@ -65,8 +65,8 @@ int main(int argc, char** argv) {
     if (frame == 30) (void)parameters.set(speed, 1.275f);
     if (frame == 120) (void)parameters.set(speed, 3.2f);
     if (frame == 130 && chest >= 0)
-      world.character(hero).apply_impulse(chest, world.character(hero).model()[chest].translation,
-                                          {0, 60, 0});
+      status = world.character(hero).apply_impulse(chest, world.character(hero).model()[chest].translation,
+                                                   {0, 60, 0});
     if (frame == 140) {
       snapshot.resize(world.snapshot_capacity());
       saved = world.save(snapshot);
@@ -80,15 +80,14 @@ int main(int argc, char** argv) {
     sinew::EventSink events{hits};
     sinew::GraphStepJob<float> job{&graph, state, frame ? h : 0, &scratch, jets, &events};
     job.physical = body;
-    if (status = job.Run(); !status) return fail("step", status.reason);
+    if (status) status = job.Run();
+    if (!status) return fail("step", status.reason);
     for (int e = 0; e < events.count; ++e)
       std::printf("%5.2f s  event %08x, %.3f s ago, weight %.2f\n", frame / 60.0, hits[e].event->name,
                   double(hits[e].seconds_ago), double(hits[e].weight));
-    world.character(hero).set_target(jets);
-    if (frame == 0)
-      world.character(hero).reset();
-    else
-      world.step(h);
+    status = world.character(hero).set_target(jets);
+    if (status) status = frame == 0 ? world.character(hero).reset() : world.step(h);
+    if (!status) return fail("step", status.reason);
     if (frame % 15 == 0)
       std::printf("%5.2f s  at %.2f m, speed %.2f m/s, unknown DOFs %d\n", frame / 60.0,
                   parameters.place().x(), double(parameters.travel().velocity[0]),

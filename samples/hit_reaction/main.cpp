@@ -25,17 +25,22 @@ int main(int argc, char** argv) {
   if (chest < 0) chest = asset.skeleton.body_count / 2;
   std::vector<sinew::JointJet<float>> jets(asset.skeleton.joints.size());
   int most = 0;
-  for (int frame = 0; frame <= 180; ++frame) {
-    sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
-    hero.set_target(jets);
-    if (frame == 0) hero.reset();
-    if (frame == 60)
-      hero.apply_impulse(chest, hero.model()[static_cast<std::size_t>(chest)].translation, {0, impulse, 0});
-    world.step(1 / 60.f);
+  for (int frame = 0; frame <= 180 && status; ++frame) {
+    status = sinew::SamplingJob<float>{&asset.clips.front(), frame / 60.0, jets}.Run();
+    if (status) status = hero.set_target(jets);
+    if (status && frame == 0) status = hero.reset();
+    if (status && frame == 60)
+      status = hero.apply_impulse(chest, hero.model()[static_cast<std::size_t>(chest)].translation,
+                                  {0, impulse, 0});
+    if (status) status = world.step(1 / 60.f);
     most = std::max(most, hero.report().unknown_dofs);
     if (frame >= 58 && frame < 80)
       std::printf("%5.2f s  %2d of %d degrees of freedom unknown\n", frame / 60.0, hero.report().unknown_dofs,
                   hero.report().dofs);
+  }
+  if (!status) {
+    std::fprintf(stderr, "hit_reaction: %s\n", status.reason);
+    return 1;
   }
   std::printf("at most %d unknown; %s\n", most,
               hero.on_animation() ? "back on the animation" : "still off the animation");

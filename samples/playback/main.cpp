@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
   std::vector<sinew::EventHit> hits(16);
   for (int frame = 0; frame <= seconds * 60; ++frame) {
     const double now = frame / 60.0, before = now - 1 / 60.0;
-    sinew::SamplingJob<float>{&clip, now, jets}.Run();
-    sinew::CurveJob<float>{&clip, now, asset.curve_slots, curves}.Run();
+    status = sinew::SamplingJob<float>{&clip, now, jets}.Run();
+    if (status) status = sinew::CurveJob<float>{&clip, now, asset.curve_slots, curves}.Run();
     sinew::EventSink sink{hits};
     sinew::EventJob events;
     events.events = clip.events;
@@ -43,17 +43,15 @@ int main(int argc, char** argv) {
     events.starts = frame == 0;
     events.step = 1 / 60.f;
     events.out = &sink;
-    events.Run();
+    if (status) status = events.Run();
     for (int k = 0; k < sink.count; ++k)  // a game switches over sinew::event_name("step")
       for (const std::string& name : asset.event_names)
         if (sinew::event_name(name) == hits[std::size_t(k)].event->name)
           std::printf("%5.2f s  %s, %.0f ms before this frame\n", now, name.c_str(),
                       1000 * double(hits[std::size_t(k)].seconds_ago));
-    world.character(hero).set_target(jets);
-    if (frame == 0)
-      world.character(hero).reset();
-    else
-      world.step(1 / 60.f);
+    if (status) status = world.character(hero).set_target(jets);
+    if (status) status = frame == 0 ? world.character(hero).reset() : world.step(1 / 60.f);
+    if (!status) break;
     const auto& root = world.character(hero).model()[0].translation;
     if (frame % 30 != 0) continue;
     std::printf("%5.2f s  root %6.2f %6.2f %6.2f m  unknown DOFs %d", now, double(root.x()), double(root.y()),
@@ -62,5 +60,6 @@ int main(int argc, char** argv) {
       std::printf("  %s %.2f", asset.curve_slots[c].name.c_str(), double(curves[c].value));
     std::printf("\n");
   }
-  return 0;
+  if (!status) std::fprintf(stderr, "playback: %s\n", status.reason);
+  return status ? 0 : 1;
 }

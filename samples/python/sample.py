@@ -19,7 +19,7 @@ def run(path, frames):
     with sinew.Asset(path) as asset, sinew.World() as world:
         chest = asset.find_role(sinew.Role.CHEST)
         hero = world.add_character(asset)
-        world.add_prop(mass=4, pose={"translation": (0, 3, 1.5)}, velocity=(0, -6, 0))
+        world.add_prop(mass=4, pose={"translation": (0, 3, 1.5)}, velocity=(1.2, -6, 2))
         for frame in range(frames):
             hero.play(asset, 0, frame / 60)
             if frame == 0:

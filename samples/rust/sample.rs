@@ -16,7 +16,7 @@ fn run(path: &str, frames: i32) -> sinew::Result<()> {
     let hero = world.add_character(&asset, None)?;
     let mut ball = PropSettings::default();
     ball.mass = 4.0;
-    ball.velocity = [0.0, -6.0, 0.0];
+    ball.velocity = [1.2, -6.0, 2.0];
     ball.pose.translation = [0.0, 3.0, 1.5];
     world.add_prop(Some(&ball))?;
 

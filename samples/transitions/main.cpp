@@ -101,11 +101,12 @@ int main(int argc, char** argv) {
     if (in_cycle == 30 || in_cycle == 42) player.play(walk);
     if (in_cycle == 36 || in_cycle == 100) player.play(stand);  // the first: the walk has hardly begun
     speed.step(in_cycle < 70 ? 1.f : 0.5f, sinew::SmoothInput<float>::pole_of(0.1f), h);
-    world.character(hero).set_target(player.advance(h, speed.x));
-    if (frame == 0)
-      world.character(hero).reset();
-    else
-      world.step(h);
+    status = world.character(hero).set_target(player.advance(h, speed.x));
+    if (status) status = frame == 0 ? world.character(hero).reset() : world.step(h);
+    if (!status) {
+      std::fprintf(stderr, "transitions: %s\n", status.reason);
+      return 1;
+    }
     if (in_cycle % 6 == 0)
       std::printf("%5.2f s  speed %.2f  unknown DOFs %d\n", frame / 60.0, double(speed.x.value),
                   world.character(hero).report().unknown_dofs);

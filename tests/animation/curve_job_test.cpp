@@ -141,10 +141,12 @@ TEST(CurveBlending, RefusesWhatIsNoWeight) {
   const Values x = sampled(with_curves(true), 0.7);
   Values out(kSlots.size());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<double> short_mask = {1};
+  const std::vector<double> short_mask = {1}, steep_mask(kSlots.size(), 1.5), no_mask(kSlots.size(), nan);
   for (const CurveLayer<double>& bad :
        {CurveLayer<double>{x, TimeJet<double>(-0.1)}, CurveLayer<double>{x, TimeJet<double>(1, nan, 0)},
-        CurveLayer<double>{x, TimeJet<double>(1), short_mask}}) {
+        CurveLayer<double>{x, TimeJet<double>(1), short_mask},
+        CurveLayer<double>{x, TimeJet<double>(1), steep_mask},
+        CurveLayer<double>{x, TimeJet<double>(1), no_mask}}) {
     CurveBlendingJob<double> job;
     job.layers = {&bad, 1};
     job.slots = kSlots;

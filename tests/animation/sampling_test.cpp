@@ -93,6 +93,18 @@ TEST(Sampling, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(validate(broken).code, Code::kNotFinite);
 }
 
+/// A weight above 1 leaves a negative one for the other layer, which BlendingJob refuses.
+TEST(EaseWeight, NeverPassesOne) {
+  int below = 0;
+  for (int n = 0; n <= 2000; ++n) {
+    const float elapsed = 0.5f * (1 - 1e-5f * static_cast<float>(n));
+    const float value = EaseWeight<float>::at(elapsed, 0.5f).value;
+    EXPECT_LE(value, 1.f) << elapsed;
+    below += value < 1;
+  }
+  EXPECT_GT(below, 100);
+}
+
 TEST(Crossfade, DerivativesAreThoseOfTheBlendedPose) {
   convert::FitReport report;
   const Clip clip = fitted(5, report);

@@ -13,43 +13,65 @@ namespace {
 thread_local long left = -1;
 std::atomic<long> live{0};
 
-void* take(std::size_t bytes, std::size_t alignment) {
-  if (left == 0) throw std::bad_alloc();
+/// Null where none is to be had.
+void* take(void* /*context*/, std::size_t bytes, std::size_t alignment) {
+  if (left == 0) return nullptr;
   if (left > 0) --left;
   void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) throw std::bad_alloc();
-  ++live;
+  if (memory) ++live;
   return memory;
 }
 
-void give_back(void* memory) {
-  if (memory) --live;
+void give_back(void* /*context*/, void* memory) {
+  --live;
   std::free(memory);
+}
+
+void* take_or_throw(std::size_t bytes, std::size_t alignment) {
+  void* const memory = take(nullptr, bytes, alignment);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+void give_back_any(void* memory) {
+  if (memory) give_back(nullptr, memory);
 }
 
 }  // namespace
 
+// The library takes its memory here where it has no operator new of its own.
 void* operator new(std::size_t bytes) {
-  return take(bytes, alignof(std::max_align_t));
+  return take_or_throw(bytes, alignof(std::max_align_t));
 }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return take(bytes, std::size_t(alignment));
+  return take_or_throw(bytes, std::size_t(alignment));
 }
 void operator delete(void* memory) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  give_back(memory);
+  give_back_any(memory);
 }
 
 namespace sinew {
 namespace {
+
+/// Whether the library takes its memory from take() by sinew_set_memory.
+bool hooked() {
+  static const bool set = sinew_set_memory(take, give_back, nullptr) == SINEW_OK;
+  return set;
+}
+
+class CInterfaceMemory : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { hooked(); }
+};
 
 /// Lets the n-th allocation of set_up() fail for n = 0, every, 2 every, … until it passes. Returns which did
 /// not fail any more.
@@ -70,7 +92,7 @@ int fail_each_allocation(SetUp&& set_up, int every = 1) {
   return 0;
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
   const std::string path = fixtures::sample_asset();
   const long before = live;
   const int failures = fail_each_allocation([&] {
@@ -85,7 +107,7 @@ TEST(CInterfaceMemory, EveryAllocationOfLoadingMayFail) {
   EXPECT_EQ(live, before);
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
   sinew_asset asset = 0;
   ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
   const long before = live;
@@ -108,6 +130,23 @@ TEST(CInterfaceMemory, EveryAllocationOfSettingUpAWorldMayFail) {
   EXPECT_GT(failures, 10);
   EXPECT_EQ(live, before);
   EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
+}
+
+TEST_F(CInterfaceMemory, ComesFromTheHostToTheLastByte) {
+  if (!hooked()) GTEST_SKIP() << "built without the C++ library within: " << sinew_last_reason();
+  EXPECT_EQ(sinew_memory_blocks(), 0u);
+  {
+    const long before = live;
+    const fixtures::CScene scene;
+    // What the test itself holds meanwhile: the names of a file.
+    EXPECT_GE(live - before, static_cast<long>(sinew_memory_blocks()));
+    EXPECT_GT(sinew_memory_blocks(), 20u);
+    EXPECT_EQ(sinew_set_memory(nullptr, nullptr, nullptr), SINEW_INVALID_ARGUMENT);
+    EXPECT_STREQ(sinew_last_reason(), "the library has memory: destroy its assets and worlds first");
+  }
+  EXPECT_EQ(sinew_memory_blocks(), 0u);
+  EXPECT_EQ(sinew_set_memory(take, nullptr, nullptr), SINEW_INVALID_ARGUMENT);
+  EXPECT_STREQ(sinew_last_reason(), "memory needs both functions, or none");
 }
 
 /// Lets each allocation of add(world, hero, asset) fail, in a world that has been set up before with all
@@ -140,14 +179,14 @@ void fail_each_addition(sinew_status after, Prepare&& prepare, Add&& add, int ev
 
 constexpr auto kNothing = [](sinew_character) { return sinew_status(SINEW_OK); };
 
-TEST(CInterfaceMemory, EveryAllocationOfABehaviourMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfABehaviourMayFail) {
   // It is made aside and then taken: the world is as it was.
   fail_each_addition(SINEW_OK, kNothing, [](sinew_world, sinew_character hero, sinew_asset) {
     return sinew_character_add_behaviour(hero, nullptr);
   });
 }
 
-TEST(CInterfaceMemory, AllocationsOfGettingUpMayFail) {
+TEST_F(CInterfaceMemory, AllocationsOfGettingUpMayFail) {
   constexpr int kEvery = 11;  // there are hundreds, most of poses to rise from, one like the next
   const auto behaves = [](sinew_character hero) { return sinew_character_add_behaviour(hero, nullptr); };
   const auto use = [](sinew_world, sinew_character hero, sinew_asset asset) {
@@ -156,27 +195,27 @@ TEST(CInterfaceMemory, AllocationsOfGettingUpMayFail) {
   fail_each_addition(SINEW_BROKEN, behaves, use, kEvery);
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfAnEffectMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfAnEffectMayFail) {
   fail_each_addition(SINEW_BROKEN, kNothing, [](sinew_world, sinew_character hero, sinew_asset) {
     sinew_effect wind = 0;
     return sinew_character_add_wind(hero, nullptr, &wind);
   });
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfAStrandMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfAStrandMayFail) {
   fail_each_addition(SINEW_BROKEN, kNothing, [](sinew_world world, sinew_character, sinew_asset) {
     sinew_particles strand = 0;
     return sinew_world_add_strand(world, nullptr, &strand);
   });
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfAToneMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfAToneMayFail) {
   fail_each_addition(SINEW_BROKEN, kNothing, [](sinew_world, sinew_character hero, sinew_asset) {
     return sinew_character_set_tone(hero, SINEW_TONE_ALERT);
   });
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfFollowingAGraphMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfFollowingAGraphMayFail) {
   const std::string path = fixtures::sample_graph();
   sinew_graph graph = 0;
   fail_each_addition(SINEW_BROKEN, kNothing, [&](sinew_world, sinew_character hero, sinew_asset asset) {
@@ -190,7 +229,7 @@ TEST(CInterfaceMemory, EveryAllocationOfFollowingAGraphMayFail) {
   });
 }
 
-TEST(CInterfaceMemory, EveryAllocationOfLoadingAGraphMayFail) {
+TEST_F(CInterfaceMemory, EveryAllocationOfLoadingAGraphMayFail) {
   sinew_asset asset = 0;
   ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
   const std::string path = fixtures::sample_graph();
@@ -208,7 +247,7 @@ TEST(CInterfaceMemory, EveryAllocationOfLoadingAGraphMayFail) {
   EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
 }
 
-TEST(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
+TEST_F(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
   fixtures::CScene scene;
   sinew_graph graph = 0;
   sinew_character other = 0;

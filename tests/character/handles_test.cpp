@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <climits>
+#include <limits>
 #include <utility>
 
 #include "character/scenes.h"
@@ -102,6 +103,30 @@ TEST(Handles, WorldRefusesWrongIndicesOfEveryKindWithAReason) {
     expect_refused(world.set_loop(index, true), index, "no such loop");
     expect_refused(world.reset_particles(index), index, "no such particle body");
   }
+}
+
+TEST(Handles, PropsGoNowhereAndRootsAreDrivenByNothingThatIsNone) {
+  OfEach scene;
+  World<float>& world = scene.world;
+  const Vec3<float> still = Vec3<float>::Zero();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Transform<float> nowhere;
+  nowhere.translation.x() = nan;
+  const Transform<float> before = world.prop_pose(0);
+  for (const Status& status :
+       {world.set_prop(0, nowhere, still, still), world.set_prop(0, {}, Vec3<float>(0, nan, 0), still),
+        world.set_prop(0, {}, still, Vec3<float>(0, 0, nan))}) {
+    EXPECT_EQ(status.code, Code::kNotFinite);
+    EXPECT_EQ(status.index, 0);
+  }
+  EXPECT_EQ(world.prop_pose(0), before);
+  PropSettings lost;
+  lost.pose.translation.z() = double(nan);
+  Status status;
+  EXPECT_EQ(world.add_prop(lost, status), -1);
+  EXPECT_EQ(status.code, Code::kNotFinite);
+  EXPECT_EQ(world.prop_count(), 1);
+  EXPECT_EQ(scene.character().set_root_drive(RootDrive(9)).code, Code::kInvalidArgument);
 }
 
 TEST(Handles, WorldReadsNothingAtWrongIndicesOfEveryKind) {

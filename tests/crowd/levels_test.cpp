@@ -32,9 +32,9 @@ struct Sleeper {
     settings.detail.sleep_after = 0.5;
     return settings;
   }
-  Sleeper() : settings(sleepy()), world(settings) {
+  explicit Sleeper(const Skeleton& skeleton = humanoid()) : settings(sleepy()), world(settings) {
     Status status;
-    EXPECT_EQ(world.add_character(humanoid(), passive(), status), 0) << status.reason;
+    EXPECT_EQ(world.add_character(skeleton, passive(), status), 0) << status.reason;
     world.character(0).reset();
     for (int n = 0; n < 1200 && level() != Level::kAsleep; ++n) EXPECT_TRUE(world.step(kStep).ok());
     EXPECT_EQ(level(), Level::kAsleep) << "never came to rest";
@@ -79,6 +79,15 @@ TEST(Sleep, StrengthAndDriveWakeButATargetIsNoUseToTheLimp) {
   ASSERT_TRUE(scene.world.step(kStep).ok());
   EXPECT_EQ(scene.level(), Level::kAsleep);
   ASSERT_TRUE(scene.world.character(0).set_strength(0.5f).ok());
+  ASSERT_TRUE(scene.world.step(kStep).ok());
+  EXPECT_NE(scene.level(), Level::kAsleep);
+}
+
+TEST(Sleep, StrengthOfAMuscleWakes) {
+  Skeleton skeleton = humanoid();
+  skeleton.muscles.push_back({"grip", "", skeleton.find("hand_r"), 0, 5, 5});
+  Sleeper scene(skeleton);
+  ASSERT_TRUE(scene.world.character(0).set_muscle_strength(0, 0.5f).ok());
   ASSERT_TRUE(scene.world.step(kStep).ok());
   EXPECT_NE(scene.level(), Level::kAsleep);
 }

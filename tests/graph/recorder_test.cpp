@@ -174,6 +174,10 @@ TEST_F(GraphRecorders, WhatIsNoRecordingIsRefused) {
   GraphRecorder<float> none(graph, small);
   Hero<float> hero(graph);
   EXPECT_TRUE(none.step(hero.job(0)).ok());
+  // A recording that was cut off within its first frame.
+  std::vector<std::byte> cut(ring.begin(), ring.begin() + 64);
+  GraphRecorder<float> again(graph, cut);
+  EXPECT_TRUE(again.step(hero.job(1 / 60.f)).ok());
 }
 
 TEST_F(GraphRecorders, AFileSaysWhatHappened) {

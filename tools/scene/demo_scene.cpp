@@ -25,7 +25,7 @@ std::shared_ptr<const Asset> with_a_clip(const std::shared_ptr<const Asset>& ass
 std::pair<double, double> extent(const Asset& asset, int clip) {
   const Skeleton& skeleton = asset.skeleton;
   std::vector<JointJet<double>> jets(skeleton.joints.size());
-  SamplingJob<double>{&asset.clips[clip], 0, jets}.Run();
+  (void)SamplingJob<double>{&asset.clips[clip], 0, jets}.Run();
   std::vector<Transform<double>> model(jets.size());
   for (std::size_t i = 0; i < model.size(); ++i) {
     const int parent = skeleton.joints[i].parent;
@@ -51,7 +51,7 @@ double calmest_moment(const Asset& asset, int clip, double stature, double begin
   std::vector<double> unrest, heights;  // 1/s, m
   const auto time = [&](int i) { return begin + (end - begin) * (i + 1) / (kMoments + 1); };
   for (int i = 0; i < kMoments; ++i) {
-    SamplingJob<double>{&asset.clips[clip], time(i), jets}.Run();
+    (void)SamplingJob<double>{&asset.clips[clip], time(i), jets}.Run();
     double sum = jets[0].velocity.norm();
     for (const JointJet<double>& jet : jets) sum += jet.omega.norm();
     unrest.push_back(sum);

@@ -13,13 +13,13 @@ namespace sinew {
 /// wherever the parameters go, never negative, adding up to 1. Beyond the grid they stay as at its edge.
 /// Triangles and lines between points, as others use them, have kinks at every edge.
 struct BlendSpace {
-  static constexpr int kMaxClips = 16;
-  int clips = 0;
-  int dimensions = 1;               ///< 1 or 2
-  int size[2] = {1, 1};             ///< nodes along each
-  double origin[2] = {0, 0};        ///< parameters of the first node
-  double interval[2] = {1, 1};      ///< between nodes
-  std::vector<float> node_weights;  ///< [second][first][clip]
+  static constexpr int kMaxClips = 16;  ///< of one space
+  int clips = 0;                        ///< 1 … kMaxClips
+  int dimensions = 1;                   ///< 1 or 2
+  int size[2] = {1, 1};                 ///< nodes along each
+  double origin[2] = {0, 0};            ///< parameters of the first node
+  double interval[2] = {1, 1};          ///< between nodes
+  std::vector<float> node_weights;      ///< [second][first][clip]
 };
 
 /// Set-up: weights for clips that each have a point, `points` [clip][dimension], on a grid of `nodes` along

@@ -16,13 +16,14 @@ enum class BlendMode : std::uint8_t {
   kAdditive,  ///< below ∘ (w of the layer's difference, see `subtract_reference`)
 };
 
+/// One motion of a blend, and how much of it.
 template <class T>
 struct BlendLayer {
-  std::span<const JointJet<T>> jets;
+  std::span<const JointJet<T>> jets;  ///< [joint] local; as many as the output at least
   TimeJet<T> weight{T(1), T(0),
-                    T(0)};       ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
-  std::span<const T> mask = {};  ///< [joint] in [0, 1]; empty = 1 everywhere
-  BlendMode mode = BlendMode::kMix;
+                    T(0)};           ///< ≥ 0; its rates make the blend's derivatives exact (see EaseWeight)
+  std::span<const T> mask = {};      ///< [joint] in [0, 1]; empty = 1 everywhere
+  BlendMode mode = BlendMode::kMix;  ///< how it joins what is below it
 };
 
 /// Blends jets joint by joint. Rotations are summed as quaternions in R⁴ and normalised; all derivatives are
@@ -40,13 +41,13 @@ struct BlendLayer {
 /// Allocates nothing. `out` may be one of the layers. Output shorter than the layers means fewer joints.
 template <class T>
 struct BlendingJob {
-  static constexpr int kMaxLayers = 16;
-  std::span<const BlendLayer<T>> layers;
+  static constexpr int kMaxLayers = 16;     ///< of one blend; Run() refuses more
+  std::span<const BlendLayer<T>> layers;    ///< those of weight 0, with no rates, cost nothing
   std::span<const Transform<T>> rest = {};  ///< local transforms; empty = identity, see above
-  std::span<JointJet<T>> out;
+  std::span<JointJet<T>> out;               ///< [joint] local
 
   Status Validate() const;  ///< `Status::index`: layer at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error `out` is left as it was
 };
 
 extern template struct BlendingJob<float>;

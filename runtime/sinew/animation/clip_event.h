@@ -18,7 +18,8 @@ constexpr std::uint32_t event_name(std::string_view text) {
 
 /// Something at an instant of a clip (begin = end) or during a part of it. Times in seconds of the clip.
 struct ClipEvent {
-  float begin = 0, end = 0;                ///< 0 ≤ begin ≤ end ≤ duration
+  float begin = 0;                         ///< s, ≥ 0
+  float end = 0;                           ///< s, from begin to the clip's duration
   std::uint32_t name = 0;                  ///< the game's number, or event_name()
   bool always = false;                     ///< reported whatever the weight
   std::array<std::byte, 16> payload = {};  ///< the game's

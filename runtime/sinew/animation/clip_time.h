@@ -9,8 +9,10 @@ namespace sinew {
 /// what a clip gives is then exact while time itself is warped, α = τ'²·α_clip + τ''·ω_clip. A plain number
 /// plays at normal speed.
 struct ClipTime : TimeJet<double> {
+  /// τ (s), τ', τ'' (1/s).
   ClipTime(double seconds = 0, double speed = 1, double change = 0)
       : TimeJet<double>(seconds, speed, change) {}
+  /// The same as a jet.
   ClipTime(const TimeJet<double>& time) : TimeJet<double>(time) {}
 
   /// The same `h` seconds later: exact while τ'' stays as it is.

@@ -1,6 +1,7 @@
 // Blend of two poses with exact velocities and accelerations.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "sinew/animation/blending_job.h"
@@ -18,7 +19,8 @@ struct EaseWeight : TimeJet<T> {
     if (duration <= T(0) || elapsed >= duration) return {T(1), T(0), T(0)};
     if (elapsed <= T(0)) return {};
     const T u = elapsed / duration, u2 = u * u;
-    return {u2 * u * (T(10) - T(15) * u + T(6) * u2), T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
+    const T value = std::min(T(1), u2 * u * (T(10) - T(15) * u + T(6) * u2));  // near 1 it rounds above it
+    return {value, T(30) * u2 * (T(1) - u) * (T(1) - u) / duration,
             T(60) * u * (T(1) - u) * (T(1) - T(2) * u) / (duration * duration)};
   }
 };
@@ -29,12 +31,14 @@ template <class T>
 void crossfade(std::span<const JointJet<T>> a, std::span<const JointJet<T>> b, const EaseWeight<T>& w,
                std::span<JointJet<T>> out, std::span<const Transform<T>> rest = {});
 
+/// @cond
 extern template void crossfade<float>(std::span<const JointJet<float>>, std::span<const JointJet<float>>,
                                       const EaseWeight<float>&, std::span<JointJet<float>>,
                                       std::span<const Transform<float>>);
 extern template void crossfade<double>(std::span<const JointJet<double>>, std::span<const JointJet<double>>,
                                        const EaseWeight<double>&, std::span<JointJet<double>>,
                                        std::span<const Transform<double>>);
+/// @endcond
 
 /// Moves a pose in the world: the root's transform and motion are turned and shifted by `place`.
 template <class T>

@@ -95,6 +95,9 @@ Status CurveBlendingJob<T>::Validate() const {
     if (layers[l].weight.value < T(0)) return Status::error(Code::kOutOfRange, "weight is negative", index);
     if (!layers[l].mask.empty() && layers[l].mask.size() < out.size())
       return Status::error(Code::kInvalidArgument, "mask is shorter than the output", index);
+    const auto beyond = [](T m) { return !(m >= T(0) && m <= T(1)); };
+    if (std::any_of(layers[l].mask.begin(), layers[l].mask.end(), beyond))
+      return Status::error(Code::kOutOfRange, "mask is not within 0 and 1", index);
   }
   return {};
 }

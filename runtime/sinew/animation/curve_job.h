@@ -22,10 +22,11 @@ struct CurveJob {
   std::span<const CurveSlot> slots;  ///< of the asset
   std::span<TimeJet<T>> values;      ///< [slot]; shorter than `slots` means fewer
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses: no clip, or a time that is not finite
+  Status Run() const;       ///< on an error `values` are left as they were
 };
 
+/// One layer of numbers, as BlendLayer is one of joints. Leaves slots beyond its `values` alone.
 template <class T>
 struct CurveLayer {
   std::span<const TimeJet<T>> values;   ///< [slot]
@@ -39,12 +40,12 @@ struct CurveLayer {
 /// layers.
 template <class T>
 struct CurveBlendingJob {
-  std::span<const CurveLayer<T>> layers;
-  std::span<const CurveSlot> slots;
-  std::span<TimeJet<T>> out;
+  std::span<const CurveLayer<T>> layers;  ///< any number
+  std::span<const CurveSlot> slots;       ///< of the asset; beyond them `rest` is 0
+  std::span<TimeJet<T>> out;              ///< [slot]
 
   Status Validate() const;  ///< `Status::index`: layer at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error `out` is left as it was
 };
 
 extern template struct CurveJob<float>;

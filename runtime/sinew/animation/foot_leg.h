@@ -6,11 +6,14 @@
 
 namespace sinew {
 
+/// One leg. Set-up; FootPlacementJob refuses joints that are not there.
 template <class T>
 struct FootLeg {
-  int upper = -1, middle = -1, foot = -1;  ///< joints: thigh, shin, foot
-  Vec3<T> toe = Vec3<T>::Zero();           ///< m, foot axes: the sole under the ball
-  Vec3<T> heel = Vec3<T>::Zero();          ///< m, foot axes: the sole under the heel; = toe: a point foot
+  int upper = -1;                  ///< joint: thigh
+  int middle = -1;                 ///< joint: shin
+  int foot = -1;                   ///< joint: foot
+  Vec3<T> toe = Vec3<T>::Zero();   ///< m, foot axes: the sole under the ball
+  Vec3<T> heel = Vec3<T>::Zero();  ///< m, foot axes: the sole under the heel; = toe: a point foot
   /// Direction in the axes of the upper joint to which the middle one points away; zero: as the animation
   /// bends it, which must not be straight then.
   Vec3<T> bend = Vec3<T>::Zero();
@@ -26,7 +29,9 @@ Status find_foot_leg(const Skeleton& skeleton, Role foot, FootLeg<T>& out);
 /// is the sum of its clips' weights where they rest.
 bool in_contact(const Clip& clip, double time, int joint);
 
+/// @cond
 extern template Status find_foot_leg<float>(const Skeleton&, Role, FootLeg<float>&);
 extern template Status find_foot_leg<double>(const Skeleton&, Role, FootLeg<double>&);
+/// @endcond
 
 }  // namespace sinew

@@ -16,7 +16,7 @@ namespace sinew {
 /// What a ray of the host met in this frame.
 template <class T>
 struct GroundHit {
-  Vec3<T> point = Vec3<T>::Zero();
+  Vec3<T> point = Vec3<T>::Zero();    ///< m
   Vec3<T> normal = Vec3<T>::UnitZ();  ///< unit, upwards
   int ground = -1;                    ///< index of the body that was met; −1: what does not move
 };
@@ -32,18 +32,21 @@ struct FootInput {
   std::span<const GroundHit<T>> ahead = {};  ///< on its way; not for a foot that comes to rest
 };
 
+/// When a foot locks, and how it comes and goes. FootPlacementJob says what is out of range.
 template <class T>
 struct FootSettings {
-  T lock_at = T(0.6), release_at = T(0.4);  ///< of the contact weight
-  T lock_time = T(0.1);                     ///< s, until a foot that comes down rests
-  T release_time = T(0.2);                  ///< s, until a foot that leaves is back on the animation
-  T half_life = T(0.1);                     ///< s, of steps of the ground under a foot that is free
-  T farthest = T(0.2);   ///< m, from the animation on the ground: a lock breaks, and may close anew
-  T steepest = T(0.85);  ///< rad: steeper ground is taken for a wall, and as level where it was met
+  T lock_at = T(0.6);       ///< contact weight from which a foot locks, ≤ 1
+  T release_at = T(0.4);    ///< contact weight below which it leaves, in [0, lock_at]
+  T lock_time = T(0.1);     ///< s, until a foot that comes down rests
+  T release_time = T(0.2);  ///< s, until a foot that leaves is back on the animation
+  T half_life = T(0.1);     ///< s, of steps of the ground under a foot that is free
+  T farthest = T(0.2);      ///< m, from the animation on the ground: a lock breaks, and may close anew
+  T steepest = T(0.85);     ///< rad: steeper ground is taken for a wall, and as level where it was met
 };
 
+/// What of a foot stays on the ground.
 enum class FootHold : std::uint8_t {
-  kFree,
+  kFree,  ///< nothing: it goes as animated
   kToe,   ///< the toe stays, the heel may rise
   kHeel,  ///< the heel stays, the toe comes down
 };
@@ -51,8 +54,8 @@ enum class FootHold : std::uint8_t {
 /// What a foot remembers; a snapshot copies it. {} for a character that appears.
 template <class T>
 struct FootState {
-  FootHold hold = FootHold::kFree;
-  bool started = false;
+  FootHold hold = FootHold::kFree;                  ///< what of it stays
+  bool started = false;                             ///< it has found a ground, see find_ground()
   int ground = -1;                                  ///< of the plane below
   std::array<T, 3> point = {};                      ///< of the plane, in that ground's axes
   std::array<T, 3> normal = {};                     ///< unit
@@ -61,8 +64,10 @@ struct FootState {
   SmoothInput<T> slope[2];                          ///< of their gradients
   TimeJet<T> offset[3] = {{T(0)}, {T(0)}, {T(0)}};  ///< m, of toe or heel, when `hold` changed
   TimeJet<T> grip{T(0)};                            ///< 1 = on the ground, less than what it tends to
-  T elapsed = 0, duration = 0;                      ///< s, of both fading
+  T elapsed = 0;                                    ///< s since `hold` changed
+  T duration = 0;                                   ///< s, until `offset` and `grip` have faded
 
+  /// Its toe or its heel stays.
   bool locked() const { return hold != FootHold::kFree; }
   /// Locked, and at rest relative to the ground.
   bool at_rest() const { return locked() && elapsed >= duration; }
@@ -72,11 +77,14 @@ struct FootState {
 template <class T>
 struct FootMotion {
   MovingTransform<T> foot;  ///< foot joint → model
-  Vec3<T> toe, heel;        ///< points of the sole in the foot joint's axes: under the ball, under the heel
-  MovingVector<T> toe_at, heel_at;  ///< the same, in model space
-  TimeJet<T> level;                 ///< m, height of the ground that the animation walks on
+  Vec3<T> toe;              ///< m, foot joint's axes: point of the sole under the ball
+  Vec3<T> heel;             ///< m, foot joint's axes: point of the sole under the heel; = toe: a point foot
+  MovingVector<T> toe_at;   ///< m, `toe` in model space
+  MovingVector<T> heel_at;  ///< m, `heel` in model space
+  TimeJet<T> level;         ///< m, height of the ground that the animation walks on
 
   FootMotion() = default;
+  /// In the order of the members; what is in model space follows.
   FootMotion(const MovingTransform<T>& joint, const Vec3<T>& under_ball, const Vec3<T>& under_heel,
              const TimeJet<T>& floor)
       : foot(joint),
@@ -90,8 +98,8 @@ struct FootMotion {
 /// A foot's target: where its joint shall be, and how it lies.
 template <class T>
 struct FootTarget {
-  MovingVector<T> ankle;
-  Quat<TimeJet<T>> rotation;
+  MovingVector<T> ankle;      ///< m, model space: origin of the foot joint
+  Quat<TimeJet<T>> rotation;  ///< foot joint → model
 };
 
 /// Moves a foot's state h seconds on.

@@ -19,10 +19,10 @@ namespace sinew {
 /// A locked foot counts as a supporting one. Run it last, before the check of torques. Allocates nothing.
 template <class T>
 struct FootPlacementJob {
-  std::span<const int> parents;  ///< [joint]
-  std::span<JointJet<T>> jets;   ///< [joint] local; pelvis and legs are changed
-  int pelvis = 0;                ///< joint that carries the legs
-  std::span<const FootLeg<T>> legs;
+  std::span<const int> parents;        ///< [joint]
+  std::span<JointJet<T>> jets;         ///< [joint] local; pelvis and legs are changed
+  int pelvis = 0;                      ///< joint that carries the legs
+  std::span<const FootLeg<T>> legs;    ///< at most eight
   std::span<const FootInput<T>> feet;  ///< [leg]
   std::span<FootState<T>> states;      ///< [leg] the caller's
   /// The caller's, like `states`: the pelvis comes down as the legs need it, and rises no faster than this.
@@ -33,13 +33,15 @@ struct FootPlacementJob {
                                                      ///< are on stay in their places
   TimeJet<T> level{T(0)};                            ///< m
   T step = 0;                                        ///< s since the last run
-  FootSettings<T> settings = {};
+  FootSettings<T> settings = {};                     ///< of all feet
   T reach = T(0.995);  ///< of a leg's length, to which the pelvis comes down; in [0.5, 0.998]
   T follow = T(0.5);   ///< part of the feet's mean shift sideways that the pelvis takes, in [0, 1]
   T rise = T(0.07);    ///< s, half of the way up, > 0
   T deepest = T(0.3);  ///< m, that the pelvis comes down at most
 
   Status Validate() const;  ///< `Status::index`: leg at fault
+  /// Places what it can: a leg that finds no plane to bend in keeps its pose, the others do not; the first
+  /// such leg is the error. What Validate() refuses leaves all as it was.
   Status Run() const;
 };
 

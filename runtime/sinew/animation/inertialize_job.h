@@ -12,23 +12,27 @@ namespace sinew {
 template <class T>
 struct InertialState {
   std::span<T> offsets;  ///< `inertial_numbers(joints, translated)`
-  int joints = 0;
+  int joints = 0;        ///< whose rotations differ, from the first on
   /// The first joints whose translations differ too (the others take the new motion's): 1 where nothing but
   /// the root moves against its parent.
   int translated = 0;
   T elapsed = 0;   ///< s since the change; the caller moves it on
   T duration = 0;  ///< s until nothing is left
 
+  /// Something is left.
   bool running() const { return elapsed < duration; }
 };
 
+/// Length of InertialState::offsets: nine numbers for each rotation and for each translation that differ,
+/// both rounded up to sixteen joints.
 constexpr std::size_t inertial_numbers(int joints, int translated) {
   return 144 * (std::size_t(joints + 15) / 16 + std::size_t(translated + 15) / 16);
 }
 
 /// Begins a transition: `now` is what the character did up to this instant, whatever made it do so (another
 /// transition included, so that interrupting one costs nothing and loses nothing), `next` what the new motion
-/// does at this instant. Resets `elapsed`. Spans hold state.joints at least.
+/// does at this instant. Resets `elapsed`. Spans hold state.joints at least. Refuses a duration that is not
+/// within 0 and 1000 s, and `offsets` that are too short: then `state` is left as it was.
 template <class T>
 Status begin_inertial(std::span<const JointJet<T>> now, std::span<const JointJet<T>> next, T duration,
                       InertialState<T>& state);
@@ -51,13 +55,13 @@ T inertial_duration(const InertialState<T>& state, std::span<const T> accelerati
 /// `split_root`), or place the new motion where the character is; its offset is in the frame given.
 template <class T>
 struct InertializeJob {
-  std::span<const JointJet<T>> destination;
-  const InertialState<T>* state = nullptr;
+  std::span<const JointJet<T>> destination;  ///< [joint] the new motion, at this instant
+  const InertialState<T>* state = nullptr;   ///< that begin_inertial() filled in
   std::span<const T> profile = {};  ///< [joint] part of the duration in (0, 1]; empty = 1: arms may be faster
   std::span<JointJet<T>> out;       ///< may be `destination`; shorter means fewer joints
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses: sizes, times, a profile out of range
+  Status Run() const;       ///< on an error `out` is left as it was
 };
 
 /// A motion that goes on for a while without its source: rates die away with `slowing`, and the acceleration
@@ -69,14 +73,14 @@ struct InertializeJob {
 /// that are far apart ("dead blending"), at the price of damping what was going on.
 template <class T>
 struct ExtrapolateJob {
-  std::span<const JointJet<T>> from;
-  T elapsed = 0;               ///< s since then, ≥ 0
-  T slowing = 7;               ///< y, 1/s: half of a rate is gone after 0.69/y
-  T loss = 120;                ///< z > y, 1/s
-  std::span<JointJet<T>> out;  ///< may be `from`
+  std::span<const JointJet<T>> from;  ///< [joint] the motion at its last instant
+  T elapsed = 0;                      ///< s since then, ≥ 0
+  T slowing = 7;                      ///< y, 1/s: half of a rate is gone after 0.69/y
+  T loss = 120;                       ///< z > y, 1/s
+  std::span<JointJet<T>> out;         ///< may be `from`; shorter means fewer joints
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses: sizes, a time below 0, decays out of order
+  Status Run() const;       ///< on an error `out` is left as it was
 };
 
 #define SINEW_INERTIAL_INSTANCES(prefix, T)                                                               \

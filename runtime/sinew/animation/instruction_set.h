@@ -5,7 +5,12 @@
 
 namespace sinew {
 
-enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512 };
+/// Of x86-64, by rising width; other processors have the first alone.
+enum class InstructionSet : std::uint8_t {
+  kBaseline,  ///< what every processor has that the program was compiled for
+  kAvx2,      ///< 8 floats at a time
+  kAvx512     ///< 16 floats at a time: AVX-512 F, VL and DQ
+};
 
 /// Whether this processor runs it.
 bool available(InstructionSet set);

@@ -21,9 +21,11 @@ namespace sinew {
 /// velocity.
 template <class T>
 struct TwoBoneJob {
-  std::span<const int> parents;  ///< [joint]
-  std::span<JointJet<T>> jets;   ///< [joint] local; upper, middle and end are changed
-  int upper = -1, middle = -1, end = -1;
+  std::span<const int> parents;                        ///< [joint]
+  std::span<JointJet<T>> jets;                         ///< [joint] local; upper, middle and end are changed
+  int upper = -1;                                      ///< joint: hip or shoulder
+  int middle = -1;                                     ///< joint below it: knee or elbow
+  int end = -1;                                        ///< joint below that: ankle or wrist
   MovingVector<T> target = still<T>(Vec3<T>::Zero());  ///< m, model space
   /// Model direction in which the middle joint points away from the line upper → target; zero: as the
   /// animation bends it, which must not be straight then.
@@ -35,7 +37,9 @@ struct TwoBoneJob {
   bool keep_end = true;     ///< the end joint keeps its orientation in model space (a foot stays flat)
   T softness = T(0.05);     ///< part of the limb's length, [0.001, 1)
 
-  Status Validate() const;
+  Status Validate() const;  ///< what Run() refuses of any pose; `Status::index`: joint at fault
+  /// Refuses as well a target at the upper joint, a bone without length, and a limb that has no plane to bend
+  /// in. On an error `jets` are left as they were.
   Status Run() const;
 };
 
@@ -43,9 +47,9 @@ struct TwoBoneJob {
 /// chain: one job each, from the root outwards, with weights that grow to 1.
 template <class T>
 struct AimJob {
-  std::span<const int> parents;  ///< [joint]
-  std::span<JointJet<T>> jets;   ///< [joint] local; `joint` is changed
-  int joint = -1;
+  std::span<const int> parents;                        ///< [joint]
+  std::span<JointJet<T>> jets;                         ///< [joint] local; `joint` is changed
+  int joint = -1;                                      ///< that turns
   MovingVector<T> target = still<T>(Vec3<T>::Zero());  ///< m, model space; not at the joint's origin
   Vec3<T> axis = Vec3<T>::UnitX();                     ///< unit, joint axes
   TimeJet<T> weight{T(1)};                             ///< of the turn, in R⁴
@@ -53,7 +57,9 @@ struct AimJob {
   /// kink).
   T limit = T(1.4);
 
-  Status Validate() const;
+  Status Validate() const;  ///< what Run() refuses of any pose; `Status::index`: joint at fault
+  /// Refuses as well a target at the joint, or straight behind it: the way round is open then. On an error
+  /// `jets` are left as they were.
   Status Run() const;
 };
 

@@ -8,11 +8,13 @@
 
 namespace sinew {
 
+/// Of an angle in rad.
 template <class T>
 TimeJet<T> sine(const TimeJet<T>& a) {
   const T s = portable::sin(a.value), c = portable::cos(a.value);
   return {s, c * a.rate, c * a.acceleration - s * a.rate * a.rate};
 }
+/// Of an angle in rad.
 template <class T>
 TimeJet<T> cosine(const TimeJet<T>& a) {
   const T s = portable::sin(a.value), c = portable::cos(a.value);

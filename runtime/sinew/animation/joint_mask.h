@@ -11,7 +11,7 @@ namespace sinew {
 
 /// Weights per joint under a name, as assets hold them: 0 and 255 are exact.
 struct JointMask {
-  std::string name;
+  std::string name;                   ///< unique in its asset
   std::vector<std::uint8_t> weights;  ///< [joint]
 
   /// As BlendLayer takes them, 0 … 1; joints beyond the mask get 0. Allocates nothing.

@@ -10,11 +10,13 @@
 
 namespace sinew {
 
+/// How far and how fast a look turns.
 template <class T>
 struct LookSettings {
-  T yaw = T(1.4);                            ///< rad, to either side, < 3.1
-  T pitch_down = T(0.9), pitch_up = T(0.8);  ///< rad, < 1.5
-  T softness = T(0.2);                       ///< rad: limits are reached in as much before and beyond them
+  T yaw = T(1.4);         ///< rad, to either side; ≥ softness, < 3.1
+  T pitch_down = T(0.9);  ///< rad; ≥ softness, ≤ 1.5 with it
+  T pitch_up = T(0.8);    ///< rad; the same
+  T softness = T(0.2);    ///< rad, > 0: limits are reached in as much before and beyond them
   T behind = T(0.35);     ///< rad: as far as a target behind has to pass for the side to change
   T fastest = T(6);       ///< rad/s, of a turn to another target or to the other side
   T least_time = T(0.2);  ///< s, of such a turn
@@ -35,15 +37,15 @@ struct LookState {
   /// Yaw and pitch, rad: what is left of those that were looked at when the target changed, and, with a lag,
   /// those that are.
   struct Track {
-    TimeJet<T> offset[2] = {{T(0)}, {T(0)}};
-    SmoothInput<T> angles[2];
+    TimeJet<T> offset[2] = {{T(0)}, {T(0)}};  ///< yaw, pitch, when the target changed; fades as a quintic
+    SmoothInput<T> angles[2];                 ///< yaw, pitch, that are looked at; only with a lag
   };
-  bool started = false;
-  int side = 1;  ///< 1 left, −1 right: where a target behind is looked for
-  /// As seen from where the animation has the last joint, for all others; and from where they have carried
-  /// it.
-  Track body, head;
-  T elapsed = 0, duration = 0;  ///< s, of the offsets
+  bool started = false;  ///< false: the next run looks at its target at once
+  int side = 1;          ///< 1 left, −1 right: where a target behind is looked for
+  Track body;            ///< as seen from where the animation has the last joint, for all others
+  Track head;            ///< as seen from where they have carried it, for the last joint
+  T elapsed = 0;         ///< s since the offsets began to fade
+  T duration = 0;        ///< s, until they have
 };
 
 /// Turns a chain so that its last joint looks at the target, from wherever the turn of the others has carried
@@ -55,18 +57,21 @@ struct LookState {
 /// fades to 0 from 60° of pitch on.
 template <class T>
 struct LookAtJob {
-  std::span<const int> parents;  ///< [joint]
-  std::span<JointJet<T>> jets;   ///< [joint] local; the chain's are changed
-  const LookChain<T>* chain = nullptr;
-  LookState<T>* state = nullptr;
+  std::span<const int> parents;                         ///< [joint]
+  std::span<JointJet<T>> jets;                          ///< [joint] local; the chain's are changed
+  const LookChain<T>* chain = nullptr;                  ///< who looks
+  LookState<T>* state = nullptr;                        ///< the caller's, one per look
   MovingVector<T> target = still<T>(Vec3<T>::UnitX());  ///< m, model space
   /// The target up to now, with where it is at this instant: in the run in which it changes, else null.
   const MovingVector<T>* before = nullptr;
-  TimeJet<T> weight{T(1)};  ///< 0 … 1
-  T step = 0;               ///< s since the last run
-  LookSettings<T> settings = {};
+  TimeJet<T> weight{T(1)};        ///< 0 … 1
+  T step = 0;                     ///< s since the last run
+  LookSettings<T> settings = {};  ///< limits and speeds
 
   Status Validate() const;  ///< `Status::index`: joint at fault
+  /// Refuses as well a target within 0.1 mm of the last joint, which leaves all as it was, and one straight
+  /// behind where the chain looks: the state has moved on then, and joints above the one at fault have
+  /// turned.
   Status Run() const;
 };
 

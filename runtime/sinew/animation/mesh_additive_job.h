@@ -28,8 +28,8 @@ struct MeshAdditiveJob {
   std::span<const T> mask = {};             ///< [joint] in [0, 1]; empty = 1
   std::span<Quat<TimeJet<T>>> scratch;      ///< two per joint
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses; `Status::index`: joint at fault
+  Status Run() const;       ///< on an error `jets` are left as they were
 };
 
 #define SINEW_MESH_ADDITIVE_INSTANCES(prefix, T)                                                       \

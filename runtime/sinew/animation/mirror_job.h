@@ -10,6 +10,7 @@
 
 namespace sinew {
 
+/// A joint without a partner, in MirrorMap::partners.
 constexpr std::uint16_t kNoPartner = 0xffff;
 
 /// How one joint follows from its partner: linear maps of the numbers of its jet.
@@ -28,9 +29,10 @@ struct MirrorMap {
   std::vector<MirrorJoint<T>> joints;   ///< [joint]
 };
 
+/// What a mirrored motion of this skeleton will lack.
 struct MirrorWarning {
-  int joint = -1;
-  const char* reason = "";
+  int joint = -1;           ///< of the skeleton
+  const char* reason = "";  ///< a string literal
 };
 
 /// Finds partners by name (see `mirrored_name`), by role, or, where neither says anything, by place: within
@@ -56,12 +58,12 @@ Status build_mirror_map(const Skeleton& skeleton, MirrorMap<T>& out,
 /// Events of a mirrored clip: `EventMirror`. Contact windows: of `partners[joint]`. Phases: half a cycle on.
 template <class T>
 struct MirrorJob {
-  const MirrorMap<T>* map = nullptr;
+  const MirrorMap<T>* map = nullptr;  ///< of build_mirror_map()
   std::span<const JointJet<T>> jets;  ///< of all joints of the map
   std::span<JointJet<T>> out;         ///< may be `jets`; shorter means fewer joints
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses: no map, fewer jets than it has, more in the output
+  Status Run() const;       ///< on an error `out` is left as it was
 };
 
 #define SINEW_MIRROR_INSTANCES(prefix, T)                                                                  \

@@ -18,7 +18,7 @@ struct ModelMotionJob {
   std::span<MovingTransform<T>> model;  ///< joint → model (times `root`)
 
   Status Validate() const;  ///< `Status::index`: joint at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error `model` is left as it was
 };
 
 extern template struct ModelMotionJob<float>;

@@ -18,7 +18,7 @@ struct ModelPoseJob {
   std::span<Transform<T>> model;             ///< joint → model (times `root`)
 
   Status Validate() const;  ///< `Status::index`: joint at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error `model` is left as it was
 };
 
 extern template struct ModelPoseJob<float>;

@@ -11,7 +11,8 @@ namespace sinew {
 
 /// Vertices one after the other.
 struct MorphRun {
-  std::uint32_t first = 0, count = 0;
+  std::uint32_t first = 0;  ///< vertex
+  std::uint32_t count = 0;  ///< vertices
 };
 
 /// What a target does at weight 1, of the vertices that it touches alone: whole numbers, times a scale.
@@ -36,15 +37,15 @@ Status build_morph_target(std::span<const float> moves, std::span<const float> t
 /// `out_normals` are given. Output shorter than the mesh means fewer vertices. Outputs may be the inputs.
 /// Allocates nothing; cost grows with the vertices that active targets touch.
 struct MorphJob {
-  std::span<const float> positions;     ///< [vertex][3] m, base
-  std::span<const float> normals = {};  ///< [vertex][3] unit, or empty
-  std::span<const MorphTarget> targets;
-  std::span<const float> weights;     ///< [target]
-  std::span<float> out_positions;     ///< [vertex][3] m
-  std::span<float> out_normals = {};  ///< [vertex][3], or empty
+  std::span<const float> positions;      ///< [vertex][3] m, base
+  std::span<const float> normals = {};   ///< [vertex][3] unit, or empty
+  std::span<const MorphTarget> targets;  ///< of this mesh
+  std::span<const float> weights;        ///< [target]
+  std::span<float> out_positions;        ///< [vertex][3] m
+  std::span<float> out_normals = {};     ///< [vertex][3], or empty
 
   Status Validate() const;  ///< `Status::index`: target at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error the outputs are left as they were
 };
 
 }  // namespace sinew

@@ -7,6 +7,7 @@
 #include "sinew/animation/clip.h"
 #include "sinew/animation/time_jet.h"
 
+/// @cond
 /// Vectors and quaternions of TimeJets are Eigen's.
 template <class S>
 struct Eigen::NumTraits<sinew::TimeJet<S>> : Eigen::GenericNumTraits<sinew::TimeJet<S>> {
@@ -20,12 +21,15 @@ struct Eigen::NumTraits<sinew::TimeJet<S>> : Eigen::GenericNumTraits<sinew::Time
     MulCost = 9
   };
 };
+/// @endcond
 
 namespace sinew {
 
+/// A vector with its first two time derivatives, component by component.
 template <class T>
 using MovingVector = Vec3<TimeJet<T>>;
-/// Products and inverses give exact velocities and accelerations, Coriolis terms included.
+/// A moving frame, child → parent. Products and inverses give exact velocities and accelerations, Coriolis
+/// terms included.
 template <class T>
 using MovingTransform = Transform<TimeJet<T>>;
 
@@ -34,14 +38,17 @@ template <class T>
 MovingVector<T> still(const Vec3<T>& v) {
   return {v.x(), v.y(), v.z()};
 }
+/// Where it is.
 template <class T>
 Vec3<T> value_of(const MovingVector<T>& v) {
   return {v.x().value, v.y().value, v.z().value};
 }
+/// Its first time derivative.
 template <class T>
 Vec3<T> rate_of(const MovingVector<T>& v) {
   return {v.x().rate, v.y().rate, v.z().rate};
 }
+/// Its second time derivative.
 template <class T>
 Vec3<T> acceleration_of(const MovingVector<T>& v) {
   return {v.x().acceleration, v.y().acceleration, v.z().acceleration};
@@ -51,9 +58,10 @@ Vec3<T> acceleration_of(const MovingVector<T>& v) {
 template <class T>
 Quat<TimeJet<T>> shortest_arc(const MovingVector<T>& from, const MovingVector<T>& to);
 
-/// A joint's jet as a moving frame child → parent, and back. Back, the rotation need not have unit length.
+/// A joint's jet as a moving frame child → parent.
 template <class T>
 MovingTransform<T> moving_transform(const JointJet<T>& jet);
+/// And back; the rotation may have any length but 0.
 template <class T>
 JointJet<T> joint_jet(const MovingTransform<T>& moving);
 

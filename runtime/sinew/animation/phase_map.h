@@ -15,7 +15,7 @@ namespace sinew {
 /// B-spline. C² everywhere, so that a clip that plays by phase keeps exact accelerations; straight lines
 /// between markers would change its rate in steps.
 struct PhaseMap {
-  static constexpr int kControls = 16;
+  static constexpr int kControls = 16;    ///< over all cycles
   std::array<float, kControls> lag = {};  ///< s, over the whole clip
   float duration = 0;                     ///< s, of the clip
   int cycles = 1;                         ///< that the clip holds
@@ -36,9 +36,9 @@ Status phase_markers(const Clip& clip, int left, int right, std::vector<PhaseMar
 
 /// One clip of a group that steps together.
 struct PhaseMember {
-  const PhaseMap* map = nullptr;
-  TimeJet<double> weight{1.0};  ///< ≥ 0, at the end of the step: the one that it is blended with
-  double speed = 1;             ///< > 0, of this clip when it is alone
+  const PhaseMap* map = nullptr;  ///< of fit_phase_map()
+  TimeJet<double> weight{1.0};    ///< ≥ 0, at the end of the step: the one that it is blended with
+  double speed = 1;               ///< of this clip when it is alone, in (0.01, 100)
 };
 
 /// Moves a group's common phase on and gives every member's time. There is no leader: the phase passes as
@@ -48,13 +48,13 @@ struct PhaseMember {
 ///
 /// One step is exact to h⁵; steps of more than 1/60 s: filters and this job together, in parts.
 struct PhaseJob {
-  std::span<const PhaseMember> members;
-  double h = 0;                      ///< s since the last call; 0 for the first, which sets the rates
+  std::span<const PhaseMember> members;  ///< whose weights are not all 0
+  double h = 0;                      ///< s since the last call, ≤ 1; 0 for the first, which sets the rates
   TimeJet<double>* phase = nullptr;  ///< state; the caller chooses where it begins
   std::span<ClipTime> times;         ///< [member]
 
-  Status Validate() const;
-  Status Run() const;
+  Status Validate() const;  ///< what Run() refuses; `Status::index`: member at fault
+  Status Run() const;       ///< on an error `phase` and `times` are left as they were
 };
 
 }  // namespace sinew

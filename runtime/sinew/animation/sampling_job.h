@@ -29,8 +29,10 @@ struct SamplingJob {
   std::span<JointJet<T>> jets = {};    ///< poses, velocities, accelerations
   std::span<Transform<T>> poses = {};  ///< poses only, at about half the cost; one or the other or both
 
+  /// What Run() refuses: no clip; a time that is not finite, or absurd (|τ| > 1e9 s, |τ'| > 1e4,
+  /// |τ''| > 1e7 1/s).
   Status Validate() const;
-  Status Run() const;
+  Status Run() const;  ///< see above
 };
 
 extern template struct SamplingJob<float>;

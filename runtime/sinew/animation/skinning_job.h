@@ -11,8 +11,8 @@ namespace sinew {
 
 /// Affine map with columns padded to four floats: y = axes[0]·x₀ + axes[1]·x₁ + axes[2]·x₂ + origin.
 struct SkinMatrix {
-  Eigen::Vector4f axes[3];
-  Eigen::Vector4f origin;
+  Eigen::Vector4f axes[3];  ///< columns of the linear part, 0 below
+  Eigen::Vector4f origin;   ///< m, 0 below
 };
 
 /// What each joint does to vertices given in model space at the bind pose: model[i]·bind[i]⁻¹. All joint →
@@ -24,7 +24,7 @@ void skinning_palette(std::span<const Transform<float>> model, std::span<const T
 /// normalised. Output shorter than the mesh means fewer vertices. Allocates nothing. Outputs may be the
 /// inputs.
 struct SkinningJob {
-  std::span<const SkinMatrix> palette;
+  std::span<const SkinMatrix> palette;    ///< of skinning_palette()
   int influences = 4;                     ///< per vertex
   std::span<const std::uint16_t> joints;  ///< [vertex][influence] index into the palette
   std::span<const float> weights;         ///< [vertex][influence] sum 1
@@ -34,7 +34,7 @@ struct SkinningJob {
   std::span<float> out_normals = {};      ///< [vertex][3] unit, or empty
 
   Status Validate() const;  ///< `Status::index`: vertex at fault
-  Status Run() const;
+  Status Run() const;       ///< on an error the outputs are left as they were
 };
 
 }  // namespace sinew

@@ -16,7 +16,7 @@ namespace sinew {
 /// S is float, double or a pack of them; other quantities component by component.
 template <class S>
 struct SmoothInput {
-  TimeJet<S> x{S(0)};
+  TimeJet<S> x{S(0)};  ///< where it is; set it to a constant to begin there at rest
 
   /// Moves `h` seconds on towards `goal`, which is taken as constant during them. `pole` (1/s, > 0): see
   /// `pole_of`.

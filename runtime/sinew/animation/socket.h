@@ -10,15 +10,16 @@ namespace sinew {
 /// A frame that is fixed to a joint: a palm, a holster, a saddle.
 template <class T>
 struct Socket {
-  int joint = -1;
+  int joint = -1;            ///< that carries it
   Transform<T> offset = {};  ///< socket → joint; a scabbard's differs from item to item
 };
 
-/// Motion of a socket, from the motions of all joints (ModelMotionJob), or of the joints above it alone.
+/// Motion of a socket, from the motions of all joints (ModelMotionJob), or (below) of those above it alone.
 /// Evaluate it from the jets that are shown, after everything that changes them: then what is held does not
 /// lag. `joint` is one of the skeleton's. Allocates nothing.
 template <class T>
 MovingTransform<T> socket_motion(const Socket<T>& socket, std::span<const MovingTransform<T>> model);
+/// The same from local jets [joint], by walking up from the joint; `root` as in ModelMotionJob.
 template <class T>
 MovingTransform<T> socket_motion(const Socket<T>& socket, std::span<const JointJet<T>> jets,
                                  std::span<const int> parents, const MovingTransform<T>& root = {});

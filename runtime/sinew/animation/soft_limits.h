@@ -15,11 +15,12 @@ TimeJet<T> soft_positive(const TimeJet<T>& x, const T& width) {
   const TimeJet<T> u = (T(1) / twice) * (x + TimeJet<T>(width));
   return twice * (u * u * u * (TimeJet<T>(T(1)) - T(0.5) * u));
 }
-/// The larger and the smaller of two, C²; their error is that of soft_positive(), away from the other one.
+/// The larger of two, C²: above it by 3/16 of `width` at most, where they are equal.
 template <class T>
 TimeJet<T> soft_max(const TimeJet<T>& a, const TimeJet<T>& b, const T& width) {
   return a + soft_positive<T>(b - a, width);
 }
+/// The smaller of two, C²: below it by as much at most.
 template <class T>
 TimeJet<T> soft_min(const TimeJet<T>& a, const TimeJet<T>& b, const T& width) {
   return a - soft_positive<T>(a - b, width);

@@ -11,12 +11,18 @@ namespace sinew {
 /// uninitialised.
 template <class S>
 struct TimeJet {
-  S value, rate, acceleration;
+  S value;         ///< the quantity itself
+  S rate;          ///< its first time derivative
+  S acceleration;  ///< its second time derivative
 
   TimeJet() = default;
+  /// What does not change.
   TimeJet(const S& constant) : value(constant), rate(S()), acceleration(S()) {}
+  /// Value, rate, acceleration.
   TimeJet(const S& p, const S& dp, const S& ddp) : value(p), rate(dp), acceleration(ddp) {}
 
+  // Arithmetic, by the rules above.
+  /// @cond
   TimeJet& operator+=(const TimeJet& b) { return *this = *this + b; }
   TimeJet& operator-=(const TimeJet& b) { return *this = *this - b; }
   TimeJet& operator*=(const TimeJet& b) { return *this = *this * b; }
@@ -51,6 +57,7 @@ struct TimeJet {
   }
   friend bool operator<(const TimeJet& a, const TimeJet& b) { return a.value < b.value; }
   friend bool operator>(const TimeJet& a, const TimeJet& b) { return a.value > b.value; }
+  /// @endcond
 };
 
 }  // namespace sinew

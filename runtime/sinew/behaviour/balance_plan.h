@@ -24,9 +24,11 @@ struct BalanceLaw {
 
 /// Seen from above, m and m/s.
 struct Pendulum {
-  Vec2 place = Vec2::Zero(), velocity = Vec2::Zero(), acceleration = Vec2::Zero();
+  Vec2 place = Vec2::Zero();         ///< m, x: of the centre of mass
+  Vec2 velocity = Vec2::Zero();      ///< m/s
+  Vec2 acceleration = Vec2::Zero();  ///< m/s², at the end of the last advance()
 
-  /// ω in 1/s.
+  /// ξ, m; ω in 1/s.
   Vec2 capture_point(double frequency) const { return place + velocity / frequency; }
   /// Moves on by h s while the feet press at `pressed`: exact.
   void advance(const Vec2& pressed, double frequency, double h);
@@ -38,6 +40,7 @@ Vec2 press(const Pendulum& body, double frequency, const Vec2& goal, const Sole&
 /// Where the capture point will be in `seconds` while one foot presses as near to it as its sole allows.
 Vec2 capture_point_after(const Vec2& now, double frequency, double seconds, const Sole& stance);
 
+/// Where a body stands, seen from above.
 struct Feet {
   std::array<Vec2, 2> place;  ///< m, ankles: left, right
   double yaw = 0;             ///< rad, where the body faces

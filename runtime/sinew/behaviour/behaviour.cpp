@@ -127,13 +127,13 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
       now.omega += h * now.alpha;
     }
     last_[0] = jets[0];
-    begin_inertial<T>(last_, jets, T(kFade * std::sqrt(unit_)), fade_);
+    (void)begin_inertial<T>(last_, jets, T(kFade * std::sqrt(unit_)), fade_);
   } else {
     fade_.elapsed += h;
   }
   if (!fade_.running()) return;
   const JointJet<T> root = jets[0];
-  InertializeJob<T>{jets, &fade_, {}, jets}.Run();
+  (void)InertializeJob<T>{jets, &fade_, {}, jets}.Run();
   jets[0] = root;
 }
 
@@ -188,7 +188,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (character.unknown()[0] == 0) return give_up(character);
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
-      character.set_help(0, weight_ * unit_ * settings_.help_torque);
+      (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
     // Who walks goes on as the clip does, upright: its next step is the one that catches.
     if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return;
     begin_plan(is, jets);
@@ -405,7 +405,6 @@ bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
          (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;
 }
 
-/// The clip again, from where the feet stand now.
 /// What takes the clip's feet under those that stand.
 template <class T>
 Displacement Behaviour<T>::to_feet() const {
@@ -441,7 +440,7 @@ int Behaviour<T>::misplaced() const {
 /// The clip again, from where the feet stand now.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  character.displace(to_feet());
+  (void)character.displace(to_feet());
   risen_ = false;
   give_up(character);
   fades_ = true;
@@ -450,7 +449,7 @@ void Behaviour<T>::finish(Character<T>& character) {
 /// The animation again, where it is.
 template <class T>
 void Behaviour<T>::give_up(Character<T>& character) {
-  character.set_help(-1, -1);
+  (void)character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;
 }
 
@@ -466,7 +465,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
-  character.set_root_drive(RootDrive::kFree);
+  (void)character.set_root_drive(RootDrive::kFree);
   if (reason != BehaviourReason::kAsked) tell(BehaviourEventKind::kFallen, reason, number);
 }
 
@@ -486,7 +485,7 @@ template <class T>
 void Behaviour<T>::let_go(Character<T>& character, double h) {
   const double share = std::min(report_.time / std::max(settings_.let_go, 1e-9), 1.0);
   if (report_.time < settings_.let_go + 2 * h)
-    character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
+    (void)character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
 }
 
 template <class T>
@@ -548,12 +547,12 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   see_clip(jets);
   swing_ = -1;
   choose_support(measure(character));
-  character.displace(to_feet());  // the animation faces as the body does
+  (void)character.displace(to_feet());  // the animation faces as the body does
   const MeasuredBody is = measure(character);
   spin_.setZero();
   root_before_ = is.root.rotation;
   measured_ = true;
-  character.set_help(0, weight_ * unit_ * settings_.help_torque);
+  (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
   begin_plan(is, jets);
   move_plan(h);
   write_stance(jets, h);
@@ -588,9 +587,9 @@ void Behaviour<T>::knock_down(Character<T> character) {
 
 template <class T>
 void Behaviour<T>::stand(Character<T> character) {
-  character.set_strength(T(strength_));
-  character.set_root_drive(RootDrive::kGrounded);
-  character.set_help(-1, -1);
+  (void)character.set_strength(T(strength_));
+  (void)character.set_root_drive(RootDrive::kGrounded);
+  (void)character.set_help(-1, -1);
   report_ = {};
   allowed_ = false;
 }

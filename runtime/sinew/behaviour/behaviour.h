@@ -2,8 +2,8 @@
 //
 //     Behaviour<float> balance(asset.skeleton, {}, status);
 //     …each frame:
-//     sample(jets);                                  // what the game's animation wants at the end of the
-//     frame balance.update(world.character(hero), jets, dt);  // replaced where a behaviour acts
+//     sample(jets);                                  // what the game's animation wants at the frame's end
+//     balance.update(world.character(hero), jets, dt);        // replaced where a behaviour acts
 //     world.character(hero).set_target(jets);
 //     world.step(dt);
 //
@@ -27,6 +27,7 @@
 
 namespace sinew {
 
+/// What the body is doing about its balance.
 enum class BehaviourState : std::uint8_t {
   kClip,     ///< the animation, and nothing else
   kPassive,  ///< pushed, and not reacting yet
@@ -47,7 +48,7 @@ enum class BehaviourEventKind : std::uint8_t {
 
 /// Why.
 enum class BehaviourReason : std::uint8_t {
-  kNone,
+  kNone,         ///< there is nothing to explain
   kAsked,        ///< the host wanted it
   kBeyondReach,  ///< number: m that the capture point was beyond what steps reach
   kTilted,       ///< number: m, height of the root
@@ -56,29 +57,31 @@ enum class BehaviourReason : std::uint8_t {
   kTookTooLong,  ///< number: s
 };
 
+/// One thing that happened in an update, see Behaviour::events().
 struct BehaviourEvent {
-  BehaviourEventKind kind = BehaviourEventKind::kFallen;
-  BehaviourReason reason = BehaviourReason::kNone;
-  double number = 0;  ///< see BehaviourReason
+  BehaviourEventKind kind = BehaviourEventKind::kFallen;  ///< what happened
+  BehaviourReason reason = BehaviourReason::kNone;        ///< why
+  double number = 0;                                      ///< see BehaviourReason
 };
 
 /// What it did, for whoever tells the player.
 struct BehaviourReport {
-  BehaviourState state = BehaviourState::kClip;
-  int steps = 0;             ///< since the push
+  BehaviourState state = BehaviourState::kClip;  ///< now
+  int steps = 0;                                 ///< since the push, without those that put a foot back
   double capture_depth = 0;  ///< m, of the capture point inside the standing soles; negative: outside
-  double time = 0;           ///< s since the push
+  double time = 0;           ///< s since the push; since it fell or stood up again
   double fell_beyond = 0;    ///< m that the capture point was beyond reach, where it fell
   int tries = 0;             ///< to get up, since it fell
 };
 
 /// What the last step left of a body, in the frame in which targets are given.
 struct MeasuredBody {
-  MassMotion mass;
-  Transform<double> root;
-  std::array<Transform<double>, 2> foot;
+  MassMotion mass;                        ///< of the whole body
+  Transform<double> root;                 ///< of the root joint
+  std::array<Transform<double>, 2> foot;  ///< of the foot joints: left, right
 };
 
+/// Keeps one character on its feet: each character needs its own.
 template <class T>
 class Behaviour {
  public:
@@ -86,7 +89,9 @@ class Behaviour {
   Behaviour(const Skeleton& skeleton, const BehaviourSettings& settings, Status& status);
   Behaviour(const Behaviour&) = delete;
   Behaviour& operator=(const Behaviour&) = delete;
+  /// What was moved from is only destroyed or assigned to.
   Behaviour(Behaviour&&) noexcept = default;
+  /// Likewise.
   Behaviour& operator=(Behaviour&&) noexcept = default;
 
   /// Set-up: the clips by which it gets up, of all clips of an asset those named get_up… and roll…, which
@@ -109,12 +114,13 @@ class Behaviour {
   /// it lies is the animation's to begin from.
   void stand(Character<T> character);
 
+  /// What it does now.
   const BehaviourReport& report() const { return report_; }
   /// Of the last update.
   std::span<const BehaviourEvent> events() const { return {events_.data(), events_count_}; }
   /// By which it gets up.
   const GetUp<T>& getting_up() const { return get_up_; }
-  BehaviourState state() const { return report_.state; }
+  BehaviourState state() const { return report_.state; }  ///< as in the report
   /// Of the body that was pushed, m and m/s.
   const Pendulum& plan() const { return plan_; }
 

@@ -12,17 +12,18 @@ enum class GetUpPolicy : std::uint8_t {
   kNever,        ///< dead
 };
 
+/// Where it says "of a human", a figure's is by its size and mass.
 struct BehaviourSettings {
   double reaction = 0.125;  ///< s, in which nothing but physics acts (Bortolami 2003: 125 ms)
   double gravity = 9.81;    ///< m/s²: the world's
   int most_steps = 4;       ///< before the body gives up
   double help_torque = 60;  ///< N·m of a human, that may keep the trunk up while it balances; see the report
-  double fallen_strength = 0.02;  ///< of the muscles, once it falls: limbs do not flail
-  double let_go = 0.15;           ///< s, in which they come to that
-  GetUpPolicy get_up = GetUpPolicy::kAuto;
-  double gather = 0.6;  ///< s, of a human, from where it lies into the pose from which it rises
-  /// N and N·m of a human, that an invisible hand may do while it rises; see the report.
-  double rise_force = 0, rise_torque = 60;  // N·m: twice as much, 11 instead of 10 of 12 stand
+  double fallen_strength = 0.02;            ///< of the muscles, once it falls: limbs do not flail
+  double let_go = 0.15;                     ///< s, in which they come to that
+  GetUpPolicy get_up = GetUpPolicy::kAuto;  ///< needs clips, see Behaviour::use_get_ups()
+  double gather = 0.6;      ///< s, of a human, from where it lies into the pose from which it rises
+  double rise_force = 0;    ///< N of a human, that an invisible hand may do while it rises; see the report
+  double rise_torque = 60;  ///< N·m of a human, likewise; with twice as much 11 instead of 10 of 12 stand
 };
 
 }  // namespace sinew

@@ -77,7 +77,7 @@ bool GetUp<T>::begin(Character<T>& character, double strength) {
   gathers_ = 0;
   elapsed_ = strong_from_ = 0;
   strength_ = strength;
-  character.set_root_drive(RootDrive::kFree);
+  (void)character.set_root_drive(RootDrive::kFree);
   return gather_to(character, choice);
 }
 
@@ -100,7 +100,7 @@ bool GetUp<T>::gather_to(const Character<T>& character, const GetUpChoice& choic
   rate_change_ = 0;
   clips_.sample(variant_, ClipTime{time_}, pose_);
   lies_[0] = pose_[0];
-  begin_inertial<T>(lies_, pose_, T(settings_.gather * std::sqrt(unit_)), fade_);
+  (void)begin_inertial<T>(lies_, pose_, T(settings_.gather * std::sqrt(unit_)), fade_);
   return true;
 }
 
@@ -129,14 +129,15 @@ GetUpOutcome GetUp<T>::gather(Character<T>& character, std::span<JointJet<T>> je
   const double before = strong_from_;
   strong_from_ += h / (kStrong * std::sqrt(unit_));
   if (before < 1)
-    character.set_strength(T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
+    (void)character.set_strength(
+        T(strength_ * std::lerp(settings_.fallen_strength, 1.0, smooth(strong_from_))));
   fade_.elapsed += T(h);
   const Fit fit = clips_.fit(entry_, is_);
   off_ = fit.off;
   place_ = fit.place;
   std::copy(pose_.begin(), pose_.end(), jets.begin());
   const bool fades = fade_.running();
-  if (fades) InertializeJob<T>{jets, &fade_, {}, jets}.Run();
+  if (fades) (void)InertializeJob<T>{jets, &fade_, {}, jets}.Run();
   put(jets);
   if (fades) return GetUpOutcome::kGathers;
   waits_ += h;
@@ -155,10 +156,10 @@ void GetUp<T>::begin_rise(Character<T>& character) {
   rises_ = true;
   waits_ = 0;
   caught_ = off_;
-  character.set_strength(T(strength_));
+  (void)character.set_strength(T(strength_));
   if (rolls()) return;  // nothing but the ground
-  character.set_root_drive(RootDrive::kGrounded);
-  character.set_help(weight_ * settings_.rise_force, weight_ * unit_ * settings_.rise_torque);
+  (void)character.set_root_drive(RootDrive::kGrounded);
+  (void)character.set_help(weight_ * settings_.rise_force, weight_ * unit_ * settings_.rise_torque);
 }
 
 /// The clip's time goes on, slower where the body is behind; critically damped.

@@ -16,21 +16,25 @@
 
 namespace sinew {
 
+/// How far an attempt to get up has come in a frame. The three that are failures leave their clip out of the
+/// next choice (GetUp::forget).
 enum class GetUpOutcome : std::uint8_t {
-  kGathers,
-  kRises,
-  kStuck,   ///< the pose to rise from was not reached
-  kTooFar,  ///< it left the clip while rising
-  kTooLong,
-  kUp,  ///< the clip has ended and the body is where it ends
+  kGathers,  ///< on its way into the pose to rise from, or rolls over
+  kRises,    ///< follows the clip
+  kStuck,    ///< the pose to rise from was not reached
+  kTooFar,   ///< it left the clip while rising
+  kTooLong,  ///< waited for the body for 1.5 s, or took 7 s in all (a human's)
+  kUp,       ///< the clip is nearly at its end and the body stands as it does there
 };
 
+/// One body's attempts to get up by clips. prepare() first; then begin() and update() until one is over.
 template <class T>
 class GetUp {
  public:
   /// Set-up. `unit`: the figure's size, of a human's; `weight`: its mass, likewise. See GetUpClips::prepare.
   void prepare(const Skeleton& skeleton, std::span<const Clip> clips, const BehaviourSettings& settings,
                double unit, double weight);
+  /// Whether there is a clip to get up by.
   bool possible() const { return !clips_.empty(); }
   /// From where the body lies. `strength`: of its muscles when it stands. Whether there is a way.
   bool begin(Character<T>& character, double strength);
@@ -38,11 +42,10 @@ class GetUp {
   GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
   /// Forgets which clips failed.
   void forget() { tried_ = 0; }
-  /// Chosen: index of GetUpClips::variants(); time s.
-  int variant() const { return variant_; }
-  double time() const { return time_.value; }
-  double off() const { return off_; }  ///< m, from the pose that it should be in
-  const GetUpClips<T>& clips() const { return clips_; }
+  int variant() const { return variant_; }     ///< chosen, of GetUpClips::variants(); −1 before begin()
+  double time() const { return time_.value; }  ///< s, in its clip
+  double off() const { return off_; }          ///< m, from the pose that it should be in
+  const GetUpClips<T>& clips() const { return clips_; }  ///< by which it may get up
 
  private:
   void look(const Character<T>& character);

@@ -125,8 +125,8 @@ GetUpChoice GetUpClips<T>::choose(std::span<const Vec3<double>> is, std::uint32_
 template <class T>
 void GetUpClips<T>::sample(int variant, const ClipTime& time, std::span<JointJet<T>> jets) const {
   const GetUpVariant& of = variants_[static_cast<std::size_t>(variant)];
-  SamplingJob<T>{of.clip, time, jets}.Run();
-  if (of.mirrored) MirrorJob<T>{&mirror_, jets, jets}.Run();
+  (void)SamplingJob<T>{of.clip, time, jets}.Run();
+  if (of.mirrored) (void)MirrorJob<T>{&mirror_, jets, jets}.Run();
 }
 
 template <class T>

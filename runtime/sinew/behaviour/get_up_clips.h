@@ -14,34 +14,40 @@ namespace sinew {
 
 /// A clip, or its mirror image.
 struct GetUpVariant {
-  const Clip* clip = nullptr;
-  bool mirrored = false;
-  bool rolls = false;     ///< ends lying, so that another clip can get up from there
-  double end_height = 0;  ///< m, of the root where the clip ends
+  const Clip* clip = nullptr;  ///< one of those that prepare() was given
+  bool mirrored = false;       ///< left and right exchanged (MirrorJob)
+  bool rolls = false;          ///< ends lying, so that another clip can get up from there
+  double end_height = 0;       ///< m, of the root where the clip ends
 };
 
 /// A pose at which a variant may be entered: one in which the body rests on what touches the ground.
 struct GetUpEntry {
-  int variant = 0;
+  int variant = 0;  ///< of GetUpClips::variants()
   double time = 0;  ///< s, of the clip
 };
 
+/// An entry, and how far a body is from it.
 struct GetUpChoice {
   int entry = -1;  ///< −1: there is none
-  Fit fit;
+  Fit fit;         ///< of the entry's pose to the body
 };
 
+/// The get-up clips of one skeleton, and the poses of each at which a body may come in.
 template <class T>
 class GetUpClips {
  public:
-  static constexpr std::size_t kMostVariants = 32;
+  static constexpr std::size_t kMostVariants = 32;  ///< the bits of `tried`; further ones are left out
 
   /// Set-up, from all clips of an asset: takes those named get_up… and roll…, which must outlive this, each
   /// also mirrored where the skeleton has two sides. `unit`: the figure's size, of a human's.
   void prepare(const Skeleton& skeleton, std::span<const Clip> clips, double unit);
+  /// Whether prepare() found nothing.
   bool empty() const { return entries_.empty(); }
+  /// In the order of the clips, each followed by its mirror image.
   std::span<const GetUpVariant> variants() const { return variants_; }
+  /// As choose() names it; must exist.
   const GetUpEntry& entry(int index) const { return entries_[static_cast<std::size_t>(index)]; }
+  /// By which poses are compared.
   const PosePoints<T>& points() const { return points_; }
 
   /// The entry nearest to a body, of variants that are not in `tried` (a bit each). Rolls only where no

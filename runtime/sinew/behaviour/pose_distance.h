@@ -14,7 +14,7 @@ class PosePoints {
  public:
   /// Set-up. `unit`: the figure's size, of a human's.
   void prepare(const Skeleton& skeleton, double unit);
-  std::size_t count() const { return mass_.size(); }
+  std::size_t count() const { return mass_.size(); }  ///< of points
   /// Of a pose in model space (joint → world), m. `out` has count().
   void place(std::span<const Transform<T>> model, std::span<Vec3<double>> out) const;
   std::span<const double> mass() const { return mass_; }  ///< [point] share of the whole

@@ -103,7 +103,7 @@ MassMotion StandingBody<T>::mass_of(std::span<const Transform<T>> model) const {
 template <class T>
 MassMotion StandingBody<T>::mass_of(std::span<const JointJet<T>> jets,
                                     std::span<MovingTransform<T>> model) const {
-  ModelMotionJob<T>{.parents = parents, .jets = jets, .model = model}.Run();
+  (void)ModelMotionJob<T>{.parents = parents, .jets = jets, .model = model}.Run();
   MassMotion sum;
   for (std::size_t i = 0; i < mass.size(); ++i) {
     if (!(mass[i] > T(0))) continue;
@@ -152,7 +152,7 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
       reach.pole = model_motion<T>(jets, body.parents, leg.upper).rotation * still<T>(leg.bend);
       reach.hinge = leg.hinge;
       reach.keep_end = false;
-      reach.Run();
+      (void)reach.Run();
       set_foot<T>(body, leg, stance.foot[side], jets);
     }
   }

@@ -11,9 +11,10 @@
 
 namespace sinew {
 
-/// Centre of mass and its velocity; m, m/s.
+/// Centre of mass and its velocity.
 struct MassMotion {
-  Vec3<double> place = Vec3<double>::Zero(), velocity = Vec3<double>::Zero();
+  Vec3<double> place = Vec3<double>::Zero();     ///< m
+  Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s
 };
 
 /// The body that stands: what is asked of a skeleton once.
@@ -28,8 +29,9 @@ struct StandingBody {
   double total_mass = 0;                      ///< kg
   double height = 0;                          ///< m, of the root's origin at rest over the soles
 
+  /// Set-up, once. Refuses a body without mass or roles of feet, and a foot without colliders.
   Status find(const Skeleton& skeleton);
-  /// Of a pose in model space (joint → world).
+  /// Of a pose in model space (joint → world); the velocity is 0.
   MassMotion mass_of(std::span<const Transform<T>> model) const;
   /// Of a motion. `model` is room for the joints.
   MassMotion mass_of(std::span<const JointJet<T>> jets, std::span<MovingTransform<T>> model) const;
@@ -39,8 +41,10 @@ struct StandingBody {
 
 /// What a stance asks for at an instant.
 struct Stance {
-  Vec2 body = Vec2::Zero(), body_velocity = Vec2::Zero(), body_acceleration = Vec2::Zero();  ///< of the mass
-  TimeJet<double> height{0.0};  ///< m, of the root over the clip's
+  Vec2 body = Vec2::Zero();               ///< m, of the centre of mass
+  Vec2 body_velocity = Vec2::Zero();      ///< m/s
+  Vec2 body_acceleration = Vec2::Zero();  ///< m/s²
+  TimeJet<double> height{0.0};            ///< m, of the root over the clip's
   MovingVector<double> turn =
       still<double>(Vec3<double>::Zero());    ///< rad, of the root from the clip's, world axes
   std::array<MovingVector<double>, 2> ankle;  ///< m
@@ -55,9 +59,11 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
 
 extern template struct StandingBody<float>;
 extern template struct StandingBody<double>;
+/// @cond
 extern template void take_stance<float>(const StandingBody<float>&, const Stance&, std::span<JointJet<float>>,
                                         std::span<MovingTransform<float>>);
 extern template void take_stance<double>(const StandingBody<double>&, const Stance&,
                                          std::span<JointJet<double>>, std::span<MovingTransform<double>>);
+/// @endcond
 
 }  // namespace sinew

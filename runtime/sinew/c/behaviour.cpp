@@ -119,7 +119,7 @@ sinew_status sinew_character_use_get_ups(sinew_character character, sinew_asset 
       if (clips->skeleton.joints.size() != c.skeleton().joints.size())
         return fail(SINEW_INVALID_ARGUMENT, kOtherSkeleton);
       if (gets_up(owned.behaviour)) return fail(SINEW_INVALID_ARGUMENT, "it is getting up by other clips");
-      owned.behaviour.use_get_ups(c.skeleton(), {});  // those of before may go
+      (void)owned.behaviour.use_get_ups(c.skeleton(), {});  // those of before may go
       owned.clips = clips;
       return answer(owned.behaviour.use_get_ups(c.skeleton(), clips->clips));
     };

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "sinew/skeleton/hooks.h"
 #include "sinew/skeleton/version.h"
 
 namespace sinew::c {
@@ -18,8 +19,8 @@ constexpr std::array kNames{"SINEW_OK",           "SINEW_INVALID_ARGUMENT", "SIN
                             "SINEW_OUT_OF_RANGE", "SINEW_BAD_FILE",         "SINEW_BAD_VERSION",
                             "SINEW_IO",           "SINEW_BAD_HANDLE",       "SINEW_BUSY",
                             "SINEW_NO_MEMORY",    "SINEW_NOT_FOUND",        "SINEW_TOO_SMALL",
-                            "SINEW_BROKEN"};
-static_assert(kNames.size() == SINEW_BROKEN + 1);
+                            "SINEW_BROKEN",       "SINEW_UNSUPPORTED"};
+static_assert(kNames.size() == SINEW_UNSUPPORTED + 1);
 
 static_assert(int(Code::kOk) == SINEW_OK && int(Code::kInvalidArgument) == SINEW_INVALID_ARGUMENT &&
               int(Code::kNotFinite) == SINEW_NOT_FINITE && int(Code::kOutOfRange) == SINEW_OUT_OF_RANGE &&
@@ -30,11 +31,15 @@ static_assert(int(Code::kOk) == SINEW_OK && int(Code::kInvalidArgument) == SINEW
 
 sinew_status fail(sinew_status status, const char* reason, int index) noexcept {
   last = {reason, index};
+  write_log(LogLevel::kError, reason, index);
   return status;
 }
 
 sinew_status answer(const Status& status) noexcept {
-  return status ? SINEW_OK : fail(static_cast<sinew_status>(status.code), status.reason, status.index);
+  if (status) return SINEW_OK;
+  const bool lacks = status.code == Code::kUnsupported;
+  return fail(lacks ? SINEW_UNSUPPORTED : static_cast<sinew_status>(status.code), status.reason,
+              status.index);
 }
 
 sinew_status refuse(std::uint64_t handle, Kind kind) noexcept {
@@ -48,8 +53,8 @@ const char* sinew_version(void) {
 }
 
 const char* sinew_status_name(sinew_status status) {
-  return status >= SINEW_OK && status <= SINEW_BROKEN ? sinew::c::kNames[std::size_t(status)]
-                                                      : "unknown status";
+  return status >= SINEW_OK && status <= SINEW_UNSUPPORTED ? sinew::c::kNames[std::size_t(status)]
+                                                           : "unknown status";
 }
 
 const char* sinew_last_reason(void) {

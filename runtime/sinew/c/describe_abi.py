@@ -65,7 +65,7 @@ class Header:
     def read(self, statement, doc):
         for pattern, take in ((r"typedef (int32_t|uint64_t) (sinew_\w+)", self.alias),
                               (r"enum (sinew_\w+)_values \{(.*)\}", self.enum),
-                              (r"typedef (\w+) \(\*(sinew_\w+)\)\((.*)\)", self.callback),
+                              (r"typedef (\w+\*?) \(\*(sinew_\w+)\)\((.*)\)", self.callback),
                               (r"typedef struct (sinew_\w+) \{(.*)\} \1", self.struct),
                               (r"SINEW_API (.*?)(sinew_\w+)\((.*)\)", self.function)):
             match = re.fullmatch(pattern, statement)

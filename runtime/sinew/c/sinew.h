@@ -79,10 +79,11 @@ enum sinew_status_values {
   SINEW_IO = 6,                ///< the file could not be read
   SINEW_BAD_HANDLE = 7,        ///< null, destroyed, or of another kind
   SINEW_BUSY = 8,              ///< another call for the same world runs
-  SINEW_NO_MEMORY = 9,   ///< a set-up call found no memory; a world that it should have changed is broken
-  SINEW_NOT_FOUND = 10,  ///< no such name
-  SINEW_TOO_SMALL = 11,  ///< the caller's memory; the size that it takes is told
-  SINEW_BROKEN = 12      ///< a world that ran out of memory while something was added: destroy it
+  SINEW_NO_MEMORY = 9,    ///< a set-up call found no memory; a world that it should have changed is broken
+  SINEW_NOT_FOUND = 10,   ///< no such name
+  SINEW_TOO_SMALL = 11,   ///< the caller's memory; the size that it takes is told
+  SINEW_BROKEN = 12,      ///< a world that ran out of memory while something was added: destroy it
+  SINEW_UNSUPPORTED = 13  ///< this library was built without it
 };
 
 /// "0.2.0", of the library.
@@ -140,6 +141,7 @@ typedef struct sinew_view {
 
 // What there is, by theme. Each part needs those before it.
 // clang-format off
+#include "sinew/c/sinew_hooks.h"
 #include "sinew/c/sinew_asset.h"
 #include "sinew/c/sinew_pose.h"
 #include "sinew/c/sinew_world.h"

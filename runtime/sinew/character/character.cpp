@@ -126,6 +126,7 @@ Status Character<T>::set_muscle_strength(int muscle, T strength) {
     return Status::error(Code::kInvalidArgument, "strength must be ≥ 0", muscle);
   state_->muscle_strength[muscle] = strength;
   state_->refresh_limits();
+  state_->levels.wake = true;
   return {};
 }
 
@@ -218,6 +219,8 @@ T Character<T>::muscle_torque(int muscle) const {
 template <class T>
 Status Character<T>::set_root_drive(RootDrive drive) {
   if (!state_) return nobody();
+  if (drive < RootDrive::kKinematic || drive > RootDrive::kGrounded)
+    return Status::error(Code::kInvalidArgument, "no such root drive");
   state_->settings.root = drive;
   state_->refresh_limits();
   state_->levels.wake = true;

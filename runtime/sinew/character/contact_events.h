@@ -13,7 +13,7 @@
 // one is still inside the other (as what was put there is, on its way out, and what was frozen by a solve
 // that found no pose). Each pair begins once and ends once: what sleeps keeps its pairs without a word and
 // goes on with them when it wakes. What is parked ends its pairs. Two that are let through each other, since
-// neither finds a way out of the other (CharacterReport::held), have ended theirs.
+// neither finds a way out of the other (CharacterReport::frozen), have ended theirs.
 //
 // A played character has no contacts: nothing is solved, so nothing presses. What its animation sets on the
 // ground is told all the same (ContactReportSettings::animated), without an impulse and with `solved` false:
@@ -38,10 +38,11 @@ namespace sinew {
 template <class T>
 class World;
 
+/// Whether a pair of bodies has come together, stays so, or has parted.
 enum class ContactPhase : std::uint8_t {
   kBegin,  ///< they did not touch after the last step
-  kStay,
-  kEnd,  ///< they touched after the last step, not after this one: no points, no impulse
+  kStay,   ///< they touched after the last step, and do after this one
+  kEnd,    ///< they touched after the last step, not after this one: no points, no impulse
 };
 
 /// A point at which two bodies touch.
@@ -54,12 +55,14 @@ struct TouchPoint {
   double depth = 0;                              ///< m, how far they are in each other; ≥ 0
 };
 
+/// What one step did to one pair of bodies.
 struct ContactEvent {
-  static constexpr int kMostPoints = 4;
+  static constexpr int kMostPoints = 4;  ///< that an event carries
 
-  ContactPhase phase = ContactPhase::kBegin;
+  ContactPhase phase = ContactPhase::kBegin;  ///< a pair begins once, and ends once
   bool solved = true;  ///< false: the animation leads `a` on to the ground; there are no impulses
-  BodyRef a, b;        ///< what is static is always `b`
+  BodyRef a;           ///< a character's, a prop's or a particle
+  BodyRef b;           ///< the other one; what is static is always `b`
   double impulse = 0;  ///< N·s along the normals, over the step, of all points
   Vec3<double> normal = Vec3<double>::UnitZ();  ///< unit, from `b` to `a`: mean, weighted by impulse
   int points = 0;                               ///< at which they touch
@@ -74,12 +77,14 @@ class ContactRing {
   /// Not copied: the memory must outlive the ring, and the ring the reports.
   explicit ContactRing(std::span<ContactEvent> room) : buffer_(room) {}
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_; }  ///< events that wait to be taken
   /// Events that found the ring full, since it was made; the first ones are kept.
   std::uint64_t dropped() const { return dropped_; }
   /// The oldest event; false where there is none.
   bool take(ContactEvent& out);
+  /// Drops what waits; dropped() does not count it.
   void clear() { size_ = 0; }
+  /// What the world calls: appends an event, or counts it as dropped where the ring is full.
   void put(const ContactEvent& event);
 
  private:
@@ -90,7 +95,9 @@ class ContactRing {
 
 /// Which events a host wants.
 struct ContactReportSettings {
-  bool begin = true, stay = false, end = true;
+  bool begin = true;     ///< ContactPhase::kBegin
+  bool stay = false;     ///< ContactPhase::kStay: one for each pair and step
+  bool end = true;       ///< ContactPhase::kEnd
   bool animated = true;  ///< what a clip sets on the ground, too
   /// m of a figure of human size: colliders that an animation leads nearer to the ground than that touch it.
   double animated_reach = 0.01;
@@ -104,7 +111,9 @@ template <class T>
 [[nodiscard]] Status report_contacts(World<T>& world, ContactRing* ring,
                                      const ContactReportSettings& settings = {});
 
+/// @cond
 extern template Status report_contacts<float>(World<float>&, ContactRing*, const ContactReportSettings&);
 extern template Status report_contacts<double>(World<double>&, ContactRing*, const ContactReportSettings&);
+/// @endcond
 
 }  // namespace sinew

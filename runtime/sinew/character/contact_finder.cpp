@@ -7,6 +7,7 @@
 
 #include "sinew/character/contacts.h"
 #include "sinew/optimizer/contact_rows.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -160,6 +161,7 @@ void ContactFinder<T>::add(Contact<T>& c, T reach) {
     return;
   }
   remember(c);
+  SINEW_ASSERT(contacts_.size() < contacts_.capacity());
   contacts_.push_back(c);
 }
 

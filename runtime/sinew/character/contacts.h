@@ -9,6 +9,7 @@ namespace sinew {
 /// false, obstacles are refused.
 template <class T>
 struct Contacts {
+  /// Fills in the plan's entries of contacts; set-up.
   static void declare(StepPlan<T>& plan);
 };
 

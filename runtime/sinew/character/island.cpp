@@ -18,6 +18,7 @@
 #include "sinew/optimizer/time_scheme.h"
 #include "sinew/residual/tree_pass.h"
 #include "sinew/skeleton/fewer_digits.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -131,6 +132,7 @@ void IslandStepper<T>::finish_pose(CharacterState<T>& s, int tree, T h) {
       for (std::size_t k = 0; k < s.rate[i].size(); ++k)
         s.rate[i][k] += late_jumps_[first_body_[tree] + i][k];
     s.local[i] = p.local[i];
+    SINEW_ASSERT(s.local[i].rotation.coeffs().allFinite() && s.local[i].translation.allFinite());
     if (falls) continue;
     const std::array<T, 6> from_animation = joint_offset_value<T>(s.tree, i, s.wanted[i], p.local[i]);
     const std::array<T, 6> from_target = joint_offset_value<T>(s.tree, i, p.target[i], p.local[i]);
@@ -170,6 +172,7 @@ void IslandStepper<T>::finish_pose(CharacterState<T>& s, int tree, T h) {
 /// Moves all trees' histories on to the solution.
 template <class T>
 void IslandStepper<T>::advance_all(T h) {
+  SINEW_ZONE("velocities");
   momenta_.clear();
   for (const CharacterState<T>* s : states_) {
     Vec3<double>& momentum = momenta_.emplace_back(Vec3<double>::Zero());
@@ -261,6 +264,7 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
 /// What may touch within h, but for what trees that were frozen are caught in.
 template <class T>
 void IslandStepper<T>::find_contacts(T h) {
+  SINEW_ZONE("contacts");
   contacts_ = {};
   if (!finder_) return;
   contacts_ = finder_->find(*world_, surroundings_, states_, indices_, lagged_, settings_.common_origin, h);
@@ -504,6 +508,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
     if (stays_where_it_sticks(c)) elastic = elastic_share(c, settings_.stick);
     if (elastic[0] * elastic[0] + elastic[1] * elastic[1] > T(kSlides)) elastic = {};
     for (T& e : elastic) e = rounded_off<kHalfOfDigits<T>>(e);
+    SINEW_ASSERT(lagged_.size() < lagged_.capacity());
     lagged_.push_back({c.id, force, c.stiffness, c.offset, c.smooth_force,
                        rounded_off<kHalfOfDigits<T>>(c.lasting_force), c.lasting_last, elastic});
   }

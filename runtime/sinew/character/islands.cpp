@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sinew/character/sleep.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -110,6 +111,7 @@ std::span<const MovingCollider<T>> Islands<T>::moving(CharacterState<T>& s, int 
 template <class T>
 void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states,
                       const Couplings<T>& couplings, T h, int most_dofs, const ContactTerm<T>* contacts) {
+  SINEW_ZONE("who touches");
   const int count = static_cast<int>(states.size());
   grid_.clear();
   parent_.resize(count);

@@ -22,7 +22,7 @@ enum class Level : std::uint8_t {
   kFull,      ///< all are
   kSubsteps,  ///< all or some are, in parts of a step
 };
-constexpr int kLevelCount = 6;
+constexpr int kLevelCount = 6;  ///< of Level
 
 /// What the host asks for one character; part of its state, like its strength.
 struct CharacterDetail {
@@ -40,7 +40,8 @@ struct CharacterDetail {
   bool bake = false;
 };
 
-/// significance is a number, check_every ≥ 1.
+/// Refuses a significance that is not finite (kNotFinite) and a check_every that is not from 1 to 1000
+/// (kOutOfRange).
 Status validate(const CharacterDetail& detail);
 
 /// How much a step may cost, all characters and props together. 0: no limit.
@@ -49,9 +50,10 @@ struct Budget {
   /// Time in µs, from any thread. Without it work is counted instead: the same on every machine, so that runs
   /// repeat to the bit.
   double (*clock)(void* context) = nullptr;
-  void* clock_context = nullptr;
+  void* clock_context = nullptr;  ///< what `clock` gets
 };
 
+/// When the characters of a world go from level to level.
 struct LevelOfDetail {
   /// s, that a level is kept after it was last needed, and that a cap of the budget stays at least: nobody
   /// goes up and down more than once in this time while the load is steady.
@@ -66,7 +68,7 @@ struct LevelOfDetail {
   /// 1/s. Above 0 baked joints move as the talk has it, q'' = −k·q', whatever their arm does and nothing
   /// calls for a solve: for comparisons. 0: by themselves (baking.h).
   double baked_decay = 0;
-  Budget budget;
+  Budget budget;  ///< for steps; caps the least significant
 };
 
 /// What the last step did with the whole world.

@@ -39,11 +39,16 @@ struct QueryFilter {
   /// Meets only what has one of these bits in its layers (CharacterSettings::layers, PropSettings::layers,
   /// World::add_obstacle); the ground and particles have the first.
   std::uint32_t layers = ~0u;
-  bool ground = true, obstacles = true, characters = true, props = true, particles = true;
-  int without_character = -1, without_prop = -1;  ///< index of one that it passes through
+  bool ground = true;          ///< false: passes through WorldSettings::ground
+  bool obstacles = true;       ///< false: through all of World::add_obstacle(), the host's shapes, too
+  bool characters = true;      ///< false: through all characters
+  bool props = true;           ///< false: through all props
+  bool particles = true;       ///< false: through all particle bodies
+  int without_character = -1;  ///< index of one that it passes through; −1: none
+  int without_prop = -1;       ///< likewise
   /// Asked last, where set: false passes a body through. Called for what is met only.
   bool (*accept)(void* context, const BodyRef& body) = nullptr;
-  void* context = nullptr;
+  void* context = nullptr;  ///< what `accept` gets
 };
 
 /// A ray, a ball or a capsule, and where it goes.
@@ -52,12 +57,12 @@ struct Cast {
   Vec3<double> motion = Vec3<double>::Zero();     ///< m, world: direction times length; overlap() ignores it
   double radius = 0;                              ///< m; 0: a ray
   Vec3<double> half_axis = Vec3<double>::Zero();  ///< m, of a capsule: from its middle to one end of its axis
-  QueryFilter filter;
+  QueryFilter filter;                             ///< what it passes by
 };
 
 /// A collider that was met.
 struct QueryHit {
-  BodyRef body;
+  BodyRef body;       ///< whose it is
   int collider = -1;  ///< of Skeleton::colliders for characters, 0 for props and particles' nodes, else −1
   double distance = 0;                           ///< m that the cast has gone; 0 where it begins in it
   Vec3<double> position = Vec3<double>::Zero();  ///< m, world; on the surface of what was met

@@ -19,13 +19,16 @@
 
 namespace sinew {
 
+/// Steps a world, on the caller's thread alone, and writes down what replay() needs.
 template <class T>
 class Recorder {
  public:
+  /// Begins with the world's present state; the world must outlive the recorder.
   explicit Recorder(World<T>& world);
 
   /// Steps the world and records the step; a refused step is not recorded.
   Status step(T h);
+  /// The recording so far; valid until the next step().
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
@@ -33,6 +36,7 @@ class Recorder {
   std::vector<std::byte> bytes_, state_, before_, inputs_;
 };
 
+/// How far a replay went, and where it left the recording.
 struct ReplayReport {
   int steps = 0;         ///< that were repeated, the differing one included
   bool same = true;      ///< every byte after every step

@@ -12,7 +12,9 @@ namespace sinew {
 template <class T>
 void visit_history(CharacterState<T>& state, ByteStream& stream);
 
+/// @cond
 extern template void visit_history<float>(CharacterState<float>&, ByteStream&);
 extern template void visit_history<double>(CharacterState<double>&, ByteStream&);
+/// @endcond
 
 }  // namespace sinew

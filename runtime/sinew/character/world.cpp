@@ -9,6 +9,7 @@
 #include "sinew/character/playback.h"
 #include "sinew/character/prop.h"
 #include "sinew/character/world_impl.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -223,8 +224,9 @@ template <class T>
 int World<T>::add_prop(const PropSettings& prop, Status& status) {
   const Skeleton body = skeleton_of(prop);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
-  if (status && !(prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
-    status = Status::error(Code::kNotFinite, "prop velocity is not finite");
+  if (status && !(prop.pose.rotation.coeffs().allFinite() && prop.pose.translation.allFinite() &&
+                  prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
+    status = Status::error(Code::kNotFinite, "prop's pose or velocity is not finite");
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
@@ -245,6 +247,9 @@ Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& ve
                           const Vec3<T>& angular_velocity) {
   CharacterState<T>* const s = impl_->prop(index);
   if (!s) return no_such_prop(index);
+  if (!(pose.rotation.coeffs().allFinite() && pose.translation.allFinite() && velocity.allFinite() &&
+        angular_velocity.allFinite()))
+    return Status::error(Code::kNotFinite, "prop's pose or velocity is not finite", index);
   s->parked = false;
   JointJet<T>& jet = s->target[0];
   jet = {};
@@ -277,8 +282,7 @@ Status World<T>::unpark_character(int index) {
   CharacterState<T>* const s = impl_->character(index);
   if (!s) return no_such_character(index);
   s->parked = false;
-  s->reset_to_target(Vec3<T>::Zero());
-  return {};
+  return Character<T>(s).reset();
 }
 
 template <class T>
@@ -380,8 +384,36 @@ void World<T>::Impl::keep_sleepers() {
     }
 }
 
+/// What the step could not do, in the order in which the bodies were added.
+template <class T>
+void World<T>::Impl::log_step() const {
+  const auto log = [&](const std::vector<int>& list, bool are_characters) {
+    for (std::size_t n = 0; n < list.size(); ++n) {
+      if (!islands.contains(list[n])) continue;
+      const CharacterReport& r = states[list[n]]->report;
+      const auto say = [&](LogLevel level, const char* character, const char* prop) {
+        write_log(level, are_characters ? character : prop, static_cast<int>(n));
+      };
+      if (r.frozen > 0)
+        say(LogLevel::kWarning, "a character was stopped where it stood: no pose could be found",
+            "a prop was stopped where it was: no pose could be found");
+      if (r.left_out > 0)
+        say(LogLevel::kWarning, "a character's furthest contacts were left out: no memory for so many",
+            "a prop's furthest contacts were left out: no memory for so many");
+      if (r.crowded)
+        say(LogLevel::kWarning, "a character may pass through another: more touch than island_dofs allows",
+            "a prop may pass through another: more touch than island_dofs allows");
+      if (!r.converged)
+        say(LogLevel::kInfo, "a character's step did not converge", "a prop's step did not converge");
+    }
+  };
+  log(characters, true);
+  log(props, false);
+}
+
 template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
+  SINEW_ZONE("step");
   h = step;
   for (const auto& s : states) {
     s->keep_deviations(h);
@@ -405,6 +437,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
     (!capacity.fits(small_capacity) ? large : plays && capacity.trees == 1 ? light : heavy).push_back(i);
     first_lagged.push_back(first_lagged.back() + capacity.loaded);
   }
+  SINEW_ASSERT(static_cast<std::size_t>(first_lagged.back()) <= lagged_new.capacity());
   lagged_new.resize(first_lagged.back());
   if (reporter) reporter->begin_step(islands.count());
   next_heavy = next_light = 0;
@@ -419,6 +452,7 @@ void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
             [](const LaggedForce<T>& a, const LaggedForce<T>& b) { return a.id < b.id; });
   if (reporter) report_contacts();
   controller.update(states, settings.detail, h, report);
+  if (logs()) log_step();
 }
 
 template <class T>

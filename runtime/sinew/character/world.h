@@ -42,11 +42,15 @@ enum class RootDrive : std::uint8_t {
 
 /// Where a grounded character follows its animation: turned about the world's vertical, then moved.
 struct Displacement {
-  double x = 0, y = 0;  ///< m
-  double yaw = 0;       ///< rad
+  double x = 0;    ///< m, world
+  double y = 0;    ///< m, world
+  double yaw = 0;  ///< rad, about Z
 
+  /// Whether it moves anything.
   bool any() const { return x != 0 || y != 0 || yaw != 0; }
+  /// By yaw, about the world's vertical.
   Quat<double> turn() const { return Quat<double>(Eigen::AngleAxisd(yaw, Vec3<double>::UnitZ())); }
+  /// The one that leads back: then() of the two is none.
   Displacement inverse() const {
     const Vec3<double> back = turn().conjugate() * Vec3<double>(-x, -y, 0);
     return {back.x(), back.y(), -yaw};
@@ -58,19 +62,22 @@ struct Displacement {
   }
 };
 
+/// What World::add_character() is told of one character. Refused where strength, a limit of the root's or a
+/// help is negative or NaN, where the tone is none, and where `detail` is refused.
 struct CharacterSettings {
-  RootDrive root = RootDrive::kKinematic;
-  double root_force = 2000;  ///< N, assisted
-  double root_torque = 600;  ///< N·m, assisted
-  /// N and N·m of a human, grounded: what an invisible hand may do where the ground can't. Scaled with the
-  /// character's weight and size; what it did is in the report.
-  double help_force = 8, help_torque = 8;
-  double strength = 1;       ///< scales every muscle; 0 = ragdoll, infinity = pure playback
-  Tone tone = Tone::kRigid;  ///< how far all muscles give way below their limits, see set_tone()
-  bool ground_contact = true;
+  RootDrive root = RootDrive::kKinematic;  ///< see Character::set_root_drive()
+  double root_force = 2000;                ///< N, assisted
+  double root_torque = 600;                ///< N·m, assisted
+  /// N of a human, grounded: what an invisible hand may do where the ground can't. Scaled with the
+  /// character's weight; what it did is in the report.
+  double help_force = 8;
+  double help_torque = 8;       ///< N·m of a human, likewise; scaled with weight and size
+  double strength = 1;          ///< scales every muscle; 0 = ragdoll, infinity = pure playback
+  Tone tone = Tone::kRigid;     ///< how far all muscles give way below their limits, see set_tone()
+  bool ground_contact = true;   ///< meets what is static: ground, obstacles, the host's shapes
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
-  CharacterDetail detail;
-  std::uint32_t layers = 1;  ///< bits that queries (queries.h) choose by; collisions do not ask
+  CharacterDetail detail;       ///< see Character::set_detail()
+  std::uint32_t layers = 1;     ///< bits that queries (queries.h) choose by; collisions do not ask
 };
 
 /// What the last step did with one character.
@@ -79,9 +86,9 @@ struct CharacterReport {
   int dofs = 0;                   ///< degrees of freedom of the character
   int unknown_dofs = 0;           ///< of these, handed to the optimizer; 0 = pure playback
   int baked = 0;                  ///< joints that CharacterDetail::bake left out of the (last) solve
-  int unbaked = 0;  ///< that it had to solve for all the same: at a limit, or about to go far wrong
-  int outer_passes = 0;
-  int factorisations = 0;
+  int unbaked = 0;           ///< that it had to solve for all the same: at a limit, or about to go far wrong
+  int outer_passes = 0;      ///< of truncated Newton (optimizer/newton.h), over all parts of its whole island
+  int factorisations = 0;    ///< of the inner problem's matrix, likewise
   int simplified_steps = 0;  ///< steps of simplified Newton, with the matrix of the pass before
   int corrections = 0;       ///< second-order corrections that saved a full step
   int plain_passes = 0;      ///< passes without the geometric terms, which made the matrix indefinite
@@ -93,7 +100,7 @@ struct CharacterReport {
   int damped = 0;        ///< of the parts, slowed because energy had come from nowhere (EnergyBalance)
   int frozen = 0;        ///< trees that were stopped where they stood: no pose could be found
   bool crowded = false;  ///< near one whom it was not solved together with: WorldSettings::island_dofs
-  bool converged = true;
+  bool converged = true;  ///< every part of the step did, and nobody solved with it was frozen
   bool carried = false;  ///< the driven root's target leapt: put there as by reset(), limp joints swinging on
   double kinetic_energy = 0;                             ///< J
   double potential_energy = 0;                           ///< J, gravity
@@ -101,7 +108,8 @@ struct CharacterReport {
   Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
   Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
   double penetration = 0;                                ///< m, deepest contact
-  double help_force = 0, help_torque = 0;  ///< N, N·m: what held a grounded root besides the ground
+  double help_force = 0;                                 ///< N that held a grounded root besides the ground
+  double help_torque = 0;                                ///< N·m, likewise
   /// m, where Accuracy::estimate_error asks for it: how far this step alone, by its finite length, took the
   /// character from the exact motion (rms of all mass). 0 where the animation was played: that is exact.
   double estimated_error = 0;
@@ -109,27 +117,28 @@ struct CharacterReport {
 
 /// One-body tree: a ball, a box.
 struct PropSettings {
-  Shape shape = Shape::kSphere;
-  Vec3<double> size = Vec3<double>::Constant(0.1);  ///< as Collider::size
-  double mass = 1;
-  double friction = 0.6;
-  double restitution = 0;  ///< see Collider::restitution
-  Transform<double> pose;
+  Shape shape = Shape::kSphere;                          ///< solid, of uniform density
+  Vec3<double> size = Vec3<double>::Constant(0.1);       ///< as Collider::size
+  double mass = 1;                                       ///< kg, > 0
+  double friction = 0.6;                                 ///< as Collider::friction
+  double restitution = 0;                                ///< see Collider::restitution
+  Transform<double> pose;                                ///< shape → world
   Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
   std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
 };
 
+/// What a world is made with; nothing changes it later.
 struct WorldSettings {
-  Accuracy accuracy;
-  LevelOfDetail detail;
-  Vec3<double> gravity{0, 0, -9.81};
-  double ground_height = 0;
-  bool ground = true;
-  double ground_friction = 1.0;   ///< multiplies the collider's
-  double ground_restitution = 0;  ///< see Collider::restitution
-  bool body_contact = true;       ///< characters and props meet each other
-  bool ground_support = true;     ///< the floor bears what a driven root would (see effects/support.h)
+  Accuracy accuracy;                  ///< of all solves, against their time
+  LevelOfDetail detail;               ///< when characters go up and down, and the budget of a step
+  Vec3<double> gravity{0, 0, -9.81};  ///< m/s², world
+  double ground_height = 0;           ///< m, world
+  bool ground = true;                 ///< a level floor at that height; needs Contacts to be declared
+  double ground_friction = 1.0;       ///< multiplies the collider's
+  double ground_restitution = 0;      ///< see Collider::restitution
+  bool body_contact = true;           ///< characters and props meet each other
+  bool ground_support = true;         ///< the floor bears what a driven root would (see effects/support.h)
   int workers = 1;      ///< threads that a step may use, through its ParallelFor; each has its own memory
   bool batches = true;  ///< characters of one rig that nothing is near are solved several at a time, one per
                         ///< SIMD lane: faster, the same bits (float only)
@@ -144,6 +153,7 @@ struct WorldMemory {
   std::size_t characters = 0;  ///< and props
   std::size_t solving = 0;  ///< of the workers: the first can solve the largest island, the others small ones
 
+  /// What WorldSettings::memory_cap limits.
   std::size_t total() const { return rigs + characters + solving; }
 };
 
@@ -166,6 +176,7 @@ struct CharacterState;  // residual, history and solver state; world.cpp
 template <class T>
 class Character {
  public:
+  /// World::character() makes them; null stands for nobody.
   explicit Character(CharacterState<T>* state) : state_(state) {}
   /// Whether it stands for a character.
   bool valid() const { return state_ != nullptr; }
@@ -175,18 +186,23 @@ class Character {
   Status set_target(std::span<const JointJet<T>> jets);
   /// Puts the character on the present target at once, with the target's velocity; forgets its history.
   Status reset();
-  /// Strength of all muscles, or of the subtree below one joint, ≥ 0.
-  Status set_strength(T strength);
-  T strength() const;
-  Status set_strength(int joint, T strength);
-  /// Strength of one of Skeleton::muscles, or of all of a group, ≥ 0; the character's and the joint's
+  /// Strength of all muscles, ≥ 0: 0 is limp, infinity never yields. The joints' and the muscles' own
   /// multiply it.
+  Status set_strength(T strength);
+  /// That of all muscles, as it was set last.
+  T strength() const;
+  /// Strength of a joint's muscles and of all below it, ≥ 0; that of all muscles multiplies it. Refuses what
+  /// is no simulated joint.
+  Status set_strength(int joint, T strength);
+  /// Strength of one of Skeleton::muscles, ≥ 0; the character's and the joint's multiply it.
   Status set_muscle_strength(int muscle, T strength);
+  /// The same of all muscles of a group (Muscle::group); refuses one that no muscle has.
   Status set_group_strength(const char* group, T strength);
-  /// Tone of all muscles, or of those below one joint: how stiffly they stay with the animation below their
-  /// limits (muscle/tone.h). Rigid ones (the default) cost nothing; the others are solved for while something
-  /// moves them, and play the animation to the bit while nothing does.
+  /// Tone of all muscles: how stiffly they stay with the animation below their limits (muscle/tone.h). Rigid
+  /// ones (the default) cost nothing; the others are solved for while something moves them, and play the
+  /// animation to the bit while nothing does. The first that is not rigid allocates.
   Status set_tone(Tone tone);
+  /// Of a joint and all below it. Refuses what is no simulated joint.
   Status set_tone(int joint, Tone tone);
   /// Of one joint alone, all of its degrees of freedom; stiffness > 0 (N·m/rad, infinite: rigid), damping
   /// ratio ≥ 0.
@@ -198,6 +214,7 @@ class Character {
   /// What one of Skeleton::muscles gives of its joint's torque(), N·m: see Muscle. 0 where there is none
   /// such.
   T muscle_torque(int muscle) const;
+  /// What holds the root from the next step on; wakes who sleeps.
   Status set_root_drive(RootDrive drive);
   /// Where a grounded character follows its animation since something moved it: what a host adds to its own
   /// place of the character, if it wants to. Targets are given as if nothing had happened; reset() forgets
@@ -210,7 +227,9 @@ class Character {
   Status displace(const Displacement& further);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);
+  /// How much work it may get from the next step on. Refuses what validate() does; `detail` stays then.
   Status set_detail(const CharacterDetail& detail);
+  /// As it was set last.
   const CharacterDetail& detail() const;
   /// A hit: impulse (N·s, world) at a world point on the body of a joint, at the beginning of the next step,
   /// whatever muscles hold it; they bring it back. One that moves nothing by a millimetre is left to them.
@@ -218,22 +237,23 @@ class Character {
   /// A load: force (N, world) at a world point on the body of a joint, during the next step. Muscles bear it
   /// as far as they can. What pushes for longer is applied in every step.
   Status apply_force(int joint, const Vec3<T>& point, const Vec3<T>& force);
+  /// The world's own copy, which all characters with an equal one share.
   const Skeleton& skeleton() const;
   std::span<const Transform<T>> local() const;  ///< [joint] joint → parent
   std::span<const Transform<T>> model() const;  ///< [joint] joint → world
   /// The root's origin, world, m: local() and model() hold it rounded to T, the simulation does not.
   Vec3<double> position() const;
-  /// Torque that the animation (or the muscle) exerts per DOF, N·m (N for translations), and |torque| /
-  /// limit.
+  /// [DOF] that the animation (or the muscle) exerts, N·m (N for translations).
   std::span<const T> torque() const;
   // model(), and of a character that was only played load(), limit() and the report's totals, are worked out
   // when they are first asked for after the step: not by two threads at once.
-  std::span<const T> load() const;   ///< 0 where the DOF has no muscle (root); 1 = saturated; one for all
-                                     ///< three of an ellipsoidal limit
-  std::span<const T> limit() const;  ///< of the direction in which it pulls now
+  std::span<const T> load() const;   ///< [DOF] |torque| / limit: 0 where it has no muscle (root);
+                                     ///< 1 = saturated; one for all three of an ellipsoidal limit
+  std::span<const T> limit() const;  ///< [DOF] N·m, of the direction in which it pulls now
   int first_dof(int joint) const;    ///< index into the spans above; −1 unless 0 ≤ joint < body_count
   std::span<const std::uint8_t> unknown() const;  ///< per DOF: 1 where the last step solved for it
   bool on_animation() const;                      ///< every joint is exactly where the clip wants it
+  /// What the last step did with it.
   const CharacterReport& report() const;
 
  private:
@@ -246,9 +266,10 @@ struct DeclareNothing {};
 /// Names one effect that was added to a character or prop. Effects can be taken away, so it is counted over
 /// all worlds of a program: one whose effect is gone, or is another world's, finds nothing.
 struct EffectId {
-  std::uint32_t slot = 0;
+  std::uint32_t slot = 0;    ///< where the world keeps it; used again when the effect is gone
   std::uint32_t serial = 0;  ///< 0: none
 
+  /// Names the same effect.
   bool operator==(const EffectId&) const = default;
 };
 
@@ -273,6 +294,8 @@ class World {
   /// Set-up: allocates everything that stepping needs. Returns an index, or -1 with `status` set. The
   /// skeleton is copied. The character stands at its rest pose until a target is set and reset() called.
   int add_character(const Skeleton& skeleton, const CharacterSettings& settings, Status& status);
+  /// Likewise, of a prop, which stands and moves as its settings say. Refuses what makes no valid body
+  /// (skeleton.h, validate()) and velocities that are not finite.
   int add_prop(const PropSettings& settings, Status& status);
   /// Static, world space (`joint` unused). `layers`: see CharacterSettings.
   Status add_obstacle(const Collider& obstacle, std::uint32_t layers = 1);
@@ -292,14 +315,16 @@ class World {
   Status reset_particles(int index, const Vec3<T>& velocity = Vec3<T>::Zero());
   Vec3<T> particle(int index, int node) const;           ///< world, m
   Vec3<T> particle_velocity(int index, int node) const;  ///< m/s; of fixed nodes 0
+  /// What the last step did with a particle body.
   const CharacterReport& particle_report(int index) const;
-  int particles_count() const;
+  int particles_count() const;  ///< particle bodies
 
+  /// A handle; null where the index names nobody.
   Character<T> character(int index);
-  int character_count() const;
-  int prop_count() const;
-  Transform<T> prop_pose(int index) const;
-  Vec3<T> prop_velocity(int index) const;
+  int character_count() const;              ///< parked ones included
+  int prop_count() const;                   ///< parked ones included
+  Transform<T> prop_pose(int index) const;  ///< shape → world
+  Vec3<T> prop_velocity(int index) const;   ///< m/s, world, of its centre
   /// Puts a prop there, moving so (m/s and rad/s, world); brings a parked one back.
   Status set_prop(int index, const Transform<T>& pose, const Vec3<T>& velocity,
                   const Vec3<T>& angular_velocity);
@@ -307,9 +332,11 @@ class World {
   /// says about its settings. The address stays good while the world lives and the effect is not taken away;
   /// `id`, where asked for, tells whether it was.
   Status add_effect(int character, std::unique_ptr<Effect<T>> effect, EffectId* id = nullptr);
+  /// The same for a prop.
   Status add_prop_effect(int prop, std::unique_ptr<Effect<T>> effect, EffectId* id = nullptr);
   /// Null where the effect was taken away, or never was this world's.
   Effect<T>* effect(EffectId id) const;
+  /// Takes one effect away and destroys it; its owner wakes. Refuses what effect() does not find.
   Status remove_effect(EffectId id);
   /// All of a character's.
   Status remove_effects(int character);
@@ -323,17 +350,24 @@ class World {
     else
       return declare([]() -> std::unique_ptr<IslandEffect<T>> { return std::make_unique<E<T>>(); });
   }
+  /// What declare<E>() calls for an effect on islands (effects/island_effect.h). Refused with kOutOfRange
+  /// where memory_cap leaves no room.
   Status declare(MakeIslandEffect<T> make);
+  /// What declare<E>() calls for a term of every solve (effects/step_plan.h). Refused once there is a
+  /// character, prop or particle body.
   Status declare(DeclareTerm<T> term);
 
   /// Takes a prop out of the world, where it costs nothing and touches nobody, until set_prop.
   Status park_prop(int index);
+  /// What the last step did with a prop.
   const CharacterReport& prop_report(int index) const;
   /// Takes a character out of the world, where it costs nothing and touches nobody, until it is brought back:
   /// onto its target then, as by reset().
   Status park_character(int index);
+  /// Brings a character back, onto its target; its displacement() stays. One that was not parked is put there
+  /// all the same.
   Status unpark_character(int index);
-  bool parked(int index) const;
+  bool parked(int index) const;  ///< of characters
 
   /// Advances by h seconds (1e-5 ≤ h ≤ 0.25; below, differences of float positions are no velocities).
   /// Allocates nothing, throws nothing, takes no lock. On an error nothing has moved. The result has the same
@@ -342,6 +376,7 @@ class World {
 
   /// Of the last step.
   const WorldReport& report() const;
+  /// Counted anew at each call. O(characters + props + particle bodies).
   WorldMemory memory() const;
 
   // Snapshots: everything that the next step depends on, as flat bytes (0.7 kB of a humanoid of 37 DOF that
@@ -359,9 +394,12 @@ class World {
   std::size_t save(std::span<std::byte> out) const;
   /// Refuses what save() of such a world did not write, with nothing moved.
   Status restore(std::span<const std::byte> snapshot);
-  /// The same for the inputs that wait for the next step: targets and impulses.
+  /// Bytes that save_inputs() takes at most.
   std::size_t inputs_capacity() const;
+  /// The inputs that wait for the next step: targets, impulses and forces. Bytes written, or 0 where `out` is
+  /// too small.
   std::size_t save_inputs(std::span<std::byte> out) const;
+  /// Refuses what save_inputs() of such a world did not write, with nothing changed.
   Status restore_inputs(std::span<const std::byte> inputs);
   /// What a byte of the snapshot that save() would write now stands for.
   SnapshotField snapshot_field(std::size_t byte) const;

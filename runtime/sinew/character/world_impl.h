@@ -166,6 +166,7 @@ struct World<T>::Impl {
   BodyRef name_of(const TouchingBody& body) const;
   static void work(void* context, int index);
   void keep_sleepers();
+  void log_step() const;
   void step_all(T step, const ParallelFor& parallel_for);
   MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all(), games}; }
   Surroundings surroundings() const {

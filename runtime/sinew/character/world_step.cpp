@@ -5,6 +5,7 @@
 #include "sinew/character/playback.h"
 #include "sinew/character/sleep.h"
 #include "sinew/character/world_impl.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -19,6 +20,7 @@ double now(const Budget& budget) {
 /// is full; null where all have to wait.
 template <class Entry>
 const Entry* add_waiting(std::vector<Entry>& list, const Entry& entry, int lanes, std::size_t most) {
+  SINEW_ASSERT(list.size() < list.capacity());
   list.push_back(entry);
   const auto alike = [&](const Entry& other) { return other.alike(entry); };
   if (std::count_if(list.begin(), list.end(), alike) == lanes) return &list.back();
@@ -112,6 +114,7 @@ void World<T>::Impl::check_later(int island, Worker& worker, double spent) {
 /// Checks who is like `one` in a batch, plays who can be, and goes on with the others.
 template <class T>
 void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
+  SINEW_ZONE("check in a batch");
   std::array<Unchecked, BatchCheck::kMostLanes> batch;
   const std::size_t count = take_alike(worker.unchecked, one, batch);
   const double begin = now(settings.detail.budget);
@@ -183,6 +186,7 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
 
 template <class T>
 void World<T>::Impl::step_island(int island, Worker& worker) {
+  SINEW_ZONE("island");
   const double begin = now(settings.detail.budget);
   worker.members.clear();
   worker.ties.clear();

@@ -53,7 +53,7 @@ std::unique_ptr<Population> Population::create(const Skeleton& skeleton, const P
   impl->world = std::make_unique<World<float>>(settings.world);
   for (int n = 0; n < settings.places; ++n) {
     if (impl->world->add_character(skeleton, settings.character, status) < 0) return nullptr;
-    impl->world->park_character(n);
+    (void)impl->world->park_character(n);
   }
   impl->capacity = crowd.capacity;
   impl->joints = static_cast<int>(skeleton.joints.size());
@@ -89,12 +89,12 @@ bool Population::Impl::enter(int character, double h) {
   free.pop_back();
   place_of[character] = place;
   character_of[place] = character;
-  world->unpark_character(place);
+  (void)world->unpark_character(place);
   return true;
 }
 
 void Population::Impl::leave(int place) {
-  world->park_character(place);
+  (void)world->park_character(place);
   place_of[character_of[place]] = -1;
   character_of[place] = -1;
   free.push_back(place);

@@ -8,6 +8,7 @@
 
 namespace sinew {
 
+/// The water. attach() refuses numbers that are not finite, and a density or volume below 0.
 struct BuoyancySettings {
   double level = 0;                          ///< m, height of the surface
   double density = 1000;                     ///< kg/m³
@@ -15,6 +16,7 @@ struct BuoyancySettings {
   double volume = 1;                         ///< times that of the colliders: they may overlap, or hold air
   std::vector<std::string> joints;           ///< whose colliders feel it; none named: all
 
+  /// Calls visitor(name, member) for each, by its name in scene files.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("level", level);
@@ -25,10 +27,12 @@ struct BuoyancySettings {
   }
 };
 
+/// Lifts and drags one tree's colliders by their share that is under water. Streaming water may give energy.
 template <class T>
 class Buoyancy final : public Effect<T> {
  public:
-  using Settings = BuoyancySettings;
+  using Settings = BuoyancySettings;  ///< what can be set
+  /// Without a check: attach() refuses what cannot be meant.
   explicit Buoyancy(const Settings& s) : settings(s) {}
 
   Status attach(const Skeleton& skeleton, const Tree<T>& tree) override;

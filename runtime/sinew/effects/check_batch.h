@@ -12,7 +12,7 @@ namespace sinew {
 
 /// What the motions of a batch have in common.
 struct CheckedRig {
-  const Tree<float>& tree;
+  const Tree<float>& tree;                        ///< of all of them
   const SupportPoints<float>* support = nullptr;  ///< null: no ground bears them
   Vec3<float> gravity = Vec3<float>::Zero();      ///< m/s², world
   float ground = 0;                               ///< m, its height
@@ -21,7 +21,7 @@ struct CheckedRig {
 /// As a world calls it.
 class BatchCheck {
  public:
-  static constexpr int kMostLanes = 16;
+  static constexpr int kMostLanes = 16;  ///< of any instruction set's lanes()
 
   virtual ~BatchCheck() = default;
   /// Characters per batch.
@@ -39,6 +39,7 @@ class BatchCheck {
 /// Working memory of such checks; keeps nothing from one to the next.
 class MotionChecker final : public BatchCheck {
  public:
+  /// With the kernels of `set`, which the processor must have.
   explicit MotionChecker(InstructionSet set = best_instruction_set());
   int lanes() const override;
   void reserve(int bodies, int dofs, int points) override;
@@ -54,6 +55,7 @@ class MotionChecker final : public BatchCheck {
 /// What World::declare takes. Without, animations are checked one by one, with the same bits.
 template <class T>
 struct Batches {
+  /// Writes its functions into the world's plan.
   static void declare(StepPlan<T>& plan);
 };
 

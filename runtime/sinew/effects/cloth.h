@@ -12,16 +12,18 @@
 
 namespace sinew {
 
+/// One sheet. An edge that more than two triangles share does not resist bending.
 struct ClothSettings {
-  Anchor frame;
-  std::vector<Vec3<double>> positions;  ///< m, at rest, in the frame's axes
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<int> fixed;  ///< nodes that ride on the frame
-  double density = 0.2;    ///< kg/m²
-  double stretch = 400;    ///< N/m: a strip pulled by so much per metre of width is twice as long
-  double bending = 3e-5;   ///< N·m
-  double radius = 0.01, friction = 0.5;  ///< see ParticleBody
-  double damping = 0;                    ///< N·s/m of every node against the air
+  Anchor frame;                               ///< what it hangs on
+  std::vector<Vec3<double>> positions;        ///< m, at rest, in the frame's axes
+  std::vector<std::array<int, 3>> triangles;  ///< indices of positions, either way round
+  std::vector<int> fixed;                     ///< nodes that ride on the frame
+  double density = 0.2;                       ///< kg/m²
+  double stretch = 400;   ///< N/m: a strip pulled by so much per metre of width is twice as long
+  double bending = 3e-5;  ///< N·m
+  double radius = 0.01;   ///< m, see ParticleBody
+  double friction = 0.5;  ///< see ParticleBody
+  double damping = 0;     ///< N·s/m of every node against the air
 };
 
 /// A rectangle of columns × rows cells in the x–z plane, its upper edge along x from the origin, hanging

@@ -32,8 +32,8 @@ namespace sinew {
 /// ∇²distance = curvature·(1 − normal·normalᵀ − straight·straightᵀ).
 template <class T>
 struct SignedDistance {
-  T distance = T(0);
-  Vec3<T> normal = Vec3<T>::UnitZ();
+  T distance = T(0);                   ///< m
+  Vec3<T> normal = Vec3<T>::UnitZ();   ///< unit, outwards
   T curvature = T(0);                  ///< 1/m; 0 over a face
   Vec3<T> straight = Vec3<T>::Zero();  ///< unit tangent along which the surface is straight, or zero
 };

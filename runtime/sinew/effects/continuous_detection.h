@@ -14,11 +14,15 @@ namespace sinew {
 template <class T>
 class ContinuousDetection final : public IslandEffect<T> {
  public:
-  using typename IslandEffect<T>::Trees;
+  using typename IslandEffect<T>::Trees;  ///< all that is solved together
 
+  /// Nothing: it works in the trees' own memory.
   void reserve(const SolveCapacity& /*capacity*/) override {}
+  /// Of the object alone.
   std::size_t bytes(const SolveCapacity& /*capacity*/) const override { return sizeof *this; }
+  /// Lowers `share` [tree] of both sides of a contact to the part of the guess after which they first touch.
   void limit_guess(Trees trees, std::span<const Contact<T>> contacts, T h, std::span<T> share) override;
+  /// Whether they touch at any time of the guess; never with a plane, which nothing passes.
   bool meets_on_the_way(Trees trees, const Contact<T>& contact) const override;
 };
 

@@ -28,17 +28,17 @@ enum class AnchorKind : std::uint8_t { kWorld, kCharacter, kProp, kParticles };
 /// A frame that rides on something: on a joint of a character, a prop, a particle (`joint` is then the node;
 /// particles do not turn), or on nothing.
 struct Anchor {
-  AnchorKind kind = AnchorKind::kWorld;
-  int index = 0;            ///< of the character, prop or particle body
-  int joint = 0;            ///< of the character; node of the particle body
-  Transform<double> frame;  ///< in the joint's axes; of the world: in the world's
+  AnchorKind kind = AnchorKind::kWorld;  ///< what it rides on
+  int index = 0;                         ///< of the character, prop or particle body
+  int joint = 0;                         ///< of the character; node of the particle body
+  Transform<double> frame;               ///< in the joint's axes; of the world: in the world's
 };
 
 /// An anchor found: a tree of the world, one of its bodies, and the frame in that body's axes.
 struct Place {
-  int state = -1;  ///< −1: the world
-  int body = 0;
-  Transform<double> frame;
+  int state = -1;           ///< number of the tree in the world; −1: the world itself
+  int body = 0;             ///< of that tree
+  Transform<double> frame;  ///< in the body's axes; of the world: in the world's
 };
 
 /// A material point.
@@ -57,8 +57,8 @@ struct CouplingNode {
 /// ½ k (|Σ wᵢ xᵢ − offset + shift| − length + shortened)².
 template <class T>
 struct Stencil {
-  int count = 2;
-  int node[4] = {0, 0, 0, 0};
+  int count = 2;                            ///< of nodes, 2 to 4
+  int node[4] = {0, 0, 0, 0};               ///< the first `count` are read
   T weight[4] = {T(1), T(-1), T(0), T(0)};  ///< sum 0
   T stiffness = T(0);                       ///< N/m
   T length = T(0);                          ///< m
@@ -72,33 +72,37 @@ struct Stencil {
   Vec3<T> offset_before = Vec3<T>::Zero();    ///< where the step began, which may be taken back
   Vec3<T> unclosed_offset = Vec3<T>::Zero();  ///< the offset before this step closed it further
   bool yields = false;                        ///< to a driven root, in this step: see close_slowly()
-  CarriedForce<T> carried, carried_before;    ///< its pull, where a loop is rigid; the same
+  CarriedForce<T> carried;                    ///< its pull, where a loop is rigid
+  CarriedForce<T> carried_before;             ///< the same where the step began, which may be taken back
 };
 
 /// Four nodes; the rest shape enters through the gradients of its linear shape functions.
 template <class T>
 struct Tetrahedron {
-  std::array<int, 4> node{};
+  std::array<int, 4> node{};       ///< its corners
   std::array<Vec3<T>, 4> slope{};  ///< 1/m; the deformation gradient is F = Σ xᵢ slopeᵢᵀ
   T volume = T(0);                 ///< m³, at rest
-  T mu = T(0), lame = T(0);        ///< Pa: the paper's μ and λ, see set_material
+  T mu = T(0);                     ///< Pa: the paper's μ, see set_material
+  T lame = T(0);                   ///< Pa: the paper's λ
 };
 
+/// Second derivative of an energy by four points, see tetrahedron_curvature().
 template <class T>
 using TetrahedronHessian = Eigen::Matrix<T, 12, 12>;
 
 /// Elements that live and die together: one loop, one strand, one piece of cloth or tissue.
 template <class T>
 struct Coupling {
-  std::vector<CouplingNode<T>> nodes;
-  std::vector<Stencil<T>> stencils;
-  std::vector<Tetrahedron<T>> tetrahedra;
-  bool active = true;
-  bool closes_slowly = false;  ///< stencils that begin open close at a limited speed (loops)
-  bool strained = false;       ///< one who is tied has a driven root, and limbs: see close_slowly()
-  bool driven = false;         ///< in this step: its velocities are those of closing, too
-  T length_scale = T(1), speed_scale = T(1);  ///< of what it ties, by a human's: see Scale
-  double energy = 0;                          ///< J, when last measured
+  std::vector<CouplingNode<T>> nodes;      ///< that its elements name by index
+  std::vector<Stencil<T>> stencils;        ///< springs, bends, closed points
+  std::vector<Tetrahedron<T>> tetrahedra;  ///< of soft tissue
+  bool active = true;                      ///< false: an open loop, which does nothing
+  bool closes_slowly = false;              ///< stencils that begin open close at a limited speed (loops)
+  bool strained = false;  ///< one who is tied has a driven root, and limbs: see close_slowly()
+  bool driven = false;    ///< in this step: its velocities are those of closing, too
+  T length_scale = T(1);  ///< of what it ties, by a human's: see Scale
+  T speed_scale = T(1);   ///< the same of speeds
+  double energy = 0;      ///< J, when last measured
 
   /// Whether something that began open is still being closed: that does work.
   bool closes() const {

@@ -21,8 +21,8 @@ namespace sinew {
 /// Where a tree is within a step. Positions are relative to the common origin, axes are the world's.
 template <class T>
 struct EffectPose {
-  const Tree<T>& tree;
-  const Kinematics<T>& kinematics;
+  const Tree<T>& tree;                  ///< that the effect acts on
+  const Kinematics<T>& kinematics;      ///< at this pose
   std::span<const Transform<T>> local;  ///< [body] joint → parent, now
   std::span<const Transform<T>> start;  ///< [body] when the step began
   Vec3<double> common_origin;           ///< world, m
@@ -39,7 +39,8 @@ struct EffectPose {
 /// gradient.
 template <class T>
 struct Wrenches {
-  std::span<Vec3<T>> force, moment;  ///< [body]
+  std::span<Vec3<T>> force;   ///< [body] N
+  std::span<Vec3<T>> moment;  ///< [body] N·m
 
   /// The gradient by the material point at x.
   void add(int body, const Vec3<T>& x, const Vec3<T>& gradient) const {
@@ -64,6 +65,9 @@ struct Curvature {
   }
 };
 
+/// Something that acts on one tree. Every effect overrides attach(), instances() and bytes(); one that is an
+/// energy of the pose add_gradient(), add_curvature() and add_load(); one of single joints add_rows() and
+/// most_rows().
 template <class T>
 class Effect {
  public:

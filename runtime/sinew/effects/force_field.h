@@ -9,12 +9,14 @@
 
 namespace sinew {
 
+/// The field. attach() refuses numbers that are not finite, and a reach that is not above 0.
 struct ForceFieldSettings {
   Vec3<double> center = Vec3<double>::Zero();  ///< m, world
   double acceleration = 0;                     ///< m/s² towards the centre; negative: away from it
   double reach = 1;                            ///< m
   std::vector<std::string> joints;             ///< whose bodies feel it; none named: all
 
+  /// Calls visitor(name, member) for each, by its name in scene files.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("center", center);
@@ -24,10 +26,12 @@ struct ForceFieldSettings {
   }
 };
 
+/// Pulls one tree's bodies at their centres of mass, by the same acceleration whatever their mass.
 template <class T>
 class ForceField final : public Effect<T> {
  public:
-  using Settings = ForceFieldSettings;
+  using Settings = ForceFieldSettings;  ///< what can be set
+  /// Without a check: attach() refuses what cannot be meant.
   explicit ForceField(const Settings& s) : settings(s) {}
 
   Status attach(const Skeleton& skeleton, const Tree<T>& tree) override;

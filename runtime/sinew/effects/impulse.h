@@ -7,10 +7,11 @@
 
 namespace sinew {
 
+/// A force on a point of a body, which moves with it.
 template <class T>
 struct ExternalForce {
-  int body = 0;
-  Vec3<T> local = Vec3<T>::Zero();  ///< body axes
+  int body = 0;                     ///< of its tree
+  Vec3<T> local = Vec3<T>::Zero();  ///< the point, m, body axes
   Vec3<T> force = Vec3<T>::Zero();  ///< world, N
 };
 
@@ -28,6 +29,7 @@ struct PushTerm {
 /// What World::declare takes. Without, Character::apply_impulse is refused.
 template <class T>
 struct Impulses {
+  /// Writes its functions into the world's plan.
   static void declare(StepPlan<T>& plan);
 };
 

@@ -17,8 +17,8 @@ namespace sinew {
 /// One tree of a solve.
 template <class T>
 struct IslandTree {
-  TreeProblem<T>& problem;
-  History<T>& history;
+  TreeProblem<T>& problem;           ///< what its solve works on
+  History<T>& history;               ///< motion of its bodies, which the next step begins with
   std::span<std::array<T, 6>> rate;  ///< [body] joint speeds over the last step
   Kinematics<T>& guessed;            ///< room, for the pose that a solve starts from
   double& elastic_energy;            ///< J, stored in contacts and joint limits
@@ -32,10 +32,12 @@ struct IslandTree {
   }
 };
 
+/// Something that acts on all that is solved together. Every one overrides reserve() and bytes(), and what it
+/// acts by.
 template <class T>
 class IslandEffect {
  public:
-  using Trees = std::span<const IslandTree<T>>;
+  using Trees = std::span<const IslandTree<T>>;  ///< all that is solved together
 
   virtual ~IslandEffect() = default;
   /// Set-up: memory for what may be solved together. The only place to allocate.

@@ -36,8 +36,9 @@ void append_bounds(const JointStep<T, Law>& joint, const T& scalar, Number<T> lo
 /// Ranges of single degrees of freedom.
 template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
 struct JointLimitRows {
-  using Step = JointStep<T, Law>;
+  using Step = JointStep<T, Law>;  ///< a joint as the step has it now
 
+  /// Whether it has ranges of single degrees of freedom; its offset from the rest pose then.
   static bool look(const Step& joint, JointOffset<T>& from_rest, Rows& /*rows*/) {
     const Law& law = joint.law;
     const bool ranges = law.swing_limit[joint.body] < 0 && joint.tree.type[joint.body] != JointType::kFree &&
@@ -47,6 +48,7 @@ struct JointLimitRows {
     if (ranges) from_rest = offset_of<T>(joint.tree, joint.body, rest_of(joint), joint.local);
     return ranges;
   }
+  /// Adds the rows of its k-th degree of freedom.
   static void append(const Step& joint, const JointOffset<T>& from_rest, int k, Rows& rows) {
     const int dof = joint.first_dof() + k;
     const Number<T> lower = joint.law.lower[dof], upper = joint.law.upper[dof], most = joint.law.kUnlimited;
@@ -59,7 +61,7 @@ struct JointLimitRows {
                   upper < most ? always : !always, at_start, joint.row(from_rest, RowScalar::kFromRest, k),
                   rows, joint.unit(k));
   }
-  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
+  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};  ///< as a plan holds it
 
  private:
   static Transform<T> rest_of(const Step& joint) { return joint.tree.rest[joint.body].template cast<T>(); }
@@ -136,14 +138,17 @@ Mat3<T> cone_curvature(const Quat<T>& relative, const Vec3<T>& a, const T& swing
   return turn.transpose() * (swing_slope * swing + twist_slope * twist) * turn;
 }
 
+/// Cones and twists of ball joints.
 template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
 struct ConeRows {
+  /// As a plan holds it.
   static constexpr ConeTerm<T, Law, Rows> kTerm{append_cone<T, Law, Rows>, cone_curvature<T>};
 };
 
 /// What World::declare takes. Without, joints bend as far as they are bent.
 template <class T>
 struct JointLimits {
+  /// Writes its functions into the world's plan.
   static void declare(StepPlan<T>& plan);
 };
 

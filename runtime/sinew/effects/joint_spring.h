@@ -8,6 +8,8 @@
 
 namespace sinew {
 
+/// The spring and damper of every degree of freedom. attach() refuses stiffness and damping below 0, and a
+/// rest that is not finite.
 struct JointSpringSettings {
   double stiffness = 10;                     ///< N·m/rad (N/m where the joint slides), ≥ 0
   double damping = 0;                        ///< N·m·s/rad (N·s/m), ≥ 0
@@ -15,6 +17,7 @@ struct JointSpringSettings {
                                              ///< per degree of freedom, rad (m)
   std::vector<std::string> joints;           ///< none named: all that have freedom, but not a free root
 
+  /// Calls visitor(name, member) for each, by its name in scene files.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("stiffness", stiffness);
@@ -24,10 +27,12 @@ struct JointSpringSettings {
   }
 };
 
+/// Springs of one tree's joints; one row per degree of freedom, two with damping.
 template <class T>
 class JointSpring final : public Effect<T> {
  public:
-  using Settings = JointSpringSettings;
+  using Settings = JointSpringSettings;  ///< what can be set
+  /// Without a check: attach() refuses what cannot be meant.
   explicit JointSpring(const Settings& s) : settings(s) {}
 
   Status attach(const Skeleton& skeleton, const Tree<T>& tree) override;

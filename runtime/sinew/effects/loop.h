@@ -10,6 +10,7 @@
 
 namespace sinew {
 
+/// What of two frames stays together.
 enum class LoopKind : std::uint8_t {
   kPoint,     ///< the origins of the frames coincide: a ball joint
   kHinge,     ///< and their z axes
@@ -18,10 +19,12 @@ enum class LoopKind : std::uint8_t {
   kRope,      ///< … or nearer
 };
 
+/// A loop between two frames, one of which may be the world's.
 struct LoopSettings {
-  LoopKind kind = LoopKind::kPoint;
-  Anchor a, b;
-  double length = 0;     ///< m; rod and rope
+  LoopKind kind = LoopKind::kPoint;  ///< what it holds
+  Anchor a;                          ///< one frame
+  Anchor b;                          ///< the other
+  double length = 0;                 ///< m; rod and rope
   double stiffness = 0;  ///< N/m of each point; 0: the weight of the heavier side moves it by 0.1 mm
   bool collide = false;  ///< the two bodies that it holds may touch each other
 };
@@ -30,12 +33,15 @@ struct LoopSettings {
 Status check(const LoopSettings& settings);
 
 /// The elements between two places. `weight` (N): of the heavier side, for the stiffness that settings leave
-/// open.
+/// open; `unit`: its length by a human's (Scale::length), by which hinges and welds hold their axes further
+/// out.
 template <class T>
 Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight,
                       double unit);
 
+/// @cond
 extern template Coupling<float> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
 extern template Coupling<double> make_loop(const LoopSettings&, const Place&, const Place&, double, double);
+/// @endcond
 
 }  // namespace sinew

@@ -8,10 +8,13 @@
 
 namespace sinew {
 
+/// The rows of one joint's muscles, of one character or of a lane of them.
 template <class T, class Law = JointLaw<T>, class Rows = JointRowList<T>>
 struct MuscleRows {
-  using Step = JointStep<T, Law>;
+  using Step = JointStep<T, Law>;  ///< a joint as the step has it now
 
+  /// Whether it has muscles of its single degrees of freedom; its offset from the target then. An ellipsoid
+  /// is added here.
   static bool look(const Step& joint, JointOffset<T>& from_target, Rows& rows) {
     if (!joint.any_dof([&](int dof) { return joint.law.has_muscle(dof); })) return false;
     from_target = offset_of<T>(joint.tree, joint.body, joint.target, joint.local);
@@ -22,6 +25,7 @@ struct MuscleRows {
       }
     return true;
   }
+  /// Adds the row of its k-th degree of freedom.
   static void append(const Step& joint, const JointOffset<T>& from_target, int k, Rows& rows) {
     const int dof = joint.first_dof() + k;
     const auto pulls = joint.law.has_muscle(dof);
@@ -39,7 +43,7 @@ struct MuscleRows {
     }
     rows.add_row(row, pulls);
   }
-  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};
+  static constexpr JointTerm<T, Law, Rows> kTerm{look, append};  ///< as a plan holds it
 
  private:
   static EllipsoidRow<T> ellipsoid(const Step& joint, const JointOffset<T>& from_target) {
@@ -71,6 +75,7 @@ struct MuscleRows {
 /// it takes).
 template <class T>
 struct Muscles {
+  /// Writes its functions into the world's plan.
   static void declare(StepPlan<T>& plan);
 };
 

@@ -14,6 +14,7 @@
 
 namespace sinew {
 
+/// One particle at rest.
 struct ParticleNode {
   Vec3<double> position = Vec3<double>::Zero();  ///< m, at rest, in the frame's axes
   double mass = 0.001;                           ///< kg, of a free node
@@ -22,17 +23,17 @@ struct ParticleNode {
 
 /// Plain data, made by make_strand, make_cloth, make_soft_tissue, or by hand.
 struct ParticleBody {
-  std::string name = "particles";
+  std::string name = "particles";   ///< of the skeleton that carries it
   Anchor frame;                     ///< of a character, a prop or the world
   std::vector<ParticleNode> nodes;  ///< at least one is free
-  /// Indices of nodes. Offsets and lengths in m.
+  /// Nodes by index, weights that add up to 0, length in m; further members are the step's.
   std::vector<Stencil<double>> stencils;
-  std::vector<Tetrahedron<double>> tetrahedra;
-  double radius = 0.005;  ///< m, of every node as others meet it; 0: passes through everything
-  double friction = 0.5;
-  double damping = 0;        ///< N·s/m of every node against the air
-  bool meets_frame = false;  ///< may touch the body whose frame it was made in
-  bool meets_itself = false;
+  std::vector<Tetrahedron<double>> tetrahedra;  ///< nodes by index; each has a volume and a material
+  double radius = 0.005;      ///< m, of every node as others meet it; 0: passes through everything
+  double friction = 0.5;      ///< ≥ 0, Coulomb's coefficient
+  double damping = 0;         ///< N·s/m of every node against the air
+  bool meets_frame = false;   ///< may touch the body whose frame it was made in
+  bool meets_itself = false;  ///< its nodes may touch each other
 };
 
 /// Without nodes: what the settings of all kinds have in common.
@@ -63,7 +64,9 @@ std::vector<int> bodies_of_nodes(const ParticleBody& body);
 template <class T>
 Coupling<T> make_elements(const ParticleBody& body, int state, const Place& place);
 
+/// @cond
 extern template Coupling<float> make_elements(const ParticleBody&, int, const Place&);
 extern template Coupling<double> make_elements(const ParticleBody&, int, const Place&);
+/// @endcond
 
 }  // namespace sinew

@@ -17,12 +17,16 @@
 
 namespace sinew {
 
+/// Bounces of all contacts whose Contact::restitution is above 0; World::declare<Restitution>(). An impact
+/// slower than 0.2 m/s (of a human; or than what gravity makes in two steps) stays inelastic.
 template <class T>
 class Restitution final : public IslandEffect<T> {
  public:
-  using typename IslandEffect<T>::Trees;
+  using typename IslandEffect<T>::Trees;  ///< all that is solved together
 
+  /// For 48 bouncing contacts of one step.
   void reserve(const SolveCapacity& capacity) override;
+  /// That reserve() takes.
   std::size_t bytes(const SolveCapacity& capacity) const override {
     return sizeof *this + capacity.path_entries * 7 * sizeof(T) +
            capacity.dofs * ((2 * kMostRows + 2) * sizeof(T) + 8 * sizeof(int)) +
@@ -35,6 +39,7 @@ class Restitution final : public IslandEffect<T> {
   /// Costs three tree solves per bouncing contact.
   bool change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h,
                      double budget) override;
+  /// N·s along its normal that the last change_speeds() gave a contact; 0 if it did not bounce.
   T pushed(const Contact<T>& contact) const override;
 
  private:

@@ -8,8 +8,9 @@
 
 namespace sinew {
 
+/// One piece of tissue.
 struct SoftTissueSettings {
-  Anchor frame;
+  Anchor frame;                         ///< what it hangs on
   std::vector<Vec3<double>> positions;  ///< m, at rest, in the frame's axes
   std::vector<std::array<int, 4>>
       tetrahedra;          ///< right-handed: the fourth corner sees 1, 2, 3 anticlockwise from outside
@@ -17,8 +18,9 @@ struct SoftTissueSettings {
   double density = 1000;   ///< kg/m³
   double young = 2e4;      ///< Pa: stiffness against pulling; fat 2e3, muscle 5e4
   double poisson = 0.45;   ///< below ½; near it, volume is kept
-  double radius = 0.01, friction = 0.5;  ///< see ParticleBody
-  double damping = 0;                    ///< N·s/m of every node against the air
+  double radius = 0.01;    ///< m, see ParticleBody
+  double friction = 0.5;   ///< see ParticleBody
+  double damping = 0;      ///< N·s/m of every node against the air
 };
 
 /// A box from the origin to `size` (m) in cells, six tetrahedra each. Node (i, j, k) is number

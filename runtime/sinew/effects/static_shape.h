@@ -56,9 +56,10 @@ class HeightField final : public StaticShape {
 /// Exact inside and over faces; over edges and corners a lower bound, as if they were not rounded off.
 class ConvexSolid final : public StaticShape {
  public:
+  /// One half space.
   struct Face {
-    Vec3<double> normal = Vec3<double>::UnitZ();
-    double offset = 0;  ///< m
+    Vec3<double> normal = Vec3<double>::UnitZ();  ///< unit, outwards
+    double offset = 0;                            ///< m
   };
   /// `inner_radius`: of a ball that fits inside, m.
   ConvexSolid(std::span<const Face> faces, double inner_radius);

@@ -27,14 +27,15 @@ struct CouplingTerm;
 template <class T>
 class TimeScheme;
 
+/// What a step calls; null: not declared.
 template <class T>
 struct StepPlan {
-  JointTerms<T> joints;
+  JointTerms<T> joints;                                              ///< muscles, damping, limits, cones
   std::unique_ptr<EllipsoidModel<T>> (*ellipsoid_rows)() = nullptr;  ///< of muscles
-  std::unique_ptr<ContactModel<T>> (*contact_rows)() = nullptr;
-  const ContactTerm<T>* contacts = nullptr;
-  const PushTerm<T>* impulses = nullptr;
-  const SupportTerm<T>* support = nullptr;
+  std::unique_ptr<ContactModel<T>> (*contact_rows)() = nullptr;      ///< of contacts, in a solve
+  const ContactTerm<T>* contacts = nullptr;                          ///< who touches whom
+  const PushTerm<T>* impulses = nullptr;                             ///< of Character::apply_impulse
+  const SupportTerm<T>* support = nullptr;                 ///< by the floor, of who follows the animation
   const CouplingTerm<T>* couplings = nullptr;              ///< of loops and particles
   const TimeScheme<T>* scheme = nullptr;                   ///< in place of Bossak's, for comparisons
   std::unique_ptr<BatchCheck> (*make_checks)() = nullptr;  ///< in float alone

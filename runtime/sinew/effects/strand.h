@@ -8,7 +8,7 @@ namespace sinew {
 
 /// Made straight along `direction` from `root`, in the axes of `frame`.
 struct StrandSettings {
-  Anchor frame;
+  Anchor frame;                              ///< what its root is fixed to
   Vec3<double> root = Vec3<double>::Zero();  ///< m
   Vec3<double> direction{0, 0, -1};          ///< any length but 0
   double length = 0.3;                       ///< m
@@ -17,7 +17,8 @@ struct StrandSettings {
   double stretch = 0.01;                     ///< share of its length by which it gives under its own weight
   double bending = 1e-5;                     ///< N·m²: E·I of a beam
   bool clamped = true;                       ///< leaves the root along `direction`; else it hangs on a pivot
-  double radius = 0.005, friction = 0.5;     ///< see ParticleBody
+  double radius = 0.005;                     ///< m, see ParticleBody
+  double friction = 0.5;                     ///< see ParticleBody
   double damping = 0;                        ///< N·s/m of every node against the air
 };
 

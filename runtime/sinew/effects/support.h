@@ -17,6 +17,7 @@
 
 namespace sinew {
 
+/// Who bears, and how far forces lean.
 struct SupportSettings {
   /// m of a figure of human size; a point this high above the floor bears nothing, at the floor it bears
   /// fully
@@ -27,18 +28,20 @@ struct SupportSettings {
 /// The points of a tree that may stand on the ground, by body.
 template <class T>
 struct SupportPoints {
+  /// A ball; a corner has no radius.
   struct Point {
     Vec3<T> local;  ///< m, body axes
     T radius;       ///< m
     T friction;     ///< μ on a floor whose own is 1
   };
-  std::vector<Point> points;
-  std::vector<int> first;  ///< [body + 1]
-  std::vector<int> limb;   ///< [body] where its limb leaves the root
-  T unit = T(1);           ///< see Scale::length
-  std::vector<T> bound;    ///< [body] m, from the joint's origin to the furthest of its points
+  std::vector<Point> points;  ///< body after body
+  std::vector<int> first;     ///< [body + 1]
+  std::vector<int> limb;      ///< [body] where its limb leaves the root
+  T unit = T(1);              ///< see Scale::length
+  std::vector<T> bound;       ///< [body] m, from the joint's origin to the furthest of its points
 
   SupportPoints() = default;
+  /// Of `contacts`, those that meet planes; O(bodies + points).
   SupportPoints(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
 };
 
@@ -180,6 +183,7 @@ struct CheckScratch;
 /// The same as a character's step calls it, see check_pass.h.
 template <class T>
 struct SupportTerm {
+  /// Set-up: which points may stand.
   SupportPoints<T> (*points)(const Tree<T>& tree, std::span<const ContactPoint<T>> contacts);
   /// As a driven root leaves it to them, which bears what they don't.
   void (*stand)(const SupportPoints<T>& points, const T& ground, const CheckScratch<T>& scratch);
@@ -192,6 +196,7 @@ struct SupportTerm {
 /// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.
 template <class T>
 struct Support {
+  /// Writes its functions into the world's plan.
   static void declare(StepPlan<T>& plan);
 };
 

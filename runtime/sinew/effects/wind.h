@@ -5,11 +5,13 @@
 
 namespace sinew {
 
+/// The air. attach() refuses numbers that are not finite, and a density below 0.
 struct WindSettings {
   Vec3<double> velocity = Vec3<double>::Zero();  ///< of the air, m/s, world
   double density = 1.2;                          ///< kg/m³, at sea level
   std::vector<std::string> joints;               ///< whose colliders feel it; none named: all
 
+  /// Calls visitor(name, member) for each, by its name in scene files.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("velocity", velocity);
@@ -18,10 +20,12 @@ struct WindSettings {
   }
 };
 
+/// Drags one tree's colliders along with the air, each on its own: none is in another's lee.
 template <class T>
 class Wind final : public Effect<T> {
  public:
-  using Settings = WindSettings;
+  using Settings = WindSettings;  ///< what can be set
+  /// Without a check: attach() refuses what cannot be meant.
   explicit Wind(const Settings& s) : settings(s) {}
 
   Status attach(const Skeleton& skeleton, const Tree<T>& tree) override;

@@ -32,8 +32,16 @@ namespace sinew {
 
 /// Where in a character's block what stands, in bytes. All a multiple of 16.
 struct GraphLayout {
-  std::size_t parameters = 0, groups = 0, clips = 0, fresh = 0, machines = 0, offsets = 0, curve_offsets = 0,
-              feet = 0, looks = 0, bytes = 0;
+  std::size_t parameters = 0;     ///< GraphParameterState, [parameter]
+  std::size_t groups = 0;         ///< GraphGroupState, [group]
+  std::size_t clips = 0;          ///< TimeJet<double>, [Graph::BoundClip::time]
+  std::size_t fresh = 0;          ///< a bit each, [clip]
+  std::size_t machines = 0;       ///< GraphMachineState, [machine]
+  std::size_t offsets = 0;        ///< what a transition keeps of the pose, [Graph::BoundMachine::offset]
+  std::size_t curve_offsets = 0;  ///< and of the curves: TimeJet, [Graph::BoundMachine::offset][slot]
+  std::size_t feet = 0;           ///< GraphFeetState, if the graph has feet
+  std::size_t looks = 0;          ///< GraphLookState, [look]
+  std::size_t bytes = 0;          ///< of the whole block
 };
 
 /// Constant once bound. Refers to the asset's clips, which must stay where they are. The same definition may
@@ -41,11 +49,12 @@ struct GraphLayout {
 class Graph {
  public:
   /// Refuses what the asset does not have: `Status::index` is the node then, or the parameter.
+  /// On an error `out` stays as it was. Set-up: allocates, and bakes the blends' weights.
   static Status bind(const GraphDefinition& definition, const Asset& asset, Graph& out);
 
-  const GraphDefinition& definition() const { return definition_; }
-  int joint_count() const { return joint_count_; }
-  int curve_count() const { return static_cast<int>(curve_slots_.size()); }
+  const GraphDefinition& definition() const { return definition_; }          ///< its own copy
+  int joint_count() const { return joint_count_; }                           ///< of the asset's skeleton
+  int curve_count() const { return static_cast<int>(curve_slots_.size()); }  ///< the asset's curve slots
 
   /// Of the block that a character needs: trivially copyable bytes without pointers, at an address that is a
   /// multiple of 16. A snapshot is a copy of it.
@@ -56,32 +65,39 @@ class Graph {
 
   // What playing needs; see graph_update.cpp and graph_pose.cpp.
   static constexpr float kSoftEnd = 0.1f;  ///< s before its end in which a clip that does not loop slows down
+  /// A kClip node.
   struct BoundClip {
-    const Clip* clip = nullptr;
-    PhaseMap map;  ///< of those in a group; of mirrored ones half a cycle on
-    int node = 0;
-    int time = -1;  ///< which of the block's times it plays by; −1: by its group's phase
+    const Clip* clip = nullptr;  ///< the asset's
+    PhaseMap map;                ///< of those in a group; of mirrored ones half a cycle on
+    int node = 0;                ///< of the definition
+    int time = -1;               ///< which of the block's times it plays by; −1: by its group's phase
     std::vector<ClipEvent> mirrored_events;  ///< of mirrored ones, by the other side's names
 
+    /// Those that playing it passes.
     std::span<const ClipEvent> events() const {
       return mirrored_events.empty() ? std::span<const ClipEvent>(clip->events) : mirrored_events;
     }
   };
+  /// One layer of a kLayers node.
   struct BoundLayer {
-    int mask = -1;                            ///< of the asset
+    int mask = -1;                            ///< of the asset; −1: all joints
     std::vector<Transform<float>> reference;  ///< additive: [joint]
   };
+  /// A kMachine node.
   struct BoundMachine {
-    int node = 0;
-    int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind
+    int node = 0;        ///< of the definition
+    int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind;
+                         ///< −1: none does
     bool fades = false;  ///< has an empty state
   };
+  /// The graph's kFeet node.
   struct BoundFeet {
-    int node = -1;                             ///< none
-    int pelvis = -1;                           ///< joint that carries both legs
-    int joints = 0;                            ///< that have to be posed
-    std::array<FootLeg<float>, 2> legs_float;  ///< left, right
-    std::array<FootLeg<double>, 2> legs_double;
+    int node = -1;                               ///< of the definition; −1: none
+    int pelvis = -1;                             ///< joint that carries both legs
+    int joints = 0;                              ///< that have to be posed
+    std::array<FootLeg<float>, 2> legs_float;    ///< left, right
+    std::array<FootLeg<double>, 2> legs_double;  ///< the same
+    /// Either, by the precision.
     template <class T>
     std::span<const FootLeg<T>> legs() const {
       if constexpr (sizeof(T) == sizeof(double))
@@ -90,9 +106,11 @@ class Graph {
         return legs_float;
     }
   };
+  /// A kLook node.
   struct BoundLook {
-    LookChain<float> chain_float;
-    LookChain<double> chain_double;
+    LookChain<float> chain_float;    ///< by the node's joints, or by their roles
+    LookChain<double> chain_double;  ///< the same
+    /// Either, by the precision.
     template <class T>
     const LookChain<T>& chain() const {
       if constexpr (sizeof(T) == sizeof(double))
@@ -101,26 +119,31 @@ class Graph {
         return chain_float;
     }
   };
+  /// Of a character's block; that of the other precision differs.
   template <class T>
   const GraphLayout& layout() const {
     return layouts_[sizeof(T) == sizeof(double)];
   }
+  /// Of the definition, 0 … root(): not checked, as everything that takes a node from here on.
   const GraphNode& node(int index) const { return definition_.nodes[std::size_t(index)]; }
-  int root() const { return static_cast<int>(definition_.nodes.size()) - 1; }
-  int slot(int node) const { return slots_[std::size_t(node)]; }  ///< among the nodes of its type
-  const std::vector<BoundClip>& clips() const { return clips_; }
-  const std::vector<BlendSpace>& spaces() const { return spaces_; }
-  const std::vector<BoundMachine>& machines() const { return machines_; }
+  int root() const { return static_cast<int>(definition_.nodes.size()) - 1; }  ///< the last node
+  /// Where a node stands among those of its type: in clips(), spaces(), machines() or looks(), of kLayers its
+  /// first layer; −1 of other types.
+  int slot(int node) const { return slots_[std::size_t(node)]; }
+  const std::vector<BoundClip>& clips() const { return clips_; }           ///< [slot] of kClip nodes
+  const std::vector<BlendSpace>& spaces() const { return spaces_; }        ///< [slot] of kBlend nodes
+  const std::vector<BoundMachine>& machines() const { return machines_; }  ///< [slot] of kMachine nodes
   /// Of layer `layer` of a kLayers node.
   const BoundLayer& layer(int node, int layer) const {
     return layers_[std::size_t(slot(node)) + std::size_t(layer)];
   }
-  const BoundFeet& feet() const { return feet_; }
-  const std::vector<BoundLook>& looks() const { return looks_; }
-  const std::vector<JointMask>& masks() const { return masks_; }
-  const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }
-  const std::vector<int>& parents() const { return parents_; }
-  const std::vector<Transform<float>>& rest() const { return rest_; }
+  const BoundFeet& feet() const { return feet_; }                 ///< a graph has at most one pair
+  const std::vector<BoundLook>& looks() const { return looks_; }  ///< [slot] of kLook nodes
+  const std::vector<JointMask>& masks() const { return masks_; }  ///< the asset's
+  const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }  ///< the asset's
+  const std::vector<int>& parents() const { return parents_; }                ///< [joint] −1: root
+  const std::vector<Transform<float>>& rest() const { return rest_; }         ///< [joint] joint → parent
+  /// Which joint takes whose place below a kMirror node; empty where the graph has none.
   template <class T>
   const MirrorMap<T>& mirror() const {
     if constexpr (sizeof(T) == sizeof(double))

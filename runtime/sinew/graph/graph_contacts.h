@@ -11,7 +11,9 @@ namespace sinew {
 template <class T>
 T graph_contact(const Graph& graph, const GraphScratch<T>& scratch, int joint);
 
+/// @cond
 extern template float graph_contact<float>(const Graph&, const GraphScratch<float>&, int);
 extern template double graph_contact<double>(const Graph&, const GraphScratch<double>&, int);
+/// @endcond
 
 }  // namespace sinew

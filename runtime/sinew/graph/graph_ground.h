@@ -13,7 +13,7 @@ template <class T>
 struct GraphGround {
   /// The highest ground below a point, m; false where there is none within reach: what was known stays.
   bool (*below)(const void* host, const Vec3<T>& point, GroundHit<T>& hit) = nullptr;
-  const void* host = nullptr;
+  const void* host = nullptr;                       ///< what `below` gets
   std::span<const MovingTransform<T>> bodies = {};  ///< [GroundHit::ground] body → world
 };
 

@@ -9,8 +9,9 @@ namespace sinew {
 /// Is told of every task and of the motion that it left in its register: for tools that explain a pose.
 template <class T>
 struct GraphWatch {
+  /// After each task; `out` [joint]: the motion that it left, of as many joints as it made. Null: not told.
   void (*task_done)(void* tool, const GraphTask& task, std::span<const JointJet<T>> out) = nullptr;
-  void* tool = nullptr;
+  void* tool = nullptr;  ///< what task_done gets
 };
 
 /// Carries out what GraphUpdateJob left in `scratch` for this character, right after it, and moves the
@@ -23,18 +24,20 @@ struct GraphWatch {
 /// know where characters are.
 template <class T>
 struct GraphPoseJob {
-  const Graph* graph = nullptr;
-  std::span<std::byte> state;
-  GraphScratch<T>* scratch = nullptr;
-  std::span<JointJet<T>> jets;                 ///< [joint]: what the character is to do
+  const Graph* graph = nullptr;                ///< the one that `state` and `scratch` were made for
+  std::span<std::byte> state;                  ///< the character's block
+  GraphScratch<T>* scratch = nullptr;          ///< as GraphUpdateJob left it
+  std::span<JointJet<T>> jets;                 ///< [joint]: what the character is to do, 1 … all joints
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
   std::span<const JointJet<T>> physical = {};  ///< [joint] what it does do, for NodeType::kPhysical
   std::span<const T> spare_acceleration = {};  ///< [joint] rad/s², see GraphTransition::budget
-  GraphWatch<T> watch = {};
-  GraphGround<T> ground = {};  ///< for NodeType::kFeet
+  GraphWatch<T> watch = {};                    ///< for tools
+  GraphGround<T> ground = {};                  ///< for NodeType::kFeet
 
-  /// A look or a foot that fails leaves the pose without it; `Status::index` is its node.
+  /// Refuses a block or scratch of another graph, no joints or too many, and a graph that plays a physical
+  /// pose which is not given for all joints.
   Status Validate() const;
+  /// A look or a foot that fails leaves the pose without it; `Status::index` is its node.
   Status Run() const;
 };
 

@@ -166,12 +166,12 @@ std::size_t GraphRecorder<T>::bytes_for(const Graph& graph, int frames) {
 template <class T>
 GraphRecorder<T>::GraphRecorder(const Graph& graph, std::span<std::byte> buffer)
     : at_(recording_layout<T>(graph)), buffer_(buffer) {
-  const RingHeader header = header_of(buffer);
-  if (header.magic == kMagic && header.hash == graph.hash() && header.slot_bytes == at_.slot) return;
   if (reinterpret_cast<std::uintptr_t>(buffer.data()) % 16 != 0 || slots_in(buffer.size(), at_.slot) == 0) {
     buffer_ = {};
     return;
   }
+  const RingHeader header = header_of(buffer);
+  if (header.magic == kMagic && header.hash == graph.hash() && header.slot_bytes == at_.slot) return;
   std::memset(buffer_.data(), 0, buffer_.size());
   const RingHeader begun{kMagic, graph.hash(), at_.slot, 0};
   std::memcpy(buffer_.data(), &begun, sizeof begun);

@@ -2,8 +2,8 @@
 //
 //     std::vector<std::byte> ring(sinew::GraphRecorder<float>::bytes_for(graph, 120));  // one a character
 //     sinew::GraphRecorder<float> recorder(graph, ring);
-//     world.keep_with_state(ring);                                   // its snapshots and recordings hold it
-//     too recorder.step(job);                                            // in place of job.Run()
+//     world.keep_with_state(ring);                                   // snapshots and recordings hold it, too
+//     recorder.step(job);                                            // in place of job.Run()
 //
 //     sinew::GraphReplay<float> replay(graph, ring);                 // later, or elsewhere from a file
 //     for (int k = 0; k < replay.count(); ++k) replay.frame(k, scratch, state, jets, found);
@@ -16,20 +16,27 @@ namespace sinew {
 /// What a recorded frame is known by.
 template <class T>
 struct GraphFrame {
-  std::uint64_t number = 0;                              ///< since the recorder began
-  std::uint64_t digest = 0;                              ///< of the block and the pose after it
-  T h = 0;                                               ///< s
-  std::uint32_t joints = 0;                              ///< that were posed
-  std::uint32_t rays = 0;                                ///< that were cast
-  std::uint32_t bodies = 0;                              ///< GraphGround::bodies
-  bool physical = false, spare = false, ground = false;  ///< were given
+  std::uint64_t number = 0;  ///< since the recorder began
+  std::uint64_t digest = 0;  ///< of the block and the pose after it
+  T h = 0;                   ///< s
+  std::uint32_t joints = 0;  ///< that were posed
+  std::uint32_t rays = 0;    ///< that were cast
+  std::uint32_t bodies = 0;  ///< GraphGround::bodies
+  bool physical = false;     ///< GraphStepJob::physical was given, and kept: some node asks for it
+  bool spare = false;        ///< GraphStepJob::spare_acceleration, where some transition has a budget
+  bool ground = false;       ///< GraphGround::below, where the graph has feet
   /// All that went in has found room: no more than 64 rays (frames of a sixth of a second) and 8 bodies.
   bool complete = true;
 };
 
 /// Where in a recording what stands, in bytes; of a graph and a precision always the same.
 struct GraphRecordingLayout {
-  std::size_t block = 0, rays = 0, bodies = 0, physical = 0, spare = 0, slot = 0;
+  std::size_t block = 0;     ///< in a frame, behind its GraphFrame: the block before it
+  std::size_t rays = 0;      ///< what they met, in their order; no bytes where the graph has no feet
+  std::size_t bodies = 0;    ///< body → world; likewise
+  std::size_t physical = 0;  ///< JointJet, [joint]; no bytes where no node asks for it
+  std::size_t spare = 0;     ///< rad/s², [joint]; no bytes where no transition has a budget
+  std::size_t slot = 0;      ///< of a whole frame
 };
 
 /// Each frame is kept as the block before it, with all that the game set, and everything else that went in,
@@ -37,6 +44,7 @@ struct GraphRecordingLayout {
 template <class T>
 class GraphRecorder {
  public:
+  /// Of a buffer for so many frames; what is negative counts as 0.
   static std::size_t bytes_for(const Graph& graph, int frames);
 
   /// Goes on with what a recorder of this graph wrote into the buffer, and begins anew in any other. The

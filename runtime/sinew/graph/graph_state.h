@@ -17,26 +17,29 @@ namespace sinew {
 /// velocity (m/s, rad/s) and acceleration. Blends mix these, not places.
 template <class T>
 struct TravelVelocity {
-  T velocity[3] = {};
-  T change[3] = {};
+  T velocity[3] = {};  ///< m/s forwards, m/s to the left, rad/s
+  T change[3] = {};    ///< of these in the (turning) heading axes, m/s² and rad/s²
 };
 
+/// What a block begins with.
 template <class T>
 struct GraphHeader {
-  std::uint64_t hash;  ///< of the graph that the block belongs to
-  double place[2];     ///< m, on the ground
-  double heading;      ///< rad, about Z
-  TravelVelocity<T> travel;
-  std::uint32_t events;  ///< that conditions ask for and the last frame passed, a bit each
-  std::uint32_t begun;   ///< the pose of an instant has been shown
+  std::uint64_t hash;        ///< of the graph that the block belongs to
+  double place[2];           ///< m, on the ground
+  double heading;            ///< rad, about Z
+  TravelVelocity<T> travel;  ///< at the end of the last frame
+  std::uint32_t events;      ///< that conditions ask for and the last frame passed, a bit each
+  std::uint32_t begun;       ///< the pose of an instant has been shown
 };
 
+/// Of one GraphParameter.
 template <class T>
 struct GraphParameterState {
   T goal;        ///< as the game set it; of a trigger the seconds that it still waits
   TimeJet<T> x;  ///< filtered
 };
 
+/// Of a group of clips that step together.
 struct GraphGroupState {
   TimeJet<double> phase;  ///< cycles
   std::uint64_t active;   ///< a clip of it plays
@@ -44,72 +47,88 @@ struct GraphGroupState {
 
 /// How a machine goes from one state to the next.
 enum class GraphFade : std::uint32_t {
-  kNone,
+  kNone,        ///< nothing fades: no transition runs, or it was a cut
   kOffset,      ///< what was different fades away
   kLeft,        ///< the pose left behind does
   kCrossfade,   ///< the old state still plays
   kSmoothstep,  ///< likewise, by a weight of third degree
 };
 
+/// Of a kMachine node.
 template <class T>
 struct GraphMachineState {
-  double time;              ///< s in the present state
-  std::int16_t state;       ///< present
-  std::int16_t posed;       ///< the one whose pose is shown: `state`, or the one that an empty one follows
-  std::int16_t source;      ///< of a crossfade, or −1
-  std::int16_t transition;  ///< that runs, or −1
-  GraphFade fade;
-  std::uint32_t unused;
-  T elapsed, duration;       ///< s, of the fade
+  double time;               ///< s in the present state
+  std::int16_t state;        ///< present
+  std::int16_t posed;        ///< the one whose pose is shown: `state`, or the one that an empty one follows
+  std::int16_t source;       ///< of a crossfade, or −1
+  std::int16_t transition;   ///< that runs, or −1
+  GraphFade fade;            ///< how that transition goes
+  std::uint32_t unused;      ///< 0; fills the gap, so that snapshots have no bytes of chance
+  T elapsed;                 ///< s, of the fade
+  T duration;                ///< s, of the fade
   TravelVelocity<T> travel;  ///< what of the travel fades
   TimeJet<T> shown_from;     ///< how far `shown` was from its target when that changed
-  T shown_elapsed, shown_duration;
-  T shown;  ///< target: 0 in an empty state, else 1
+  T shown_elapsed;           ///< s since then
+  T shown_duration;          ///< s, in which that fades
+  T shown;                   ///< target: 0 in an empty state, else 1
 
+  /// Whether something of a transition is left.
   bool fading() const { return fade != GraphFade::kNone || shown_elapsed < shown_duration; }
 };
 
+/// Of the kFeet node.
 template <class T>
 struct GraphFeetState {
-  FootState<T> legs[2];
-  SmoothInput<T> drop, level;  ///< of FootPlacementJob; m, height of the ground under the character
-  T waited;                    ///< s, in which no legs were posed
-  std::uint32_t begun;         ///< the level is known
+  FootState<T> legs[2];  ///< left, right
+  SmoothInput<T> drop;   ///< m, of FootPlacementJob
+  SmoothInput<T> level;  ///< m, world: height of the ground under the character
+  T waited;              ///< s, in which no legs were posed
+  std::uint32_t begun;   ///< the level is known
 };
 
+/// Of a kLook node.
 template <class T>
 struct GraphLookState {
-  LookState<T> look;
-  T waited;  ///< s, in which it was not posed
+  LookState<T> look;  ///< of LookAtJob
+  T waited;           ///< s, in which it was not posed
 };
 
-/// The block, taken apart. Offers what playing needs; games use GraphParameters.
+/// The block, taken apart. Offers what playing needs, and checks no index; games use GraphParameters.
 template <class T>
 class GraphBlock {
  public:
+  /// `state` must pass check_block(); graph and block must outlive this.
   GraphBlock(const Graph& graph, std::span<std::byte> state)
       : graph_(graph), at_(graph.layout<T>()), data_(state.data()) {}
 
+  /// Place, heading and travel.
   GraphHeader<T>& header() { return *place<GraphHeader<T>>(0); }
+  /// Of GraphDefinition::parameters.
   GraphParameterState<T>& parameter(int k) { return place<GraphParameterState<T>>(at_.parameters)[k]; }
+  /// Of GraphDefinition::groups.
   GraphGroupState& group(int k) { return place<GraphGroupState>(at_.groups)[k]; }
   /// s played, which does not wrap; of a clip that is not synchronised (BoundClip::time).
   TimeJet<double>& time(int k) { return place<TimeJet<double>>(at_.clips)[k]; }
   /// Of a clip: entered, and not yet advanced.
   bool fresh(int clip) const { return (place<std::uint8_t>(at_.fresh)[clip / 8] >> (clip % 8) & 1) != 0; }
+  /// Sets what fresh() answers.
   void set_fresh(int clip, bool fresh) {
     std::uint8_t& bits = place<std::uint8_t>(at_.fresh)[clip / 8];
     const int bit = 1 << (clip % 8);
     bits = static_cast<std::uint8_t>(fresh ? bits | bit : bits & ~bit);
   }
+  /// Of Graph::machines().
   GraphMachineState<T>& machine(int k) { return place<GraphMachineState<T>>(at_.machines)[k]; }
+  /// Only where Graph::feet() has a node.
   GraphFeetState<T>& feet() { return *place<GraphFeetState<T>>(at_.feet); }
+  /// Of Graph::looks().
   GraphLookState<T>& look(int k) { return place<GraphLookState<T>>(at_.looks)[k]; }
-  /// What a transition keeps (graph_keep.h).
+  /// What a transition keeps of the pose (graph_keep.h), by Graph::BoundMachine::offset.
   std::span<std::byte> offset(int k) {
     const std::size_t bytes = (kept_bytes<T>(graph_.joint_count(), graph_.translated()) + 15) / 16 * 16;
     return {data_ + at_.offsets + std::size_t(k) * bytes, bytes};
   }
+  /// [slot] what it keeps of the curves, likewise.
   std::span<TimeJet<T>> curve_offsets(int k) {
     const std::size_t count = std::size_t(graph_.curve_count());
     return {place<TimeJet<T>>(at_.curve_offsets) + std::size_t(k) * count, count};
@@ -139,6 +158,7 @@ Status start_graph(const Graph& graph, std::span<std::byte> state);
 template <class T>
 class GraphParameters {
  public:
+  /// `state` must have passed start_graph(), and is not checked again; graph and block must outlive this.
   GraphParameters(const Graph& graph, std::span<std::byte> state) : graph_(graph), block_(graph, state) {}
 
   /// A float, or a bool as 0 or 1. Refuses numbers that are not finite, or beyond 10⁶.
@@ -150,14 +170,20 @@ class GraphParameters {
 
   /// Present state of a machine (`node`: GraphDefinition::nodes), −1 where it is none.
   int state(int node);
+  /// s since the machine entered it; 0 where `node` is no machine.
   double seconds_in_state(int node);
+  /// Whether a transition of the machine runs.
   bool fading(int node);
 
-  /// Where the character stands and heads: where the graph's root motion brought it. A game whose controller
-  /// moves characters puts them where it wants.
+  /// m, world, z = 0: where the graph's root motion brought the character.
   Vec3<double> place();
+  /// rad about Z, 0 along X: where it heads.
   double heading();
+  /// For a game whose controller moves characters: stands and heads there (m, the height ignored; rad) from
+  /// the next frame on. Feet forget where they stood if that is more than a metre away. Not checked: what is
+  /// not finite ends up in the pose.
   void put(const Vec3<double>& place, double heading);
+  /// How it went over the ground at the end of the last frame.
   TravelVelocity<T> travel();
 
  private:

@@ -14,10 +14,10 @@ namespace sinew {
 /// same place at 20 Hz as at 60, and conditions are looked at as often. Allocates nothing.
 template <class T>
 struct GraphStepJob {
-  const Graph* graph = nullptr;
-  std::span<std::byte> state;
-  T h = 0;  ///< s, 0 to 1
-  GraphScratch<T>* scratch = nullptr;
+  const Graph* graph = nullptr;                ///< the one that `state` and `scratch` were made for
+  std::span<std::byte> state;                  ///< the character's block, see start_graph()
+  T h = 0;                                     ///< s, 0 to 1
+  GraphScratch<T>* scratch = nullptr;          ///< of the caller's thread
   std::span<JointJet<T>> jets;                 ///< [joint]: what the character is to do h seconds later
   EventSink* events = nullptr;                 ///< where wanted
   std::span<TimeJet<T>> curves = {};           ///< [slot], where wanted
@@ -26,6 +26,8 @@ struct GraphStepJob {
   GraphWatch<T> watch = {};                    ///< of the last part
   GraphGround<T> ground = {};                  ///< for NodeType::kFeet
 
+  /// The first error of GraphUpdateJob or GraphPoseJob; what one of the parts refuses leaves the others
+  /// before it done.
   Status Run() const {
     const int parts =
         std::isfinite(h) && h <= T(1) ? std::max(1, static_cast<int>(std::ceil(h * T(60) - T(0.01)))) : 1;

@@ -15,13 +15,15 @@ namespace sinew {
 /// give the same bits. Allocates nothing. Cost grows with the nodes that play, not with those there are.
 template <class T>
 struct GraphUpdateJob {
-  const Graph* graph = nullptr;
-  std::span<std::byte> state;
-  T h = 0;  ///< s
-  GraphScratch<T>* scratch = nullptr;
-  EventSink* events = nullptr;  ///< where wanted; EventSink::lost counts what found no place
+  const Graph* graph = nullptr;        ///< the one that `state` and `scratch` were made for
+  std::span<std::byte> state;          ///< the character's block, see start_graph()
+  T h = 0;                             ///< s
+  GraphScratch<T>* scratch = nullptr;  ///< of the caller's thread; left for GraphPoseJob
+  EventSink* events = nullptr;         ///< where wanted; EventSink::lost counts what found no place
 
+  /// Refuses a block or scratch of another graph, and an `h` that is not finite or not from 0 to 1 s.
   Status Validate() const;
+  /// With an error from Validate() nothing has moved.
   Status Run() const;
 };
 

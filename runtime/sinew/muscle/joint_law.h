@@ -14,21 +14,25 @@ namespace sinew {
 
 /// Which of a law's properties any joint has: what none has is not looked for in joint after joint.
 struct JointLawPresence {
-  bool muscles = false, losses = false, ranges = false, cones = false;
-  bool tone = false;  ///< of some muscle
+  bool muscles = false;  ///< torque limits above 0
+  bool losses = false;   ///< dry friction or damping
+  bool ranges = false;   ///< bounds of degrees of freedom
+  bool cones = false;    ///< of ball joints' swing
+  bool tone = false;     ///< of some muscle, that is not rigid
 };
 
 /// Of one degree of freedom's muscle, see tone.h.
 template <class T>
 struct ToneOfDof {
   T stiffness = std::numeric_limits<T>::infinity();  ///< N·m/rad that was asked for; ∞: rigid
-  T damping_ratio = T(0);
+  T damping_ratio = T(0);                            ///< ζ ≥ 0
   T feed_forward = T(0);  ///< N·m, what the animation asks for by itself at the end of the frame
   // Of the present part of a step
   T inertia = T(0);  ///< kg·m², of what the joint carries, about its axis
   T slope = T(0);    ///< κ, N·m/rad: k and d in one
   T neutral = T(0);  ///< s*, rad from the animation: where the muscle does nothing
 
+  /// As stiff as its limit allows.
   bool rigid() const { return !(stiffness < std::numeric_limits<T>::infinity()); }
 };
 
@@ -37,16 +41,21 @@ template <class T>
 struct JointLaw {
   static constexpr T kUnlimited = T(1e9);  ///< of `lower` and `upper`
 
-  std::vector<T> torque_minus, torque_plus;  ///< [dof] muscle limits now (strength applied), N·m
-  std::vector<T> dry_friction, damping;      ///< [dof] N·m, N·m·s/rad
-  std::vector<T> lower, upper;               ///< [dof] rad or m; |bound| ≥ kUnlimited: none
-  std::vector<T> swing_limit;                ///< [body] rad, < 0: none
-  std::vector<Vec3<T>> swing_axis;           ///< [body]
-  std::vector<T> twist_lower, twist_upper;   ///< [body]
-  std::vector<std::uint8_t> ellipsoidal;     ///< [body] 1: the three limits are an ellipsoid's half axes
-  std::vector<ToneOfDof<T>> tone;            ///< [dof]; empty where nobody can ask for any
-  JointLawPresence present;
+  std::vector<T> torque_minus;  ///< [dof] N·m, ≥ 0: muscle limit now (strength applied), negative direction
+  std::vector<T> torque_plus;   ///< [dof] N·m, ≥ 0: the same, positive direction
+  std::vector<T> dry_friction;            ///< [dof] N·m; 0 of a free joint
+  std::vector<T> damping;                 ///< [dof] N·m·s/rad
+  std::vector<T> lower;                   ///< [dof] rad or m; ≤ −kUnlimited: none
+  std::vector<T> upper;                   ///< [dof] rad or m; ≥ kUnlimited: none
+  std::vector<T> swing_limit;             ///< [body] rad, < 0: none
+  std::vector<Vec3<T>> swing_axis;        ///< [body] see Joint::swing_axis
+  std::vector<T> twist_lower;             ///< [body] rad, of a ball with a swing cone
+  std::vector<T> twist_upper;             ///< [body] the same
+  std::vector<std::uint8_t> ellipsoidal;  ///< [body] 1: the three limits are an ellipsoid's half axes
+  std::vector<ToneOfDof<T>> tone;         ///< [dof]; empty where nobody can ask for any
+  JointLawPresence present;               ///< as refresh_presence() found it
 
+  /// Set-up: all muscles at strength 1 and rigid.
   JointLaw(const Tree<T>& tree, const Skeleton& skeleton);
   /// After muscles came or went.
   void refresh_presence();

@@ -6,6 +6,7 @@
 
 #include "sinew/optimizer/joint_terms.h"
 #include "sinew/optimizer/newton_constants.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 namespace {
@@ -262,6 +263,7 @@ void InnerProblem<T>::add_row_curvature(T secant, const Add& add) {
 /// Of the model at the inner solution so far, but for what leaves the tree.
 template <class T>
 bool InnerProblem<T>::factorise(const Secants& secants) {
+  SINEW_ZONE("factorise");
   ++factorisations;
   if (articulated_) {
     joints_.begin_factor();

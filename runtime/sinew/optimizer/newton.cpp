@@ -8,6 +8,7 @@
 #include "sinew/optimizer/newton_constants.h"
 #include "sinew/optimizer/problem_pass.h"
 #include "sinew/residual/tree_pass.h"
+#include "sinew/skeleton/hooks.h"
 
 namespace sinew {
 template <class T>
@@ -44,7 +45,10 @@ double NewtonSolver<T>::energy(const StepSettings<T>& settings, std::span<TreePr
 template <class T>
 void NewtonSolver<T>::remember_charts() {
   base_.clear();
-  for (const TreeProblem<T>* p : trees_) base_.insert(base_.end(), p->local.begin(), p->local.end());
+  for (const TreeProblem<T>* p : trees_) {
+    SINEW_ASSERT(base_.size() + p->local.size() <= base_.capacity());
+    base_.insert(base_.end(), p->local.begin(), p->local.end());
+  }
 }
 
 template <class T>
@@ -219,6 +223,7 @@ template <class T>
 SolveReport NewtonSolver<T>::solve(const StepSettings<T>& settings, const Accuracy& accuracy,
                                    std::span<TreeProblem<T>* const> trees, std::span<Contact<T>> contacts,
                                    std::span<Coupling<T>* const> couplings) {
+  SINEW_ZONE("solve");
   settings_ = &settings;
   trees_ = trees;
   contacts_ = contacts;

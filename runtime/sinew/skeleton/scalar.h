@@ -13,8 +13,9 @@ namespace sinew {
 /// share are of this type.
 template <class T>
 struct NumberOf {
-  using Type = T;
+  using Type = T;  ///< of a scalar itself; packs specialise
 };
+/// NumberOf, in short.
 template <class T>
 using Number = typename NumberOf<T>::Type;
 
@@ -23,9 +24,11 @@ template <class T>
 T select(bool mask, const T& yes, const T& no) {
   return mask ? yes : no;
 }
+/// Of two masks, lane by lane: a ∧ b.
 inline bool both(bool a, bool b) {
   return a && b;
 }
+/// a ∨ b.
 inline bool either(bool a, bool b) {
   return a || b;
 }
@@ -33,6 +36,7 @@ inline bool either(bool a, bool b) {
 inline bool any(bool mask) {
   return mask;
 }
+/// One mask for all elements of a matrix.
 template <class Mask, class T, int R, int C>
 requires(!std::is_same_v<Mask, bool>) Eigen::Matrix<T, R, C> select(const Mask& mask,
                                                                     const Eigen::Matrix<T, R, C>& yes,
@@ -51,11 +55,12 @@ template <class Mask, class Yes, class No>
   return select(mask, yes(), no());
 }
 
-/// As std::max and std::min, lane by lane.
+/// As std::max, lane by lane: `a` where one is NaN.
 template <class T>
 T largest(const T& a, const T& b) {
   return select(a < b, b, a);
 }
+/// As std::min, likewise.
 template <class T>
 T smallest(const T& a, const T& b) {
   return select(b < a, b, a);
@@ -65,6 +70,7 @@ T smallest(const T& a, const T& b) {
 inline double widened(float x) {
   return double(x);
 }
+/// As it is.
 inline double widened(double x) {
   return x;
 }
@@ -81,11 +87,13 @@ requires std::is_arithmetic_v<T> T sum_of_products(const Mat3<T>& a, const Mat3<
   return a.cwiseProduct(b).sum();
 }
 
+/// |q|².
 template <class T>
 T square(const Quat<T>& q) {
   return (q.x() * q.x() + q.z() * q.z()) + (q.y() * q.y() + q.w() * q.w());
 }
 
+/// To length 1; 0 becomes NaN.
 template <class T>
 void normalize(Quat<T>& q) {
   using std::sqrt;

@@ -14,11 +14,12 @@ enum class Code : std::uint8_t {
   kBadFile,          ///< not a Sinew asset, truncated, or semantically broken
   kBadVersion,       ///< written by a newer major version
   kIo,               ///< the file could not be read or written
+  kUnsupported,      ///< the runtime was built without it
 };
 
 /// Error code plus the culprit: which joint (or other element) and a static text that says why. Trivially
 /// copyable; `reason` points to a string literal and never needs to be freed.
-struct Status {
+struct [[nodiscard]] Status {
   Code code = Code::kOk;    ///< what kind of error
   int index = -1;           ///< joint, effect, track, … the reason talks about; -1 if none
   const char* reason = "";  ///< one clause, e.g. "inertia breaks the triangle inequality"

@@ -15,10 +15,13 @@
 
 namespace sinew {
 
+/// A column.
 template <class T>
 using Vec3 = Eigen::Matrix<T, 3, 1>;
+/// Column-major.
 template <class T>
 using Mat3 = Eigen::Matrix<T, 3, 3>;
+/// Stored x y z w; its constructor takes w x y z. Products of rotations: the right one first.
 template <class T>
 using Quat = Eigen::Quaternion<T>;
 
@@ -60,6 +63,9 @@ template <class T, class Left, class Right>
 }
 
 }  // namespace vector
+
+// Each is Eigen's operator of its name: pages leave them out.
+/// @cond
 
 template <class T>
 [[gnu::always_inline]] inline Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
@@ -139,5 +145,6 @@ template <class A, class T>
   const Mat3<T>& own = b.nestedExpression();
   return vector::product<T>(a, [&](int k, int j) -> const T& { return own(j, k); });
 }
+/// @endcond
 
 }  // namespace sinew
