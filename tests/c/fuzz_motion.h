@@ -83,7 +83,7 @@ class FuzzMotion : protected FuzzInputs {
       case 1:
         return sinew_character_set_parameter(someone, index(4), real(-1, 4));
       case 2:
-        return sinew_character_set_named_parameter(someone, or_null("limp"), real(-1, 1));
+        return sinew_character_set_parameter_by_name(someone, or_null("limp"), real(-1, 1));
       case 3:
         return sinew_character_trigger(someone, index(4));
       case 4:

@@ -178,7 +178,7 @@ Shown run_in_c(bool one_call) {
   for (int frame = 0; frame < kFrames; ++frame) {
     const Inputs in(frame);
     EXPECT_EQ(sinew_character_set_parameter(scene.hero, scene.speed, in.speed), SINEW_OK);
-    EXPECT_EQ(sinew_character_set_named_parameter(scene.hero, "limp", in.limp ? 1.f : 0.f), SINEW_OK);
+    EXPECT_EQ(sinew_character_set_parameter_by_name(scene.hero, "limp", in.limp ? 1.f : 0.f), SINEW_OK);
     EXPECT_EQ(sinew_character_set_strength(scene.hero, in.limp ? 0.f : 1.f), SINEW_OK);
     if (frame == 80) {
       const sinew_graph_place place = scene.where();
@@ -289,7 +289,7 @@ TEST(CInterfaceGraph, NumbersHaveNames) {
   machine.size = sizeof machine;
   ASSERT_EQ(sinew_character_get_machine(scene.hero, root, &machine), SINEW_OK);
   EXPECT_STREQ(machine.name, "move");
-  ASSERT_EQ(sinew_character_set_named_parameter(scene.hero, "limp", 1), SINEW_OK);
+  ASSERT_EQ(sinew_character_set_parameter_by_name(scene.hero, "limp", 1), SINEW_OK);
   for (int frame = 0; frame < 3; ++frame) scene.play();
   ASSERT_EQ(sinew_character_get_machine(scene.hero, root, &machine), SINEW_OK);
   EXPECT_EQ(machine.state, 1);
@@ -384,7 +384,7 @@ TEST(CInterfaceGraph, WhatCannotBeMeantIsRefused) {
   expect(sinew_character_set_parameter(scene.hero, 99, 1), SINEW_INVALID_ARGUMENT, "number");
   expect(sinew_character_set_parameter(scene.hero, scene.speed, NAN), SINEW_NOT_FINITE, "finite");
   expect(sinew_character_set_parameter(scene.hero, scene.speed, 1e7f), SINEW_OUT_OF_RANGE, "absurd");
-  expect(sinew_character_set_named_parameter(scene.hero, "sped", 1), SINEW_NOT_FOUND, "name");
+  expect(sinew_character_set_parameter_by_name(scene.hero, "sped", 1), SINEW_NOT_FOUND, "name");
   expect(sinew_character_trigger(scene.hero, scene.speed), SINEW_INVALID_ARGUMENT, "trigger");
   expect(sinew_character_play_graph(scene.hero, 1.5f), SINEW_OUT_OF_RANGE, "1 s");
   expect(sinew_character_play_graph(scene.hero, NAN), SINEW_NOT_FINITE, "finite");

@@ -246,8 +246,7 @@ TEST(CInterfaceTones, GiveWayAsInCpp) {
   ASSERT_EQ(sinew_character_get_view(other, SINEW_VIEW_LOCAL, &view), SINEW_OK);
   const auto* const local = static_cast<const sinew_transform*>(view.data);
   for (std::size_t j = 0; j < hero.local().size(); ++j)
-    EXPECT_EQ(std::memcmp(local[j].rotation, hero.local()[j].rotation.coeffs().data(), 4 * sizeof(float)), 0)
-        << j;
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(local[j].rotation[k], hero.local()[j].rotation.coeffs()[k]) << j;
   EXPECT_FALSE(hero.on_animation());
   EXPECT_EQ(sinew_world_destroy(alone), SINEW_OK);
 }

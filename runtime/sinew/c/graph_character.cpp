@@ -151,7 +151,7 @@ sinew_status sinew_character_set_parameter(sinew_character character, int32_t pa
   });
 }
 
-sinew_status sinew_character_set_named_parameter(sinew_character character, const char* name, float value) {
+sinew_status sinew_character_set_parameter_by_name(sinew_character character, const char* name, float value) {
   return with_named(character, name, [&](GraphPlayer& player, int parameter) {
     return player.parameters().set(parameter, value);
   });
@@ -163,7 +163,7 @@ sinew_status sinew_character_trigger(sinew_character character, int32_t paramete
   });
 }
 
-sinew_status sinew_character_trigger_named(sinew_character character, const char* name) {
+sinew_status sinew_character_trigger_by_name(sinew_character character, const char* name) {
   return with_named(character, name, [&](GraphPlayer& player, int parameter) {
     return player.parameters().trigger(parameter);
   });

@@ -108,7 +108,7 @@ SINEW_API sinew_status sinew_graph_find_parameter(sinew_graph graph, const char*
 SINEW_API sinew_status sinew_graph_get_node(sinew_graph graph, int32_t node, sinew_node_info* out);
 /// Index of a name; SINEW_NOT_FOUND. O(nodes).
 SINEW_API sinew_status sinew_graph_find_node(sinew_graph graph, const char* name, int32_t* out);
-/// One state of a machine, which is a node.
+/// One state of a machine, by index. `machine`: a node of the graph.
 SINEW_API sinew_status sinew_graph_get_state(sinew_graph graph, int32_t machine, int32_t state,
                                              sinew_state_info* out);
 
@@ -119,8 +119,9 @@ typedef int32_t sinew_ground_kind;
 /// Values of sinew_ground_kind.
 enum sinew_ground_kind_values {
   SINEW_GROUND_LEVEL = 0,  ///< level ground, at the height that the graph's parameter says, or 0
-  SINEW_GROUND_WORLD = 1,  ///< the world's floor, obstacles and shapes
-  SINEW_GROUND_HOST = 2    ///< what `below` answers
+  SINEW_GROUND_WORLD =
+      1,  ///< the world's floor, obstacles and shapes; what begins above a foot's ray is passed by
+  SINEW_GROUND_HOST = 2  ///< what `below` answers
 };
 
 /// What lies below a foot.
@@ -130,9 +131,9 @@ typedef struct sinew_ground_hit {
   int32_t body;     ///< of sinew_character_set_grounds; -1: it does not move
 } sinew_ground_hit;
 
-/// The highest ground below a world point [3] (m), written into `hit`, which lies there, level and at rest
-/// before. 0: there is none, and what was known stays. Called within sinew_character_play_graph and its like,
-/// a dozen times a frame. No call of Sinew for this world.
+/// The highest ground below a world point [3] (m): write it into `hit`, which holds that point on level
+/// ground at rest before. The answer 0: there is none, and what was known stays. Called within
+/// sinew_character_play_graph and its like, a dozen times a frame. No call of Sinew for this world.
 typedef int32_t (*sinew_ground_below)(void* context, const float point[3], sinew_ground_hit* hit);
 
 /// How a character follows a graph.
@@ -159,7 +160,7 @@ typedef struct sinew_parameter_value {
 /// Where a machine is.
 typedef struct sinew_machine_report {
   uint32_t size;     ///< bytes of this struct, as the caller knows it
-  int32_t state;     ///< of the machine; goes on to be reached while it fades
+  int32_t state;     ///< that it is in; while a transition runs, the one that it goes to
   const char* name;  ///< of the state, while the graph or the world lives
   double time;       ///< s, in that state
   int32_t fading;    ///< flag: a transition runs
@@ -231,16 +232,16 @@ SINEW_API sinew_status sinew_character_sample_graph(sinew_character character, f
 SINEW_API sinew_status sinew_character_set_parameter(sinew_character character, int32_t parameter,
                                                      float value);
 /// The same by name; SINEW_NOT_FOUND. O(parameters).
-SINEW_API sinew_status sinew_character_set_named_parameter(sinew_character character, const char* name,
-                                                           float value);
+SINEW_API sinew_status sinew_character_set_parameter_by_name(sinew_character character, const char* name,
+                                                             float value);
 /// Asks for something once; forgotten when no transition has taken it in time.
 SINEW_API sinew_status sinew_character_trigger(sinew_character character, int32_t parameter);
 /// The same by name; SINEW_NOT_FOUND. O(parameters).
-SINEW_API sinew_status sinew_character_trigger_named(sinew_character character, const char* name);
+SINEW_API sinew_status sinew_character_trigger_by_name(sinew_character character, const char* name);
 /// As set, and filtered.
 SINEW_API sinew_status sinew_character_get_parameter(sinew_character character, int32_t parameter,
                                                      sinew_parameter_value* out);
-/// The state that a machine is in, which is a node of the graph.
+/// The state that a machine is in. `machine`: a node of the graph.
 SINEW_API sinew_status sinew_character_get_machine(sinew_character character, int32_t machine,
                                                    sinew_machine_report* out);
 /// Where its root motion has brought it.

@@ -51,6 +51,7 @@ namespace Sinew {
   }
 
   public static unsafe partial class Library {
+    static readonly List<Delegate> kept = new List<Delegate>();  // that the library may still call
     /// <summary>"0.2.0", of the library.</summary>
     public static string Version { get { return Text(Native.sinew_version()); } }
     public static string StatusName(Status status) { return Text(Native.sinew_status_name(status)); }

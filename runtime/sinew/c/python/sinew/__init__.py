@@ -710,14 +710,14 @@ class Character(_InWorld):
     def set_parameter(self, parameter, value):
         """Of its graph, by number or name."""
         if isinstance(parameter, str):
-            self._call(lib.sinew_character_set_named_parameter, parameter.encode(), value)
+            self._call(lib.sinew_character_set_parameter_by_name, parameter.encode(), value)
         else:
             self._call(lib.sinew_character_set_parameter, parameter, value)
 
     def trigger(self, parameter):
         """Asks its graph for something once, by number or name."""
         if isinstance(parameter, str):
-            self._call(lib.sinew_character_trigger_named, parameter.encode())
+            self._call(lib.sinew_character_trigger_by_name, parameter.encode())
         else:
             self._call(lib.sinew_character_trigger, parameter)
 
