@@ -100,7 +100,7 @@ TEST_F(Hooks, AnAssumptionThatDoesNotHoldIsToldWithItsPlace) {
                                  },
                                  &failure});
   if (!set) GTEST_SKIP() << set.reason;
-  const int two = 2;
+  [[maybe_unused]] const int two = 2;
   SINEW_ASSERT(two == 2);
   EXPECT_EQ(failure.count, 0);
   SINEW_ASSERT(two == 3);
