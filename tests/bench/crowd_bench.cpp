@@ -176,7 +176,7 @@ void flight(benchmark::State& state, bool limits) {
     if (frame++ % 60 == 0)
       for (int n = 0; n < characters; ++n) {
         (void)world.character(n).set_target(starts[n]);
-        world.character(n).reset();
+        (void)world.character(n).reset();
       }
     benchmark::DoNotOptimize(world.step(float(kStep)));
   }
@@ -202,7 +202,7 @@ struct OnClip {
     for (int n = 0; n < characters; ++n)
       if (world.add_character(rig, {}, status) < 0) return;
     aim(0);
-    for (int n = 0; n < characters; ++n) world.character(n).reset();
+    for (int n = 0; n < characters; ++n) (void)world.character(n).reset();
   }
   static WorldSettings settings(bool batches) {
     WorldSettings chosen;

@@ -105,7 +105,7 @@ void sinew_step(benchmark::State& state, Situation what) {
     if (n == kFrames) {
       n = 0;
       (void)character.set_target(frames[0]);
-      character.reset();
+      (void)character.reset();
     }
     ++n;
     if (what == Situation::kMuscles) (void)character.set_target(frames[n]);

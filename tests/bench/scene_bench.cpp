@@ -49,7 +49,7 @@ void beside(benchmark::State& state) {
       std::vector<JointJet<float>> jets = fixtures::idle<float>(body, time + 0.01 * n);
       jets[0].translation += in_rows(n, kSide, kApart).cast<float>();
       (void)world.character(n).set_target(jets);
-      if (!begun) world.character(n).reset();
+      if (!begun) (void)world.character(n).reset();
     }
     begun = true;
     time += kStep;
@@ -106,7 +106,7 @@ void hit_at_once(benchmark::State& state) {
       Character<float> c = world.character(n);
       (void)c.set_target(jets);
       if (frame != 0) continue;
-      c.reset();
+      (void)c.reset();
       const double hit = kWeak + (kStrong - kWeak) * n / kFigures;
       (void)c.apply_impulse(
           chest, c.model()[chest].translation,

@@ -30,7 +30,7 @@ std::vector<double> turns_of_hand(double decay, bool bake, int steps) {
   std::vector<JointJet<double>> start = jets;
   start[hand].omega = {0, 2, 0};
   EXPECT_TRUE(figure.set_target(start));
-  figure.reset();
+  (void)figure.reset();
   EXPECT_TRUE(figure.set_target(jets));
   EXPECT_TRUE(figure.set_strength(hand, 0));
   CharacterDetail detail;
