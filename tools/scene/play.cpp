@@ -43,8 +43,8 @@ convert::Error Play<T>::add_all() {
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
-    (void)if (behaviour)(void)
-        behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down
+    if (behaviour)
+      (void)behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down
     asked_.push_back({settings.strength, {}, {}, settings.root});
   }
   for (const Collider& o : s_.obstacles)
@@ -52,7 +52,7 @@ convert::Error Play<T>::add_all() {
   for (const SceneProp& p : s_.props) {
     const int prop = world_.add_prop(p.settings, status);
     if (prop < 0) return {"prop '" + p.name + "': " + status.reason};
-    (void)launched_.push_back(p.launch_time <= 0);
+    launched_.push_back(p.launch_time <= 0);
     if (!launched_.back()) (void)world_.park_prop(prop);
   }
   if (convert::Error error = add_effects()) return error;
@@ -103,7 +103,7 @@ convert::Error Play<T>::drive(int c, double t, double h) {
     }
     std::span<const JointJet<T>> wanted = players_[c].at(t, felt);
     if (behaviours_[c]) {
-      (void)jets_.assign(wanted.begin(), wanted.end());
+      jets_.assign(wanted.begin(), wanted.end());
       (void)behaviours_[c]->update(character, jets_, T(h));
       wanted = jets_;
     }
@@ -115,14 +115,14 @@ convert::Error Play<T>::drive(int c, double t, double h) {
     if (!status) return {"character '" + source.name + "' at " + std::to_string(t) + " s: " + status.reason};
     asked.still = !players_[c].moves() && !behaviours_[c];
   }
-  (void)if (const double strength = ramp_at(source.strength, t); strength != asked.strength)(void)
-      character.set_strength(T(asked.strength = strength));
+  if (const double strength = ramp_at(source.strength, t); strength != asked.strength)
+    (void)character.set_strength(T(asked.strength = strength));
   for (std::size_t g = 0; g < source.group_strength.size(); ++g)
-    (void)if (const double factor = ramp_at(source.group_strength[g].second, t); factor != asked.groups[g])(
-        void) character.set_strength(source.group_strength[g].first, T(asked.groups[g] = factor));
+    if (const double factor = ramp_at(source.group_strength[g].second, t); factor != asked.groups[g])
+      (void)character.set_strength(source.group_strength[g].first, T(asked.groups[g] = factor));
   set_tones(c, t);
-  (void)if (const RootDrive root = value_at(source.root, t, RootDrive::kKinematic); root != asked.root)(void)
-      character.set_root_drive(asked.root = root);
+  if (const RootDrive root = value_at(source.root, t, RootDrive::kKinematic); root != asked.root)
+    (void)character.set_root_drive(asked.root = root);
   return {};
 }
 
@@ -135,12 +135,14 @@ void Play<T>::set_tones(int c, double t) {
   std::vector<Tone>& asked = asked_[static_cast<std::size_t>(c)].tones;
   if (tones == asked) return;
   asked = tones;
-  (void)Character<T> character = world_.character(c);
+  Character<T> character = world_.character(c);
   (void)character.set_tone(tones[0]);
   for (std::size_t n = 0; n < source.part_tones.size(); ++n) {
     const PartTone& part = source.part_tones[n];
-    (void)if (part.joint < 0)(void) character.set_group_tone(part.group.c_str(), tones[n + 1]);
-    (void)else(void) character.set_tone(part.joint, tones[n + 1]);
+    if (part.joint < 0)
+      (void)character.set_group_tone(part.group.c_str(), tones[n + 1]);
+    else
+      (void)character.set_tone(part.joint, tones[n + 1]);
   }
 }
 
@@ -176,7 +178,7 @@ void Play<T>::launch(double t) {
     if (launched_[p] || t < prop.launch_time) continue;
     launched_[p] = true;
     Vec3<double> from = prop.settings.pose.translation, velocity = prop.settings.velocity;
-    if (prop.target_character >= 0) (void)aim(prop, t, from, velocity);
+    if (prop.target_character >= 0) aim(prop, t, from, velocity);
     (void)world_.set_prop(static_cast<int>(p), {Quat<T>::Identity(), from.cast<T>()}, velocity.cast<T>(),
                           Vec3<T>::Zero());
   }

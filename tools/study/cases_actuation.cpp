@@ -195,10 +195,10 @@ struct Struck {
   Struck(bool bake, double strength_of_hands) {
     stage.add(body, {});
     for (const char* name : {"hand_l", "hand_r", "foot_l", "foot_r"}) limbs.push_back(body.find(name));
-    for (int n = 0; n < 4; (void)++n)
+    for (int n = 0; n < 4; ++n)
       (void)stage.character(0).set_strength(limbs[n], T(n < 2 ? strength_of_hands : 0.3));
     CharacterDetail detail;
-    (void)detail.bake = bake;
+    detail.bake = bake;
     (void)stage.character(0).set_detail(detail);
   }
   void step(double h, bool strikes) {
