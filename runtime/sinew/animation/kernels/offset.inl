@@ -52,8 +52,9 @@ template <class P>
 /// 1 for the block's joints before `end`, 0 for the others: a block may hold both.
 template <class P>
 P before(int end, const Block<P>& block) {
-  typename P::Scalar flags[P::kLanes];
-  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint[lane] < end ? 1 : 0;
+  using T = typename P::Scalar;
+  T flags[P::kLanes];
+  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint[lane] < end ? T(1) : T(0);
   return P::load(flags);
 }
 
