@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
-# Usage: tools/setup.sh [--tests] [--lint] [--farm] [--exports] [--peers] [--web]
+# Usage: tools/setup.sh [--tests] [--lint] [--farm] [--exports] [--peers] [--web] [--cross]
 #   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
 #   --farm: Slurm, for its test      --exports: what tests open exported files with (Blender, and by npm, where that is, a validator)
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
+#   --cross: compilers for ARM and Windows, and what runs their programs, for tests/portability
 set -euo pipefail
 . "$(dirname "$0")/progress.sh"
 
@@ -21,6 +22,7 @@ farm=(slurm-wlm munge)
 exports=(blender)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)
 web=(emscripten chromium brotli)
+cross=(g++-aarch64-linux-gnu qemu-user g++-mingw-w64-x86-64-posix wine wine64)
 command -v npm >/dev/null || web+=(npm)  # another's will do
 
 missing() {  # missing PACKAGE…: those that are not installed
@@ -85,7 +87,8 @@ for option in "$@"; do
       ;;
     --peers) packages+=("${peers[@]}") ;;
     --web) packages+=("${web[@]}") ;;
-    *) echo "setup: no such option: $option (there are --tests, --lint, --farm, --exports, --peers and --web)" >&2; exit 2 ;;
+    --cross) packages+=("${cross[@]}") ;;
+    *) echo "setup: no such option: $option (there are --tests, --lint, --farm, --exports, --peers, --web and --cross)" >&2; exit 2 ;;
   esac
 done
 mapfile -t wanted < <(missing "${packages[@]}")

@@ -52,7 +52,8 @@ T density(const Tetrahedron<T>& e, const Mat3<T>& f, Mat3<T>& stress) {
   const T squares = f.squaredNorm(), off = f.determinant() - rest_volume(e);
   const T rest = T(1) - rest_volume(e);
   stress = e.mu * (T(1) - T(1) / (squares + 1)) * f + e.lame * off * cofactors(f);
-  return T(0.5) * e.mu * (squares - 3 - std::log((squares + 1) / 4)) +
+  const T logarithm = T(std::log(double((squares + 1) / 4)));  // in float as portable_math.h has it
+  return T(0.5) * e.mu * (squares - 3 - logarithm) +
          T(0.5) * e.lame * (off - rest) * (off + rest);
 }
 

@@ -1,8 +1,3 @@
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,6 +5,7 @@
 
 #include "sinew/animation/clip_packing.h"
 #include "sinew/io/asset.h"
+#include "sinew/io/mapped_file.h"
 #include "sinew/io/schema_version.h"
 #include "sinew_generated.h"
 
@@ -340,24 +336,9 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
 }
 
 Status load_asset(const char* path, Asset& out) {
-  const int file = ::open(path, O_RDONLY | O_CLOEXEC);
-  if (file < 0) return Status::error(Code::kIo, "file cannot be opened");
-  struct stat info {};
-  if (::fstat(file, &info) != 0 || !S_ISREG(info.st_mode)) {
-    ::close(file);
-    return Status::error(Code::kIo, "not a regular file");
-  }
-  const std::size_t size = static_cast<std::size_t>(info.st_size);
-  if (size == 0) {
-    ::close(file);
-    return bad("file is empty");
-  }
-  void* mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
-  ::close(file);
-  if (mapped == MAP_FAILED) return Status::error(Code::kIo, "file cannot be mapped");
-  const Status status = read_asset({static_cast<const std::uint8_t*>(mapped), size}, out);
-  ::munmap(mapped, size);
-  return status;
+  MappedFile file;
+  if (Status status = file.open(path); !status) return status;
+  return read_asset(file.bytes(), out);
 }
 
 }  // namespace sinew

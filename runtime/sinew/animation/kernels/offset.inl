@@ -49,6 +49,15 @@ template <class P>
   }
 }
 
+/// 1 for the block's joints before `end`, 0 for the others: a block may hold both.
+template <class P>
+P before(int end, const Block<P>& block) {
+  using T = typename P::Scalar;
+  T flags[P::kLanes];
+  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint[lane] < end ? T(1) : T(0);
+  return P::load(flags);
+}
+
 template <class T>
 void take_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints, const OffsetNumbers<T>& out) {
   using P = typename LanesOf<T>::Type;
@@ -64,10 +73,12 @@ void take_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints, 
       store<0, P::kLanes>(acceleration[i], rotation + (6 + i) * kOffsetBlock);
     }
     if (first >= out.translated) continue;
+    const P moved = before(out.translated, block);
     T* translation = offsets_of(out.translations, first);
-    for (int i = 0; i < kOffsetPart; ++i)
-      store<0, P::kLanes>(a.number[kTranslation + i] - b.number[kTranslation + i],
-                          translation + i * kOffsetBlock);
+    for (int i = 0; i < kOffsetPart; ++i) {
+      const P apart = a.number[kTranslation + i] - b.number[kTranslation + i];
+      store<0, P::kLanes>(where_equal(moved, T(1), apart, P::all(0)), translation + i * kOffsetBlock);
+    }
   }
 }
 
@@ -87,10 +98,14 @@ void add_all(const JetLayout<T>* to, const OffsetFade<T>& data, int joints, JetL
     if (first < data.offsets.translated) {
       load_offsets(data.offsets.translations, block, start);
       faded(fade, start, value, rate, acceleration);
+      const P moved = before(data.offsets.translated, block);
+      const auto add = [&](P& number, const P& offset) {
+        number = where_equal(moved, T(1), number + offset, number);
+      };
       for (int i = 0; i < 3; ++i) {
-        jets.number[kTranslation + i] = jets.number[kTranslation + i] + value[i];
-        jets.number[kVelocity + i] = jets.number[kVelocity + i] + rate[i];
-        jets.number[kAcceleration + i] = jets.number[kAcceleration + i] + acceleration[i];
+        add(jets.number[kTranslation + i], value[i]);
+        add(jets.number[kVelocity + i], rate[i]);
+        add(jets.number[kAcceleration + i], acceleration[i]);
       }
     }
     block.store(jets, out);
