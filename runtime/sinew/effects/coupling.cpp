@@ -53,8 +53,7 @@ T density(const Tetrahedron<T>& e, const Mat3<T>& f, Mat3<T>& stress) {
   const T rest = T(1) - rest_volume(e);
   stress = e.mu * (T(1) - T(1) / (squares + 1)) * f + e.lame * off * cofactors(f);
   const T logarithm = T(std::log(double((squares + 1) / 4)));  // in float as portable_math.h has it
-  return T(0.5) * e.mu * (squares - 3 - logarithm) +
-         T(0.5) * e.lame * (off - rest) * (off + rest);
+  return T(0.5) * e.mu * (squares - 3 - logarithm) + T(0.5) * e.lame * (off - rest) * (off + rest);
 }
 
 /// F = U diag(σ) Vᵀ with rotations U and V: the smallest σ is negative where the element is inside out.
