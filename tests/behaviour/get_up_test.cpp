@@ -227,9 +227,9 @@ TEST(GetUp, AllocatesNothing) {
     ++body.frame;
     body.sample();
     std::copy(body.jets.begin(), body.jets.end(), wanted.begin());
-    body.behaviour.update(body.character(), wanted, body.h);
-    body.character().set_target(wanted);
-    body.world.step(body.h);
+    (void)body.behaviour.update(body.character(), wanted, body.h);
+    (void)body.character().set_target(wanted);
+    (void)body.world.step(body.h);
   }
   EXPECT_EQ(fixtures::allocations, before);
   EXPECT_EQ(body.behaviour.state(), BehaviourState::kRise);

@@ -98,7 +98,7 @@ TEST(Grounded, ComesToRestAndIsPlayedFromWhereItStands) {
   const Vec3<double> wanted = by.turn() * Vec3<double>(statue.jets[0].translation.cast<double>());
   const Vec3<double> is = statue.character().position();
   EXPECT_LT((is - Vec3<double>(wanted.x() + by.x, wanted.y() + by.y, wanted.z())).norm(), 1e-4);
-  statue.character().reset();
+  (void)statue.character().reset();
   EXPECT_FALSE(statue.character().displacement().any());
 }
 
@@ -111,8 +111,8 @@ TEST(Grounded, DisplacedItPlaysTheSameMotionElsewhere) {
   const Displacement to = moved.character().displacement();
   ASSERT_TRUE(to.any());
   plain.sample();
-  plain.character().set_target(plain.jets);
-  plain.character().reset();
+  (void)plain.character().set_target(plain.jets);
+  (void)plain.character().reset();
   for (int n = 0; n < 60; ++n) {
     moved.step();
     plain.step();
@@ -148,7 +148,7 @@ TEST(Grounded, GoesOnFromASnapshotWithTheSameBits) {
 
 TEST(Grounded, WithoutMusclesItIsARagdoll) {
   Pushed limp("stand");
-  limp.character().set_strength(0.f);
+  (void)limp.character().set_strength(0.f);
   limp.run(2);
   EXPECT_LT(limp.root_height(), 0.4);
 }

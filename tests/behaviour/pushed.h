@@ -36,12 +36,12 @@ struct Pushed {
     clip = &asset.clips[static_cast<std::size_t>(asset.find_clip(name))];
     jets.resize(asset.skeleton.joints.size());
     sample();
-    character().set_target(jets);
-    character().reset();
+    (void)character().set_target(jets);
+    (void)character().reset();
   }
   Character<float> character() { return world.character(hero); }
   double time() const { return frame * double(h); }
-  void sample() { SamplingJob<float>{clip, time(), jets}.Run(); }
+  void sample() { (void)SamplingJob<float>{clip, time(), jets}.Run(); }
   void step(const Vec3<float>& force = Vec3<float>::Zero()) {
     ++frame;
     sample();
@@ -49,8 +49,9 @@ struct Pushed {
     EXPECT_TRUE(character().set_target(jets));
     const int chest = asset.skeleton.find(Role::kChest);
     if (force.norm() > 0)
-      character().apply_force(chest, character().model()[static_cast<std::size_t>(chest)].translation, force);
-    world.step(h);
+      (void)character().apply_force(chest, character().model()[static_cast<std::size_t>(chest)].translation,
+                                    force);
+    (void)world.step(h);
     if (character().report().unknown_dofs > 0) ++solved;
   }
   void run(double seconds) {

@@ -131,7 +131,7 @@ TEST(Scene, UndisturbedPlaybackIsTheClip) {
   std::vector<Transform<float>> model(jets.size());
   for (const Frame& frame : r.recording.frames) {
     EXPECT_EQ(frame.characters[0].unknown_dofs, 0);
-    SamplingJob<float>{&asset.clips[r.scene.characters[0].clips[0].clip], frame.time, jets}.Run();
+    (void)SamplingJob<float>{&asset.clips[r.scene.characters[0].clips[0].clip], frame.time, jets}.Run();
     for (std::size_t i = 0; i < jets.size(); ++i) {
       const int parent = asset.skeleton.joints[i].parent;
       model[i] = {jets[i].rotation, jets[i].translation};
@@ -190,7 +190,8 @@ float away_from_clip(const Result& r, double t) {
   const SceneCharacter& c = r.scene.characters[0];
   const bool prone = forward(r, r.at(2.9)).z() < 0;
   std::vector<JointJet<float>> jets(c.asset->skeleton.joints.size());
-  SamplingJob<float>{&c.asset->clips[prone ? c.clips[1].clip_when_prone : c.clips[1].clip], 0, jets}.Run();
+  (void)SamplingJob<float>{&c.asset->clips[prone ? c.clips[1].clip_when_prone : c.clips[1].clip], 0, jets}
+      .Run();
   float sum = 0;
   for (int i = 1; i < c.asset->skeleton.body_count; ++i) {
     const int parent = c.asset->skeleton.joints[i].parent;
