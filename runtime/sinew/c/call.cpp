@@ -46,6 +46,11 @@ sinew_status refuse(std::uint64_t handle, Kind kind) noexcept {
   return fail(SINEW_BAD_HANDLE, why_not(handle, kind));
 }
 
+sinew_status failed_at(sinew_status status, int index) noexcept {
+  last.index = index;
+  return status;
+}
+
 }  // namespace sinew::c
 
 const char* sinew_version(void) {

@@ -20,6 +20,8 @@ sinew_status fail(sinew_status status, const char* reason, int index = -1) noexc
 /// The same of what the C++ side answers.
 sinew_status answer(const Status& status) noexcept;
 sinew_status refuse(std::uint64_t handle, Kind kind) noexcept;
+/// Of a call for many: what has just failed, and has been told of, is number `index` of them.
+sinew_status failed_at(sinew_status status, int index) noexcept;
 
 constexpr const char* kNull = "a pointer is null";
 constexpr const char* kMisaligned = "jets must lie at a multiple of 16 bytes";

@@ -127,7 +127,7 @@ sinew_status sinew_play_graphs(const sinew_graph_play* plays, int32_t count) {
   if (count < 0) return fail(SINEW_INVALID_ARGUMENT, "a number of graphs below 0", count);
   for (int32_t n = 0; n < count; ++n)
     if (const sinew_status status = play(plays[n].character, plays[n].h); status != SINEW_OK)
-      return fail(status, sinew_last_reason(), n);
+      return failed_at(status, n);
   return SINEW_OK;
 }
 
