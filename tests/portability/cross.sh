@@ -36,7 +36,7 @@ build() {  # build TARGET NINJA-TARGETS -- CMAKE-OPTIONS…: with warnings as er
   echo "building for $target …" >&2
   if ! { cmake -G Ninja -S "$here/../.." -B "$folder/$target" -DSINEW_TOOLS=OFF -DSINEW_TESTS=OFF -DSINEW_SAMPLES=OFF \
     -DSINEW_POSE_HASHES=ON -DSINEW_PYTHON_BINDING=OFF -DSINEW_CSHARP_BINDING=OFF -DSINEW_RUST_BINDING=OFF "$@" &&
-    ninja -C "$folder/$target" $wanted; } >"$log" 2>&1; then
+    ninja -C "$folder/$target" -j "$(nproc)" $wanted; } >"$log" 2>&1; then
     grep -E -A5 'error|CMake Error|FAILED' "$log" | head -n 40 >&2
     echo "cross.sh: $target is not built (whole log: $log)" >&2
     return 1
@@ -75,7 +75,7 @@ wasm() {
   node --no-experimental-fetch -e '' 2>/dev/null && node+=(--no-experimental-fetch)
   echo "building for wasm …" >&2
   if ! { NODE_PATH=/usr/share/nodejs emcmake cmake -G Ninja -S "$here/../../samples/web" -B "$folder/wasm" -DCMAKE_BUILD_TYPE=Release \
-    -DSINEW_POSE_HASHES=ON && NODE_PATH=/usr/share/nodejs ninja -C "$folder/wasm" pose_hashes; } >"$log" 2>&1; then
+    -DSINEW_POSE_HASHES=ON && NODE_PATH=/usr/share/nodejs ninja -C "$folder/wasm" -j "$(nproc)" pose_hashes; } >"$log" 2>&1; then
     tail -n 20 "$log" >&2
     echo "cross.sh: wasm is not built (whole log: $log)" >&2
     return 1
