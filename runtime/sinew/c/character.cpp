@@ -153,8 +153,7 @@ sinew_status sinew_play_clips(const sinew_play* plays, int32_t count) {
   if (!plays && count != 0) return fail(SINEW_INVALID_ARGUMENT, kNull);
   if (count < 0) return fail(SINEW_INVALID_ARGUMENT, "a number of clips below 0", count);
   for (int32_t n = 0; n < count; ++n)
-    if (const sinew_status status = play(plays[n]); status != SINEW_OK)
-      return failed_at(status, n);
+    if (const sinew_status status = play(plays[n]); status != SINEW_OK) return failed_at(status, n);
   return SINEW_OK;
 }
 

@@ -173,8 +173,7 @@ sinew_status run(sinew_asset asset, const C* settings, List&& list, sinew_jet* j
 
 sinew_status read_layer(const OwnedAsset& owned, const sinew_blend_layer& from, int n, int count,
                         BlendLayer<float>& to) {
-  if (const sinew_status s = check_jets(owned, from.jets, count); s != SINEW_OK)
-    return failed_at(s, n);
+  if (const sinew_status s = check_jets(owned, from.jets, count); s != SINEW_OK) return failed_at(s, n);
   if (from.mode < SINEW_BLEND_MIX || from.mode > SINEW_BLEND_ADDITIVE)
     return fail(SINEW_INVALID_ARGUMENT, "no such mode of blending", n);
   to.jets = jets_of(from.jets, count);
