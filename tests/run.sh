@@ -5,7 +5,7 @@
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
 #   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
 #   the sanitizers, hard cases and situations with them, a thousand killed conversions, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
-#   browsers, the same poses on ARM, on Windows, in WebAssembly and by clang, packages, and both of the README's commands on a bare machine: hours.
+#   browsers, the same poses on ARM, in WebAssembly and by clang, packages, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
