@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
   weld.a.frame.translation = hand;
   weld.b = {sinew::AnchorKind::kProp, lantern, 0, {}};
   weld.b.frame.translation = {0, 0, kHandle};
-  const int held = status ? world.add_loop(weld, status) : -1;
+  const int bond = status ? world.add_loop(weld, status) : -1;
   if (!status) return fail("lantern", status.reason);
   const int cycle = int(std::lround(60 * double(asset.clips.front().duration)));  // frames
 
@@ -121,14 +121,14 @@ int main(int argc, char** argv) {
     }
     before = place(item);
 
-    gap = std::max(gap, world.loop_gap(held));
+    gap = std::max(gap, world.loop_gap(bond));
     if (frame > kLast - cycle)
-      pull -= double(world.loop_force(held).z()) / cycle;  // mean of a cycle: its weight
+      pull -= double(world.loop_force(bond).z()) / cycle;  // mean of a cycle: its weight
     if (frame % 30 == 0)
       std::printf("%5.2f s  sword at height %.2f m; lantern pulls with %4.1f N, unknown DOFs %d\n",
                   frame / 60.0,
                   frame <= kThrown ? double(place(item).z()) : double(world.prop_pose(sword).translation.z()),
-                  double(world.loop_force(held).norm()), walker.report().unknown_dofs);
+                  double(world.loop_force(bond).norm()), walker.report().unknown_dofs);
   }
   std::printf(
       "sword %.3f mm from the palm, released within %.3f m/s of it; lantern %.2f mm, pulls down with %.1f "

@@ -7,9 +7,9 @@
 #include <sinew/effects/effect.h>
 
 struct GrabSettings {
-  int joint = 0;                                         ///< simulated, that is held
+  int joint = 0;                                         ///< simulated
   sinew::Vec3<double> at = sinew::Vec3<double>::Zero();  ///< m, where, joint axes
-  sinew::Vec3<double> to = sinew::Vec3<double>::Zero();  ///< m, world, where it is held
+  sinew::Vec3<double> to = sinew::Vec3<double>::Zero();  ///< m, world, where it is pulled
   double stiffness = 0;                                  ///< N/m
   double damping = 0;                                    ///< N·s/m
 };
@@ -32,22 +32,22 @@ class Grab final : public sinew::Effect<T> {
   }
   int instances() const override { return 1; }
   /// Measured once a step, when it begins.
-  void begin_step(const sinew::EffectPose<T>& start) override { start_ = held(start); }
+  void begin_step(const sinew::EffectPose<T>& start) override { start_ = place(start); }
   double add_gradient(const sinew::EffectPose<T>& pose, const sinew::Wrenches<T>& out) const override {
-    const Vec x = held(pose), speed = (x - start_) / pose.h;
+    const Vec x = place(pose), speed = (x - start_) / pose.h;
     out.add(settings.joint, x, gradient(pose, x, speed));
     return double(T(settings.stiffness) / 2 * (x - goal(pose)).squaredNorm() +
                   pose.h * T(settings.damping) / 2 * speed.squaredNorm());
   }
   void add_curvature(const sinew::EffectPose<T>& pose, const sinew::Curvature<T>& out) const override {
-    const Vec x = held(pose);
+    const Vec x = place(pose);
     const T change = T(settings.stiffness) + T(settings.damping) / pose.h;
     out.add(settings.joint, x, gradient(pose, x, (x - start_) / pose.h), change * sinew::Mat3<T>::Identity());
   }
   /// What the muscles of a character on its animation have to bear; decides whether anything is simulated.
   void add_load(const sinew::EffectPose<T>& pose, const sinew::Motion<T>& motion,
                 const sinew::Wrenches<T>& out) const override {
-    const Vec x = held(pose), arm = x - pose.kinematics.center[settings.joint];
+    const Vec x = place(pose), arm = x - pose.kinematics.center[settings.joint];
     const Vec speed = motion.velocity[settings.joint] + motion.omega[settings.joint].cross(arm);
     out.add(settings.joint, x, gradient(pose, x, speed));
   }
@@ -56,7 +56,7 @@ class Grab final : public sinew::Effect<T> {
   GrabSettings settings;  ///< `to` and the rest but `joint` may change between steps
 
  private:
-  Vec held(const sinew::EffectPose<T>& pose) const {
+  Vec place(const sinew::EffectPose<T>& pose) const {
     return pose.point(settings.joint, settings.at.template cast<T>());
   }
   /// Positions in a step are relative to a common origin near the character, for the sake of their digits.
@@ -68,5 +68,5 @@ class Grab final : public sinew::Effect<T> {
     return T(settings.stiffness) * (x - goal(pose)) + T(settings.damping) * speed;
   }
 
-  Vec start_ = Vec::Zero();  ///< where it is held when the step begins, from the common origin
+  Vec start_ = Vec::Zero();  ///< its place when the step begins, from the common origin
 };

@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
   double force = 0;  // N, upwards: the mean of the last 5 s, since it swings
   for (int frame = 0; frame < 900; ++frame) {
     if (status = world.step(1 / 60.f); !status) return fail("step", status.reason);
-    const sinew::Vec3<double> held = hero.model()[chest].cast<double>() * settings.at;
-    if (frame >= 600) force += grab.settings.stiffness * (grab.settings.to - held).z() / 300;
+    const sinew::Vec3<double> at = hero.model()[chest].cast<double>() * settings.at;
+    if (frame >= 600) force += grab.settings.stiffness * (grab.settings.to - at).z() / 300;
   }
   const double weight = asset.skeleton.total_mass() * 9.81;
   std::printf("limp it hangs from %.0f N; it weighs %.0f N\n", force, weight);

@@ -29,7 +29,6 @@ class Everything:
 
     def __init__(self):
         self.asset = sinew.Asset(ASSET)
-        self.asset.prepare_mirror()
         self.world = sinew.World()
         self.character = self.world.add_character(self.asset, root=sinew.RootDrive.GROUNDED)
         self.character.add_behaviour()

@@ -196,8 +196,7 @@ class FuzzMotion : protected FuzzInputs {
       case 2:
         return look(asset, jets, count);
       case 3:
-        return below(2) == 0 ? sinew_asset_prepare_mirror(asset)
-                             : sinew_asset_mirror(asset, or_null(jets.data()), count);
+        return sinew_asset_mirror(asset, or_null(jets.data()), count);
       default:
         return sinew_asset_subtract(asset, or_null(other.data()), below(2) * count, or_null(jets.data()),
                                     count);

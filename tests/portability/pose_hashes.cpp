@@ -1,5 +1,5 @@
 // Prints one line per scene and precision: its name, the precision, and a hash of all poses of all frames.
-// The same lines are printed on every machine; cross.sh and instruction_sets.sh compare them. Usage:
+// The same lines are printed on every machine; cross.sh and processors.sh compare them. Usage:
 // pose_hashes ASSET.sinew GRAPH.sgraph [--processor baseline|avx2|avx512] [--scene NAME [--frames]]
 //   --processor: kernels as a processor chooses that has this and nothing above
 //   --frames: a line after every frame, to find the first that differs

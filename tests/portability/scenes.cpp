@@ -267,14 +267,14 @@ std::string bar_and_strand(const Actors& actors, PoseHash& hash) {
   Stage<T> stage(actors);
   stage.add(limp(), "stand", 1);
   const Role hands[] = {Role::kHandL, Role::kHandR};
-  int held[2] = {};
+  int grips[2] = {};
   for (int side = 0; side < 2; ++side) {
     LoopSettings grip;
     grip.kind = side ? LoopKind::kRope : LoopKind::kPoint;
     grip.length = side ? 0.1 : 0;
     grip.a = {AnchorKind::kCharacter, 0, stage.joint(hands[side]), {}};
     grip.b.frame.translation = stage.place(hands[side]).template cast<double>() + Vec3<double>(0.02, 0, 0.05);
-    held[side] = stage.world.add_loop(grip, stage.status);
+    grips[side] = stage.world.add_loop(grip, stage.status);
     stage.expect(stage.status);
   }
   StrandSettings strand;
@@ -284,7 +284,7 @@ std::string bar_and_strand(const Actors& actors, PoseHash& hash) {
   (void)stage.world.add_particles(make_strand(strand), stage.status);
   stage.expect(stage.status);
   for (int frame = 0; frame < 90; ++frame) {
-    if (frame == 50) stage.expect(stage.world.set_loop(held[0], false));
+    if (frame == 50) stage.expect(stage.world.set_loop(grips[0], false));
     for (int node = 0; node < strand.particles; ++node) hash.add(stage.world.particle(0, node));
     stage.step(hash);
   }

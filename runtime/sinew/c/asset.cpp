@@ -64,6 +64,7 @@ OwnedAsset::OwnedAsset(std::shared_ptr<const Asset> read) : asset(std::move(read
   }
   LookChain<float> chain;
   if (find_look_chain(asset->skeleton, chain)) look = chain;
+  mirrors = build_mirror_map<float>(asset->skeleton, mirror);
 }
 
 sinew_status sample(const Asset& asset, int clip, const ClipTime& time, std::span<JointJet<float>> jets) {

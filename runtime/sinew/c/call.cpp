@@ -36,10 +36,16 @@ sinew_status fail(sinew_status status, const char* reason, int index) noexcept {
 }
 
 sinew_status answer(const Status& status) noexcept {
-  if (status) return SINEW_OK;
-  const bool lacks = status.code == Code::kUnsupported;
-  return fail(lacks ? SINEW_UNSUPPORTED : static_cast<sinew_status>(status.code), status.reason,
-              status.index);
+  switch (status.code) {
+    case Code::kOk:
+      return SINEW_OK;
+    case Code::kUnsupported:
+      return fail(SINEW_UNSUPPORTED, status.reason, status.index);
+    case Code::kNotFound:
+      return fail(SINEW_NOT_FOUND, status.reason, status.index);
+    default:  // by the same number
+      return fail(static_cast<sinew_status>(status.code), status.reason, status.index);
+  }
 }
 
 sinew_status refuse(std::uint64_t handle, Kind kind) noexcept {

@@ -88,27 +88,19 @@ sinew_status change(sinew_character handle, Change&& change) noexcept {
   return with_character(handle, [&](OwnedWorld&, Character<float> c) { return answer(change(c)); });
 }
 
-/// The same of muscles of a group, where there is one of that name. `breaks`: as of in_world.
+/// The same where it may allocate.
 template <class Change>
-sinew_status change_group(sinew_character handle, const char* group, bool breaks, Change&& change) noexcept {
-  const auto act = [&](OwnedWorld&, Character<float> c) {
-    if (!group) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    const std::vector<Muscle>& muscles = c.skeleton().muscles;
-    if (*group == 0 ||
-        std::none_of(muscles.begin(), muscles.end(), [&](const Muscle& m) { return m.group == group; }))
-      return fail(SINEW_NOT_FOUND, "the skeleton has no muscle of that group");
-    return answer(change(c));
-  };
-  return with_character(handle, act, breaks);
+sinew_status change_set_up(sinew_character handle, Change&& change) noexcept {
+  return with_character(
+      handle, [&](OwnedWorld&, Character<float> c) { return answer(change(c)); }, true);
 }
 
-/// change(character) → Status, which may allocate, with a tone that there is.
+/// The same with a tone, if there is such.
 template <class Change>
 sinew_status change_tone(sinew_character handle, sinew_tone tone, Change&& change) noexcept {
   if (tone < SINEW_TONE_RIGID || tone > SINEW_TONE_BRACED)
     return fail(SINEW_INVALID_ARGUMENT, "no such tone", tone);
-  return with_character(
-      handle, [&](OwnedWorld&, Character<float> c) { return answer(change(c)); }, true);
+  return change_set_up(handle, [&](Character<float> c) { return change(c, Tone(tone)); });
 }
 
 }  // namespace
@@ -182,28 +174,26 @@ sinew_status sinew_character_set_muscle_strength(sinew_character character, int3
 
 sinew_status sinew_character_set_group_strength(sinew_character character, const char* group,
                                                 float strength) {
-  return change_group(character, group, false,
-                      [&](Character<float> c) { return c.set_group_strength(group, strength); });
+  if (!group) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  return change(character, [&](Character<float> c) { return c.set_group_strength(group, strength); });
 }
 
 sinew_status sinew_character_set_tone(sinew_character character, sinew_tone tone) {
-  return change_tone(character, tone, [&](Character<float> c) { return c.set_tone(Tone(tone)); });
+  return change_tone(character, tone, [&](Character<float> c, Tone t) { return c.set_tone(t); });
 }
 
 sinew_status sinew_character_set_joint_tone(sinew_character character, int32_t joint, sinew_tone tone) {
-  return change_tone(character, tone, [&](Character<float> c) { return c.set_tone(joint, Tone(tone)); });
+  return change_tone(character, tone, [&](Character<float> c, Tone t) { return c.set_tone(joint, t); });
 }
 
 sinew_status sinew_character_set_group_tone(sinew_character character, const char* group, sinew_tone tone) {
-  if (tone < SINEW_TONE_RIGID || tone > SINEW_TONE_BRACED)
-    return fail(SINEW_INVALID_ARGUMENT, "no such tone", tone);
-  return change_group(character, group, true,
-                      [&](Character<float> c) { return c.set_group_tone(group, Tone(tone)); });
+  if (!group) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  return change_tone(character, tone, [&](Character<float> c, Tone t) { return c.set_group_tone(group, t); });
 }
 
 sinew_status sinew_character_set_joint_stiffness(sinew_character character, int32_t joint, double stiffness,
                                                  double damping_ratio) {
-  return change_tone(character, SINEW_TONE_RIGID, [&](Character<float> c) {
+  return change_set_up(character, [&](Character<float> c) {
     return c.set_tone(joint, Stiffness{stiffness, damping_ratio});
   });
 }

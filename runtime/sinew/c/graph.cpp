@@ -1,6 +1,5 @@
 // Graphs of the C interface.
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <span>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "sinew/c/call.h"
 #include "sinew/c/layout.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/io/mapped_file.h"
 
 namespace sinew::c {
 namespace {
@@ -51,15 +51,6 @@ sinew_status make_graph(sinew_asset asset, std::span<const std::uint8_t> bytes, 
   });
 }
 
-Status read_file(const char* path, std::vector<std::uint8_t>& bytes) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path, "rb"), std::fclose);
-  if (!file) return Status::error(Code::kIo, "the file cannot be opened");
-  std::uint8_t part[4096];
-  for (std::size_t n = 0; (n = std::fread(part, 1, sizeof part, file.get())) > 0;)
-    bytes.insert(bytes.end(), part, part + n);
-  return std::ferror(file.get()) ? Status::error(Code::kIo, "the file cannot be read") : Status{};
-}
-
 /// act(const GraphDefinition&) of a graph.
 template <class Act>
 sinew_status with_definition(sinew_graph handle, Act&& act) noexcept {
@@ -84,11 +75,11 @@ using namespace sinew::c;
 
 sinew_status sinew_graph_load(const char* path, sinew_asset asset, sinew_graph* out) {
   if (!path) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  if (!find_object(asset, Kind::kAsset)) return refuse(asset, Kind::kAsset);
   return caught([&] {
-    std::vector<std::uint8_t> bytes;
-    if (!find_object(asset, Kind::kAsset)) return refuse(asset, Kind::kAsset);
-    if (const Status status = read_file(path, bytes); !status) return answer(status);
-    return make_graph(asset, bytes, out);
+    MappedFile file;
+    const Status status = file.open(path);
+    return status ? make_graph(asset, file.bytes(), out) : answer(status);
   });
 }
 

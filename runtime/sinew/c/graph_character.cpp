@@ -8,6 +8,7 @@
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/layout.h"
+#include "sinew/character/check_jet.h"
 #include "sinew/graph/graph_recorder.h"
 
 namespace sinew::c {
@@ -234,7 +235,7 @@ sinew_status sinew_character_set_grounds(sinew_character character, const sinew_
       return fail(SINEW_INVALID_ARGUMENT, "there may be 0 to 8 bodies", count);
     const std::span<const JointJet<float>> jets = jets_of(bodies, count);
     for (int n = 0; n < count; ++n)
-      if (const sinew_status status = check_jet(jets[std::size_t(n)], n); status != SINEW_OK) return status;
+      if (const Status status = check_jet(jets[std::size_t(n)], n); !status) return answer(status);
     std::transform(jets.begin(), jets.end(), player.ground.bodies.begin(), moving_transform<float>);
     player.ground.count = jets.size();
     return sinew_status(SINEW_OK);

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <mutex>
 
 namespace sinew::c {
 namespace {
@@ -51,16 +50,29 @@ struct Table {
   std::array<Slot, kSlots> slots;
   std::array<std::uint32_t, kSlots> serial;  ///< last used
   std::array<std::uint16_t, kSlots> next;    ///< in the list of slots that were given back; 0 ends it
-  std::mutex mutex;
-  std::uint32_t fresh = 1, free = 0;  ///< the first never used; the list's first. Slot 0 is never used
+  std::atomic_flag taken;                    ///< by who makes or destroys something
+  std::uint32_t fresh = 1, free = 0;         ///< the first never used; the list's first. Slot 0 is never used
 };
 
 constinit Table table{};
 
+/// The table for a few instructions: who comes meanwhile turns round. Unlike a mutex there when programs
+/// start, with every C++ library.
+class Changing {
+ public:
+  Changing() {
+    while (table.taken.test_and_set(std::memory_order_acquire)) {
+    }
+  }
+  ~Changing() { table.taken.clear(std::memory_order_release); }
+  Changing(const Changing&) = delete;
+  Changing& operator=(const Changing&) = delete;
+};
+
 }  // namespace
 
 std::uint64_t make_handle(Kind owner, void* object) {
-  const std::lock_guard lock(table.mutex);
+  const Changing change;
   std::uint32_t slot = table.free;
   if (slot != 0)
     table.free = table.next[slot];
@@ -82,7 +94,7 @@ void* find_object(std::uint64_t handle, Kind kind) noexcept {
 }
 
 void* retire_handle(std::uint64_t handle, Kind owner) {
-  const std::lock_guard lock(table.mutex);
+  const Changing change;
   void* const object = find_object(handle, owner);
   if (!object) return nullptr;
   const auto slot = std::uint32_t(field(handle, kSlotAt, kSlotBits));

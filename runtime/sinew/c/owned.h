@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -32,12 +31,11 @@ struct OwnedAsset {
 
   std::shared_ptr<const Asset> asset;
   // What jobs on poses need of it.
-  std::vector<int> parents;                              ///< [joint]
-  std::vector<Transform<float>> rest;                    ///< [joint]
-  std::optional<LookChain<float>> look;                  ///< of a skeleton with a head
-  std::mutex mutex;                                      ///< of what follows
-  std::unique_ptr<MirrorMap<float>> mirror_map;          ///< once somebody has asked for it
-  std::atomic<const MirrorMap<float>*> mirror{nullptr};  ///< the same, without the mutex
+  std::vector<int> parents;              ///< [joint]
+  std::vector<Transform<float>> rest;    ///< [joint]
+  std::optional<LookChain<float>> look;  ///< of a skeleton with a head
+  MirrorMap<float> mirror;               ///< where `mirrors` is ok
+  Status mirrors;                        ///< else why left and right were not found
 };
 
 /// A character's balance, and whose clips it gets up by.

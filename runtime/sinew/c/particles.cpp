@@ -25,6 +25,12 @@ void list_common(auto& c, auto& s, auto&& f) {
   f("damping must be 0 to 1e6 N s/m", c.damping, s.damping, 0, 1e6);
 }
 
+void list_mesh(auto& c, auto& s, auto&& f) {
+  f("node_count must be 0 to 65536", c.node_count, s.counts.nodes, 0, kMostNodes);
+  f("fixed_count must be 0 to 65536", c.fixed_count, s.counts.fixed, 0, kMostNodes);
+  list_common(c, s.settings, f);
+}
+
 constexpr auto kStrand = [](auto& c, auto& s, auto&& f) {
   f("particles must be 1 to 65536", c.particles, s.particles, 1, kMostNodes);
   list_common(c, s, f);
@@ -48,10 +54,8 @@ struct Cloth {
 };
 
 constexpr auto kCloth = [](auto& c, auto& s, auto&& f) {
-  f("node_count must be 0 to 65536", c.node_count, s.counts.nodes, 0, kMostNodes);
+  list_mesh(c, s, f);
   f("triangle_count must be 0 to 1048576", c.triangle_count, s.counts.elements, 0, kMostElements);
-  f("fixed_count must be 0 to 65536", c.fixed_count, s.counts.fixed, 0, kMostNodes);
-  list_common(c, s.settings, f);
   f("density must be 1e-9 to 1e6 kg/m2", c.density, s.settings.density, 1e-9, 1e6);
   f("stretch must be 0 to 1e9 N/m", c.stretch, s.settings.stretch, 0, 1e9);
   f("bending must be 0 to 1e9 N m", c.bending, s.settings.bending, 0, 1e9);
@@ -63,10 +67,8 @@ struct Tissue {
 };
 
 constexpr auto kTissue = [](auto& c, auto& s, auto&& f) {
-  f("node_count must be 0 to 65536", c.node_count, s.counts.nodes, 0, kMostNodes);
+  list_mesh(c, s, f);
   f("tetrahedron_count must be 0 to 1048576", c.tetrahedron_count, s.counts.elements, 0, kMostElements);
-  f("fixed_count must be 0 to 65536", c.fixed_count, s.counts.fixed, 0, kMostNodes);
-  list_common(c, s.settings, f);
   f("density must be 1e-9 to 1e9 kg/m3", c.density, s.settings.density, 1e-9, 1e9);
   f("young must be 1e-6 to 1e15 Pa", c.young, s.settings.young, 1e-6, 1e15);
   f("poisson must be -0.99 to 0.4999", c.poisson, s.settings.poisson, -0.99, 0.4999);

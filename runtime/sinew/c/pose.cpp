@@ -2,10 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <memory>
-#include <mutex>
 #include <span>
-#include <utility>
 
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
@@ -183,15 +180,11 @@ sinew_status read_layer(const OwnedAsset& owned, const sinew_blend_layer& from, 
   return SINEW_OK;
 }
 
-constexpr const char* kNoMirror = "sinew_asset_prepare_mirror has not been called for this asset";
-
-/// act(const MirrorMap&) of an asset that has one.
+/// act(const OwnedAsset&) of an asset whose left and right are known.
 template <class Act>
 sinew_status with_mirror(sinew_asset handle, Act&& act) noexcept {
-  return with_owned_asset(handle, [&](const OwnedAsset& owned) {
-    const MirrorMap<float>* const map = owned.mirror.load(std::memory_order_acquire);
-    return map ? act(owned, *map) : fail(SINEW_INVALID_ARGUMENT, kNoMirror);
-  });
+  return with_owned_asset(
+      handle, [&](const OwnedAsset& owned) { return owned.mirrors ? act(owned) : answer(owned.mirrors); });
 }
 
 }  // namespace
@@ -248,34 +241,22 @@ sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
   });
 }
 
-sinew_status sinew_asset_prepare_mirror(sinew_asset asset) {
-  return with_owned_asset(asset, [&](OwnedAsset& owned) {
-    const std::lock_guard lock(owned.mutex);
-    if (owned.mirror_map) return sinew_status(SINEW_OK);
-    auto map = std::make_unique<MirrorMap<float>>();
-    if (const Status status = build_mirror_map<float>(owned.asset->skeleton, *map); !status)
-      return answer(status);
-    owned.mirror_map = std::move(map);
-    owned.mirror.store(owned.mirror_map.get(), std::memory_order_release);
-    return sinew_status(SINEW_OK);
-  });
-}
-
 sinew_status sinew_asset_get_partner(sinew_asset asset, int32_t joint, int32_t* out) {
-  return with_mirror(asset, [&](const OwnedAsset&, const MirrorMap<float>& map) {
+  return with_mirror(asset, [&](const OwnedAsset& owned) {
+    const std::vector<std::uint16_t>& partners = owned.mirror.partners;
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    if (joint < 0 || std::size_t(joint) >= map.partners.size())
+    if (joint < 0 || std::size_t(joint) >= partners.size())
       return fail(SINEW_INVALID_ARGUMENT, "no such joint", joint);
-    const std::uint16_t partner = map.partners[std::size_t(joint)];
+    const std::uint16_t partner = partners[std::size_t(joint)];
     *out = partner == kNoPartner ? -1 : partner;
     return sinew_status(SINEW_OK);
   });
 }
 
 sinew_status sinew_asset_mirror(sinew_asset asset, sinew_jet* jets, int32_t count) {
-  return with_mirror(asset, [&](const OwnedAsset& owned, const MirrorMap<float>& map) {
+  return with_mirror(asset, [&](const OwnedAsset& owned) {
     if (const sinew_status s = check_jets(owned, jets, count); s != SINEW_OK) return s;
-    return answer(MirrorJob<float>{&map, jets_of(jets, count), jets_of(jets, count)}.Run());
+    return answer(MirrorJob<float>{&owned.mirror, jets_of(jets, count), jets_of(jets, count)}.Run());
   });
 }
 

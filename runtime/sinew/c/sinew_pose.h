@@ -6,7 +6,7 @@
 /// velocities and accelerations exact, where weights and targets come with theirs (0: they stay as they are),
 /// so that what the muscles are asked for is what the pose does. Jets are one for each joint of the asset's
 /// skeleton, or of its first joints, aligned to 16 bytes. Model space: the axes of the root's parent. Nothing
-/// here allocates but sinew_asset_prepare_mirror; assets are read by any number of threads.
+/// here allocates; assets are read by any number of threads.
 #ifndef SINEW_C_SINEW_POSE_H
 #define SINEW_C_SINEW_POSE_H
 
@@ -113,12 +113,10 @@ SINEW_API sinew_status sinew_asset_blend(sinew_asset asset, const sinew_blend_la
 /// rest where that is none.
 SINEW_API sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
                                             int32_t reference_count, sinew_jet* jets, int32_t count);
-/// Set-up, once an asset: finds left and right by names, roles and places.
-SINEW_API sinew_status sinew_asset_prepare_mirror(sinew_asset asset);
-/// The joint on the other side; itself in the middle, -1 where there is none. After
-/// sinew_asset_prepare_mirror.
+/// The joint on the other side; itself in the middle, -1 where there is none. Left and right are found by
+/// names, roles and places when an asset is read; refused with what was in the way of that.
 SINEW_API sinew_status sinew_asset_get_partner(sinew_asset asset, int32_t joint, int32_t* out);
-/// Exchanges left and right of jets of all joints. After sinew_asset_prepare_mirror.
+/// Exchanges left and right of jets of all joints. Refused as sinew_asset_get_partner.
 SINEW_API sinew_status sinew_asset_mirror(sinew_asset asset, sinew_jet* jets, int32_t count);
 /// The library's defaults; joints are none.
 SINEW_API sinew_status sinew_two_bone_init(sinew_two_bone* settings);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "sinew/character/check_jet.h"
 #include "sinew/character/grounding.h"
 #include "sinew/character/state.h"
 #include "sinew/character/tone.h"
@@ -7,24 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr double kFarthest = 1e6;  ///< m; beyond this float has no millimetres left
-constexpr double kFastest = 1e5;   ///< m/s and rad/s
-constexpr double kHardest = 1e5;   ///< N·s of a human
-constexpr double kSharpest = 1e8;  ///< m/s² and rad/s²; far beyond, a residual's square leaves float
-
-template <class T>
-Status check(const JointJet<T>& jet, int joint) {
-  const bool finite = jet.rotation.coeffs().allFinite() && jet.omega.allFinite() && jet.alpha.allFinite() &&
-                      jet.translation.allFinite() && jet.velocity.allFinite() && jet.acceleration.allFinite();
-  if (!finite) return Status::error(Code::kNotFinite, "target is not finite", joint);
-  if (std::abs(jet.rotation.norm() - T(1)) > T(1e-2))
-    return Status::error(Code::kInvalidArgument, "target rotation is not a unit quaternion", joint);
-  if (jet.translation.norm() > T(kFarthest) || jet.velocity.norm() > T(kFastest) ||
-      jet.omega.norm() > T(kFastest) || jet.acceleration.norm() > T(kSharpest) ||
-      jet.alpha.norm() > T(kSharpest))
-    return Status::error(Code::kOutOfRange, "target is absurdly far or fast", joint);
-  return {};
-}
+constexpr double kHardest = 1e5;  ///< N·s of a human
 
 /// Of a handle that stands for nobody.
 Status nobody() {
@@ -44,7 +28,7 @@ Status Character<T>::set_target(std::span<const JointJet<T>> jets) {
   if (jets.size() != state_->target.size())
     return Status::error(Code::kInvalidArgument, "target needs one jet per joint of the skeleton");
   for (std::size_t i = 0; i < jets.size(); ++i)
-    if (Status status = check(jets[i], static_cast<int>(i)); !status) return status;
+    if (Status status = check_jet(jets[i], static_cast<int>(i)); !status) return status;
   // What is limp has no use for a target, and sleeps on.
   const JointJet<T> root = displaced(state_->grounding.by, jets[0]);
   if (state_->levels.asleep && !state_->passive() &&
@@ -140,7 +124,7 @@ Status Character<T>::set_group_strength(const char* group, T strength) {
     if (Status status = set_muscle_strength(static_cast<int>(m), strength); !status) return status;
     any = true;
   }
-  return any ? Status{} : Status::error(Code::kInvalidArgument, "no muscle of that group");
+  return any ? Status{} : Status::error(Code::kNotFound, "the skeleton has no muscle of that group");
 }
 
 template <class T>
@@ -195,7 +179,7 @@ Status Character<T>::set_group_tone(const char* group, Tone tone) {
   }
   state_->problem.law.refresh_presence();
   state_->levels.wake = state_->levels.wake || any;
-  return any ? Status{} : Status::error(Code::kInvalidArgument, "no muscle of that group");
+  return any ? Status{} : Status::error(Code::kNotFound, "the skeleton has no muscle of that group");
 }
 
 template <class T>

@@ -21,6 +21,14 @@ constexpr const char* kNoContacts =
     "the world declares no Contacts: no obstacles, and WorldSettings::ground must be false";
 constexpr int kSmallIsland = 8;  ///< characters that any worker has memory for; one worker has for all
 
+constexpr const char* kNotFinite = "prop's pose or velocity is not finite";
+
+template <class T>
+bool moves_finitely(const Transform<T>& pose, const Vec3<T>& velocity, const Vec3<T>& angular_velocity) {
+  return pose.rotation.coeffs().allFinite() && pose.translation.allFinite() && velocity.allFinite() &&
+         angular_velocity.allFinite();
+}
+
 /// Room for so many, with some to spare where it must be moved.
 template <class V>
 void grow(std::vector<V>& v, int count) {
@@ -224,9 +232,8 @@ template <class T>
 int World<T>::add_prop(const PropSettings& prop, Status& status) {
   const Skeleton body = skeleton_of(prop);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
-  if (status && !(prop.pose.rotation.coeffs().allFinite() && prop.pose.translation.allFinite() &&
-                  prop.velocity.allFinite() && prop.angular_velocity.allFinite()))
-    status = Status::error(Code::kNotFinite, "prop's pose or velocity is not finite");
+  if (status && !moves_finitely(prop.pose, prop.velocity, prop.angular_velocity))
+    status = Status::error(Code::kNotFinite, kNotFinite);
   if (!status) return -1;
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
@@ -247,9 +254,8 @@ Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& ve
                           const Vec3<T>& angular_velocity) {
   CharacterState<T>* const s = impl_->prop(index);
   if (!s) return no_such_prop(index);
-  if (!(pose.rotation.coeffs().allFinite() && pose.translation.allFinite() && velocity.allFinite() &&
-        angular_velocity.allFinite()))
-    return Status::error(Code::kNotFinite, "prop's pose or velocity is not finite", index);
+  if (!moves_finitely(pose, velocity, angular_velocity))
+    return Status::error(Code::kNotFinite, kNotFinite, index);
   s->parked = false;
   JointJet<T>& jet = s->target[0];
   jet = {};

@@ -108,7 +108,7 @@ struct CharacterReport {
   Vec3<double> momentum = Vec3<double>::Zero();          ///< kg·m/s
   Vec3<double> angular_momentum = Vec3<double>::Zero();  ///< kg·m²/s, about the centre of mass
   double penetration = 0;                                ///< m, deepest contact
-  double help_force = 0;                                 ///< N that held a grounded root besides the ground
+  double help_force = 0;                                 ///< N that bore a grounded root besides the ground
   double help_torque = 0;                                ///< N·m, likewise
   /// m, where Accuracy::estimate_error asks for it: how far this step alone, by its finite length, took the
   /// character from the exact motion (rms of all mass). 0 where the animation was played: that is exact.

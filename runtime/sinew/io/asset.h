@@ -55,7 +55,7 @@ struct Asset {
 /// Reads a file image. On error `out` is left as it was. Cost: one pass over the bytes.
 Status read_asset(std::span<const std::uint8_t> bytes, Asset& out);
 
-/// Maps the file and reads it; the one place in the runtime that touches the file system.
+/// Maps the file and reads it.
 Status load_asset(const char* path, Asset& out);
 
 /// What is at fault in what clips say beside their motion: names that repeat or share a number, events

@@ -15,6 +15,7 @@ enum class Code : std::uint8_t {
   kBadVersion,       ///< written by a newer major version
   kIo,               ///< the file could not be read or written
   kUnsupported,      ///< the runtime was built without it
+  kNotFound,         ///< nothing has that name
 };
 
 /// Error code plus the culprit: which joint (or other element) and a static text that says why. Trivially

@@ -277,15 +277,12 @@ class Asset(_Described):
         address, count = (None, 0) if reference is None else (_pointer(reference), len(reference))
         check(lib.sinew_asset_subtract(self.handle, address, count, _pointer(jets), len(jets)))
 
-    def prepare_mirror(self):
-        check(lib.sinew_asset_prepare_mirror(self.handle))
-
     def partner(self, joint):
-        """The joint on the other side, after prepare_mirror(); -1: none."""
+        """The joint on the other side; -1: none."""
         return self._find(lib.sinew_asset_get_partner, joint)
 
     def mirror(self, jets):
-        """Exchanges left and right, after prepare_mirror()."""
+        """Exchanges left and right."""
         check(lib.sinew_asset_mirror(self.handle, _pointer(jets), len(jets)))
 
     def two_bone(self, jets, upper, middle, end, target, **settings):
