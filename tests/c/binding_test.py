@@ -312,6 +312,16 @@ class Classes(unittest.TestCase):
         scene.character.set_tone(sinew.Tone.BRACED)
         self.assertGreater(scene.character.stiffness(8)[0], 0)
 
+    def test_refused_calls_are_heard_of(self):
+        heard = []
+        sinew.set_log(lambda *words: heard.append(words))
+        with self.assertRaises(sinew.Error):
+            sinew.Asset("/nowhere")
+        sinew.set_log(None)
+        with self.assertRaises(sinew.Error):
+            sinew.Asset("/nowhere")
+        self.assertEqual(heard, [(sinew.LogLevel.ERROR, "file cannot be opened", -1)])
+
     def test_many_characters_in_one_call(self):
         scene = Everything()
         others = [scene.world.add_character(scene.asset) for _ in range(3)]

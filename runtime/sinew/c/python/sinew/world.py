@@ -1,0 +1,188 @@
+"""Worlds, and clips that many characters follow."""
+import ctypes
+from ctypes import byref
+
+from . import _abi
+from ._abi import SnapshotPart, Status
+from ._core import check, Error, floats, lib, numpy, Owned, report_of, saved, set_fields, settings_of
+from .members import Character, Loop, Particles, Prop
+
+
+class Plays:
+    """Clips that many characters follow, set in one call: `time`, `rate`, `rate_change` and `clip` are arrays, [character]."""
+
+    def __init__(self, characters, asset, clip=0):
+        self._keep = (list(characters), asset)
+        self._plays = (_abi.Play * len(self._keep[0]))()
+        for play, character in zip(self._plays, self._keep[0]):
+            play.character, play.asset, play.clip, play.rate = character.handle, asset.handle, clip, 1
+        self._address = ctypes.addressof(self._plays)
+        if numpy is not None:
+            records = numpy.ctypeslib.as_array(self._plays)
+            self.clip, self.time, self.rate, self.rate_change = (
+                records[name] for name in ("clip", "time", "rate", "rate_change"))
+
+    def __getitem__(self, index):
+        return self._plays[index]
+
+    def __call__(self):
+        check(lib.sinew_play_clips(self._address, len(self._plays)))
+
+
+class World(Owned):
+    """Characters, props, surroundings."""
+
+    def __init__(self, preset=None, **settings):
+        struct = settings_of(_abi.WorldSettings, lib.sinew_world_settings_init, {})
+        if preset is not None:
+            check(lib.sinew_world_settings_use_preset(byref(struct), preset.encode()))
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_create(byref(set_fields(struct, settings)), byref(out)))
+        super().__init__(out.value, lib.sinew_world_destroy)
+
+    def step(self, h):
+        check(lib.sinew_world_step(self.handle, h))
+
+    @property
+    def report(self):
+        return report_of(_abi.WorldReport, lib.sinew_world_get_report, self.handle)
+
+    @property
+    def memory(self):
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_get_memory(self.handle, byref(out)))
+        return out.value
+
+    def _add(self, kind, init, add, settings, *before):
+        struct = settings_of(kind, init, settings)
+        out = ctypes.c_uint64()
+        check(add(self.handle, *before, byref(struct), byref(out)))
+        return out.value
+
+    def add_character(self, asset, **settings):
+        return Character(self, self._add(_abi.CharacterSettings, lib.sinew_character_settings_init, lib.sinew_world_add_character,
+                                         settings, asset.handle))
+
+    def add_prop(self, **settings):
+        return Prop(self, self._add(_abi.PropSettings, lib.sinew_prop_settings_init, lib.sinew_world_add_prop, settings))
+
+    def add_loop(self, **settings):
+        return Loop(self, self._add(_abi.LoopSettings, lib.sinew_loop_settings_init, lib.sinew_world_add_loop, settings))
+
+    def add_strand(self, **settings):
+        return Particles(self, self._add(_abi.Strand, lib.sinew_strand_init, lib.sinew_world_add_strand, settings))
+
+    def _add_mesh(self, kind, init, add, positions, elements, names, fixed, settings):
+        """Nodes, elements of them, and which are fixed, as the C structs hold them."""
+        struct, out = settings_of(kind, init, settings), ctypes.c_uint64()
+        nodes = (ctypes.c_double * (3 * len(positions)))(*(x for p in positions for x in p))
+        indices = (ctypes.c_int32 * sum(map(len, elements)))(*(n for e in elements for n in e))
+        riding = (ctypes.c_int32 * len(fixed))(*fixed)
+        struct.positions, struct.node_count = ctypes.addressof(nodes), len(positions)
+        struct.fixed, struct.fixed_count = ctypes.addressof(riding), len(fixed)
+        setattr(struct, names[0], ctypes.addressof(indices))
+        setattr(struct, names[1], len(elements))
+        check(add(self.handle, byref(struct), byref(out)))
+        return Particles(self, out.value)
+
+    def add_cloth(self, positions, triangles, fixed=(), **settings):
+        """`positions` m, `triangles` of three nodes, `fixed`: nodes that ride on `frame`."""
+        return self._add_mesh(_abi.Cloth, lib.sinew_cloth_init, lib.sinew_world_add_cloth, positions, triangles,
+                              ("triangles", "triangle_count"), fixed, settings)
+
+    def add_soft_tissue(self, positions, tetrahedra, fixed=(), **settings):
+        return self._add_mesh(_abi.SoftTissue, lib.sinew_soft_tissue_init, lib.sinew_world_add_soft_tissue, positions, tetrahedra,
+                              ("tetrahedra", "tetrahedron_count"), fixed, settings)
+
+    def add_obstacle(self, **settings):
+        check(lib.sinew_world_add_obstacle(self.handle, byref(settings_of(_abi.Obstacle, lib.sinew_obstacle_init, settings))))
+
+    def add_height_field(self, heights, **settings):
+        """`heights`: rows of columns, m."""
+        rows = [list(map(float, row)) for row in heights]
+        flat = [x for row in rows for x in row]
+        struct = settings_of(_abi.HeightField, lib.sinew_height_field_init, settings)
+        struct.rows, struct.columns = len(rows), len(rows[0])
+        if len(flat) != struct.rows * struct.columns:
+            raise TypeError("rows of different lengths")
+        numbers = (ctypes.c_double * len(flat))(*flat)
+        struct.heights = ctypes.addressof(numbers)
+        check(lib.sinew_world_add_height_field(self.handle, byref(struct)))
+
+    def character(self, index):
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_get_character(self.handle, index, byref(out)))
+        return Character(self, out.value)
+
+    def prop(self, index):
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_get_prop(self.handle, index, byref(out)))
+        return Prop(self, out.value)
+
+    def copy_models(self):
+        """Of all joints of all characters: rotation x y z w, translation."""
+        count = ctypes.c_int32()
+        status = lib.sinew_world_copy_models(self.handle, None, 0, byref(count))
+        if status not in (Status.OK, Status.TOO_SMALL):
+            raise Error(status)
+        out = (_abi.Transform * count.value)()
+        check(lib.sinew_world_copy_models(self.handle, byref(out), count.value, byref(count)))
+        return floats(out, count.value, 8, 7)
+
+    def report_contacts(self, **settings):
+        check(lib.sinew_world_report_contacts(
+            self.handle, byref(settings_of(_abi.ContactSettings, lib.sinew_contact_settings_init, settings))))
+
+    def contacts(self, most=256):
+        """Takes the events that wait."""
+        out, count = (_abi.ContactEvent * most)(), ctypes.c_int32()
+        check(lib.sinew_world_take_contacts(self.handle, byref(out), most, byref(count), None))
+        return out[:count.value]
+
+    def _query(self, find, most, settings):
+        struct = set_fields(settings_of(_abi.Query, lib.sinew_query_init, {}), settings)
+        out, count = (_abi.Hit * most)(), ctypes.c_int32()
+        check(find(self.handle, byref(struct), byref(out), most, byref(count)))
+        return out[:count.value]
+
+    def cast(self, start, motion, most=1, **settings):
+        """The nearest hits of a ray, ball (`radius`) or capsule (`half_axis`)."""
+        return self._query(lib.sinew_world_cast, most, {"origin": start, "motion": motion, **settings})
+
+    def overlap(self, start, radius, most=16, **settings):
+        return self._query(lib.sinew_world_overlap, most, {"origin": start, "radius": radius, **settings})
+
+    def draw(self, line=None, triangle=None, text=None, **settings):
+        """line(from, to, colour), triangle(a, b, c, colour), text(at, words, colour); colours 0xRRGGBBAA."""
+        struct = settings_of(_abi.DrawSettings, lib.sinew_draw_settings_init, settings)
+
+        def at(address):
+            return tuple((ctypes.c_double * 3).from_address(address))
+
+        if line:
+            struct.line = _abi.DrawLine(lambda _, a, b, colour: line(at(a), at(b), colour))
+        if triangle:
+            struct.triangle = _abi.DrawTriangle(lambda _, a, b, c, colour: triangle(at(a), at(b), at(c), colour))
+        if text:
+            struct.text = _abi.DrawText(lambda _, a, words, colour: text(at(a), words.decode(), colour))
+        check(lib.sinew_world_draw(self.handle, byref(struct)))
+
+    def save(self, part=SnapshotPart.STATE):
+        return saved(lib.sinew_world_save, self.handle, part)
+
+    def restore(self, snapshot, part=SnapshotPart.STATE):
+        check(lib.sinew_world_restore(self.handle, part, bytes(snapshot), len(snapshot)))
+
+    def record(self, begin=True):
+        check(lib.sinew_world_record(self.handle, begin))
+
+    @property
+    def recording(self):
+        view = _abi.View()
+        check(lib.sinew_world_get_recording(self.handle, byref(view)))
+        return ctypes.string_at(view.data, view.count)
+
+    def replay(self, recording):
+        report = _abi.ReplayReport(size=ctypes.sizeof(_abi.ReplayReport))
+        check(lib.sinew_world_replay(self.handle, bytes(recording), len(recording), byref(report)))
+        return report
