@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Sinew builds with, on Debian 12, as root or with sudo; silent, and quick, when everything is there.
 # Usage: tools/setup.sh [--tests] [--lint] [--farm] [--exports] [--peers] [--web] [--cross]
-#   --tests: what the tests need     --lint: clang-format, clang-tidy and doxygen
+#   --tests: what the tests need     --lint: clang with its sanitizers, clang-format, clang-tidy and doxygen
 #   --farm: Slurm, for its test      --exports: what tests open exported files with (Blender, and by npm, where that is, a validator)
 #   --peers: for -DSINEW_PEERS=ON, several hundred MB     --web: for samples/web, the same
 #   --cross: compilers for ARM and Windows, and what runs their programs, for tests/portability
@@ -17,7 +17,7 @@ packages=(cmake g++ ninja-build pkg-config ccache lld libeigen3-dev libflatbuffe
   assimp-testmodels)
 tests=(libgtest-dev libgmock-dev libmujoco-dev libbenchmark-dev chromium valgrind zsh fish mandoc python3 python3-numpy
   mono-mcs mono-runtime godot3-server gdb)
-lint=(clang clang-format clang-tidy libclang-dev llvm-dev doxygen)
+lint=(clang clang-format clang-tidy libclang-rt-dev libclang-dev llvm-dev doxygen)
 farm=(slurm-wlm munge)
 exports=(blender)
 peers=(libmujoco-dev libbullet-dev libdart-dev libode-dev libsimbody-dev libsundials-dev libboost-dev)

@@ -25,7 +25,7 @@ if [ "${1:-}" = prepare ]; then
 fi
 command=" $* " header=plain
 [[ $command == *' -DGTEST_HAS_PTHREAD=1 '* ]] && header=tests
-other='( -m[a-z]| -DEIGEN| -fno-math-errno| -fvisibility|\.c )'
+other='( -m[a-z]| -O0 | -DEIGEN| -fno-math-errno| -fvisibility|\.c )'
 if [[ $command =~ $other || $command != *eigen3* ]]; then exec clang-tidy "$@"; fi
 before=()
 while [ "$1" != -- ]; do before+=("$1"); shift; done
