@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs, builds and tests. Says how far it is; ends with one line (and, with CI set, ctest's own summary last).
 # Usage: tests/run.sh [--all | --nightly | --format | --tidy | --sanitizers]
-#   --all adds the format check, a batch on Slurm, clang-tidy (.clang-tidy), the address and undefined-behaviour sanitizers, 2000 random
+#   --all adds the format check, a batch on Slurm, clang-tidy (.clang-tidy) over what the last 25 commits changed, the address and undefined-behaviour sanitizers, 2000 random
 #   trees, two minutes of soak, the accuracy study's report (build/study/accuracy.html), and a line with the seconds of
-#   each stage; the others run that stage alone. --nightly builds and runs a million random calls of the C interface with
+#   each stage; the others run that stage alone (--tidy: over every file). --nightly looks at every file with clang-tidy, builds and runs a million random calls of the C interface with
 #   the sanitizers, hard cases and situations with them, a thousand killed conversions, 100000 random trees, an hour of soak in float and in double, all hard cases at full length, the page for
 #   browsers, the same poses on ARM, in WebAssembly and by clang, packages, and both of the README's commands on a bare machine: hours.
 #   tests/README.md says how to run one test.
@@ -65,10 +65,23 @@ tidy_settings() {
   clang-tidy --version
 }
 
-# Looks at every file, the next time at those that changed or include what changed. Nothing is compiled or linked: ninja
-# and CMake only know who includes what. Without the build's precompiled headers: an #include of ours that is missing is
-# found here.
-tidy() {
+# Of the last COMMITS commits: files that changed, and one that includes each header that did. Without so much of a history: all.
+changed() {  # changed COMMITS
+  if ! git rev-parse -q --verify "HEAD~$1" >/dev/null; then
+    git ls-files '*.cpp'
+    return
+  fi
+  git diff --name-only --diff-filter=d "HEAD~$1" -- '*.cpp'
+  local header
+  git diff --name-only --diff-filter=d "HEAD~$1" -- '*.h' | while IFS= read -r header; do
+    { git grep -lE "#include \"(.*/)?${header##*/}\"" -- '*.cpp' || true; } | head -n 1
+  done
+}
+
+# Looks at every file, or at what the last COMMITS commits changed; the next time at those that changed or include what
+# changed since. Nothing is compiled or linked: ninja and CMake only know who includes what. Without the build's
+# precompiled headers: an #include of ours that is missing is found here.
+tidy() {  # tidy [COMMITS]
   local settings plugin=build-tidy/own_declarations.so instead=$PWD/tests/tidy/instead_of_compiler.sh
   settings=$(tidy_settings | sha256sum)
   if [ "$settings" != "$(cat build-tidy/settings 2>/dev/null)" ]; then
@@ -83,11 +96,17 @@ tidy() {
     -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DSINEW_PYTHON_BINDING=OFF -DSINEW_CSHARP_BINDING=OFF -DSINEW_RUST_BINDING=OFF \
     -DCMAKE_CXX_CLANG_TIDY="$PWD/tests/tidy/clang_tidy.sh;--quiet;--load=$PWD/$plugin;--checks=sinew-own-declarations"
   mapfile -t objects < <(ninja -C build-tidy -t targets all | sed -n 's/\.o: CXX_COMPILER.*/.o/p')
+  if [ -n "${1:-}" ]; then
+    changed "$1" | sort -u >build-tidy/changed
+    mapfile -t objects < <(printf '%s\n' "${objects[@]}" | sed -E 's#(.*/)?CMakeFiles/[^/]*\.dir/(.*)\.o$#\1\2 &#' |
+      awk 'NR == FNR { changed[$1]; next } $1 in changed { print $2 }' build-tidy/changed -)
+    [ ${#objects[@]} -gt 0 ] || return 0
+  fi
   build build-tidy "clang-tidy" -k 20 "${objects[@]}"
 }
 
 # Simulations that take minutes when every access is checked, of what others run through as well.
-too_long_for_sanitizers='/(corner|pit|columns|hanging_bridge|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood|Blender'
+too_long_for_sanitizers='/(corner|pit|columns|hanging_bridge|cape_in_a_run|crowd_pushed|balls_at_heads|piston|cloth|wall_of_bricks|heap_of_boxes|planks|pile|slope|stairs|limp_fall|limp_fall_bdf1|limp_fall_bdf2|limp_fall_counts|crowd_of_200|same_bits_in_any_order)( |$)|^LimpFall|LimpFallStep|^AccuracyStudy|^Dial|^sample_crowd|^Tables.RunOn|^Pile|^Size|^TransitionTable|^GlobalFormulation|^SnapshotBytes|^Command.SimulateTakes|ForeignMotion|ForeignSquats|ForeignBody|AMillionRandomFrames|^Table\.|^Reference\.|References.*/(driver|suspension|bricard)|LimbsThatAPistonHasJammed|KeepsBothMomentaToRounding|LimpFallsGainNoEnergy|^Hits\.|ASmallPushIsStood|^Budget\.|^Batches\.AnimationsAreChecked|Blender'
 
 # Of the command line: what sinew-study answers, and what takes long and is no access to memory.
 asks_the_studies='^MechanismCommand|^Manners|^Batch\.|^BatchOnSlurm|BrokenJson.ReachesTheUser'
@@ -148,6 +167,7 @@ fuzz_c_interface() {  # random calls, every access of theirs checked
 
 nightly() {
   build_tests
+  tidy
   export LSAN_OPTIONS=suppressions=$PWD/tests/leaks-of-libraries.supp:print_suppressions=0
   sanitize_studies
   fuzz_c_interface
@@ -199,7 +219,7 @@ fi
 stage "build" build_tests
 stage "tests" run build
 if [ -n "$all" ]; then
-  stage "clang-tidy" tidy
+  stage "clang-tidy" tidy 25  # all of them by night: a quarter of an hour
   stage "sanitizers" sanitizers
   stage "at length" at_length
 fi
