@@ -234,6 +234,38 @@ TEST(SnapshotBytes, DamagedOrForeignBytesAreRefusedAndMoveNothing) {
   EXPECT_TRUE(other.world.restore(good).ok());
 }
 
+TEST(Snapshot, GoesIntoAWorldWhosePropsWereAddedElsewhere) {
+  fixtures::Playing<float> first, second;
+  PropSettings ball;
+  Status status;
+  ASSERT_EQ(first.world.add_prop(ball, status), 0);
+  ball.pose = {rotation_exp<double>(Vec3<double>(0.3, -1.2, 0.7)), {120.5, -33, 2}};
+  ASSERT_EQ(second.world.add_prop(ball, status), 0);
+  for (int n = 0; n < 20; ++n) first.step();
+  const std::vector<std::byte> bytes = saved(first.world);
+  ASSERT_TRUE(second.world.restore(bytes).ok());
+  EXPECT_EQ(saved(second.world), bytes);
+  second.time = first.time;
+  for (int n = 0; n < 60; ++n) {
+    first.step();
+    second.step();
+    ASSERT_TRUE(same_pose(first.world, second.world)) << n;
+  }
+}
+
+TEST(Snapshot, OfASkeletonOfAnotherStatureIsRefused) {
+  fixtures::Playing<float> playing;
+  Skeleton taller = fixtures::humanoid();
+  for (Joint& joint : taller.joints) joint.rest.translation *= 1.1;
+  World<float> other({});
+  Status status;
+  ASSERT_EQ(other.add_character(taller, {}, status), 0);
+  const std::vector<std::byte> untouched = saved(other);
+  status = other.restore(saved(playing.world));
+  EXPECT_EQ(status.code, Code::kInvalidArgument) << status.reason;
+  EXPECT_EQ(saved(other), untouched);
+}
+
 TEST(Snapshot, KeepsTheGamesOwnBytes) {
   Story<float> story;
   std::vector<std::byte> block(100, std::byte{7});

@@ -77,9 +77,16 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   }
 }
 
+/// What a joint's pose is predicted from. Where a prop was added, or a character stands at rest, is no part
+/// of a world's make-up: roots are predicted from the world's origin.
+template <class T>
+Transform<T> predicted_pose(const Tree<T>& tree, std::size_t i) {
+  return tree.parent[i] < 0 ? Transform<T>() : tree.rest[i];
+}
+
 template <class T>
 void visit_pose(CharacterState<T>& s, ByteStream& stream) {
-  const auto rest = [&](std::size_t i) { return s.skeleton.joints[i].rest.template cast<T>(); };
+  const auto rest = [&](std::size_t i) { return predicted_pose(s.tree, i); };
   const auto visit = [&](const char* name, auto visit_joint) {
     ResidualCoder<T> coder(name, stream, true);
     for (std::size_t i = 0; i < s.local.size(); ++i) visit_joint(coder, i, s.local[i]);
@@ -339,18 +346,31 @@ std::uint64_t digest(std::span<const std::byte> bytes) {
   return hash;
 }
 
-/// Of a world's make-up: scalar, states and their joints. Bytes fit worlds of the same make-up.
+/// Of a world's make-up: scalar, states, their joints and what poses are predicted from, which loops close
+/// slowly. Bytes fit worlds of the same make-up.
 template <class T>
 std::uint64_t layout_of(const MovingParts<T>& world) {
+  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
   std::uint64_t hash = 0xcbf29ce484222325ull;
   const auto add = [&](std::uint64_t x) { hash = (hash ^ x) * 0x100000001b3ull; };
+  const auto add_numbers = [&](const auto& numbers) {
+    for (const T x : numbers.reshaped()) add(Eigen::numext::bit_cast<Bits>(x));
+  };
   add(sizeof(T));
   for (const auto& s : world.states) {
     add(s->local.size());
     add(s->muscle_strength.size());
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
+    for (std::size_t i = 0; i < s->local.size(); ++i) {
+      const Transform<T> predicted = predicted_pose(s->tree, i);
+      add_numbers(predicted.rotation.coeffs());
+      add_numbers(predicted.translation);
+    }
   }
-  for (const auto& c : world.couplings) add(c->stencils.size());
+  for (const auto& c : world.couplings) {
+    add(c->stencils.size());
+    add(c->closes_slowly ? 1 : 0);
+  }
   for (const auto& bytes : world.games) add(bytes.size());
   return hash;
 }
@@ -359,7 +379,9 @@ template <class T>
 void visit_lagged(std::vector<LaggedForce<T>>& lagged, ByteStream& stream) {
   std::uint32_t count = static_cast<std::uint32_t>(lagged.size());
   stream.value("number of contact forces", count);
-  if (stream.reading()) lagged.resize(std::min<std::size_t>(count, lagged.capacity()));
+  // Whoever saved may have had more room; each takes more than a byte.
+  if (stream.reading())
+    lagged.resize(std::min<std::size_t>(count, std::max(lagged.capacity(), stream.left())));
   // An identity in three parts of 45 bits, eight numbers and at most three bytes more each.
   if (stream.bounding()) return stream.reserve_capacity(lagged.capacity() * (17 + 8 * (sizeof(T) + 3)));
   {

@@ -44,7 +44,8 @@ class ByteStream {
   bool bounding() const { return mode_ == Mode::kBound; }
   bool ok() const { return ok_; }
   std::size_t position() const { return position_; }
-  const char* name() const { return name_; }  ///< kName: of the field found, or ""
+  std::size_t left() const { return size_ - position_; }  ///< bytes, reading or writing
+  const char* name() const { return name_; }              ///< kName: of the field found, or ""
 
   template <class V>
   void array(const char* name, V* values, std::size_t count) {
