@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace sinew::convert {
 namespace {
@@ -37,6 +39,10 @@ struct Grid {
     return (std::size_t(c[0]) * std::size_t(size[1]) + std::size_t(c[1])) * std::size_t(size[2]) +
            std::size_t(c[2]);
   }
+  /// Between the indices of neighbours along `axis`.
+  std::size_t stride(int axis) const {
+    return axis == 2 ? 1 : std::size_t(size[axis + 1]) * stride(axis + 1);
+  }
   Vec3<double> center(const Cell& c) const {
     return low + step * Vec3<double>(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5);
   }
@@ -58,11 +64,29 @@ class Inside {
   }
   bool operator()(std::size_t cell) const { return votes_[cell] >= 2; }
 
+  /// Whether a cell is inside or touches one that is, if only at a corner.
+  std::vector<std::uint8_t> with_border() const {
+    std::vector<std::uint8_t> near(grid_.count());
+    for (std::size_t i = 0; i < near.size(); ++i) near[i] = (*this)(i) ? 1 : 0;
+    for (int axis = 0; axis < 3; ++axis) {  // the grid's margin has none inside
+      const std::vector<std::uint8_t> of = near;
+      const std::size_t stride = grid_.stride(axis);
+      for (std::size_t i = stride; i + stride < near.size(); ++i)
+        near[i] = std::max({of[i - stride], of[i], of[i + stride]});
+    }
+    return near;
+  }
+
  private:
-  /// A line through cell centres along `axis` enters and leaves the solid where it crosses triangles.
-  void vote(int axis, std::span<const Mesh> meshes) {
+  struct Crossing {
+    std::size_t line;  ///< index of its first cell
+    int cell, change;  ///< the first cell behind it, what the winding number changes by
+  };
+
+  /// Where lines through cell centres along `axis` cross triangles, line by line from their beginnings.
+  std::vector<Crossing> crossings(int axis, std::span<const Mesh> meshes) const {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    std::vector<int> winding(grid_.count(), 0);  // change of the winding number at the cell
+    std::vector<Crossing> found;
     for (const Mesh& mesh : meshes)
       for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
         const Vec3<double> a = position(mesh, mesh.indices[t]), b = position(mesh, mesh.indices[t + 1]),
@@ -83,26 +107,34 @@ class Inside {
             Cell at;
             at[u] = i;
             at[v] = j;
-            // First cell whose centre is past the crossing.
             at[axis] = static_cast<int>(std::ceil((height - grid_.low[axis]) / grid_.step - 0.5));
-            if (grid_.holds(at)) winding[grid_.index(at)] += area > 0 ? 1 : -1;
+            if (!grid_.holds(at)) continue;
+            const int cell = std::exchange(at[axis], 0);
+            found.push_back({grid_.index(at), cell, area > 0 ? 1 : -1});
           }
       }
-    Cell c;
-    for (c[u] = 0; c[u] < grid_.size[u]; ++c[u])
-      for (c[v] = 0; c[v] < grid_.size[v]; ++c[v]) {
-        int number = 0;
-        for (c[axis] = 0; c[axis] < grid_.size[axis]; ++c[axis]) {
-          number += winding[grid_.index(c)];
-          if (number != 0) ++votes_[grid_.index(c)];
+    std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
+      return std::pair(a.line, a.cell) < std::pair(b.line, b.cell);
+    });
+    return found;
+  }
+  /// A line enters the solid and leaves it where it crosses triangles. One that never comes out again went
+  /// through a hole: it has no say.
+  void vote(int axis, std::span<const Mesh> meshes) {
+    const std::vector<Crossing> all = crossings(axis, meshes);
+    const std::size_t stride = grid_.stride(axis);
+    for (auto line = all.begin(); line != all.end();) {
+      int number = 0;
+      auto end = line;
+      for (; end != all.end() && end->line == line->line; ++end) number += end->change;
+      if (number == 0)
+        for (auto from = line; from + 1 != end; ++from) {
+          number += from->change;
+          for (int cell = from->cell; number != 0 && cell < from[1].cell; ++cell)
+            ++votes_[line->line + std::size_t(cell) * stride];
         }
-        // A line that never comes out again went through a hole: it has no say.
-        if (number != 0)
-          for (c[axis] = 0, number = 0; c[axis] < grid_.size[axis]; ++c[axis]) {
-            number += winding[grid_.index(c)];
-            if (number != 0) --votes_[grid_.index(c)];
-          }
-      }
+      line = end;
+    }
   }
 
   const Grid& grid_;
@@ -114,33 +146,76 @@ struct Site {
   int part;
 };
 
-/// Index of the (nearly) nearest site for each cell: sites spread from cell to cell as long as they come
-/// nearer.
-std::vector<int> nearest_sites(const Grid& grid, const std::vector<Site>& sites) {
-  std::vector<int> owner(grid.count(), -1);
-  std::vector<Cell> front, next;
-  const auto claim = [&](const Cell& c, int site) {
-    int& present = owner[grid.index(c)];
-    const auto distance = [&](int s) {
-      return (sites[static_cast<std::size_t>(s)].at - grid.center(c)).squaredNorm();
-    };
-    if (present >= 0 && distance(present) <= distance(site)) return;
-    present = site;
-    next.push_back(c);
-  };
-  for (std::size_t s = 0; s < sites.size(); ++s) claim(grid.cell(sites[s].at), static_cast<int>(s));
-  while (!next.empty()) {
-    front.swap(next);
-    next.clear();
-    for (const Cell& c : front)
-      for (int k = 0; k < 6; ++k) {
-        Cell neighbour = c;
-        neighbour[k / 2] += k % 2 ? 1 : -1;
-        if (grid.holds(neighbour)) claim(neighbour, owner[grid.index(c)]);
+/// Index of the (nearly) nearest site for each cell that is inside: sites spread from cell to cell as long as
+/// they come nearer. O(cells inside), each of which changes hands a few times.
+class NearestSites {
+ public:
+  NearestSites(const Grid& grid, const Inside& inside, const std::vector<Site>& sites)
+      : grid_(grid), sites_(sites), claim_of_cell_(grid.count(), -1) {
+    for (std::size_t s = 0; s < sites.size(); ++s)
+      claim(grid.cell(sites[s].at), static_cast<int>(s), sites[s].at);
+    const std::vector<Cell> seeds = next_;
+    const std::vector<std::uint8_t> near = inside.with_border();
+    spread([&](std::size_t cell) { return near[cell] != 0; });
+    // A piece that has no vertex near by is reached from outside.
+    for (std::size_t i = 0; i < grid.count(); ++i)
+      if (inside(i) && claim_of_cell_[i] < 0) {
+        next_ = seeds;
+        for (Claim& claim : claims_) claim.spread = -1;
+        spread([](std::size_t) { return true; });
+        break;
       }
   }
-  return owner;
-}
+  int operator[](std::size_t cell) const { return claims_[claim_of_cell_[cell]].owner; }
+
+ private:
+  struct Claim {
+    double distance = std::numeric_limits<double>::infinity();  ///< m², to the owner
+    int owner = -1, spread = -1;                                ///< that it has, that it handed on
+  };
+
+  Claim& claim_of(const Cell& c) {
+    int& index = claim_of_cell_[grid_.index(c)];
+    if (index < 0) {
+      index = static_cast<int>(claims_.size());
+      claims_.emplace_back();
+    }
+    return claims_[index];
+  }
+  void claim(const Cell& c, int site, const Vec3<double>& at) {
+    Claim& claim = claim_of(c);
+    const double distance = (at - grid_.center(c)).squaredNorm();
+    if (claim.distance <= distance) return;
+    claim.distance = distance;
+    claim.owner = site;
+    next_.push_back(c);
+  }
+  template <class Within>
+  void spread(const Within& within) {
+    std::vector<Cell> front;
+    while (!next_.empty()) {
+      front.swap(next_);
+      next_.clear();
+      for (const Cell& c : front) {
+        Claim& claimed = claim_of(c);
+        if (claimed.spread == claimed.owner) continue;
+        const int site = claimed.spread = claimed.owner;
+        const Vec3<double> at = sites_[static_cast<std::size_t>(site)].at;
+        for (int k = 0; k < 6; ++k) {
+          Cell neighbour = c;
+          neighbour[k / 2] += k % 2 ? 1 : -1;
+          if (grid_.holds(neighbour) && within(grid_.index(neighbour))) claim(neighbour, site, at);
+        }
+      }
+    }
+  }
+
+  const Grid& grid_;
+  const std::vector<Site>& sites_;
+  std::vector<int> claim_of_cell_;  ///< -1: none so far, as of most cells
+  std::vector<Claim> claims_;
+  std::vector<Cell> next_;
+};
 
 }  // namespace
 
@@ -159,7 +234,7 @@ std::vector<Solid> part_solids(std::span<const Mesh> meshes,
   if (sites.empty()) return solids;
   const Grid grid(meshes);
   const Inside inside(grid, meshes);
-  const std::vector<int> owner = nearest_sites(grid, sites);
+  const NearestSites owner(grid, inside, sites);
   const double cell = grid.step * grid.step * grid.step;
   const auto each_cell = [&](auto use) {
     Cell c;
