@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   sinew::World<float> world({});
   const int hero = world.add_character(asset.skeleton, {}, status);
   if (!status) return fail(argv[1], status.reason);
-  std::vector<std::byte> state(graph.state_bytes<float>());
+  sinew::GraphMemory state(graph.state_bytes<float>());
   status = sinew::start_graph<float>(graph, state);
   if (!status) return fail(argv[2], status.reason);
   world.keep_with_state(state);

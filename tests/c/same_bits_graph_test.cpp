@@ -67,7 +67,7 @@ Shown run_in_cpp() {
   Status status;
   World<float> world({});
   Character<float> hero = world.character(world.add_character(asset.skeleton, {}, status));
-  std::vector<std::byte> state(graph.state_bytes<float>());
+  GraphMemory state(graph.state_bytes<float>());
   EXPECT_TRUE(start_graph<float>(graph, state));
   world.keep_with_state(state);
   GraphParameters<float> parameters(graph, state);

@@ -350,7 +350,7 @@ TEST(GraphMachine, WrongUseIsAStatus) {
   EXPECT_FALSE(update(&graph, player.state, -0.1f, &player.scratch).ok());
   EXPECT_FALSE(update(&graph, player.state, NAN, &player.scratch).ok());
   EXPECT_FALSE(update(&graph, std::span(player.state).subspan(16), 0, &player.scratch).ok());
-  std::vector<std::byte> fresh(graph.state_bytes<float>());
+  GraphMemory fresh(graph.state_bytes<float>());
   EXPECT_FALSE(update(&graph, fresh, 0, &player.scratch).ok()) << "not started";
   GraphParameters<float> parameters(graph, player.state);
   EXPECT_FALSE(parameters.set(-1, 0).ok());

@@ -2,7 +2,7 @@
 # Builds pose_hashes for other machines, runs it there as far as an emulator of them is installed, and compares every line
 # with what this machine prints with each of its instruction sets.
 # Usage: tests/portability/cross.sh POSE_HASHES ASSET.sinew GRAPH.sgraph [TARGET…]
-#   TARGET: aarch64, mingw, wasm, clang; without one, all but mingw (which does not build yet) of which the compiler is installed
+#   TARGET: aarch64, mingw, wasm, clang; without one, all of which the compiler is installed
 #   (tools/setup.sh --cross --web --lint)
 # Works in build-cross, where the table that it prints stays as table.md. Exits with 1 and names scene, precision and
 # machines where they differ or a target is not built, with 77 where no target could be tried.
@@ -13,7 +13,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 program=$(realpath "$1") asset=$(realpath "$2") graph=$(realpath "$3")
 shift 3
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(aarch64 wasm clang)
+[ ${#targets[@]} -gt 0 ] || targets=(aarch64 mingw wasm clang)
 folder=$here/../../build-cross
 mkdir -p "$folder/lines" "$folder/headers"
 folder=$(cd "$folder" && pwd)

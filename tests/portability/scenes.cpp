@@ -320,7 +320,7 @@ std::string graph(const Actors& actors, PoseHash& hash) {
   Stage<T> stage(actors);
   stage.add({}, "stand");
   GraphScratch<T> scratch(actors.graph);
-  std::vector<std::byte> state(actors.graph.template state_bytes<T>());
+  GraphMemory state(actors.graph.template state_bytes<T>());
   stage.expect(start_graph<T>(actors.graph, state));
   GraphParameters<T> parameters(actors.graph, state);
   const int speed = actors.definition.find_parameter("speed");

@@ -243,7 +243,7 @@ Error GraphCommand::trace() {
   graph_tools::TraceOptions options{seconds, rate, -1};
   if (!joint.empty() && (options.joint = with.skeleton.find(joint.c_str())) < 0)
     return {asset + ": no joint '" + joint + "'"};
-  std::vector<std::byte> ring(recording.empty() ? 0 : GraphRecorder<float>::bytes_for(graph, frames));
+  GraphMemory ring(recording.empty() ? 0 : GraphRecorder<float>::bytes_for(graph, frames));
   if (!recording.empty()) options.recording = &ring;
   std::ostringstream rows;
   graph_tools::Json end;

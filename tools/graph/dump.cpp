@@ -59,13 +59,13 @@ std::string dump_recording(const Graph& graph, const std::string& file, Json& fr
   std::uint64_t digest = 0;
   if (file.size() < sizeof digest || file.size() % 8 != 0) return "is no recording of a graph, or is cut off";
   std::memcpy(&digest, file.data(), sizeof digest);
-  std::vector<std::byte> ring(file.size() - sizeof digest);
+  GraphMemory ring(file.size() - sizeof digest);
   std::memcpy(ring.data(), file.data() + sizeof digest, ring.size());
   if (digest_of(ring) != digest) return "is damaged";
   const GraphReplay<float> replay(graph, ring);
   if (const Status status = replay.Validate(); !status) return status.reason;
   GraphScratch<float> scratch(graph);
-  std::vector<std::byte> state(graph.state_bytes<float>());
+  GraphMemory state(graph.state_bytes<float>());
   frames = Json::array();
   for (int k = 0; k < replay.count(); ++k) frames.push_back(frame_of(graph, replay, k, scratch, state));
   return {};

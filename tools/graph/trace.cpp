@@ -143,7 +143,7 @@ class Trace {
   const TraceOptions& options_;
   std::ostream& rows_;
   GraphScratch<float> scratch_{graph_};
-  std::vector<std::byte> state_ = std::vector<std::byte>(graph_.state_bytes<float>());
+  GraphMemory state_ = GraphMemory(graph_.state_bytes<float>());
   std::vector<JointJet<float>> jets_;
   std::vector<EventHit> hits_ = std::vector<EventHit>(256);
   GraphRecorder<float> recorder_{

@@ -28,7 +28,7 @@ struct InputScript {
 struct TraceOptions {
   double seconds = 10, rate = 60;
   int joint = -1;  ///< whose acceleration is told and explained; −1: of each frame the one that has most
-  std::vector<std::byte>* recording = nullptr;  ///< of the last frames, as many as it has room for
+  GraphMemory* recording = nullptr;  ///< of the last frames, as many as it has room for
 };
 
 /// A row of CSV per frame: time, states of all machines, place and heading, the joint, its angular

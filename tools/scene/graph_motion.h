@@ -45,7 +45,7 @@ class GraphMotion {
   const GraphUse& use_;
   const Skeleton& skeleton_;
   std::shared_ptr<GraphScratch<T>> scratch_;  ///< shared by copies: holds nothing between frames
-  std::vector<std::byte> state_;
+  GraphMemory state_;
   std::vector<JointJet<T>> physical_;
   double time_ = -1;  ///< of the last frame; none yet
 };

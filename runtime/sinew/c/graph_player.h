@@ -99,7 +99,7 @@ class GraphPlayer {
  private:
   std::shared_ptr<const BoundGraph> bound_;
   std::shared_ptr<GraphScratch<float>> scratch_;
-  std::vector<std::byte> block_;
+  GraphMemory block_;
   std::vector<JointJet<float>> jets_, physical_;  ///< [joint]
   std::vector<float> spare_;                      ///< [joint] rad/s²
   std::vector<TimeJet<float>> curves_;            ///< [slot]

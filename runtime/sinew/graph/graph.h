@@ -5,7 +5,7 @@
 //     sinew::Graph graph;                                        // one an asset
 //     sinew::Graph::bind(definition, asset, graph);              // names become indices
 //     sinew::GraphScratch<float> scratch(graph);                 // one a thread
-//     std::vector<std::byte> state(graph.state_bytes<float>());  // one a character
+//     sinew::GraphMemory state(graph.state_bytes<float>());      // one a character
 //     sinew::start_graph<float>(graph, state);
 //
 // Every frame:
@@ -29,6 +29,29 @@
 #include "sinew/io/asset.h"
 
 namespace sinew {
+
+/// Memory for a character's block, or a recording: zeros that begin at a multiple of 16, as not every
+/// platform's std::vector<std::byte> does.
+class GraphMemory {
+ public:
+  GraphMemory() = default;
+  explicit GraphMemory(std::size_t bytes) : rows_((bytes + 15) / 16), bytes_(bytes) {}
+
+  std::byte* data() { return rows_.empty() ? nullptr : rows_.front().bytes; }
+  const std::byte* data() const { return rows_.empty() ? nullptr : rows_.front().bytes; }
+  std::size_t size() const { return bytes_; }
+  std::byte* begin() { return data(); }
+  std::byte* end() { return data() + bytes_; }
+  const std::byte* begin() const { return data(); }
+  const std::byte* end() const { return data() + bytes_; }
+
+ private:
+  struct alignas(16) Row {
+    std::byte bytes[16] = {};
+  };
+  std::vector<Row> rows_;
+  std::size_t bytes_ = 0;
+};
 
 /// Where in a character's block what stands, in bytes. All a multiple of 16.
 struct GraphLayout {
@@ -57,7 +80,7 @@ class Graph {
   int curve_count() const { return static_cast<int>(curve_slots_.size()); }  ///< the asset's curve slots
 
   /// Of the block that a character needs: trivially copyable bytes without pointers, at an address that is a
-  /// multiple of 16. A snapshot is a copy of it.
+  /// multiple of 16 (GraphMemory). A snapshot is a copy of it.
   template <class T>
   std::size_t state_bytes() const {
     return layout<T>().bytes;
