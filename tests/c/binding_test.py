@@ -21,7 +21,8 @@ NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "s
             ("sinew_character_add_wind", "settings"), ("sinew_character_add_buoyancy", "settings"),
             ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
             ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
-            ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings")}
+            ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings"),
+            ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
 
 
 class Everything:
@@ -37,6 +38,8 @@ class Everything:
         self.prop = self.world.add_prop(pose={"translation": (3, 0, 1)})
         self.loop = self.world.add_loop(
             kind=sinew.LoopKind.ROPE, length=5, a={"kind": sinew.AnchorKind.PROP, "handle": self.prop})
+        self.street = sinew.Crowd(self.asset, capacity=4, places=1)
+        self.street.play(0)
         self.particles = self.world.add_strand(particles=3, frame={"pose": {"translation": (5, 0, 2)}})
         self.effect = self.prop.add_wind(velocity=(1, 0, 0))
         self.world.report_contacts()
@@ -86,7 +89,10 @@ class BadInput(unittest.TestCase):
         for parameter in parameters:
             memory = (ctypes.c_char * 65536)()
             self.buffers.append(memory)
-            arguments.append(bad[parameter["name"]] if parameter["name"] in bad else meant(parameter, self.scene, memory))
+            argument = meant(parameter, self.scene, memory)
+            if parameter["type"] == "sinew_world" and name.startswith("sinew_crowd_"):
+                argument = self.scene.street.handle
+            arguments.append(bad.get(parameter["name"], argument))
         return getattr(lib, name)(*arguments)
 
     def test_every_function_refuses_handles_that_name_nothing(self):
@@ -311,6 +317,23 @@ class Classes(unittest.TestCase):
             scene.world.add_cloth(corners, [(0, 1, 7)])
         scene.character.set_tone(sinew.Tone.BRACED)
         self.assertGreater(scene.character.stiffness(8)[0], 0)
+
+    def test_a_crowd_walks_and_one_of_it_is_pushed(self):
+        with sinew.Asset(ASSET) as asset, sinew.Crowd(asset, capacity=10, places=2) as crowd:
+            for n in range(10):
+                crowd.play(n, time=0.1 * n, translation=(2 * n, 0, 0))
+            crowd.step(1 / 60)
+            self.assertEqual(crowd.crowd_report.in_world, 0)
+            joints = len(crowd.model(3))
+            models = crowd.copy_models()
+            self.assertEqual(list(models[3 * joints]), list(crowd.model(3)[0]))
+            self.assertLess(abs(float(crowd.model(3)[0][4]) - 6), 1)
+            crowd.push(3, asset.find_role(sinew.Role.CHEST), (90, 0, 0))
+            crowd.step(1 / 60)
+            self.assertEqual(crowd.crowd_report.in_world, 1)
+            self.assertNotEqual(crowd.member(3).character, 0)
+            with self.assertRaisesRegex(sinew.Error, "crowd"):
+                crowd.save()
 
     def test_refused_calls_are_heard_of(self):
         heard = []

@@ -43,7 +43,8 @@ class Sequence : FuzzMotion {
         &Sequence::asset,   &Sequence::person,  &Sequence::prop,  &Sequence::move,    &Sequence::loop,
         &Sequence::shape,   &Sequence::read,    &Sequence::read,  &Sequence::ask,     &Sequence::contacts,
         &Sequence::query,   &Sequence::draw,    &Sequence::save,  &Sequence::restore, &Sequence::record,
-        &Sequence::balance, &Sequence::destroy, &Sequence::graph, &Sequence::follow,  &Sequence::follow};
+        &Sequence::balance, &Sequence::destroy, &Sequence::graph, &Sequence::follow,  &Sequence::follow,
+        &Sequence::crowd,   &Sequence::crowd};
     const Call one = kCalls[below(std::size(kCalls))];
     check((this->*one)());
   }
@@ -116,6 +117,49 @@ class Sequence : FuzzMotion {
     const sinew_status status =
         sinew_world_add_character(handle(worlds_), handle(assets_), or_null(&s), or_null(&out));
     if (status == SINEW_OK) people_.push_back(out);
+    return status;
+  }
+  sinew_status crowd() {
+    const std::uint64_t world = handle(worlds_);
+    sinew_crowd_track track{index(12), index(2), number(-1, 5), number(-1, 2), {{0, 0, 0, 1}, {}}};
+    if (rarely()) track.place.rotation[below(4)] = number(-1, 1);
+    for (double& x : track.place.translation) x = number(-2, 2);
+    sinew_crowd_member member{};
+    member.size = sizeof member;
+    sinew_crowd_report report{};
+    report.size = sizeof report;
+    sinew_view view{};
+    std::vector<sinew_transform> models(std::size_t(below(400)));
+    std::int32_t count = 0;
+    switch (below(8)) {
+      case 0:
+        return worlds_.size() < 3 ? make_crowd() : sinew_crowd_create(0, nullptr, nullptr, nullptr, nullptr);
+      case 1:
+        return sinew_crowd_get_member(world, index(12), or_null(&member));
+      case 2:
+        return sinew_crowd_get_report(world, or_null(&report));
+      case 3:
+        return sinew_crowd_get_model(world, index(12), or_null(&view));
+      case 4:
+        return sinew_crowd_copy_models(world, models.data(), static_cast<int>(models.size()),
+                                       or_null(&count));
+      case 5:
+        return sinew_crowd_push(world, index(12), index(25), triple(rarely() ? 1e5 : 150));
+      default:
+        return sinew_crowd_play(world, or_null(&track), rarely() ? index(2) : 1);
+    }
+  }
+  sinew_status make_crowd() {
+    sinew_crowd_settings s = settings(sinew_crowd_settings_init);
+    s.capacity = index(12);
+    s.places = index(3);
+    s.lanes = 8 * index(3);
+    sinew_world_settings w = settings(sinew_world_settings_init);
+    w.max_iterations = 6;
+    w.max_passes = 12;
+    std::uint64_t out = 0;
+    const sinew_status status = sinew_crowd_create(handle(assets_), &s, or_null(&w), nullptr, or_null(&out));
+    if (status == SINEW_OK) worlds_.push_back(out);
     return status;
   }
   sinew_status prop() {

@@ -149,6 +149,30 @@ TEST_F(CInterfaceMemory, ComesFromTheHostToTheLastByte) {
   EXPECT_STREQ(sinew_last_reason(), "memory needs both functions, or none");
 }
 
+TEST_F(CInterfaceMemory, AllocationsOfACrowdMayFail) {
+  constexpr int kEvery = 7;  // a character in the world takes what the next one does
+  sinew_asset asset = 0;
+  ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
+  sinew_crowd_settings settings = fixtures::initialised(sinew_crowd_settings_init);
+  settings.capacity = 20;
+  settings.places = 2;
+  const long before = live;
+  const int failures = fail_each_allocation(
+      [&] {
+        sinew_world street = 0;
+        const sinew_status status = sinew_crowd_create(asset, &settings, nullptr, nullptr, &street);
+        if (status == SINEW_OK) {
+          EXPECT_EQ(sinew_world_step(street, 0.01f), SINEW_OK) << sinew_last_reason();
+          EXPECT_EQ(sinew_world_destroy(street), SINEW_OK);
+        }
+        return status;
+      },
+      kEvery);
+  EXPECT_GT(failures, 10);
+  EXPECT_EQ(live, before);
+  EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK);
+}
+
 /// Lets each allocation of add(world, hero, asset) fail, in a world that has been set up before with all
 /// memory. `prepare`: likewise. `after`: what a step says to a world in which one has failed.
 template <class Prepare, class Add>

@@ -6,13 +6,10 @@
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/layout.h"
+#include "sinew/c/make_world.h"
 #include "sinew/c/report.h"
 
 namespace sinew::c {
-
-template <>
-inline constexpr std::uint32_t kFirstSize<sinew_character_settings> = 80;  // up to bake
-
 namespace {
 
 static_assert(int(Tone::kRigid) == SINEW_TONE_RIGID && int(Tone::kRelaxed) == SINEW_TONE_RELAXED &&
@@ -104,6 +101,11 @@ sinew_status change_tone(sinew_character handle, sinew_tone tone, Change&& chang
 }
 
 }  // namespace
+
+sinew_status read_character_settings(const sinew_character_settings* from, CharacterSettings& to) {
+  return read_settings(from, to, kSettings);
+}
+
 }  // namespace sinew::c
 
 using namespace sinew;
@@ -121,7 +123,7 @@ sinew_status sinew_world_add_character(sinew_world world, sinew_asset asset,
     if (!of) return refuse(asset, Kind::kAsset);
     const Skeleton& skeleton = of->asset->skeleton;
     CharacterSettings read;
-    if (const sinew_status s = read_settings(settings, read, kSettings); s != SINEW_OK) return s;
+    if (const sinew_status s = read_character_settings(settings, read); s != SINEW_OK) return s;
     w.jets.resize(std::max(w.jets.size(), skeleton.joints.size()));
     w.behaviours.resize(std::size_t(w.world.character_count()) + 1);
     w.graphs.resize(w.behaviours.size());

@@ -15,6 +15,7 @@
 #include "sinew/character/contact_events.h"
 #include "sinew/character/recording.h"
 #include "sinew/character/world.h"
+#include "sinew/crowd/population.h"
 #include "sinew/effects/buoyancy.h"
 #include "sinew/effects/force_field.h"
 #include "sinew/effects/joint_spring.h"
@@ -54,16 +55,21 @@ struct OwnedEffect {
       effect;  ///< the world's; gone where World::effect() says so
 };
 
-/// A world and what the interface keeps for it.
+/// A world, or a crowd's, and what the interface keeps for it.
 struct OwnedWorld {
-  explicit OwnedWorld(const WorldSettings& settings) : world(settings) {}
+  explicit OwnedWorld(const WorldSettings& settings) : alone(settings), world(*alone) {}
+  explicit OwnedWorld(std::unique_ptr<Population> with) : crowd(std::move(with)), world(crowd->world()) {}
 
   std::atomic<bool> busy{false};                     ///< a call runs
   bool broken = false;                               ///< an exception left something half added
   std::vector<std::unique_ptr<StaticShape>> shapes;  ///< the world refers to them: they go after it
   std::vector<std::unique_ptr<GraphPlayer>>
-      graphs;  ///< [character], or null; likewise: it saves their blocks
-  World<float> world;
+      graphs;                                ///< [character], or null; likewise: it saves their blocks
+  std::shared_ptr<const Asset> crowd_asset;  ///< whose clips the crowd plays
+  int crowd_capacity = 0;
+  std::unique_ptr<Population> crowd;  ///< or null: the world is alone
+  std::optional<World<float>> alone;
+  World<float>& world;
   ParallelFor jobs;
   int loops = 0;
   std::vector<int> nodes;                                   ///< [body of particles] how many it has

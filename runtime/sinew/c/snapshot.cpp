@@ -13,6 +13,14 @@ bool is_part(sinew_snapshot_part part) {
   return part == SINEW_SNAPSHOT_STATE || part == SINEW_SNAPSHOT_INPUTS;
 }
 
+/// act(OwnedWorld&) in a world that can be saved.
+template <class Act>
+sinew_status with_saved(sinew_world world, Act&& act, bool breaks = false) noexcept {
+  return in_world(world, Kind::kWorld, breaks, [&](OwnedWorld& w) {
+    return w.crowd ? fail(SINEW_UNSUPPORTED, "a world with a crowd is neither saved nor recorded") : act(w);
+  });
+}
+
 std::span<const std::byte> bytes_of(const void* bytes, std::size_t size) {
   return {static_cast<const std::byte*>(bytes), size};
 }
@@ -25,7 +33,7 @@ using namespace sinew::c;
 
 sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part part, void* out, size_t capacity,
                               size_t* size) {
-  return with_world(world, [&](OwnedWorld& w) {
+  return with_saved(world, [&](OwnedWorld& w) {
     if (!size || (!out && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!is_part(part)) return fail(SINEW_INVALID_ARGUMENT, kNoPart, part);
     const bool state = part == SINEW_SNAPSHOT_STATE;
@@ -41,7 +49,7 @@ sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part part, void*
 
 sinew_status sinew_world_restore(sinew_world world, sinew_snapshot_part part, const void* bytes,
                                  size_t size) {
-  return with_world(world, [&](OwnedWorld& w) {
+  return with_saved(world, [&](OwnedWorld& w) {
     if (!bytes) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!is_part(part)) return fail(SINEW_INVALID_ARGUMENT, kNoPart, part);
     const std::span<const std::byte> from = bytes_of(bytes, size);
@@ -50,14 +58,14 @@ sinew_status sinew_world_restore(sinew_world world, sinew_snapshot_part part, co
 }
 
 sinew_status sinew_world_record(sinew_world world, int32_t begin) {
-  return with_world(world, [&](OwnedWorld& w) {
+  return with_saved(world, [&](OwnedWorld& w) {
     w.recorder = begin != 0 ? std::make_unique<Recorder<float>>(w.world) : nullptr;
     return sinew_status(SINEW_OK);
   });
 }
 
 sinew_status sinew_world_get_recording(sinew_world world, sinew_view* out) {
-  return with_world(world, [&](OwnedWorld& w) {
+  return with_saved(world, [&](OwnedWorld& w) {
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!w.recorder) return fail(SINEW_INVALID_ARGUMENT, "the world is not recorded");
     const std::span<const std::byte> bytes = w.recorder->bytes();
@@ -68,7 +76,7 @@ sinew_status sinew_world_get_recording(sinew_world world, sinew_view* out) {
 }
 
 sinew_status sinew_world_replay(sinew_world world, const void* bytes, size_t size, sinew_replay_report* out) {
-  return set_up(world, [&](OwnedWorld& w) {
+  const auto replayed = [&](OwnedWorld& w) {
     if (!bytes) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (const sinew_status s = check_size(out); s != SINEW_OK) return s;
     if (w.recorder) return fail(SINEW_INVALID_ARGUMENT, "the world is being recorded itself");
@@ -81,5 +89,6 @@ sinew_status sinew_world_replay(sinew_world world, const void* bytes, size_t siz
       r.byte = report.byte;
       r.field = report.field.name;
     });
-  });
+  };
+  return with_saved(world, replayed, true);
 }

@@ -7,18 +7,13 @@
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/layout.h"
+#include "sinew/c/make_world.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
 #include "sinew/optimizer/presets.h"
 
 namespace sinew::c {
 namespace {
-
-/// What sinew_world_settings holds.
-struct Settings {
-  WorldSettings world;
-  bool restitution = false, continuous_detection = false;  ///< declared, or not
-};
 
 void list_surroundings(auto& c, auto& s, auto&& f) {
   auto& w = s.world;
@@ -80,29 +75,6 @@ constexpr std::pair<const char*, const Accuracy*> kPresets[] = {
     {kGamePreset.name, &kGamePreset.accuracy},
     {"crowd", &kCrowdPreset.accuracy}};
 
-sinew_status read_world_settings(const sinew_world_settings* from, Settings& to) {
-  const sinew_status status = read_settings(from, to, kSettings);
-  if (status != SINEW_OK || !from) return status;
-  sinew_world_settings all{};
-  static_cast<void>(read_sized(from, all));
-  to.world.detail.budget.clock = all.clock;
-  to.world.detail.budget.clock_context = all.clock_context;
-  return SINEW_OK;
-}
-
-sinew_status create(const Settings& settings, sinew_world* out) {
-  auto world = std::make_unique<OwnedWorld>(settings.world);
-  Status status;
-  if (settings.restitution) status = world->world.declare<Restitution>();
-  if (status && settings.continuous_detection) status = world->world.declare<ContinuousDetection>();
-  if (!status) return answer(status);
-  const sinew_world handle = make_handle(Kind::kWorld, world.get());
-  if (handle == 0) return fail(SINEW_OUT_OF_RANGE, kTooMany);
-  static_cast<void>(world.release());  // the handle's now
-  *out = handle;
-  return SINEW_OK;
-}
-
 /// Copies everybody's model(); `count`: how many joints there are.
 bool copy_models(World<float>& world, std::span<sinew_transform> out, int& count) {
   std::size_t joints = 0;
@@ -117,13 +89,36 @@ bool copy_models(World<float>& world, std::span<sinew_transform> out, int& count
 }
 
 }  // namespace
+
+sinew_status read_world_settings(const sinew_world_settings* from, WorldMake& to) {
+  const sinew_status status = read_settings(from, to, kSettings);
+  if (status != SINEW_OK || !from) return status;
+  sinew_world_settings all{};
+  static_cast<void>(read_sized(from, all));
+  to.world.detail.budget.clock = all.clock;
+  to.world.detail.budget.clock_context = all.clock_context;
+  return SINEW_OK;
+}
+
+sinew_status hand_out(std::unique_ptr<OwnedWorld> world, const WorldMake& settings, sinew_world* out) {
+  Status status;
+  if (settings.restitution) status = world->world.declare<Restitution>();
+  if (status && settings.continuous_detection) status = world->world.declare<ContinuousDetection>();
+  if (!status) return answer(status);
+  const sinew_world handle = make_handle(Kind::kWorld, world.get());
+  if (handle == 0) return fail(SINEW_OUT_OF_RANGE, kTooMany);
+  static_cast<void>(world.release());  // the handle's now
+  *out = handle;
+  return SINEW_OK;
+}
+
 }  // namespace sinew::c
 
 using namespace sinew;
 using namespace sinew::c;
 
 sinew_status sinew_world_settings_init(sinew_world_settings* settings) {
-  return init<Settings>(settings, kSettings);
+  return init<WorldMake>(settings, kSettings);
 }
 
 sinew_status sinew_world_settings_use_preset(sinew_world_settings* settings, const char* preset) {
@@ -142,9 +137,9 @@ sinew_status sinew_world_settings_use_preset(sinew_world_settings* settings, con
 
 sinew_status sinew_world_create(const sinew_world_settings* settings, sinew_world* out) {
   if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  Settings read;
+  WorldMake read;
   if (const sinew_status status = read_world_settings(settings, read); status != SINEW_OK) return status;
-  return caught([&] { return create(read, out); });
+  return caught([&] { return hand_out(std::make_unique<OwnedWorld>(read.world), read, out); });
 }
 
 sinew_status sinew_world_destroy(sinew_world world) {
@@ -164,6 +159,7 @@ sinew_status sinew_world_set_jobs(sinew_world world, sinew_run_tasks run, void* 
 
 sinew_status sinew_world_step(sinew_world world, float h) {
   return in_world(world, Kind::kWorld, true, [&](OwnedWorld& w) {
+    if (w.crowd) return answer(w.crowd->step(h, w.jobs));
     return answer(w.recorder ? w.recorder->step(h) : w.world.step(h, w.jobs));
   });
 }

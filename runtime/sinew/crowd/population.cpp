@@ -178,6 +178,10 @@ bool Population::in_world(int character) const {
   return impl_->place_of[character] >= 0;
 }
 
+int Population::place(int character) const {
+  return impl_->place_of[character];
+}
+
 Character<float> Population::solved(int character) {
   return impl_->world->character(impl_->place_of[character]);
 }

@@ -53,6 +53,8 @@ class Population {
   Level level(int character) const;
   /// Whether it is simulated now.
   bool in_world(int character) const;
+  /// Which of the world's characters it is now, or -1.
+  int place(int character) const;
   /// Its handle while it is in the world.
   Character<float> solved(int character);
   int solved_count() const;  ///< characters that are in the world

@@ -18,6 +18,6 @@ from ._core import Error, check, jets_for, lib
 from .assets import Asset, Graph, Layer, Look, ease
 from .hooks import set_log
 from .members import Character, Effect, Loop, Particles, Prop
-from .world import Plays, World
+from .world import Crowd, Plays, World
 
 __version__ = lib.sinew_version().decode()

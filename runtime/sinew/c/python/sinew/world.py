@@ -4,7 +4,7 @@ from ctypes import byref
 
 from . import _abi
 from ._abi import SnapshotPart, Status
-from ._core import check, Error, floats, lib, numpy, Owned, report_of, saved, set_fields, settings_of
+from ._core import check, Error, floats, lib, numpy, Owned, report_of, saved, set_fields, settings_of, three
 from .members import Character, Loop, Particles, Prop
 
 
@@ -119,15 +119,18 @@ class World(Owned):
         check(lib.sinew_world_get_prop(self.handle, index, byref(out)))
         return Prop(self, out.value)
 
-    def copy_models(self):
-        """Of all joints of all characters: rotation x y z w, translation."""
+    def _copied(self, copy):
         count = ctypes.c_int32()
-        status = lib.sinew_world_copy_models(self.handle, None, 0, byref(count))
+        status = copy(self.handle, None, 0, byref(count))
         if status not in (Status.OK, Status.TOO_SMALL):
             raise Error(status)
         out = (_abi.Transform * count.value)()
-        check(lib.sinew_world_copy_models(self.handle, byref(out), count.value, byref(count)))
+        check(copy(self.handle, byref(out), count.value, byref(count)))
         return floats(out, count.value, 8, 7)
+
+    def copy_models(self):
+        """Of all joints of all characters: rotation x y z w, translation."""
+        return self._copied(lib.sinew_world_copy_models)
 
     def report_contacts(self, **settings):
         check(lib.sinew_world_report_contacts(
@@ -186,3 +189,47 @@ class World(Owned):
         report = _abi.ReplayReport(size=ctypes.sizeof(_abi.ReplayReport))
         check(lib.sinew_world_replay(self.handle, bytes(recording), len(recording), byref(report)))
         return report
+
+
+class Crowd(World):
+    """A world with many characters of one asset on their clips, of whom it simulates a few at a time (sinew_crowd.h). `world`
+    and `character` are settings of those, as dictionaries."""
+
+    def __init__(self, asset, world={}, character={}, **settings):
+        parts = [settings_of(_abi.CrowdSettings, lib.sinew_crowd_settings_init, settings),
+                 settings_of(_abi.WorldSettings, lib.sinew_world_settings_init, world),
+                 settings_of(_abi.CharacterSettings, lib.sinew_character_settings_init, character)]
+        out = ctypes.c_uint64()
+        check(lib.sinew_crowd_create(asset.handle, *map(byref, parts), byref(out)))
+        Owned.__init__(self, out.value, lib.sinew_world_destroy)
+
+    def play(self, character, clip=0, time=0, rate=1, rotation=(0, 0, 0, 1), translation=(0, 0, 0)):
+        """From now on one plays this, at that place."""
+        track = _abi.CrowdTrack(character=character, clip=clip, time=time, rate=rate)
+        track.place.rotation[:], track.place.translation[:] = rotation, translation
+        check(lib.sinew_crowd_play(self.handle, byref(track), 1))
+
+    def push(self, character, joint, impulse):
+        """N s, at the joint."""
+        check(lib.sinew_crowd_push(self.handle, character, joint, three(impulse)))
+
+    def member(self, character):
+        out = _abi.CrowdMember(size=ctypes.sizeof(_abi.CrowdMember))
+        check(lib.sinew_crowd_get_member(self.handle, character, byref(out)))
+        return out
+
+    @property
+    def crowd_report(self):
+        return report_of(_abi.CrowdReport, lib.sinew_crowd_get_report, self.handle)
+
+    def model(self, character):
+        """[joint] rotation x y z w, translation, joint to world: a view until the next step."""
+        view = _abi.View()
+        check(lib.sinew_crowd_get_model(self.handle, character, byref(view)))
+        memory = (ctypes.c_float * (view.count * view.stride // ctypes.sizeof(ctypes.c_float))).from_address(view.data)
+        memory.owner = self._native
+        return floats(memory, view.count, 8, 7)
+
+    def copy_models(self):
+        """The same of all, copied: [character * joints + joint]."""
+        return self._copied(lib.sinew_crowd_copy_models)
