@@ -140,6 +140,7 @@ TEST(CInterfaceCrowd, OutlivesTheAssetsHandleAndTakesObstaclesAndCharacters) {
       << sinew_last_reason();
   EXPECT_EQ(sinew_asset_destroy(scene.asset), SINEW_OK);
   sinew_prop_settings ball = initialised(sinew_prop_settings_init);
+  ball.pose.translation[0] = 40;
   sinew_prop prop = 0;
   ASSERT_EQ(sinew_world_add_prop(scene.street, &ball, &prop), SINEW_OK) << sinew_last_reason();
   for (int frame = 0; frame < 30; ++frame)
@@ -148,6 +149,15 @@ TEST(CInterfaceCrowd, OutlivesTheAssetsHandleAndTakesObstaclesAndCharacters) {
   EXPECT_EQ(sinew_character_get_view(guest, SINEW_VIEW_MODEL, &model), SINEW_OK);
   EXPECT_EQ(model.count, scene.joints);
   EXPECT_EQ(scene.crowd().in_world, 0);
+  const sinew_transform before_one = {{0, 0, 0, 1}, {-1, 0, 1.3f}};
+  const float thrown[] = {14, 0, 0}, spin[] = {0, 0, 0};
+  EXPECT_EQ(sinew_prop_set_state(prop, &before_one, thrown, spin), SINEW_OK) << sinew_last_reason();
+  int most = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    ASSERT_EQ(sinew_world_step(scene.street, 1 / 60.f), SINEW_OK) << sinew_last_reason();
+    most = std::max(most, scene.crowd().in_world);
+  }
+  EXPECT_GE(most, 1) << "whom it hits";
 }
 
 TEST(CInterfaceCrowd, RefusesWhatCannotBeMeant) {

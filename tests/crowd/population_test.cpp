@@ -105,6 +105,31 @@ TEST(Population, NeighboursOfOneWhoFallsAreCalledBeforeTheyAreTouched) {
   EXPECT_TRUE(moved) << "was hit by the falling one";
 }
 
+TEST(Population, AThrownBallHitsOneWhoseNeighboursNoticeNothing) {
+  People people(6), calm(6);
+  PropSettings ball;
+  ball.mass = 8;
+  ball.size = Vec3<double>::Constant(0.12);
+  ball.pose.translation = {-3, 6.1, 0.65};  // at a leg: the root goes where it wants
+  ball.velocity = {14, 0, 0.5};
+  Status status;
+  ASSERT_EQ(people.population->world().add_prop(ball, status), 0) << status.reason;
+  int first = -1;
+  float most = 0;
+  for (int n = 0; n < 40; ++n) {
+    people.step();
+    calm.step();
+    for (std::size_t i = 0; i < people.rig.joints.size(); ++i)
+      most = std::max(most, (people.pose(2)[i].translation - calm.pose(2)[i].translation).norm());
+    if (first < 0 && people.population->level(2) > Level::kChecked) first = n;
+    for (int c : {0, 1, 3, 4, 5}) ASSERT_EQ(people.pose(c), calm.pose(c)) << c;
+  }
+  EXPECT_GT(first, 5) << "before it comes, only watched";
+  EXPECT_LT(first, 20);
+  EXPECT_LT(people.population->world().prop_velocity(0).x(), 8) << "it was stopped";
+  EXPECT_GT(most, 0.02f);
+}
+
 TEST(Population, AFullWorldTurnsAwayAndSaysSo) {
   People people(4, 3, 2);
   people.step();

@@ -9,10 +9,11 @@
 ///     sinew_world_step(street, 1 / 60.f);
 ///     sinew_crowd_copy_models(street, models, 1000 * joints, &count);
 ///
-/// Everybody else is sampled and checked in batches, costs about as much as playback, and meets nothing: a
-/// prop does not call in who stands in its way, sinew_crowd_push() does. The world is one as others are: with
-/// props, obstacles, contacts, and characters of its own beside the crowd. What is saved, recorded and
-/// replayed is a world without a crowd: with one, that is refused with SINEW_UNSUPPORTED.
+/// Everybody else is sampled and checked in batches and costs about as much as playback. Props that are
+/// awake, and characters of the world's own that are not on their animation, call in whom they may touch;
+/// what rests, obstacles, and two who play their clips into each other do not. The world is one as others
+/// are: with props, obstacles, contacts, and characters of its own beside the crowd. What is saved, recorded
+/// and replayed is a world without a crowd: with one, that is refused with SINEW_UNSUPPORTED.
 #ifndef SINEW_C_SINEW_CROWD_H
 #define SINEW_C_SINEW_CROWD_H
 

@@ -4,6 +4,7 @@
 
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/sampling_job.h"
+#include "sinew/character/movers.h"
 #include "sinew/character/neighbour_grid.h"
 
 namespace sinew {
@@ -25,7 +26,8 @@ struct Population::Impl {
   std::vector<int> free;             ///< places, the next one last
   std::vector<std::uint8_t> active;  ///< [character] plays something
   std::vector<JointJet<float>> jets;
-  NeighbourGrid grid;  ///< of those who move by themselves
+  NeighbourGrid grid;                ///< of those on their clips
+  std::vector<std::uint8_t> called;  ///< [character] into the world, by who is near
   int turned_away = 0;
 
   bool enter(int character, double h);
@@ -66,7 +68,8 @@ std::unique_ptr<Population> Population::create(const Skeleton& skeleton, const P
   impl->character_of.assign(settings.places, -1);
   for (int n = settings.places; n-- > 0;) impl->free.push_back(n);
   impl->jets.resize(skeleton.joints.size());
-  impl->grid.reserve(settings.places);
+  impl->grid.reserve(crowd.capacity);
+  impl->called.assign(crowd.capacity, 0);
   for (int n = 0; n < crowd.capacity; ++n) {
     (void)impl->crowd->set_active(n, false);
     (void)impl->crowd->set_strength(n, static_cast<float>(settings.character.strength));
@@ -100,28 +103,28 @@ void Population::Impl::leave(int place) {
   free.push_back(place);
 }
 
-/// Whoever one of those that move by themselves may touch within h seconds.
+/// Whoever one of those that move by themselves, props included, may touch within h seconds.
 void Population::Impl::call_neighbours(double h) {
+  const int members = member_count(*world);
+  MovingBall mover;
+  const auto next_mover = [&](int from) {
+    while (from < members && !moves_by_itself(*world, from, float(h), mover)) ++from;
+    return from;
+  };
+  int n = next_mover(0);
+  if (n == members) return;
   grid.clear();
-  bool any = false;
-  for (std::size_t place = 0; place < character_of.size(); ++place) {
-    if (character_of[place] < 0) continue;
-    const Character<float> c = world->character(static_cast<int>(place));
-    if (c.on_animation()) continue;
-    const Vec3<double> center = c.model()[0].translation.cast<double>();
-    grid.add(character_of[place], center, double(radius + margin));
-    any = true;
+  for (int c = 0; c < capacity; ++c) {
+    called[c] = 0;
+    if (!active[c] || place_of[c] >= 0) continue;
+    const double moves = h * double(crowd->root_velocity(c).norm());
+    grid.add(c, crowd->model(c)[0].translation.cast<double>(), double(radius) + moves);
   }
-  if (!any) return;
   grid.build();
-  for (int n = 0; n < capacity; ++n) {
-    if (!active[n] || place_of[n] >= 0) continue;
-    bool near = false;
-    const double moves = h * double(crowd->root_velocity(n).norm());
-    const Vec3<double> root = crowd->model(n)[0].translation.cast<double>();
-    grid.overlapping(root, double(radius) + moves, [&](int) { near = true; });
-    if (near) (void)enter(n, h);
-  }
+  for (; n < members; n = next_mover(n + 1))
+    grid.overlapping(mover.center, mover.radius + double(margin), [&](int c) { called[c] = 1; });
+  for (int c = 0; c < capacity; ++c)
+    if (called[c] != 0) (void)enter(c, h);
 }
 
 Status Population::play(int character, const CrowdTrack& track) {

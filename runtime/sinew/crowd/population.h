@@ -1,5 +1,5 @@
 // A crowd of one rig of which a few are in a world at a time: those who were pushed, whose muscles are too
-// weak for their animation, or whom one of these may touch.
+// weak for their animation, or whom one of these, or a prop, may touch.
 //
 //     auto people = Population::create(asset.skeleton, settings, status);
 //     for (int i = 0; i < 1000; ++i) (void)people->play(i, {&clip, start[i], place[i]});
@@ -8,9 +8,11 @@
 //     (void)people->step(1 / 60.f, jobs);
 //     draw(people->model(i));
 //
-// Everybody else is sampled and checked in the crowd's batches and costs about as much as playback. Who is
-// called for enters the world in the same step, with the pose and speed that the clip had at its beginning,
-// and leaves it when it has been on its animation for a while.
+// Everybody else is sampled and checked in the crowd's batches and costs about as much as playback. Props
+// that are awake, and characters of the world's own that are not on their animation, call in whom they may
+// touch; what rests, obstacles, and two who play their clips into each other do not. Who is called for enters
+// the world in the same step, with the pose and speed that the clip had at its beginning, and leaves it when
+// it has been on its animation for a while.
 #pragma once
 
 #include <memory>
