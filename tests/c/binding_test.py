@@ -296,6 +296,12 @@ class Classes(unittest.TestCase):
         self.assertEqual(asset.partner(hand), asset.find_role(sinew.Role.HAND_R))
         asset.mirror(a)
         self.assertAlmostEqual(float(asset.model(a)[asset.partner(hand)][5]), -target[1], 3)
+        old, new = asset.sample(0, 0.1), asset.sample(0, 0.6)
+        transition = sinew.Transition(asset, old, new, 0.2)
+        transition(asset, new, 0)
+        self.assertAlmostEqual(float(new[hand]["rotation"][0]), float(old[hand]["rotation"][0]), 4)
+        with self.assertRaisesRegex(sinew.Error, "step"):
+            transition(asset, new, -1)
         look = sinew.Look()
         look(asset, a, (5, 0, 1), step=1 / 60)
         self.assertEqual(look.state.started, 1)

@@ -188,7 +188,9 @@ class FuzzMotion : protected FuzzInputs {
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, jets.data(), count));
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, other.data(), count));
     if (rarely()) jets[std::size_t(below(20))].rotation[below(4)] = real(-1, 1);
-    switch (below(5)) {
+    switch (below(6)) {
+      case 4:
+        return change_over(asset, jets, other, count);
       case 0:
         return blend(asset, jets, other, count);
       case 1:
@@ -201,6 +203,23 @@ class FuzzMotion : protected FuzzInputs {
         return sinew_asset_subtract(asset, or_null(other.data()), below(2) * count, or_null(jets.data()),
                                     count);
     }
+  }
+  /// Within one transition, or its beginning; some of its numbers get lost.
+  sinew_status change_over(std::uint64_t asset, std::vector<sinew_jet>& jets,
+                           const std::vector<sinew_jet>& other, int count) {
+    std::int32_t numbers = 0;
+    if (below(2) == 0) {
+      transition_.resize(rarely() ? 100 : 3000);
+      const sinew_status status = sinew_asset_begin_transition(
+          asset, or_null(jets.data()), count, or_null(other.data()), rarely() ? 3 : count, real(-0.1, 1),
+          transition_.data(), static_cast<int>(transition_.size()), or_null(&numbers));
+      transition_.resize(status == SINEW_OK ? std::size_t(numbers) : 0);
+      return status;
+    }
+    if (rarely() && !transition_.empty()) transition_[std::size_t(below(transition_.size()))] = real(-10, 99);
+    return sinew_asset_play_transition(asset, or_null(transition_.data()),
+                                       static_cast<int>(transition_.size()), real(0, 0.1),
+                                       or_null(jets.data()), count);
   }
   sinew_status blend(std::uint64_t asset, std::vector<sinew_jet>& jets, const std::vector<sinew_jet>& other,
                      int count) {
@@ -320,6 +339,7 @@ class FuzzMotion : protected FuzzInputs {
 
  private:
   sinew_look_state look_{};
+  std::vector<float> transition_;
   const std::string graph_path_ = fixtures::sample_graph();
   std::array<std::int32_t, 3> joints_{};
 };

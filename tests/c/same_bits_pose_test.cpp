@@ -6,6 +6,7 @@
 #include "c/scene.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
+#include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/look_at_job.h"
 #include "sinew/animation/mirror_job.h"
@@ -129,6 +130,57 @@ TEST_F(CInterfacePoses, MirrorsAreThoseOfCpp) {
   EXPECT_EQ(partner, joint(Role::kFootR));
   expect_refused(sinew_asset_get_partner(asset, joints, &partner), SINEW_INVALID_ARGUMENT, "joint");
   expect_refused(sinew_asset_mirror(asset, c(mirrored), joints - 1), SINEW_INVALID_ARGUMENT, "fewer joints");
+}
+
+TEST_F(CInterfacePoses, TransitionsAreThoseOfCpp) {
+  constexpr float kDuration = 0.3f;
+  InertialState<float> wanted;
+  std::vector<float> offsets(inertial_numbers(joints, joints)), state(5000);
+  std::int32_t count = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    Jets old = pose("stand", frame / 60.0), jets = pose("walk", 0.2 + frame / 60.0), in_c = jets;
+    if (frame == 10) {
+      wanted.offsets = offsets;
+      wanted.joints = joints;
+      EXPECT_EQ(
+          sinew_asset_begin_transition(asset, c(old), joints, c(jets), joints, kDuration, nullptr, 0, &count),
+          SINEW_TOO_SMALL);
+      EXPECT_EQ(sinew_asset_begin_transition(asset, c(old), joints, c(jets), joints, kDuration, state.data(),
+                                             5000, &count),
+                SINEW_OK)
+          << sinew_last_reason();
+      EXPECT_GT(count, 144);
+      state.resize(std::size_t(count));
+      wanted.translated = int(state[3]);
+      EXPECT_GE(wanted.translated, 1) << "the root";
+      EXPECT_TRUE(begin_inertial<float>(old, jets, kDuration, wanted));
+    }
+    if (frame < 10) continue;
+    if (frame > 10) wanted.elapsed += 1 / 60.f;
+    EXPECT_TRUE((InertializeJob<float>{jets, &wanted, {}, jets}.Run()));
+    EXPECT_EQ(
+        sinew_asset_play_transition(asset, state.data(), count, frame > 10 ? 1 / 60.f : 0.f, c(in_c), joints),
+        SINEW_OK)
+        << sinew_last_reason();
+    expect_same(in_c, jets);
+    if (frame == 10) {
+      for (int j = 0; j < joints; ++j)
+        EXPECT_LT(in_c[std::size_t(j)].rotation.angularDistance(old[std::size_t(j)].rotation), 1e-3f) << j;
+    }
+    if (frame == 39) expect_same(in_c, pose("walk", 0.2 + frame / 60.0));
+  }
+  Jets jets = pose("walk", 0);
+  for (const std::size_t n : {2, 3}) {
+    std::vector<float> broken = state;
+    for (const float x : {-1.f, 0.5f, 1e9f, std::nanf("")}) {
+      broken[n] = x;
+      EXPECT_EQ(sinew_asset_play_transition(asset, broken.data(), count, 0, c(jets), joints),
+                SINEW_INVALID_ARGUMENT);
+    }
+  }
+  EXPECT_EQ(sinew_asset_play_transition(asset, state.data(), 3, 0, c(jets), joints), SINEW_INVALID_ARGUMENT);
+  EXPECT_EQ(sinew_asset_play_transition(asset, state.data(), count, -1, c(jets), joints),
+            SINEW_INVALID_ARGUMENT);
 }
 
 TEST_F(CInterfacePoses, LimbsReachAsInCpp) {

@@ -1,4 +1,5 @@
 // Jobs on poses of the C interface.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -6,6 +7,7 @@
 
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
+#include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/look_at_job.h"
 #include "sinew/c/call.h"
@@ -187,6 +189,42 @@ sinew_status with_mirror(sinew_asset handle, Act&& act) noexcept {
       handle, [&](const OwnedAsset& owned) { return owned.mirrors ? act(owned) : answer(owned.mirrors); });
 }
 
+// A transition as a caller keeps it: seconds since it began, of how many, joints, those whose translations
+// differ, and what they differ by.
+constexpr std::size_t kTransitionHead = 4;
+
+/// The first joints, up to the last whose place against its parent differs.
+int translated_of(std::span<const JointJet<float>> a, std::span<const JointJet<float>> b) {
+  std::size_t n = a.size();
+  while (n > 1 && a[n - 1].translation == b[n - 1].translation && a[n - 1].velocity == b[n - 1].velocity) --n;
+  return static_cast<int>(n);
+}
+
+void write_transition(const InertialState<float>& from, float* to) {
+  to[0] = from.elapsed;
+  to[1] = from.duration;
+  to[2] = static_cast<float>(from.joints);
+  to[3] = static_cast<float>(from.translated);
+}
+
+/// False where it is none, or none for so many jets.
+bool read_transition(float* from, int count, int jets, InertialState<float>& to) {
+  if (count < static_cast<int>(kTransitionHead)) return false;
+  const auto is_count = [&](float x) {
+    return x >= 0 && x <= static_cast<float>(jets) && x == std::floor(x);
+  };
+  if (!is_count(from[2]) || !is_count(from[3])) return false;
+  to.elapsed = from[0];
+  to.duration = from[1];
+  to.joints = static_cast<int>(from[2]);
+  to.translated = static_cast<int>(from[3]);
+  const std::size_t numbers = kTransitionHead + inertial_numbers(to.joints, to.translated);
+  if (std::size_t(count) < numbers) return false;
+  to.offsets = std::span(from, numbers).subspan(kTransitionHead);
+  return to.elapsed >= 0 && std::isfinite(to.elapsed) &&
+         std::all_of(to.offsets.begin(), to.offsets.end(), [](float x) { return std::isfinite(x); });
+}
+
 }  // namespace
 }  // namespace sinew::c
 
@@ -237,6 +275,47 @@ sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
           from.empty() ? owned.rest[j] : Transform<float>{from[j].rotation, from[j].translation};
       subtract_reference<float>({&at, 1}, {&out[j], 1}, {&out[j], 1});
     }
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_asset_begin_transition(sinew_asset asset, const sinew_jet* now, int32_t now_count,
+                                          const sinew_jet* next, int32_t next_count, float duration,
+                                          float* state, int32_t capacity, int32_t* count) {
+  return with_owned_asset(asset, [&](const OwnedAsset& owned) {
+    if (const sinew_status s = check_jets(owned, now, now_count); s != SINEW_OK) return s;
+    if (const sinew_status s = check_jets(owned, next, next_count); s != SINEW_OK) return s;
+    if (next_count != now_count)
+      return fail(SINEW_INVALID_ARGUMENT, "the new motion has another number of joints", next_count);
+    if (!count || (!state && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    const std::span<const JointJet<float>> from = jets_of(now, now_count), to = jets_of(next, next_count);
+    InertialState<float> begun;
+    begun.joints = now_count;
+    begun.translated = translated_of(from, to);
+    const std::size_t numbers = kTransitionHead + inertial_numbers(begun.joints, begun.translated);
+    *count = static_cast<int32_t>(numbers);
+    if (capacity < *count) return fail(SINEW_TOO_SMALL, "room for fewer numbers than the transition has");
+    begun.offsets = std::span(state, numbers).subspan(kTransitionHead);
+    if (const Status status = begin_inertial(from, to, duration, begun); !status) return answer(status);
+    write_transition(begun, state);
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_asset_play_transition(sinew_asset asset, float* state, int32_t state_count, float step,
+                                         sinew_jet* jets, int32_t count) {
+  return with_owned_asset(asset, [&](const OwnedAsset& owned) {
+    if (const sinew_status s = check_jets(owned, jets, count); s != SINEW_OK) return s;
+    if (!state) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (!(step >= 0 && step <= 1000)) return fail(SINEW_INVALID_ARGUMENT, "step must be 0 to 1000 s");
+    InertialState<float> left;
+    if (!read_transition(state, state_count, count, left))
+      return fail(SINEW_INVALID_ARGUMENT, "no transition of so many joints");
+    left.elapsed += step;
+    const std::span<JointJet<float>> out = jets_of(jets, count);
+    const InertializeJob<float> job{out, &left, {}, out};
+    if (const Status status = job.Run(); !status) return answer(status);
+    state[0] = left.elapsed;
     return sinew_status(SINEW_OK);
   });
 }

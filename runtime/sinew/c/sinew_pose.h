@@ -113,6 +113,18 @@ SINEW_API sinew_status sinew_asset_blend(sinew_asset asset, const sinew_blend_la
 /// rest where that is none.
 SINEW_API sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
                                             int32_t reference_count, sinew_jet* jets, int32_t count);
+/// Begins a transition by inertia: `now` is what the character does at this instant, whatever makes it do so
+/// (another transition, too), `next` what the new motion does. What they differ by is written into
+/// state[capacity], the caller's, a copy for a snapshot; `count`: how many numbers it has, also with
+/// SINEW_TOO_SMALL. duration: s until nothing of it is left, 0 to 1000.
+SINEW_API sinew_status sinew_asset_begin_transition(sinew_asset asset, const sinew_jet* now,
+                                                    int32_t now_count, const sinew_jet* next,
+                                                    int32_t next_count, float duration, float* state,
+                                                    int32_t capacity, int32_t* count);
+/// Moves on by `step` s, 0 in the frame of the switch, and adds what is left of the difference to `jets`, the
+/// new motion at that instant: C2 at both ends. Once nothing is left it leaves them.
+SINEW_API sinew_status sinew_asset_play_transition(sinew_asset asset, float* state, int32_t state_count,
+                                                   float step, sinew_jet* jets, int32_t count);
 /// The joint on the other side; itself in the middle, -1 where there is none. Left and right are found by
 /// names, roles and places when an asset is read; refused with what was in the way of that.
 SINEW_API sinew_status sinew_asset_get_partner(sinew_asset asset, int32_t joint, int32_t* out);

@@ -15,7 +15,7 @@ from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReas
                    EventKind, GetUpPolicy, GroundKind, JointType, Level, LogLevel, LoopKind, NodeType, ParameterType, Role, RootDrive,
                    Shape, SnapshotPart, Status, Tone)
 from ._core import Error, check, jets_for, lib
-from .assets import Asset, Graph, Layer, Look, ease
+from .assets import Asset, Graph, Layer, Look, Transition, ease
 from .hooks import set_log
 from .members import Character, Effect, Loop, Particles, Prop
 from .world import Crowd, Plays, World

@@ -4,8 +4,8 @@ import os
 from ctypes import byref
 
 from . import _abi
-from ._abi import BlendMode
-from ._core import check, Described, floats, jets_for, lib, pointer, report_of, settings_of
+from ._abi import BlendMode, Status
+from ._core import check, Described, Error, floats, jets_for, lib, pointer, report_of, settings_of
 
 
 class Layer:
@@ -41,6 +41,23 @@ class Look:
         """Turns spine, neck and head of `jets` to the target (m, model space), `step` s after the last call."""
         struct = settings_of(_abi.Look, lib.sinew_look_init, {"target": target, "step": step, **settings})
         check(lib.sinew_asset_look(asset.handle, byref(struct), byref(self.state), pointer(jets), len(jets)))
+
+
+class Transition:
+    """From what a character does (`now`, jets) to another motion (`next`) within `duration` s. `state` may be copied."""
+
+    def __init__(self, asset, now, next, duration):
+        arguments = (asset.handle, pointer(now), len(now), pointer(next), len(next), duration)
+        count = ctypes.c_int32()
+        status = lib.sinew_asset_begin_transition(*arguments, None, 0, byref(count))
+        if status != Status.TOO_SMALL:
+            raise Error(status)
+        self.state = (ctypes.c_float * count.value)()
+        check(lib.sinew_asset_begin_transition(*arguments, self.state, count.value, byref(count)))
+
+    def __call__(self, asset, jets, step):
+        """Adds to `jets`, of the new motion, what is left, `step` s after the last call; 0 in the frame of the switch."""
+        check(lib.sinew_asset_play_transition(asset.handle, self.state, len(self.state), step, pointer(jets), len(jets)))
 
 
 class Asset(Described):
