@@ -35,15 +35,17 @@ namespace sinew {
 class GraphMemory {
  public:
   GraphMemory() = default;
+  /// So many; allocates.
   explicit GraphMemory(std::size_t bytes) : rows_((bytes + 15) / 16), bytes_(bytes) {}
 
+  /// At a multiple of 16, or null where there are none.
   std::byte* data() { return rows_.empty() ? nullptr : rows_.front().bytes; }
-  const std::byte* data() const { return rows_.empty() ? nullptr : rows_.front().bytes; }
-  std::size_t size() const { return bytes_; }
-  std::byte* begin() { return data(); }
-  std::byte* end() { return data() + bytes_; }
-  const std::byte* begin() const { return data(); }
-  const std::byte* end() const { return data() + bytes_; }
+  const std::byte* data() const { return rows_.empty() ? nullptr : rows_.front().bytes; }  ///< the same
+  std::size_t size() const { return bytes_; }                                              ///< bytes
+  std::byte* begin() { return data(); }                     ///< as of a vector, for std::span
+  std::byte* end() { return data() + bytes_; }              ///< as of a vector
+  const std::byte* begin() const { return data(); }         ///< as of a vector
+  const std::byte* end() const { return data() + bytes_; }  ///< as of a vector
 
  private:
   struct alignas(16) Row {
