@@ -30,7 +30,7 @@ string(STRIP "${printed}" ARCHITECTURE)
 # Packed quickly, and not as small as it might be.
 run(${CPACK} -G DEB --config ${BUILD}/CPackConfig.cmake -B ${WORK}/debs -D CPACK_DEBIAN_COMPRESSION_TYPE=zstd)
 string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor ${VERSION})
-depends(libsinew${minor} libc6 "libstdc\\+\\+6")
+depends(libsinew${minor} "^libc6 \\([^,]*\\)\n$")  # the C++ library is within
 depends(libsinew-dev "libsinew${minor} \\(= ${VERSION}\\)" libeigen3-dev)
 depends(sinew-tools libassimp5 libosmesa6 liburdfdom)
 file(GLOB debs ${WORK}/debs/*.deb)
