@@ -146,14 +146,14 @@ class Sequence : FuzzMotion {
       case 5:
         return sinew_crowd_push(world, index(12), index(25), triple(rarely() ? 1e5 : 150));
       default:
-        return sinew_crowd_play(world, or_null(&track), rarely() ? index(2) : 1);
+        return sinew_crowd_play(world, or_null(&track), rarely() ? -1 : 1);
     }
   }
   sinew_status make_crowd() {
     sinew_crowd_settings s = settings(sinew_crowd_settings_init);
     s.capacity = index(12);
     s.places = index(3);
-    s.lanes = 8 * index(3);
+    s.lanes = rarely() ? index(3) : 8 * static_cast<int>(below(3));
     sinew_world_settings w = settings(sinew_world_settings_init);
     w.max_iterations = 6;
     w.max_passes = 12;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "sinew/character/check_jet.h"
@@ -228,6 +229,10 @@ Status Character<T>::displace(const Displacement& further) {
   if (!state_) return nobody();
   if (!std::isfinite(further.x) || !std::isfinite(further.y) || !std::isfinite(further.yaw))
     return Status::error(Code::kNotFinite, "displacement is not finite");
+  const Displacement all = state_->grounding.by.then(further);
+  constexpr double kFarthest = 1e6;  // m, or rad
+  if (std::max({std::abs(all.x), std::abs(all.y), std::abs(all.yaw)}) > kFarthest)
+    return Status::error(Code::kOutOfRange, "displacement is beyond 1e6 m, or rad");
   displace_target(*state_, further);
   return {};
 }
