@@ -17,7 +17,8 @@ constexpr int kPeople = 20, kFrames = 90, kPushed = 7, kAt = 10;
 constexpr double kImpulse[] = {90, 20, 0};
 
 Transform<double> place_of(int n) {
-  return {rotation_exp<double>(Vec3<double>(0, 0, 0.7 * n)), {1.5 * (n % 5), 1.5 * (n / 5), 0}};
+  const int row = n / 5, column = n % 5;
+  return {rotation_exp<double>(Vec3<double>(0, 0, 0.7 * n)), {1.5 * column, 1.5 * row, 0}};
 }
 
 /// Of all joints of all people in every frame.
