@@ -1,7 +1,6 @@
 // Crowds of the C interface: worlds that step one.
-#include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <memory>
 #include <span>
 
 #include "sinew/c/call.h"
@@ -37,23 +36,19 @@ sinew_status with_member(sinew_world world, int32_t character, Act&& act) noexce
   });
 }
 
-constexpr auto kTrack = [](auto& c, auto& s, auto&& f) {
-  f("a place's rotation must be a unit quaternion, it must be within 1e6 m", c.place, s);
-};
-
 sinew_status play(const OwnedWorld& w, Population& crowd, const sinew_crowd_track& c) {
   const std::vector<Clip>& clips = w.crowd_asset->clips;
   if (c.clip < 0 || std::size_t(c.clip) >= clips.size())
     return fail(SINEW_INVALID_ARGUMENT, "no such clip", c.clip);
   Transform<double> place;
   FromC read;
-  kTrack(c, place, read);
+  read("a place's rotation must be a unit quaternion, it must be within 1e6 m", c.place, place);
   if (read.status != SINEW_OK) return read.status;
   return answer(
       crowd.play(c.character, {&clips[std::size_t(c.clip)], {c.time, c.rate}, place.cast<float>()}));
 }
 
-/// Which of the world's characters are the crowd's: the first ones.
+/// The crowd's are the first of the world's characters.
 std::unique_ptr<OwnedWorld> world_with(const std::shared_ptr<const Asset>& asset,
                                        std::unique_ptr<Population> crowd,
                                        const PopulationSettings& settings) {

@@ -11,7 +11,7 @@ int member_count(const World<T>& world) {
 
 template <class T>
 bool moves_by_itself(const World<T>& world, int member, T h, MovingBall& out) {
-  CharacterState<T>& s = *WorldInternals<T>::of(world).states[std::size_t(member)];
+  const CharacterState<T>& s = *WorldInternals<T>::of(world).states[std::size_t(member)];
   if (s.parked || s.levels.asleep || (!s.is_prop && s.undisturbed())) return false;
   const T travels = s.is_prop ? h * s.history.velocity[0].norm() : T(0);
   out = {s.middle().template cast<double>(), double(s.radius + travels)};
