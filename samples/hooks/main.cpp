@@ -1,5 +1,6 @@
 // What a host gives and hears: memory of its own, words about what went wrong, and a profile of every step
-// for chrome://tracing or ui.perfetto.dev (tracy-import-chrome makes one for Tracy of it).
+// for chrome://tracing or ui.perfetto.dev. Where the program has Tracy's client (CMake: find_package(Tracy)),
+// zones go there instead, as they happen: tracy.h.
 // Usage: hooks ASSET.sinew [TRACE.json]. A profile takes a runtime that was built with -DSINEW_PROFILER=ON.
 #include <sinew/animation/sampling_job.h>
 #include <sinew/character/world.h>
@@ -11,6 +12,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+
+#ifdef TRACY_ENABLE
+#include "tracy.h"
+#endif
 
 // Memory: the runtime takes all of it from operator new, so whoever replaces that provides it. Here it is
 // counted.
@@ -89,6 +94,18 @@ class Trace {
   std::vector<Event> events_;
 };
 
+#ifdef TRACY_ENABLE
+constexpr bool kTracy = true;
+sinew::Profiler zones_go_to(Trace&) {
+  return tracy_zones();
+}
+#else
+constexpr bool kTracy = false;
+sinew::Profiler zones_go_to(Trace& trace) {
+  return trace.profiler();
+}
+#endif
+
 void print(void* /*context*/, sinew::LogLevel level, const char* words, int index) {
   constexpr const char* kLevels[] = {"info", "warning", "error"};
   std::fprintf(stderr, "sinew %s: %s (%d)\n", kLevels[int(level)], words, index);
@@ -104,7 +121,7 @@ int main(int argc, char** argv) {
   const char* const path = argc > 2 ? argv[2] : "trace.json";
   Trace trace;
   sinew::set_log({print, nullptr});
-  const sinew::Status profiled = sinew::set_profiler(trace.profiler());
+  const sinew::Status profiled = sinew::set_profiler(zones_go_to(trace));
 
   sinew::Asset asset;
   sinew::Status status = sinew::load_asset(argv[1], asset);
@@ -137,6 +154,8 @@ int main(int argc, char** argv) {
   std::printf("memory: %ld blocks to set up, %ld in 120 steps\n", set_up, in_steps);
   if (!profiled) {
     std::printf("no profile: %s\n", profiled.reason);
+  } else if (kTracy) {
+    std::printf("profile: in Tracy\n");
   } else if (trace.empty() || !trace.write(path)) {
     std::fprintf(stderr, "hooks: %s: nothing could be written\n", path);
     return 1;

@@ -308,6 +308,43 @@ class Classes(unittest.TestCase):
         with self.assertRaisesRegex(sinew.Error, "0 to 1"):
             look(asset, a, (5, 0, 1), 1 / 60, weight=2)
 
+    def test_feet_stand_on_what_rays_met(self):
+        asset = Everything().asset
+        legs = [asset.leg(role) for role in (sinew.Role.FOOT_L, sinew.Role.FOOT_R)]
+        self.assertEqual(legs[1].foot, asset.find_role(sinew.Role.FOOT_R))
+        with self.assertRaisesRegex(sinew.Error, "role of a foot"):
+            asset.leg(sinew.Role.HEAD)
+        stand = asset.find_clip("stand")
+        self.assertTrue(asset.in_contact(stand, 0, legs[0].foot))
+        feet, lift = sinew.Feet(), sinew.jets_for(1)
+        lift["rotation"][0], lift["translation"][0] = (0, 0, 0, 1), (0, 0, 0.05)
+        floor, stair = sinew.ground_hit((0, 0, 0)), sinew.ground_hit((0, 0, 0.05), body=0)
+        animated = asset.model(asset.sample(stand, 0))
+        for frame in range(60):
+            jets = asset.sample(stand, 0)
+            feet(asset, jets, sinew.Foot(1, [floor]), sinew.Foot(1, [stair]), frame and 1 / 60, lift)
+        placed = asset.model(jets)
+        for leg, raised in zip(legs, (0, 0.05)):  # m
+            self.assertAlmostEqual(float(placed[leg.foot][6] - animated[leg.foot][6]), raised, 2)
+        self.assertEqual([foot.ground for foot in feet.state.feet], [-1, 0])
+        self.assertNotEqual(feet.state.feet[1].hold, sinew.FootHold.FREE)
+        with self.assertRaisesRegex(sinew.Error, "not given"):
+            feet(asset, jets, sinew.Foot(1), sinew.Foot(1), 1 / 60)
+        with self.assertRaisesRegex(sinew.Error, "follow"):
+            feet(asset, jets, sinew.Foot(1), sinew.Foot(1), 1 / 60, lift, follow=2)
+
+    def test_layers_in_model_space_do_not_lean_with_the_body(self):
+        asset = Everything().asset
+        a, b, added = asset.sample(0, 0.1), asset.sample(0, 0.5), asset.sample(0, 0.5)
+        asset.subtract_in_model(added, a)
+        asset.add_in_model(a, added)
+        for one, other in zip(asset.model(a), asset.model(b)):
+            for k in range(4):
+                self.assertAlmostEqual(abs(float(one[k])), abs(float(other[k])), 4)
+        asset.subtract_in_model(added)
+        with self.assertRaisesRegex(sinew.Error, "weight"):
+            asset.add_in_model(a, added, -1.0)
+
     def test_strands_cloth_and_tissue_hang(self):
         scene = Everything()
         corners = [(0, 0, 2), (1, 0, 2), (0, 1, 2), (0, 0, 3)]
@@ -338,8 +375,13 @@ class Classes(unittest.TestCase):
             crowd.step(1 / 60)
             self.assertEqual(crowd.crowd_report.in_world, 1)
             self.assertNotEqual(crowd.member(3).character, 0)
-            with self.assertRaisesRegex(sinew.Error, "crowd"):
-                crowd.save()
+            saved, there = crowd.save(), crowd.copy_models()
+            crowd.stop(3)
+            crowd.step(1 / 60)
+            self.assertEqual(crowd.crowd_report.in_world, 0)
+            crowd.restore(saved)
+            self.assertEqual(crowd.crowd_report.in_world, 1)
+            self.assertEqual(bytes(crowd.copy_models()), bytes(there))
 
     def test_refused_calls_are_heard_of(self):
         heard = []

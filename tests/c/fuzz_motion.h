@@ -188,9 +188,13 @@ class FuzzMotion : protected FuzzInputs {
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, jets.data(), count));
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, other.data(), count));
     if (rarely()) jets[std::size_t(below(20))].rotation[below(4)] = real(-1, 1);
-    switch (below(6)) {
+    switch (below(8)) {
       case 4:
         return change_over(asset, jets, other, count);
+      case 5:
+        return feet(asset, jets, count);
+      case 6:
+        return blend_in_model(asset, jets, other, count);
       case 0:
         return blend(asset, jets, other, count);
       case 1:
@@ -235,6 +239,18 @@ class FuzzMotion : protected FuzzInputs {
     return sinew_asset_blend(asset, or_null(layers.data()), rarely() ? -1 : below(4), or_null(jets.data()),
                              count);
   }
+  sinew_status blend_in_model(std::uint64_t asset, std::vector<sinew_jet>& jets,
+                              std::vector<sinew_jet>& other, int count) {
+    std::vector<sinew_jet> scratch(rarely() ? 3 : 256);
+    const int memory = static_cast<int>(scratch.size());
+    check(sinew_asset_subtract_in_model(asset, or_null(jets.data()), rarely() ? 3 : count,
+                                        or_null(other.data()), count, or_null(scratch.data()), memory));
+    const sinew_blend_layer layer = {
+        or_null(other.data()), nullptr, rarely() ? index(4) : std::int32_t(SINEW_BLEND_ADDITIVE), real(0, 1),
+        real(-1, 1),           0};
+    return sinew_asset_add_in_model(asset, or_null(&layer), or_null(jets.data()), count,
+                                    or_null(scratch.data()), memory);
+  }
   sinew_status limb(std::uint64_t asset, std::vector<sinew_jet>& jets, int count) {
     sinew_two_bone two = settings(sinew_two_bone_init);
     two.upper = index(10);
@@ -268,6 +284,39 @@ class FuzzMotion : protected FuzzInputs {
     if (rarely()) look_.numbers[below(26)] = real(-1, 1);
     if (rarely()) look_ = {};
     return sinew_asset_look(asset, or_null(&look), or_null(&look_), or_null(jets.data()), count);
+  }
+
+  sinew_ground_hit hit() {
+    sinew_ground_hit out{{real(-1, 1), real(-1, 1), real(-0.2, 0.3)}, {0, 0, 1}, rarely() ? index(3) : -1};
+    if (rarely()) out.normal[below(3)] = real(-1, 1);
+    return out;
+  }
+  /// Of one character, a frame after the other; some of what its feet remember gets lost.
+  sinew_status feet(std::uint64_t asset, std::vector<sinew_jet>& jets, int count) {
+    sinew_leg_info leg{};
+    leg.size = sizeof leg;
+    std::int32_t rests = 0;
+    check(sinew_asset_get_leg(asset, below(2) == 0 ? index(22) : std::int32_t(SINEW_ROLE_FOOT_L),
+                              or_null(&leg)));
+    check(sinew_clip_in_contact(asset, index(2), number(0, 3), leg.foot, or_null(&rests)));
+    sinew_feet s = settings(sinew_feet_init);
+    s.level = number(-0.1, 0.2);
+    s.level_rate = number(-1, 1);
+    s.step = number(0, 0.1);
+    if (rarely()) s.reach = number(0.4, 1);
+    if (rarely()) s.release_at = number(0, 1);
+    if (rarely()) s.half_life = number(0, 1);
+    const sinew_ground_hit hits[2] = {hit(), hit()};
+    sinew_foot feet[2];
+    for (sinew_foot& foot : feet)
+      foot = {or_null(&hits[0]), or_null(&hits[1]), rarely() ? -1 : 2, below(2), real(0, 1), 0};
+    sinew_jet grounds[2] = {};
+    for (sinew_jet& ground : grounds) ground.rotation[3] = rarely() ? real(-1, 1) : 1;
+    if (rarely()) feet_.feet[below(2)].numbers[below(30)] = real(-1, 1);
+    if (rarely()) feet_.feet[below(2)].hold = index(3);
+    if (rarely()) feet_ = {};
+    return sinew_asset_place_feet(asset, or_null(&s), or_null(feet), or_null(grounds), rarely() ? -1 : 2,
+                                  or_null(&feet_), or_null(jets.data()), count);
   }
 
   sinew_status particles() {
@@ -339,6 +388,7 @@ class FuzzMotion : protected FuzzInputs {
 
  private:
   sinew_look_state look_{};
+  sinew_feet_state feet_{};
   std::vector<float> transition_;
   const std::string graph_path_ = fixtures::sample_graph();
   std::array<std::int32_t, 3> joints_{};

@@ -131,7 +131,7 @@ class Sequence : FuzzMotion {
     sinew_view view{};
     std::vector<sinew_transform> models(std::size_t(below(400)));
     std::int32_t count = 0;
-    switch (below(8)) {
+    switch (below(9)) {
       case 0:
         return worlds_.size() < 3 ? make_crowd() : sinew_crowd_create(0, nullptr, nullptr, nullptr, nullptr);
       case 1:
@@ -145,6 +145,8 @@ class Sequence : FuzzMotion {
                                        or_null(&count));
       case 5:
         return sinew_crowd_push(world, index(12), index(25), triple(rarely() ? 1e5 : 150));
+      case 6:
+        return sinew_crowd_stop(world, index(12));
       default:
         return sinew_crowd_play(world, or_null(&track), rarely() ? -1 : 1);
     }

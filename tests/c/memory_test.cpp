@@ -286,6 +286,14 @@ TEST_F(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
   sinew_look look = fixtures::initialised(sinew_look_init);
   look.target[0] = 3;
   sinew_look_state seen{};
+  std::vector<sinew_jet> turned = jets, scratch(2 * jets.size());
+  sinew_feet placing = fixtures::initialised(sinew_feet_init);
+  placing.step = 1 / 60.;
+  sinew_feet_state stood{};
+  const sinew_ground_hit floor{{0, 0, 0.05f}, {0, 0, 1}, 0};
+  const sinew_foot feet[2] = {{&floor, &floor, 1, 1, 1, 0}, {&floor, nullptr, 1, 0, 0, 0}};
+  sinew_jet ground{};
+  ground.rotation[3] = 1;
   for (int frame = 0; frame < 10; ++frame) {
     scene.play(frame / 60.0);
     scene.step();
@@ -310,6 +318,21 @@ TEST_F(CInterfaceMemory, StepsAndWhatIsDoneInAFrameTakeNone) {
     EXPECT_EQ(sinew_asset_blend(scene.asset, layers, 2, jets.data(), scene.joints), SINEW_OK);
     EXPECT_EQ(sinew_asset_mirror(scene.asset, jets.data(), scene.joints), SINEW_OK);
     EXPECT_EQ(sinew_asset_look(scene.asset, &look, &seen, jets.data(), scene.joints), SINEW_OK);
+    const int twice = 2 * scene.joints;
+    turned = still;
+    EXPECT_EQ(sinew_asset_subtract_in_model(scene.asset, jets.data(), scene.joints, turned.data(),
+                                            scene.joints, scratch.data(), twice),
+              SINEW_OK);
+    const sinew_blend_layer added{turned.data(), nullptr, SINEW_BLEND_ADDITIVE, 0.5f, 0, 0};
+    EXPECT_EQ(sinew_asset_add_in_model(scene.asset, &added, jets.data(), scene.joints, scratch.data(), twice),
+              SINEW_OK);
+    std::int32_t rests = 0;
+    EXPECT_EQ(sinew_clip_in_contact(scene.asset, 0, frame / 60.0, 0, &rests), SINEW_OK);
+    jets = still;
+    EXPECT_EQ(
+        sinew_asset_place_feet(scene.asset, &placing, feet, &ground, 1, &stood, jets.data(), scene.joints),
+        SINEW_OK)
+        << sinew_last_reason();
     air.velocity[1] = frame;
     EXPECT_EQ(sinew_effect_set_wind(wind, &air), SINEW_OK);
   }

@@ -161,6 +161,44 @@ TEST(CInterfaceCrowd, OutlivesTheAssetsHandleAndTakesObstaclesAndCharacters) {
   EXPECT_GE(most, 1) << "whom it hits";
 }
 
+TEST(CInterfaceCrowd, GoesOnFromASnapshotAndItsInputs) {
+  const Street scene, other;
+  scene.everybody_plays();
+  std::int32_t chest = -1;
+  EXPECT_EQ(sinew_asset_find_role(scene.asset, SINEW_ROLE_CHEST, &chest), SINEW_OK);
+  const auto all_of = [&](const Street& s) {
+    std::vector<sinew_transform> all(std::size_t(kPeople * s.joints));
+    std::int32_t count = 0;
+    EXPECT_EQ(sinew_crowd_copy_models(s.street, all.data(), int(all.size()), &count), SINEW_OK);
+    return all;
+  };
+  const auto saved = [&](sinew_snapshot_part part) {
+    std::size_t size = 0;
+    EXPECT_EQ(sinew_world_save(scene.street, part, nullptr, 0, &size), SINEW_TOO_SMALL);
+    std::vector<std::byte> bytes(size);
+    EXPECT_EQ(sinew_world_save(scene.street, part, bytes.data(), size, &size), SINEW_OK)
+        << sinew_last_reason();
+    bytes.resize(size);
+    return bytes;
+  };
+  for (int frame = 0; frame < kAt; ++frame) EXPECT_EQ(sinew_world_step(scene.street, 1 / 60.f), SINEW_OK);
+  EXPECT_EQ(sinew_crowd_stop(scene.street, 3), SINEW_OK);
+  EXPECT_EQ(sinew_crowd_push(scene.street, kPushed, chest, kImpulse), SINEW_OK) << sinew_last_reason();
+  const std::vector<std::byte> state = saved(SINEW_SNAPSHOT_STATE), inputs = saved(SINEW_SNAPSHOT_INPUTS);
+  EXPECT_EQ(sinew_world_restore(other.street, SINEW_SNAPSHOT_STATE, state.data(), state.size()), SINEW_OK)
+      << sinew_last_reason();
+  EXPECT_EQ(sinew_world_restore(other.street, SINEW_SNAPSHOT_INPUTS, inputs.data(), inputs.size()), SINEW_OK)
+      << sinew_last_reason();
+  EXPECT_EQ(other.crowd().in_world, 1);
+  for (int frame = 0; frame < 30; ++frame) {
+    EXPECT_EQ(sinew_world_step(scene.street, 1 / 60.f), SINEW_OK);
+    EXPECT_EQ(sinew_world_step(other.street, 1 / 60.f), SINEW_OK);
+    const std::vector<sinew_transform> one = all_of(scene), two = all_of(other);
+    ASSERT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof one[0]), 0) << frame;
+  }
+  EXPECT_GT(scene.member(kPushed).level, SINEW_LEVEL_CHECKED);
+}
+
 TEST(CInterfaceCrowd, RefusesWhatCannotBeMeant) {
   Street scene;
   sinew_crowd_track wrong[] = {Street::track(0), Street::track(1), Street::track(2)};
@@ -189,9 +227,12 @@ TEST(CInterfaceCrowd, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(sinew_crowd_copy_models(scene.street, few, 3, &count), SINEW_TOO_SMALL);
   EXPECT_EQ(count, kPeople * scene.joints);
   std::size_t size = 0;
-  EXPECT_EQ(sinew_world_save(scene.street, SINEW_SNAPSHOT_STATE, nullptr, 0, &size), SINEW_UNSUPPORTED);
+  EXPECT_EQ(sinew_world_save(scene.street, SINEW_SNAPSHOT_STATE, nullptr, 0, &size), SINEW_TOO_SMALL);
+  EXPECT_GT(size, 64u * kPeople);
   EXPECT_EQ(sinew_world_record(scene.street, 1), SINEW_UNSUPPORTED);
-  EXPECT_EQ(sinew_world_restore(scene.street, SINEW_SNAPSHOT_STATE, few, 3), SINEW_UNSUPPORTED);
+  EXPECT_EQ(sinew_world_restore(scene.street, SINEW_SNAPSHOT_STATE, few, 3), SINEW_BAD_FILE);
+  EXPECT_EQ(sinew_crowd_stop(scene.street, kPeople), SINEW_INVALID_ARGUMENT);
+  EXPECT_EQ(sinew_crowd_stop(scene.world, 0), SINEW_INVALID_ARGUMENT) << "a world without a crowd";
   sinew_crowd_settings settings = initialised(sinew_crowd_settings_init);
   sinew_world out = 0;
   settings.lanes = 7;

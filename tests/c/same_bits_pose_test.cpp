@@ -3,76 +3,23 @@
 #include <cmath>
 #include <iterator>
 
-#include "c/scene.h"
+#include "c/pose_scene.h"
 #include "sinew/animation/blending_job.h"
 #include "sinew/animation/crossfade.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/look_at_job.h"
+#include "sinew/animation/mesh_additive_job.h"
 #include "sinew/animation/mirror_job.h"
-#include "sinew/animation/sampling_job.h"
-#include "sinew/io/asset.h"
 
 namespace sinew {
 namespace {
 
+using fixtures::CInterfacePoses;
+using fixtures::expect_refused;
+using fixtures::expect_same;
 using fixtures::initialised;
-
-using Jets = std::vector<JointJet<float>>;
-
-/// The sample asset on both sides, and poses of its clips, which have the same bytes on both.
-struct CInterfacePoses : ::testing::Test {
-  Asset cpp;
-  sinew_asset asset = 0;
-  std::vector<int> parents;
-  std::vector<Transform<float>> rest;
-  int joints = 0;
-
-  void SetUp() override {
-    ASSERT_TRUE(load_asset(fixtures::sample_asset().c_str(), cpp));
-    ASSERT_EQ(sinew_asset_load(fixtures::sample_asset().c_str(), &asset), SINEW_OK);
-    for (const Joint& joint : cpp.skeleton.joints) {
-      parents.push_back(joint.parent);
-      rest.push_back(joint.rest.cast<float>());
-    }
-    joints = static_cast<int>(parents.size());
-  }
-  void TearDown() override { EXPECT_EQ(sinew_asset_destroy(asset), SINEW_OK); }
-
-  Jets pose(const char* clip, double time) const {
-    Jets jets(parents.size());
-    EXPECT_TRUE((SamplingJob<float>{&cpp.clips[std::size_t(cpp.find_clip(clip))], time, jets}.Run()));
-    return jets;
-  }
-  static sinew_jet* c(Jets& jets) { return reinterpret_cast<sinew_jet*>(jets.data()); }
-  static const sinew_jet* c(const Jets& jets) { return reinterpret_cast<const sinew_jet*>(jets.data()); }
-  int joint(Role role) const { return cpp.skeleton.find(role); }
-  std::vector<sinew_transform> model(const Jets& jets) const {
-    std::vector<sinew_transform> out(jets.size());
-    std::int32_t count = 0;
-    EXPECT_EQ(sinew_asset_get_model(asset, c(jets), joints, out.data(), joints, &count), SINEW_OK)
-        << sinew_last_reason();
-    EXPECT_EQ(count, joints);
-    return out;
-  }
-};
-
-void expect_same(const Jets& a, const Jets& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t j = 0; j < a.size(); ++j) {
-    EXPECT_EQ(a[j].rotation.coeffs(), b[j].rotation.coeffs()) << j;
-    EXPECT_EQ(a[j].omega, b[j].omega) << j;
-    EXPECT_EQ(a[j].alpha, b[j].alpha) << j;
-    EXPECT_EQ(a[j].translation, b[j].translation) << j;
-    EXPECT_EQ(a[j].velocity, b[j].velocity) << j;
-    EXPECT_EQ(a[j].acceleration, b[j].acceleration) << j;
-  }
-}
-
-void expect_refused(sinew_status status, sinew_status wanted, const char* reason) {
-  EXPECT_EQ(status, wanted) << reason;
-  EXPECT_NE(std::string(sinew_last_reason()).find(reason), std::string::npos) << sinew_last_reason();
-}
+using fixtures::Jets;
 
 TEST_F(CInterfacePoses, BlendsAreThoseOfCpp) {
   const Jets walk = pose("walk", 0.3), run = pose("run", 0.2), stand = pose("stand", 1);
@@ -115,6 +62,49 @@ TEST_F(CInterfacePoses, BlendsAreThoseOfCpp) {
   expect_refused(sinew_asset_subtract(asset, c(walk), joints - 1, c(blended), joints), SINEW_INVALID_ARGUMENT,
                  "another number");
   expect_same(blended, wanted);
+}
+
+TEST_F(CInterfacePoses, LayersInModelSpaceAreThoseOfCpp) {
+  const Jets stand = pose("stand", 1);
+  Jets added = pose("walk", 0.3), added_cpp = added;
+  std::vector<Quat<TimeJet<float>>> turns(2 * parents.size());
+  subtract_in_model<float>(parents, stand, added_cpp, turns, added_cpp);
+  Jets scratch(2 * parents.size());
+  ASSERT_EQ(sinew_asset_subtract_in_model(asset, c(stand), joints, c(added), joints, c(scratch), 2 * joints),
+            SINEW_OK)
+      << sinew_last_reason();
+  expect_same(added, added_cpp);
+
+  std::vector<float> mask(parents.size());
+  for (std::size_t j = 0; j < mask.size(); ++j) mask[j] = float(j % 3) / 2;
+  Jets wanted = pose("run", 0.2), turned = wanted;
+  MeshAdditiveJob<float> job{parents, wanted, added_cpp, {0.5f, 1, 2}, mask, turns};
+  ASSERT_TRUE(job.Run());
+  sinew_blend_layer layer{c(added), mask.data(), SINEW_BLEND_ADDITIVE, 0.5f, 1, 2};
+  const auto add = [&](sinew_jet* memory, int count) {
+    return sinew_asset_add_in_model(asset, &layer, c(turned), joints, memory, count);
+  };
+  ASSERT_EQ(add(c(scratch), 2 * joints), SINEW_OK) << sinew_last_reason();
+  expect_same(turned, wanted);
+  EXPECT_NE(turned[5].rotation.coeffs(), pose("run", 0.2)[5].rotation.coeffs());
+
+  expect_refused(add(c(scratch), 2 * joints - 1), SINEW_TOO_SMALL, "two jets");
+  expect_refused(add(nullptr, 2 * joints), SINEW_INVALID_ARGUMENT, "null");
+  layer.weight = -1;
+  expect_refused(add(c(scratch), 2 * joints), SINEW_OUT_OF_RANGE, "weight");
+  layer.mode = SINEW_BLEND_OVERRIDE;
+  expect_refused(add(c(scratch), 2 * joints), SINEW_INVALID_ARGUMENT, "additive");
+  expect_refused(
+      sinew_asset_subtract_in_model(asset, c(stand), joints - 1, c(turned), joints, c(scratch), 2 * joints),
+      SINEW_INVALID_ARGUMENT, "another number");
+  expect_refused(
+      sinew_asset_subtract_in_model(asset, nullptr, joints, c(turned), joints, c(scratch), 2 * joints),
+      SINEW_INVALID_ARGUMENT, "null");
+  expect_same(turned, wanted);
+  // The pose at rest, for who wants the difference from that.
+  ASSERT_EQ(sinew_asset_blend(asset, nullptr, 0, c(turned), joints), SINEW_OK) << sinew_last_reason();
+  for (std::size_t j = 0; j < rest.size(); ++j)
+    EXPECT_EQ(turned[j].rotation.coeffs(), rest[j].rotation.coeffs()) << j;
 }
 
 TEST_F(CInterfacePoses, MirrorsAreThoseOfCpp) {

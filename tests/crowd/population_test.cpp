@@ -173,14 +173,127 @@ TEST(Population, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-TEST(Population, StepAndPushAllocateNothing) {
+/// With a ball on its way to one of them.
+struct Disturbed : People {
+  Disturbed() : People(12, 1.5f, 6) {
+    Status status;
+    PropSettings ball;
+    ball.mass = 8;
+    ball.size = Vec3<double>::Constant(0.12);
+    ball.pose.translation = {-3, 3.1, 0.65};
+    ball.velocity = {11, 0, 0.5};
+    EXPECT_EQ(population->world().add_prop(ball, status), 0) << status.reason;
+  }
+};
+
+/// One is pushed, one too weak, one goes, one is pushed later.
+void disturb(const People& people, int frame) {
+  Population& population = *people.population;
+  Status status;
+  if (frame == 3) status = population.push(4, people.rig.find("hand_r"), {15, 0, 0});
+  if (frame == 8) status = population.crowd().set_strength(9, 0.001f);
+  if (frame == 12) status = population.stop(11);
+  if (frame == 40) status = population.push(6, people.rig.find("hand_l"), {0, 15, 0});
+  EXPECT_TRUE(status) << status.reason;
+}
+
+TEST(Population, GoesOnFromASnapshotToTheBit) {
+  const Disturbed people, other;
+  const std::span<const Clip> clips(&people.clip, 1), of_other(&other.clip, 1);
+  std::vector<std::byte> bytes(people.population->snapshot_capacity());
+  std::size_t size = 0;
+  int solved = 0;
+  std::vector<std::vector<Transform<float>>> wanted;
+  for (int frame = 0; frame < 120; ++frame) {
+    if (frame == 20) {
+      ASSERT_TRUE(people.population->save(clips, bytes, size));
+      solved = people.population->solved_count();
+      for (int c = 0; c < people.count; ++c) wanted.push_back(people.pose(c));
+    }
+    disturb(people, frame);
+    people.step();
+    for (int c = 0; c < people.count && frame >= 20; ++c) wanted.push_back(people.pose(c));
+  }
+  EXPECT_GE(solved, 2);
+  for (const Disturbed* with : {&people, &other}) {  // of another moment, and a new one
+    ASSERT_TRUE(with->population->restore(with == &other ? of_other : clips, std::span(bytes).first(size)));
+    EXPECT_EQ(with->population->solved_count(), solved);
+    std::size_t n = 0;
+    for (int c = 0; c < with->count; ++c) ASSERT_EQ(with->pose(c), wanted[n++]) << c << " at once";
+    for (int frame = 20; frame < 120; ++frame) {
+      disturb(*with, frame);
+      with->step();
+      for (int c = 0; c < with->count; ++c) ASSERT_EQ(with->pose(c), wanted[n++]) << c << " in " << frame;
+    }
+  }
+}
+
+TEST(Population, RefusesSnapshotsThatAreNotItsOwnWithNothingMoved) {
+  const Disturbed people;
+  const People few(5, 3, 5), four_places(12, 1.5f, 4);
+  const std::span<const Clip> clips(&people.clip, 1);
+  for (int frame = 0; frame < 20; ++frame) {
+    disturb(people, frame);
+    people.step();
+  }
+  std::vector<std::byte> bytes(people.population->snapshot_capacity());
+  std::size_t size = 0;
+  EXPECT_EQ(people.population->save(clips, std::span(bytes).first(100), size).code, Code::kOutOfRange);
+  EXPECT_EQ(size, 0u);
+  EXPECT_EQ(people.population->save({}, bytes, size).index, 0) << "who plays a clip that is not there";
+  ASSERT_TRUE(people.population->save(clips, bytes, size));
+  bytes.resize(size);
+  people.step();
+  const std::vector<Transform<float>> before = people.pose(4);
+  EXPECT_FALSE(few.population->restore(clips, bytes));
+  EXPECT_FALSE(four_places.population->restore(clips, bytes));
+  EXPECT_FALSE(people.population->restore({}, bytes));
+  Clip other = people.clip;
+  --other.joint_count;
+  EXPECT_FALSE(people.population->restore(std::span<const Clip>(&other, 1), bytes));
+  for (std::size_t n = 0; n < size; n += 1 + n / 40) {
+    EXPECT_FALSE(people.population->restore(clips, std::span(bytes).first(n))) << n;
+    bytes[n] ^= std::byte{4};
+    EXPECT_FALSE(people.population->restore(clips, bytes)) << n;
+    bytes[n] ^= std::byte{4};
+  }
+  EXPECT_EQ(people.pose(4), before);
+  EXPECT_TRUE(people.population->restore(clips, bytes));
+  EXPECT_NE(people.pose(4), before);
+}
+
+TEST(Population, WhoStopsIsGoneUntilHePlaysAgain) {
+  const People people(3);
+  people.step();
+  const int hand = people.rig.find("hand_r");
+  ASSERT_TRUE(people.population->push(1, hand, {15, 0, 0}));
+  people.step();
+  ASSERT_TRUE(people.population->in_world(1));
+  ASSERT_TRUE(people.population->stop(1));
+  EXPECT_FALSE(people.population->in_world(1));
+  EXPECT_FALSE(people.population->push(1, hand, {15, 0, 0})) << "nobody is there";
+  const std::vector<Transform<float>> at_rest = people.pose(1);
+  people.step();
+  EXPECT_EQ(people.pose(1), at_rest);
+  ASSERT_TRUE(people.population->play(1, {&people.clip}));
+  people.step();
+  EXPECT_NE(people.pose(1), at_rest);
+  EXPECT_FALSE(people.population->stop(3));
+}
+
+TEST(Population, StepPushSaveAndRestoreAllocateNothing) {
   People people(20, 2, 8, 3);
   fixtures::Shuffled shuffled;
   people.step(shuffled.parallel_for());
+  const std::span<const Clip> clips(&people.clip, 1);
+  std::vector<std::byte> bytes(people.population->snapshot_capacity());
+  std::size_t size = 0;
   const long before = fixtures::allocations;
   for (int n = 0; n < 60; ++n) {
     if (n % 10 == 0) (void)people.population->push(n / 4, 4, {25, 9, 0});
     (void)people.population->step(kStep, shuffled.parallel_for());
+    if (n == 30) (void)people.population->save(clips, bytes, size);
+    if (n == 45) (void)people.population->restore(clips, std::span(bytes).first(size));
   }
   EXPECT_EQ(fixtures::allocations - before, 0);
 }

@@ -60,6 +60,18 @@ Status find_foot_leg(const Skeleton& skeleton, Role foot, FootLeg<T>& out) {
   return {};
 }
 
+template <class T>
+Status find_foot_legs(const Skeleton& skeleton, std::span<FootLeg<T>, 2> out, int& pelvis) {
+  if (Status status = find_foot_leg(skeleton, Role::kFootL, out[0]); !status) return status;
+  if (Status status = find_foot_leg(skeleton, Role::kFootR, out[1]); !status) return status;
+  int left = out[0].upper, right = out[1].upper;
+  while (left != right)  // parents stand before their children
+    (left > right ? left : right) = skeleton.joints[std::size_t(std::max(left, right))].parent;
+  if (left < 0) return Status::error(Code::kInvalidArgument, "legs have no joint in common");
+  pelvis = left;
+  return {};
+}
+
 bool in_contact(const Clip& clip, double time, int joint) {
   const double length = clip.duration;
   const double now = clip.loops && length > 0 ? time - std::floor(time / length) * length : time;
@@ -71,5 +83,7 @@ bool in_contact(const Clip& clip, double time, int joint) {
 
 template Status find_foot_leg<float>(const Skeleton&, Role, FootLeg<float>&);
 template Status find_foot_leg<double>(const Skeleton&, Role, FootLeg<double>&);
+template Status find_foot_legs<float>(const Skeleton&, std::span<FootLeg<float>, 2>, int&);
+template Status find_foot_legs<double>(const Skeleton&, std::span<FootLeg<double>, 2>, int&);
 
 }  // namespace sinew

@@ -1,6 +1,8 @@
 // The parts of a leg that stands: its joints and where its sole touches the ground.
 #pragma once
 
+#include <span>
+
 #include "sinew/animation/clip.h"
 #include "sinew/skeleton/skeleton.h"
 
@@ -25,6 +27,11 @@ struct FootLeg {
 template <class T>
 Status find_foot_leg(const Skeleton& skeleton, Role foot, FootLeg<T>& out);
 
+/// The legs of kFootL and kFootR, and the nearest joint that carries both: FootPlacementJob::pelvis. Errors
+/// as of find_foot_leg, or if there is no such joint.
+template <class T>
+Status find_foot_legs(const Skeleton& skeleton, std::span<FootLeg<T>, 2> out, int& pelvis);
+
 /// Whether a joint rests on the ground at a time of a clip, by Clip::contacts. The contact weight of a blend
 /// is the sum of its clips' weights where they rest.
 bool in_contact(const Clip& clip, double time, int joint);
@@ -32,6 +39,8 @@ bool in_contact(const Clip& clip, double time, int joint);
 /// @cond
 extern template Status find_foot_leg<float>(const Skeleton&, Role, FootLeg<float>&);
 extern template Status find_foot_leg<double>(const Skeleton&, Role, FootLeg<double>&);
+extern template Status find_foot_legs<float>(const Skeleton&, std::span<FootLeg<float>, 2>, int&);
+extern template Status find_foot_legs<double>(const Skeleton&, std::span<FootLeg<double>, 2>, int&);
 /// @endcond
 
 }  // namespace sinew

@@ -1,5 +1,6 @@
 #include "sinew/animation/foot_placement_job.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sinew/animation/inverse_kinematics.h"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kLongest = 0.9995;  ///< of a leg: where TwoBoneJob ends
 constexpr double kSpare = 5e-4;      ///< of a leg, between the pelvis' reach and where TwoBoneJob slows down
+constexpr double kSoftest = 1e-3;    ///< of a leg: the least that TwoBoneJob slows down in
 constexpr double kWidth = 0.045;  ///< of a leg, in which the pelvis begins to come down: less, and knees jerk
 constexpr double kRising = 0.023;  ///< of a leg, that what lets the pelvis rise slowly stays above it
 constexpr double kFlattest = 0.2;  ///< of a leg: height of the hip that is left if a foot is far out
@@ -116,7 +118,7 @@ Status reach_for(const FootPlacementJob<T>& job, std::size_t k, const Placed<T>&
   bones.pole = placed.pole;
   bones.hinge = leg.hinge;
   bones.keep_end = false;
-  bones.softness = T(kLongest - kSpare) - job.reach;
+  bones.softness = std::max(T(kSoftest), T(kLongest - kSpare) - job.reach);  // in float less at reach 0.998
   if (Status status = bones.Run(); !status)
     return Status::error(status.code, status.reason, static_cast<int>(k));
   turn_to<T>(job, leg.foot, placed.target.rotation);

@@ -1,5 +1,6 @@
 // Assets of the C interface, and the sampling of their clips.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -65,6 +66,7 @@ OwnedAsset::OwnedAsset(std::shared_ptr<const Asset> read) : asset(std::move(read
   LookChain<float> chain;
   if (find_look_chain(asset->skeleton, chain)) look = chain;
   mirrors = build_mirror_map<float>(asset->skeleton, mirror);
+  stands = find_foot_legs<float>(asset->skeleton, legs, pelvis);
 }
 
 sinew_status sample(const Asset& asset, int clip, const ClipTime& time, std::span<JointJet<float>> jets) {
@@ -238,5 +240,18 @@ sinew_status sinew_clip_sample(sinew_asset asset, int32_t clip, double time, dou
       return fail(SINEW_INVALID_ARGUMENT, "more jets than the skeleton has joints, or fewer than none",
                   count);
     return sample(a, clip, {time, rate, rate_change}, jets_of(jets, count));
+  });
+}
+
+sinew_status sinew_clip_in_contact(sinew_asset asset, int32_t clip, double time, int32_t joint,
+                                   int32_t* out) {
+  return with_asset(asset, [&](const Asset& a) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (!std::isfinite(time)) return fail(SINEW_NOT_FINITE, "time must be finite");
+    if (clip < 0 || std::size_t(clip) >= a.clips.size()) return fail(SINEW_INVALID_ARGUMENT, kNoClip, clip);
+    if (joint < 0 || std::size_t(joint) >= a.skeleton.joints.size())
+      return fail(SINEW_INVALID_ARGUMENT, "no such joint", joint);
+    *out = in_contact(a.clips[std::size_t(clip)], time, joint);
+    return sinew_status(SINEW_OK);
   });
 }

@@ -30,7 +30,7 @@ sinew_status with_crowd(sinew_world world, Act&& act) noexcept {
 template <class Act>
 sinew_status with_member(sinew_world world, int32_t character, Act&& act) noexcept {
   return with_crowd(world, [&](OwnedWorld& w, Population& crowd) {
-    return character >= 0 && character < w.crowd_capacity
+    return character >= 0 && character < crowd.capacity()
                ? act(w, crowd)
                : fail(SINEW_INVALID_ARGUMENT, "no such character", character);
   });
@@ -54,7 +54,6 @@ std::unique_ptr<OwnedWorld> world_with(const std::shared_ptr<const Asset>& asset
                                        const PopulationSettings& settings) {
   auto world = std::make_unique<OwnedWorld>(std::move(crowd));
   world->crowd_asset = asset;
-  world->crowd_capacity = settings.crowd.capacity;
   world->jets.resize(asset->skeleton.joints.size());
   world->behaviours.resize(std::size_t(settings.places));
   world->graphs.resize(std::size_t(settings.places));
@@ -103,6 +102,11 @@ sinew_status sinew_crowd_play(sinew_world world, const sinew_crowd_track* tracks
   });
 }
 
+sinew_status sinew_crowd_stop(sinew_world world, int32_t character) {
+  return with_member(world, character,
+                     [&](OwnedWorld&, Population& crowd) { return answer(crowd.stop(character)); });
+}
+
 sinew_status sinew_crowd_push(sinew_world world, int32_t character, int32_t joint, const double* impulse) {
   return with_member(world, character, [&](OwnedWorld&, Population& crowd) {
     if (!impulse) return fail(SINEW_INVALID_ARGUMENT, kNull);
@@ -146,11 +150,11 @@ sinew_status sinew_crowd_copy_models(sinew_world world, sinew_transform* out, in
     if (!count || (!out && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (capacity < 0) return fail(SINEW_INVALID_ARGUMENT, "the capacity is negative");
     const std::size_t joints = w.crowd_asset->skeleton.joints.size();
-    const std::size_t all = joints * std::size_t(w.crowd_capacity);
+    const std::size_t all = joints * std::size_t(crowd.capacity());
     *count = static_cast<int32_t>(all);
     if (all > std::size_t(capacity))
       return fail(SINEW_TOO_SMALL, "room for fewer joints than the characters have");
-    for (int n = 0; n < w.crowd_capacity; ++n) {
+    for (int n = 0; n < crowd.capacity(); ++n) {
       const std::span<const Transform<float>> model = crowd.model(n);
       std::memcpy(out + joints * std::size_t(n), static_cast<const void*>(model.data()), model.size_bytes());
     }

@@ -8,7 +8,6 @@
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/layout.h"
-#include "sinew/character/check_jet.h"
 #include "sinew/graph/graph_recorder.h"
 
 namespace sinew::c {
@@ -81,7 +80,7 @@ sinew_status add_player(OwnedWorld& world, int index, const std::shared_ptr<cons
   static_cast<void>(read_sized(settings, all));
   if (read.ground == SINEW_GROUND_HOST && !all.below) return fail(SINEW_INVALID_ARGUMENT, kNull);
   player = std::make_unique<GraphPlayer>(bound, scratch_for(world, *bound), read);
-  player->ground = {read.ground, &world.world, read.layers, read.reach, all.below, all.context, {}, 0};
+  player->ground = {read.ground, &world.world, read.layers, read.reach, all.below, all.context, {}};
   world.world.keep_with_state(player->block());
   return SINEW_OK;
 }
@@ -229,16 +228,7 @@ sinew_status sinew_character_put_graph(sinew_character character, const double* 
 
 sinew_status sinew_character_set_grounds(sinew_character character, const sinew_jet* bodies, int32_t count) {
   return with_player(character, [&](GraphPlayer& player, const Character<float>&) {
-    if (!bodies && count != 0) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    if (!aligned(bodies)) return fail(SINEW_INVALID_ARGUMENT, kMisaligned);
-    if (count < 0 || std::size_t(count) > PlayerGround::kMostBodies)
-      return fail(SINEW_INVALID_ARGUMENT, "there may be 0 to 8 bodies", count);
-    const std::span<const JointJet<float>> jets = jets_of(bodies, count);
-    for (int n = 0; n < count; ++n)
-      if (const Status status = check_jet(jets[std::size_t(n)], n); !status) return answer(status);
-    std::transform(jets.begin(), jets.end(), player.ground.bodies.begin(), moving_transform<float>);
-    player.ground.count = jets.size();
-    return sinew_status(SINEW_OK);
+    return read_grounds(bodies, count, player.ground.grounds);
   });
 }
 

@@ -1,6 +1,7 @@
 #include "sinew/c/graph_player.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,7 +36,7 @@ bool below_by_host(const PlayerGround& ground, const Vec3<float>& point, GroundH
   const Vec3<float> at(answer.point), normal(answer.normal);
   const float length = normal.norm();
   if (!at.allFinite() || !(std::abs(length - 1) < 0.1f)) return false;
-  if (answer.body < -1 || answer.body >= static_cast<int>(ground.count)) return false;
+  if (answer.body < -1 || answer.body >= static_cast<int>(ground.grounds.count)) return false;
   hit.point = at;
   hit.normal = normal / length;
   hit.ground = answer.body;
@@ -51,7 +52,7 @@ GraphGround<float> PlayerGround::for_graph() const {
     return ground.kind == SINEW_GROUND_WORLD ? below_in_world(ground, point, hit)
                                              : below_by_host(ground, point, hit);
   };
-  return {ask, this, std::span(bodies).first(count)};
+  return {ask, this, grounds.all()};
 }
 
 GraphPlayer::GraphPlayer(std::shared_ptr<const BoundGraph> bound,

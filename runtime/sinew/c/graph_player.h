@@ -2,11 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
+#include "sinew/c/grounds.h"
 #include "sinew/c/sinew.h"
 #include "sinew/character/world.h"
 #include "sinew/graph/graph_step.h"
@@ -68,9 +68,7 @@ struct PlayerGround {
   double reach = 0;  ///< m
   sinew_ground_below below = nullptr;
   void* context = nullptr;
-  static constexpr std::size_t kMostBodies = 8;
-  std::array<MovingTransform<float>, kMostBodies> bodies;
-  std::size_t count = 0;
+  Grounds grounds;
 
   /// For a job; this must outlive it.
   GraphGround<float> for_graph() const;

@@ -1,12 +1,14 @@
 // What the handles of the C interface name.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
+#include "sinew/animation/foot_leg.h"
 #include "sinew/animation/look_chain.h"
 #include "sinew/animation/mirror_job.h"
 #include "sinew/behaviour/behaviour.h"
@@ -37,6 +39,9 @@ struct OwnedAsset {
   std::optional<LookChain<float>> look;  ///< of a skeleton with a head
   MirrorMap<float> mirror;               ///< where `mirrors` is ok
   Status mirrors;                        ///< else why left and right were not found
+  std::array<FootLeg<float>, 2> legs;    ///< left and right, where `stands` is ok
+  int pelvis = -1;                       ///< joint that carries them
+  Status stands;                         ///< else why legs were not found
 };
 
 /// A character's balance, and whose clips it gets up by.
@@ -66,8 +71,7 @@ struct OwnedWorld {
   std::vector<std::unique_ptr<GraphPlayer>>
       graphs;                                ///< [character], or null; likewise: it saves their blocks
   std::shared_ptr<const Asset> crowd_asset;  ///< whose clips the crowd plays
-  int crowd_capacity = 0;
-  std::unique_ptr<Population> crowd;  ///< or null: the world is alone
+  std::unique_ptr<Population> crowd;         ///< or null: the world is alone
   std::optional<World<float>> alone;
   World<float>& world;
   ParallelFor jobs;

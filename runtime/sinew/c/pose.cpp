@@ -1,24 +1,16 @@
-// Jobs on poses of the C interface.
+// Jobs on one pose of the C interface: transitions, limbs, looks, left and right exchanged.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <span>
 
-#include "sinew/animation/blending_job.h"
-#include "sinew/animation/crossfade.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/look_at_job.h"
-#include "sinew/c/call.h"
-#include "sinew/c/fields.h"
-#include "sinew/c/layout.h"
+#include "sinew/c/pose_call.h"
 
 namespace sinew::c {
 namespace {
-
-static_assert(int(BlendMode::kMix) == SINEW_BLEND_MIX && int(BlendMode::kOverride) == SINEW_BLEND_OVERRIDE &&
-              int(BlendMode::kAdditive) == SINEW_BLEND_ADDITIVE);
 
 /// A place that moves.
 struct Moving {
@@ -148,40 +140,6 @@ void write_state(const LookState<float>& from, sinew_look_state& to) {
   list_numbers(to, from, [](float& c, const float& s) { c = s; });
 }
 
-/// Jets of the first joints of a skeleton.
-sinew_status check_jets(const OwnedAsset& owned, const sinew_jet* jets, int count) {
-  if (!jets) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  if (!aligned(jets)) return fail(SINEW_INVALID_ARGUMENT, kMisaligned);
-  if (count < 0 || std::size_t(count) > owned.parents.size())
-    return fail(SINEW_INVALID_ARGUMENT, "more jets than the skeleton has joints, or fewer than none", count);
-  return SINEW_OK;
-}
-
-/// job(settings, jets) → Status, with what the caller set.
-template <class S, class C, class List, class Job>
-sinew_status run(sinew_asset asset, const C* settings, List&& list, sinew_jet* jets, int count,
-                 Job&& job) noexcept {
-  return with_owned_asset(asset, [&](const OwnedAsset& owned) {
-    if (!settings) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    S read;
-    if (const sinew_status s = read_settings(settings, read, list); s != SINEW_OK) return s;
-    if (const sinew_status s = check_jets(owned, jets, count); s != SINEW_OK) return s;
-    return job(owned, read, jets_of(jets, count));
-  });
-}
-
-sinew_status read_layer(const OwnedAsset& owned, const sinew_blend_layer& from, int n, int count,
-                        BlendLayer<float>& to) {
-  if (const sinew_status s = check_jets(owned, from.jets, count); s != SINEW_OK) return failed_at(s, n);
-  if (from.mode < SINEW_BLEND_MIX || from.mode > SINEW_BLEND_ADDITIVE)
-    return fail(SINEW_INVALID_ARGUMENT, "no such mode of blending", n);
-  to.jets = jets_of(from.jets, count);
-  to.weight = {from.weight, from.weight_rate, from.weight_acceleration};
-  if (from.mask) to.mask = {from.mask, std::size_t(count)};
-  to.mode = BlendMode(from.mode);
-  return SINEW_OK;
-}
-
 /// act(const OwnedAsset&) of an asset whose left and right are known.
 template <class Act>
 sinew_status with_mirror(sinew_asset handle, Act&& act) noexcept {
@@ -230,54 +188,6 @@ bool read_transition(float* from, int count, int jets, InertialState<float>& to)
 
 using namespace sinew;
 using namespace sinew::c;
-
-sinew_status sinew_ease(float elapsed, float duration, float* out) {
-  if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  if (!std::isfinite(elapsed) || !std::isfinite(duration))
-    return fail(SINEW_NOT_FINITE, "elapsed and duration must be finite");
-  const EaseWeight<float> weight = EaseWeight<float>::at(elapsed, duration);
-  out[0] = weight.value;
-  out[1] = weight.rate;
-  out[2] = weight.acceleration;
-  return SINEW_OK;
-}
-
-sinew_status sinew_asset_blend(sinew_asset asset, const sinew_blend_layer* layers, int32_t layer_count,
-                               sinew_jet* jets, int32_t count) {
-  return with_owned_asset(asset, [&](const OwnedAsset& owned) {
-    std::array<BlendLayer<float>, BlendingJob<float>::kMaxLayers> read;
-    if (!layers) return fail(SINEW_INVALID_ARGUMENT, kNull);
-    if (layer_count < 0 || std::size_t(layer_count) > read.size())
-      return fail(SINEW_INVALID_ARGUMENT, "there may be 0 to 16 layers", layer_count);
-    if (const sinew_status s = check_jets(owned, jets, count); s != SINEW_OK) return s;
-    for (int n = 0; n < layer_count; ++n)
-      if (const sinew_status s = read_layer(owned, layers[n], n, count, read[std::size_t(n)]); s != SINEW_OK)
-        return s;
-    return answer(
-        BlendingJob<float>{std::span(read).first(std::size_t(layer_count)), owned.rest, jets_of(jets, count)}
-            .Run());
-  });
-}
-
-sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference, int32_t reference_count,
-                                  sinew_jet* jets, int32_t count) {
-  return with_owned_asset(asset, [&](const OwnedAsset& owned) {
-    if (const sinew_status s = check_jets(owned, jets, count); s != SINEW_OK) return s;
-    if (reference_count != 0) {
-      if (const sinew_status s = check_jets(owned, reference, reference_count); s != SINEW_OK) return s;
-      if (reference_count != count)
-        return fail(SINEW_INVALID_ARGUMENT, "the reference has another number of joints", reference_count);
-    }
-    const std::span<JointJet<float>> out = jets_of(jets, count);
-    const std::span<const JointJet<float>> from = jets_of(reference, reference_count);
-    for (std::size_t j = 0; j < out.size(); ++j) {
-      const Transform<float> at =
-          from.empty() ? owned.rest[j] : Transform<float>{from[j].rotation, from[j].translation};
-      subtract_reference<float>({&at, 1}, {&out[j], 1}, {&out[j], 1});
-    }
-    return sinew_status(SINEW_OK);
-  });
-}
 
 sinew_status sinew_asset_begin_transition(sinew_asset asset, const sinew_jet* now, int32_t now_count,
                                           const sinew_jet* next, int32_t next_count, float duration,

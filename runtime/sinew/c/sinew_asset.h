@@ -149,5 +149,9 @@ SINEW_API sinew_status sinew_asset_get_mask(sinew_asset asset, int32_t mask, flo
 /// those. Allocates nothing.
 SINEW_API sinew_status sinew_clip_sample(sinew_asset asset, int32_t clip, double time, double rate,
                                          double rate_change, sinew_jet* jets, int32_t count);
+/// Whether a joint rests on the ground at a time (s) of a clip, by the clip's contact windows: sets the flag
+/// `out`. Loops wrap. O(contact windows).
+SINEW_API sinew_status sinew_clip_in_contact(sinew_asset asset, int32_t clip, double time, int32_t joint,
+                                             int32_t* out);
 
 #endif

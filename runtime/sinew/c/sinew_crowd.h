@@ -12,8 +12,8 @@
 /// Everybody else is sampled and checked in batches and costs about as much as playback. Props that are
 /// awake, and characters of the world's own that are not on their animation, call in whom they may touch;
 /// what rests, obstacles, and two who play their clips into each other do not. The world is one as others
-/// are: with props, obstacles, contacts, and characters of its own beside the crowd. What is saved, recorded
-/// and replayed is a world without a crowd: with one, that is refused with SINEW_UNSUPPORTED.
+/// are: with props, obstacles, contacts, snapshots, and characters of its own beside the crowd. Its steps are
+/// not recorded: that is refused with SINEW_UNSUPPORTED.
 #ifndef SINEW_C_SINEW_CROWD_H
 #define SINEW_C_SINEW_CROWD_H
 
@@ -69,6 +69,8 @@ SINEW_API sinew_status sinew_crowd_create(sinew_asset asset, const sinew_crowd_s
 /// From now on they play this; who was in the world leaves it. Where one is refused, sinew_last_index() says
 /// which; those before it play.
 SINEW_API sinew_status sinew_crowd_play(sinew_world world, const sinew_crowd_track* tracks, int32_t count);
+/// It is gone: out of the world, in its rest pose, until it plays again.
+SINEW_API sinew_status sinew_crowd_stop(sinew_world world, int32_t character);
 /// impulse[3] (N s, world) on the body of a joint, at the joint, in the next step. SINEW_OUT_OF_RANGE where
 /// the world has no place left.
 SINEW_API sinew_status sinew_crowd_push(sinew_world world, int32_t character, int32_t joint,

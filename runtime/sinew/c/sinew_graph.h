@@ -124,13 +124,6 @@ enum sinew_ground_kind_values {
   SINEW_GROUND_HOST = 2  ///< what `below` answers
 };
 
-/// What lies below a foot.
-typedef struct sinew_ground_hit {
-  float point[3];   ///< m, world
-  float normal[3];  ///< unit, upwards
-  int32_t body;     ///< of sinew_character_set_grounds; -1: it does not move
-} sinew_ground_hit;
-
 /// The highest ground below a world point [3] (m): write it into `hit`, which holds that point on level
 /// ground at rest before. The answer 0: there is none, and what was known stays. Called within
 /// sinew_character_play_graph and its like, a dozen times a frame. No call of Sinew for this world.

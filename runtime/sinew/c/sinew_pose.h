@@ -1,6 +1,6 @@
 /// @file
-/// Jobs on poses in the caller's memory: blending, limbs that reach, looks, left and right exchanged. Part of
-/// sinew.h.
+/// Jobs on poses in the caller's memory: blending, limbs that reach, looks, feet on the ground, left and
+/// right exchanged. Part of sinew.h.
 ///
 /// Between sinew_clip_sample or sinew_character_sample_graph and sinew_character_set_target. All keep
 /// velocities and accelerations exact, where weights and targets come with theirs (0: they stay as they are),
@@ -102,6 +102,82 @@ typedef struct sinew_look_state {
   float numbers[26];  ///< of the turns that fade
 } sinew_look_state;
 
+/// What a ray met of the ground.
+typedef struct sinew_ground_hit {
+  float point[3];   ///< m: of sinew_foot in model space, of sinew_ground_below in the world
+  float normal[3];  ///< unit, upwards, in the same axes
+  int32_t body;     ///< of sinew_asset_place_feet or sinew_character_set_grounds; -1: it does not move
+} sinew_ground_hit;
+
+/// What of a foot stays on the ground.
+typedef int32_t sinew_foot_hold;
+/// Values of sinew_foot_hold.
+enum sinew_foot_hold_values {
+  SINEW_HOLD_FREE = 0,  ///< nothing: it goes as animated
+  SINEW_HOLD_TOE = 1,   ///< the toe stays, the heel may rise
+  SINEW_HOLD_HEEL = 2   ///< the heel stays, the toe comes down
+};
+
+/// A leg, and where the sole of its foot is.
+typedef struct sinew_leg_info {
+  uint32_t size;   ///< bytes of this struct, as the caller knows it
+  int32_t upper;   ///< joint: thigh
+  int32_t middle;  ///< joint: shin
+  int32_t foot;    ///< joint: foot
+  float toe[3];    ///< m, in the foot joint's axes: the sole under the ball
+  float heel[3];   ///< m, in the foot joint's axes: the sole under the heel
+} sinew_leg_info;
+
+/// What is known of a foot in a frame. Cast rays down from above its toe, from above its heel, and from above
+/// where the toe will be within 0.3 s: a foot has to rise before a stair and not in it. The highest hit under
+/// the foot counts. Without hits it keeps the ground that it had.
+typedef struct sinew_foot {
+  const sinew_ground_hit* under;  ///< below the foot as it is; null: none
+  const sinew_ground_hit* ahead;  ///< on its way; null: none
+  int32_t under_count;            ///< hits
+  int32_t ahead_count;            ///< hits
+  float contact;                  ///< 0 to 1, that it rests: weights of the clips that say so, summed
+  int32_t unused;                 ///< 0
+} sinew_foot;
+
+/// Feet on uneven and on moving ground. Fields mean what those of FootPlacementJob and FootSettings do.
+typedef struct sinew_feet {
+  uint32_t size;              ///< bytes of this struct, as the caller knows it
+  int32_t unused;             ///< 0
+  double level;               ///< m: height of the ground that the animation walks on
+  double level_rate;          ///< m/s
+  double level_acceleration;  ///< m/s2
+  double step;                ///< s since the last call that was not refused
+  double lock_at;             ///< contact from which a foot locks
+  double release_at;          ///< contact below which it leaves, at most lock_at
+  double lock_time;           ///< s, until a foot that comes down rests
+  double release_time;        ///< s, until a foot that leaves is back on the animation
+  double half_life;           ///< s, of steps of the ground under a foot that is free
+  double farthest;            ///< m, from the animation on the ground, where a lock breaks
+  double steepest;            ///< rad: steeper ground is taken for a wall, and as level where it was met
+  double reach;               ///< of a leg's length, to which the pelvis comes down
+  double follow;              ///< part of the feet's mean shift sideways that the pelvis takes
+  double rise;                ///< s, half of the pelvis' way up
+  double deepest;             ///< m, that the pelvis comes down at most
+} sinew_feet;
+
+/// What a foot remembers from one call to the next.
+typedef struct sinew_foot_state {
+  int32_t started;       ///< flag: it has found a ground; until then nothing else counts
+  sinew_foot_hold hold;  ///< what of it stays; it rests on the ground once `elapsed` is `duration`
+  int32_t ground;        ///< body that it is on, which has to be given as long as it is; -1: none moves
+  float elapsed;         ///< s since `hold` changed
+  float duration;        ///< s that it takes to come to rest, or back to the animation
+  float numbers[30];     ///< of the plane below it, of the place where it stays, and of what fades
+} sinew_foot_state;
+
+/// What the feet of a character remember, the caller's: zeros for a character that appears, a copy for a
+/// snapshot.
+typedef struct sinew_feet_state {
+  sinew_foot_state feet[2];  ///< left, right
+  float drop[3];             ///< by which the pelvis still is lowered: m, m/s, m/s2
+} sinew_feet_state;
+
 /// A weight that goes from 0 to 1 within `duration` (s), `elapsed` (s) after it began, with its rate and
 /// acceleration: [3], as layers take them. C2.
 SINEW_API sinew_status sinew_ease(float elapsed, float duration, float out[3]);
@@ -113,6 +189,19 @@ SINEW_API sinew_status sinew_asset_blend(sinew_asset asset, const sinew_blend_la
 /// rest where that is none.
 SINEW_API sinew_status sinew_asset_subtract(sinew_asset asset, const sinew_jet* reference,
                                             int32_t reference_count, sinew_jet* jets, int32_t count);
+/// Makes of `jets` an additive layer in model space: for every joint the turn from `reference`, as many, to
+/// `jets`, in the axes of the root's parent; translations are left out. The pose at rest, to be such a
+/// reference, is what sinew_asset_blend makes of no layers. `scratch`: memory of two jets for each of `jets`,
+/// whatever is in it.
+SINEW_API sinew_status sinew_asset_subtract_in_model(sinew_asset asset, const sinew_jet* reference,
+                                                     int32_t reference_count, sinew_jet* jets, int32_t count,
+                                                     sinew_jet* scratch, int32_t scratch_count);
+/// Adds such a layer, whose mode is SINEW_BLEND_ADDITIVE, to `jets`: an aim stays level while the body below
+/// leans, where sinew_asset_blend turns about the joints' own axes. Joints that the layer does not touch, and
+/// whose parent it does not, keep their bits.
+SINEW_API sinew_status sinew_asset_add_in_model(sinew_asset asset, const sinew_blend_layer* layer,
+                                                sinew_jet* jets, int32_t count, sinew_jet* scratch,
+                                                int32_t scratch_count);
 /// Begins a transition by inertia: `now` is what the character does at this instant, whatever makes it do so
 /// (another transition, too), `next` what the new motion does. What they differ by is written into
 /// state[capacity], the caller's, a copy for a snapshot; `count`: how many numbers it has, also with
@@ -147,6 +236,20 @@ SINEW_API sinew_status sinew_look_init(sinew_look* settings);
 /// without a head, and where the target is in the eyes.
 SINEW_API sinew_status sinew_asset_look(sinew_asset asset, const sinew_look* settings,
                                         sinew_look_state* state, sinew_jet* jets, int32_t count);
+/// The leg of SINEW_ROLE_FOOT_L or SINEW_ROLE_FOOT_R, by the roles of its joints, and its sole, by the
+/// colliders of foot and toes at rest. Refused where one of the two feet has no thigh, shin or toes.
+SINEW_API sinew_status sinew_asset_get_leg(sinew_asset asset, sinew_role foot, sinew_leg_info* out);
+/// The library's defaults.
+SINEW_API sinew_status sinew_feet_init(sinew_feet* settings);
+/// Puts both feet, left and right, on the ground, turns them as it leans, locks them while they bear, and
+/// lowers the pelvis until they reach it. The last job before the target is set; model space has to be level.
+/// `grounds`: the bodies that hits tell of, at most 8, body to model space and how they move; may be null
+/// with a count of 0. sinew_last_index(): 0 left, 1 right. Refused as sinew_asset_get_leg; also, with
+/// SINEW_OUT_OF_RANGE, where a leg finds no plane to bend in: then neither leg is placed.
+SINEW_API sinew_status sinew_asset_place_feet(sinew_asset asset, const sinew_feet* settings,
+                                              const sinew_foot feet[2], const sinew_jet* grounds,
+                                              int32_t ground_count, sinew_feet_state* state, sinew_jet* jets,
+                                              int32_t count);
 /// Where joints are in model space: out[capacity] of the first joints. `count`: of `jets`, also with
 /// SINEW_TOO_SMALL.
 SINEW_API sinew_status sinew_asset_get_model(sinew_asset asset, const sinew_jet* jets, int32_t jet_count,

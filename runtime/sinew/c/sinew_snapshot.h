@@ -26,8 +26,8 @@ typedef struct sinew_replay_report {
   const char* field;       ///< what it stands for
 } sinew_replay_report;
 
-/// Writes flat bytes. `size`: how many were written, or, with SINEW_TOO_SMALL, how many there may be at most:
-/// out = NULL and capacity 0 ask for it. Allocates nothing.
+/// Writes flat bytes; of a crowd's world who plays what, too. `size`: how many were written, or, with
+/// SINEW_TOO_SMALL, how many there may be at most: out = NULL and capacity 0 ask for it. Allocates nothing.
 SINEW_API sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part part, void* out,
                                         size_t capacity, size_t* size);
 /// Refuses what sinew_world_save of a world set up the same way did not write, with nothing moved. Given the

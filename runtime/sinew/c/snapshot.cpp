@@ -13,12 +13,25 @@ bool is_part(sinew_snapshot_part part) {
   return part == SINEW_SNAPSHOT_STATE || part == SINEW_SNAPSHOT_INPUTS;
 }
 
-/// act(OwnedWorld&) in a world that can be saved.
+/// act(OwnedWorld&) in a world that can be recorded.
 template <class Act>
-sinew_status with_saved(sinew_world world, Act&& act, bool breaks = false) noexcept {
+sinew_status with_recorded(sinew_world world, Act&& act, bool breaks = false) noexcept {
   return in_world(world, Kind::kWorld, breaks, [&](OwnedWorld& w) {
-    return w.crowd ? fail(SINEW_UNSUPPORTED, "a world with a crowd is neither saved nor recorded") : act(w);
+    return w.crowd ? fail(SINEW_UNSUPPORTED, "a world with a crowd is not recorded") : act(w);
   });
+}
+
+/// Bytes written, 0 where there is no room; at most how many.
+std::size_t save_state(OwnedWorld& w, std::span<std::byte> out) {
+  if (!w.crowd) return w.world.save(out);
+  std::size_t written = 0;
+  return w.crowd->save(w.crowd_asset->clips, out, written) ? written : 0;
+}
+std::size_t state_capacity(const OwnedWorld& w) {
+  return w.crowd ? w.crowd->snapshot_capacity() : w.world.snapshot_capacity();
+}
+Status restore_state(OwnedWorld& w, std::span<const std::byte> from) {
+  return w.crowd ? w.crowd->restore(w.crowd_asset->clips, from) : w.world.restore(from);
 }
 
 std::span<const std::byte> bytes_of(const void* bytes, std::size_t size) {
@@ -33,39 +46,39 @@ using namespace sinew::c;
 
 sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part part, void* out, size_t capacity,
                               size_t* size) {
-  return with_saved(world, [&](OwnedWorld& w) {
+  return with_world(world, [&](OwnedWorld& w) {
     if (!size || (!out && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!is_part(part)) return fail(SINEW_INVALID_ARGUMENT, kNoPart, part);
     const bool state = part == SINEW_SNAPSHOT_STATE;
     const std::span<std::byte> room(static_cast<std::byte*>(out), capacity);
     std::size_t written = 0;
-    if (out) written = state ? w.world.save(room) : w.world.save_inputs(room);
+    if (out) written = state ? save_state(w, room) : w.world.save_inputs(room);
     *size = written;
     if (written > 0) return sinew_status(SINEW_OK);
-    *size = state ? w.world.snapshot_capacity() : w.world.inputs_capacity();
+    *size = state ? state_capacity(w) : w.world.inputs_capacity();
     return fail(SINEW_TOO_SMALL, "room for fewer bytes than the snapshot may have");
   });
 }
 
 sinew_status sinew_world_restore(sinew_world world, sinew_snapshot_part part, const void* bytes,
                                  size_t size) {
-  return with_saved(world, [&](OwnedWorld& w) {
+  return with_world(world, [&](OwnedWorld& w) {
     if (!bytes) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!is_part(part)) return fail(SINEW_INVALID_ARGUMENT, kNoPart, part);
     const std::span<const std::byte> from = bytes_of(bytes, size);
-    return answer(part == SINEW_SNAPSHOT_STATE ? w.world.restore(from) : w.world.restore_inputs(from));
+    return answer(part == SINEW_SNAPSHOT_STATE ? restore_state(w, from) : w.world.restore_inputs(from));
   });
 }
 
 sinew_status sinew_world_record(sinew_world world, int32_t begin) {
-  return with_saved(world, [&](OwnedWorld& w) {
+  return with_recorded(world, [&](OwnedWorld& w) {
     w.recorder = begin != 0 ? std::make_unique<Recorder<float>>(w.world) : nullptr;
     return sinew_status(SINEW_OK);
   });
 }
 
 sinew_status sinew_world_get_recording(sinew_world world, sinew_view* out) {
-  return with_saved(world, [&](OwnedWorld& w) {
+  return with_recorded(world, [&](OwnedWorld& w) {
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
     if (!w.recorder) return fail(SINEW_INVALID_ARGUMENT, "the world is not recorded");
     const std::span<const std::byte> bytes = w.recorder->bytes();
@@ -90,5 +103,5 @@ sinew_status sinew_world_replay(sinew_world world, const void* bytes, size_t siz
       r.field = report.field.name;
     });
   };
-  return with_saved(world, replayed, true);
+  return with_recorded(world, replayed, true);
 }

@@ -6,6 +6,7 @@
 #include "sinew/character/snapshot_history.h"
 #include "sinew/character/tone.h"
 #include "sinew/character/unknowns.h"
+#include "sinew/skeleton/digest.h"
 #include "sinew/skeleton/fewer_digits.h"
 
 namespace sinew {
@@ -337,13 +338,6 @@ void visit_header(Header& header, ByteStream& stream) {
   stream.value("header", header.bytes);
   stream.value("header", header.layout);
   stream.value("header", header.digest);
-}
-
-/// FNV-1a.
-std::uint64_t digest(std::span<const std::byte> bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const std::byte b : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3ull;
-  return hash;
 }
 
 /// Of a world's make-up: scalar, states, their joints and what poses are predicted from, which loops close

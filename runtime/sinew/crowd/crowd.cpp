@@ -62,6 +62,7 @@ struct Crowd::Impl {
   Kernels kernels;
   int lanes, batches, joints, lines;  ///< lines: of one array [dof][lane]
   std::vector<CrowdTrack> tracks;     ///< [character]
+  std::vector<float> strength;        ///< [character] see set_strength()
   std::vector<std::uint8_t> active;
   std::vector<std::uint8_t> stale;                        ///< [character] jets are not those of its track
   std::vector<JointJet<float>> jets;                      ///< [character][joint]
@@ -84,6 +85,7 @@ struct Crowd::Impl {
     lines = (rig.tree.dofs * lanes + 15) / 16;
     const std::size_t padded = std::size_t(batches) * lanes;
     tracks.resize(padded);
+    strength.resize(padded);
     active.resize(padded);
     stale.resize(padded);
     jets.resize(padded * joints);
@@ -130,10 +132,11 @@ struct Crowd::Impl {
       model_of(character)[j] = parent < 0 ? local : model_of(character)[parent] * local;
     }
   }
-  void set_strength(int character, float strength) {
+  void set_strength(int character, float of_all) {
+    strength[character] = of_all;
     for (int dof = 0; dof < rig.tree.dofs; ++dof) {
-      number(inverse_plus, dof_place(character, dof)) = inverse(rig.torque_plus[dof] * strength);
-      number(inverse_minus, dof_place(character, dof)) = inverse(rig.torque_minus[dof] * strength);
+      number(inverse_plus, dof_place(character, dof)) = inverse(rig.torque_plus[dof] * of_all);
+      number(inverse_minus, dof_place(character, dof)) = inverse(rig.torque_minus[dof] * of_all);
     }
   }
 
@@ -251,11 +254,24 @@ Status Crowd::set_active(int character, bool active) {
   return {};
 }
 
+Status Crowd::stop(int character) {
+  if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
+  impl_->tracks[character] = {};
+  impl_->active[character] = impl_->stale[character] = 0;
+  impl_->rest(character);
+  impl_->set_strength(character, 1);
+  return {};
+}
+
 Status Crowd::set_strength(int character, float strength) {
   if (Status status = check_index(character, impl_->settings.capacity); !status) return status;
   if (!(strength >= 0)) return Status::error(Code::kInvalidArgument, "strength must be ≥ 0", character);
   impl_->set_strength(character, strength);
   return {};
+}
+
+float Crowd::strength(int character) const {
+  return impl_->strength[character];
 }
 
 Status Crowd::step(double h, const ParallelFor& parallel_for) {

@@ -61,8 +61,11 @@ class Crowd {
   Status play(int character, const CrowdTrack& track);
   /// Inactive characters are neither sampled nor posed nor reported; their torques and loads mean nothing.
   Status set_active(int character, bool active);
+  /// Inactive, at rest, of strength 1: as if it had never played.
+  Status stop(int character);
   /// Of all its muscles, ≥ 0; infinity: never overloaded.
   Status set_strength(int character, float strength);
+  float strength(int character) const;  ///< 1 where nobody has set it
 
   /// One frame: times move on by h (s, ≥ 0), active characters are sampled, checked and posed. Allocates
   /// nothing.

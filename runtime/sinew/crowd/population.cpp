@@ -6,6 +6,7 @@
 #include "sinew/animation/sampling_job.h"
 #include "sinew/character/movers.h"
 #include "sinew/character/neighbour_grid.h"
+#include "sinew/crowd/roll.h"
 
 namespace sinew {
 namespace {
@@ -19,6 +20,7 @@ struct Population::Impl {
   std::unique_ptr<Crowd> crowd;
   std::unique_ptr<World<float>> world;
   int capacity = 0, joints = 0;
+  float strength = 1;                ///< of who has just been added
   float margin = 0;                  ///< m, see kMargin
   float radius = 0;                  ///< m, of a character about its root
   std::vector<int> place_of;         ///< [character] in the world, or −1
@@ -29,10 +31,15 @@ struct Population::Impl {
   NeighbourGrid grid;                ///< of those on their clips
   std::vector<std::uint8_t> called;  ///< [character] into the world, by who is near
   int turned_away = 0;
+  Roll roll;  ///< room for save() and restore()
 
   bool enter(int character, double h);
   void leave(int place);
   void call_neighbours(double h);
+  void stop(int character);
+  Status call_roll(std::span<const Clip> clips);
+  void follow_roll(std::span<const Clip> clips);
+  std::size_t roll_size() const { return roll_bytes(place_of.size(), character_of.size()); }
 };
 
 Population::Population(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -70,10 +77,11 @@ std::unique_ptr<Population> Population::create(const Skeleton& skeleton, const P
   impl->jets.resize(skeleton.joints.size());
   impl->grid.reserve(crowd.capacity);
   impl->called.assign(crowd.capacity, 0);
-  for (int n = 0; n < crowd.capacity; ++n) {
-    (void)impl->crowd->set_active(n, false);
-    (void)impl->crowd->set_strength(n, static_cast<float>(settings.character.strength));
-  }
+  impl->strength = static_cast<float>(settings.character.strength);
+  impl->roll.entries.resize(std::size_t(crowd.capacity));
+  impl->roll.free.reserve(std::size_t(settings.places));
+  impl->roll.taken.reserve(std::size_t(settings.places));
+  for (int n = 0; n < crowd.capacity; ++n) impl->stop(n);
   return std::unique_ptr<Population>(new Population(std::move(impl)));
 }
 
@@ -136,6 +144,20 @@ Status Population::play(int character, const CrowdTrack& track) {
   return {};
 }
 
+void Population::Impl::stop(int character) {
+  if (place_of[character] >= 0) leave(place_of[character]);
+  (void)crowd->stop(character);
+  (void)crowd->set_strength(character, strength);
+  active[character] = 0;
+}
+
+Status Population::stop(int character) {
+  if (character < 0 || character >= impl_->capacity)
+    return Status::error(Code::kInvalidArgument, "no such character", character);
+  impl_->stop(character);
+  return {};
+}
+
 Status Population::push(int character, int joint, const Vec3<float>& impulse) {
   Impl& impl = *impl_;
   if (character < 0 || character >= impl.capacity || !impl.active[character])
@@ -165,6 +187,81 @@ Status Population::step(float h, const ParallelFor& parallel_for) {
     if (c.on_animation() && c.report().level <= Level::kChecked) impl.leave(static_cast<int>(place));
   }
   return {};
+}
+
+/// Everybody into `roll`.
+Status Population::Impl::call_roll(std::span<const Clip> clips) {
+  for (int n = 0; n < capacity; ++n) {
+    RollEntry& entry = roll.entries[std::size_t(n)];
+    entry = {};
+    entry.strength = crowd->strength(n);
+    entry.world = place_of[n];
+    if (active[n] == 0) continue;
+    const CrowdTrack& track = crowd->track(n);
+    const auto found =
+        std::find_if(clips.begin(), clips.end(), [&](const Clip& c) { return &c == track.clip; });
+    if (found == clips.end()) return Status::error(Code::kInvalidArgument, "it plays another clip", n);
+    entry.clip = static_cast<std::int32_t>(found - clips.begin());
+    entry.time = track.time.value;
+    entry.rate = track.time.rate;
+    entry.change = track.time.acceleration;
+    std::copy_n(track.place.rotation.coeffs().data(), 4, entry.place);
+    std::copy_n(track.place.translation.data(), 3, entry.place + 4);
+  }
+  roll.free.assign(free.begin(), free.end());
+  roll.turned_away = turned_away;
+  return {};
+}
+
+/// As `roll`, which has been checked, has it. The world has been restored.
+void Population::Impl::follow_roll(std::span<const Clip> clips) {
+  std::fill(character_of.begin(), character_of.end(), -1);
+  for (int n = 0; n < capacity; ++n) {
+    const RollEntry& entry = roll.entries[std::size_t(n)];
+    place_of[n] = entry.world;
+    if (entry.world >= 0) character_of[std::size_t(entry.world)] = n;
+    active[n] = entry.clip >= 0;
+    if (active[n] != 0) {
+      CrowdTrack track{&clips[std::size_t(entry.clip)], {entry.time, entry.rate, entry.change}, {}};
+      std::copy_n(entry.place, 4, track.place.rotation.coeffs().data());
+      std::copy_n(entry.place + 4, 3, track.place.translation.data());
+      (void)crowd->play(n, track);
+    } else {
+      (void)crowd->stop(n);
+    }
+    (void)crowd->set_strength(n, entry.strength);
+  }
+  free.assign(roll.free.begin(), roll.free.end());
+  turned_away = roll.turned_away;
+  (void)crowd->step(0);  // poses
+}
+
+std::size_t Population::snapshot_capacity() const {
+  return impl_->roll_size() + impl_->world->snapshot_capacity();
+}
+
+Status Population::save(std::span<const Clip> clips, std::span<std::byte> out, std::size_t& written) {
+  written = 0;
+  const std::size_t roll = impl_->roll_size();
+  if (Status status = impl_->call_roll(clips); !status) return status;
+  const std::size_t world = out.size() > roll ? impl_->world->save(out.subspan(roll)) : 0;
+  if (world == 0) return Status::error(Code::kOutOfRange, "no room for the snapshot");
+  write_roll(impl_->roll, impl_->character_of.size(), out.first(roll));
+  written = roll + world;
+  return {};
+}
+
+Status Population::restore(std::span<const Clip> clips, std::span<const std::byte> snapshot) {
+  const std::size_t roll = std::min(impl_->roll_size(), snapshot.size());
+  Status status = read_roll(snapshot.first(roll), impl_->character_of.size(), clips.size(), impl_->roll);
+  const auto fits = [&](const RollEntry& entry) {
+    return entry.clip < 0 || clips[std::size_t(entry.clip)].joint_count == impl_->joints;
+  };
+  if (status && !std::all_of(impl_->roll.entries.begin(), impl_->roll.entries.end(), fits))
+    status = Status::error(Code::kInvalidArgument, "clip has another number of joints than the rig");
+  if (status) status = impl_->world->restore(snapshot.subspan(roll));
+  if (status) impl_->follow_roll(clips);
+  return status;
 }
 
 std::span<const Transform<float>> Population::model(int character) const {
@@ -203,6 +300,10 @@ World<float>& Population::world() {
 
 Crowd& Population::crowd() {
   return *impl_->crowd;
+}
+
+int Population::capacity() const {
+  return impl_->capacity;
 }
 
 }  // namespace sinew

@@ -43,6 +43,8 @@ class Population {
 
   /// From now on a character plays this clip, on its place. Leaves the world if it was in it.
   Status play(int character, const CrowdTrack& track);
+  /// It is gone: out of the world, in its rest pose, called by nobody, until it plays again.
+  Status stop(int character);
   /// Impulse (N·s, world) on the body of a joint, at the joint, in the next step. Refused with kOutOfRange
   /// where the world has no place left.
   Status push(int character, int joint, const Vec3<float>& impulse);
@@ -66,6 +68,21 @@ class Population {
   World<float>& world();
   /// Those on their clips.
   Crowd& crowd();
+  int capacity() const;  ///< characters, as set up
+
+  // Snapshots: what the next step depends on, as flat bytes; those of the world (World::save) and 64 bytes
+  // for each character. A population set up the same way, with the same props, obstacles and clips, restored
+  // and given the same inputs, goes on to the bit. Pushes are inputs of the world: World::save_inputs() has
+  // those that wait. Allocates nothing.
+
+  /// Bytes that a snapshot takes at most.
+  std::size_t snapshot_capacity() const;
+  /// `clips` hold all that anybody plays: the snapshot tells them by their place in there. `written`: bytes;
+  /// kOutOfRange where `out` is too small.
+  Status save(std::span<const Clip> clips, std::span<std::byte> out, std::size_t& written);
+  /// Refuses what save() of such a population did not write, with nothing moved. `clips` are as they were
+  /// there. Poses are there at once; overloaded() and loads of the crowd are those of this moment.
+  Status restore(std::span<const Clip> clips, std::span<const std::byte> snapshot);
 
  private:
   struct Impl;

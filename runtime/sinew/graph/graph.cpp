@@ -199,18 +199,10 @@ void Graph::bind_machine(int index) {
 }
 
 Status Graph::bind_feet(int index, const Asset& asset) {
-  const auto find = [&](auto& legs) {
-    Status status = find_foot_leg(asset.skeleton, Role::kFootL, legs[0]);
-    return status ? find_foot_leg(asset.skeleton, Role::kFootR, legs[1]) : status;
-  };
-  Status status = find(feet_.legs_float);
-  if (status) status = find(feet_.legs_double);
+  Status status = find_foot_legs<float>(asset.skeleton, feet_.legs_float, feet_.pelvis);
+  if (status) status = find_foot_legs<double>(asset.skeleton, feet_.legs_double, feet_.pelvis);
   if (!status) return bad(status.reason, index);
-  int left = feet_.legs_float[0].upper, right = feet_.legs_float[1].upper;
-  while (left != right) (left > right ? left : right) = parents_[std::size_t(std::max(left, right))];
-  if (left < 0) return bad("legs have no joint in common", index);
   feet_.node = index;
-  feet_.pelvis = left;
   for (const FootLeg<float>& leg : feet_.legs_float) feet_.joints = std::max(feet_.joints, leg.foot + 1);
   return {};
 }

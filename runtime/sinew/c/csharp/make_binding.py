@@ -140,7 +140,10 @@ class Binding:
             before = [f"{self.native(one.filled)} filled;"] if one.role == "fill" else []
             after = ", &filled" if one.role == "fill" else ""
             if self.abi.structs.get(one.type, {}).get("alignment", 0) > 8 and one.role != "fill":
-                return f"{kind}s {name}", before, "", f"{name}.Pointer, {name}.Count"
+                none = one.role == "read"  # null: none, where the C function takes that
+                pointer, count = (f"{name} == null ? {zero} : {name}.{part}" if none else f"{name}.{part}"
+                                  for zero, part in (("null", "Pointer"), ("0", "Count")))
+                return f"{kind}s {name}", before, "", f"{pointer}, {count}"
             passed = f"(IntPtr){plain}_" if one.type == "void" and one.role == "fill" else f"{plain}_"
             return f"{element}[] {name}", before, f"{element}* {plain}_ = {name}", f"{passed}, {length}{after}"
         if one.role == "out" and one.count:

@@ -149,9 +149,9 @@ class Described(Owned):
         check(get(self.handle, *index, byref(struct)))
         return struct
 
-    def _find(self, find, what):
+    def _find(self, find, *what):
         out = ctypes.c_int32()
-        check(find(self.handle, what, byref(out)))
+        check(find(self.handle, *what, byref(out)))
         return out.value
 
 

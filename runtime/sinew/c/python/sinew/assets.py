@@ -43,6 +43,42 @@ class Look:
         check(lib.sinew_asset_look(asset.handle, byref(struct), byref(self.state), pointer(jets), len(jets)))
 
 
+def ground_hit(point, normal=(0, 0, 1), body=-1):
+    """What a ray met of the ground (m, model space), for Foot."""
+    return _abi.GroundHit(tuple(point), tuple(normal), body)
+
+
+class Foot:
+    """What is known of a foot in a frame: its contact (0 to 1, that it rests), and the hits under it and ahead of it."""
+
+    def __init__(self, contact, under=(), ahead=()):
+        self.contact = contact
+        self.under, self.ahead = ((_abi.GroundHit * len(hits))(*hits) for hits in (under, ahead))
+
+    def _write(self, foot):
+        foot.under, foot.under_count = ctypes.addressof(self.under), len(self.under)
+        foot.ahead, foot.ahead_count = ctypes.addressof(self.ahead), len(self.ahead)
+        foot.contact = self.contact
+
+
+class Feet:
+    """What a character's feet remember: `state`, a struct that may be copied."""
+
+    def __init__(self):
+        self.state = _abi.FeetState()
+
+    def __call__(self, asset, jets, left, right, step, grounds=None, **settings):
+        """Puts the feet of `jets` on the ground that `left` and `right`, each a Foot, tell of, `step` s after the last call.
+        `grounds`: jets of the bodies that hits name, body to model space."""
+        struct = settings_of(_abi.Feet, lib.sinew_feet_init, {"step": step, **settings})
+        feet = (_abi.Foot * 2)()
+        left._write(feet[0])
+        right._write(feet[1])
+        address, count = (None, 0) if grounds is None else (pointer(grounds), len(grounds))
+        check(lib.sinew_asset_place_feet(asset.handle, byref(struct), byref(feet), address, count, byref(self.state),
+                                         pointer(jets), len(jets)))
+
+
 class Transition:
     """From what a character does (`now`, jets) to another motion (`next`) within `duration` s. `state` may be copied."""
 
@@ -132,6 +168,24 @@ class Asset(Described):
         address, count = (None, 0) if reference is None else (pointer(reference), len(reference))
         check(lib.sinew_asset_subtract(self.handle, address, count, pointer(jets), len(jets)))
 
+    def subtract_in_model(self, jets, reference=None):
+        """Makes `jets` the turn from a pose, or from rest, in model space, for add_in_model."""
+        reference = self.blend([], jets_for(len(jets))) if reference is None else reference
+        scratch = jets_for(2 * len(jets))
+        check(lib.sinew_asset_subtract_in_model(self.handle, pointer(reference), len(reference), pointer(jets), len(jets),
+                                                pointer(scratch), len(scratch)))
+
+    def add_in_model(self, jets, difference, weight=1.0, mask=None):
+        """Adds to `jets` what subtract_in_model made; it does not lean with the body below."""
+        struct, scratch = _abi.BlendLayer(), jets_for(2 * len(jets))
+        layer = Layer(difference, weight, BlendMode.ADDITIVE, mask)
+        layer._write(struct, len(jets))
+        check(lib.sinew_asset_add_in_model(self.handle, byref(struct), pointer(jets), len(jets), pointer(scratch), len(scratch)))
+
+    def leg(self, foot):
+        """Joints and sole of the leg of Role.FOOT_L or Role.FOOT_R."""
+        return self._element(_abi.LegInfo, lib.sinew_asset_get_leg, foot)
+
     def partner(self, joint):
         """The joint on the other side; -1: none."""
         return self._find(lib.sinew_asset_get_partner, joint)
@@ -156,6 +210,10 @@ class Asset(Described):
         out, count = (_abi.Transform * len(jets))(), ctypes.c_int32()
         check(lib.sinew_asset_get_model(self.handle, pointer(jets), len(jets), byref(out), len(jets), byref(count)))
         return floats(out, count.value, 8, 7)
+
+    def in_contact(self, clip, time, joint):
+        """Whether a joint rests on the ground at a time (s) of a clip."""
+        return bool(self._find(lib.sinew_clip_in_contact, clip, time, joint))
 
     def sample(self, clip, time, rate=1.0, rate_change=0.0, jets=None):
         """Jets of all joints, into `jets` where given."""

@@ -209,6 +209,10 @@ class Crowd(World):
         track.place.rotation[:], track.place.translation[:] = rotation, translation
         check(lib.sinew_crowd_play(self.handle, byref(track), 1))
 
+    def stop(self, character):
+        """It is gone until it plays again."""
+        check(lib.sinew_crowd_stop(self.handle, character))
+
     def push(self, character, joint, impulse):
         """N s, at the joint."""
         check(lib.sinew_crowd_push(self.handle, character, joint, three(impulse)))
