@@ -1,6 +1,7 @@
 #include "sinew/character/closeness.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -133,6 +134,62 @@ SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedColli
 template <class T>
 void append_moving(CharacterState<T>& s, T h, std::vector<MovingCollider<T>>& out) {
   for (std::size_t c = 0; c < s.colliders.size(); ++c) out.push_back(moving_collider(s, c, h));
+}
+
+namespace {
+
+constexpr int kMostBounds = 128;  ///< bodies of who is held by bounds on its speeds
+
+/// By bounds on the animation's speeds from the root down: what reaches e from the joint of a body moves no
+/// faster than turn·e + shift against the root's centre of mass, which is what animated_speed() adds up.
+template <class T>
+Eigen::AlignedBox<T, 3> box_of_animation(CharacterState<T>& s, T h) {
+  struct Bound {
+    T turn, shift;  ///< rad/s, m/s
+  };
+  std::array<Bound, kMostBounds> bounds;
+  const std::vector<JointJet<T>>& jets = s.last_target();
+  const std::vector<Transform<T>>& model = s.model();
+  const T root_way = h * s.history.velocity[0].norm();
+  Eigen::AlignedBox<T, 3> box;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    const int parent = s.tree.parent[i];
+    const T turn = jets[i].omega.norm();
+    if (parent < 0) {
+      bounds[i] = {turn, turn * s.tree.center_of_mass[0].norm()};
+    } else {
+      const Bound& above = bounds[parent];
+      bounds[i] = {above.turn + turn,
+                   above.shift + above.turn * jets[i].translation.norm() + jets[i].velocity.norm()};
+    }
+    const T reach = s.rig->body_reach[i];
+    if (reach == T(0)) continue;
+    const Vec3<T> way = Vec3<T>::Constant(reach + root_way + h * (bounds[i].turn * reach + bounds[i].shift));
+    box.extend(model[i].translation - way).extend(model[i].translation + way);
+  }
+  return box;
+}
+
+}  // namespace
+
+template <class T>
+Eigen::AlignedBox<T, 3> swept_box(CharacterState<T>& s, T h) {
+  if (s.driven && s.undisturbed() && !s.pushed() && s.tree.bodies <= kMostBounds)
+    return box_of_animation(s, h);
+  Eigen::AlignedBox<T, 3> box;
+  for (std::size_t c = 0; c < s.colliders.size(); ++c) {
+    const MovingCollider<T> m = moving_collider(s, c, h);
+    const Vec3<T> reach = Vec3<T>::Constant(swept_radius(m, h));
+    box.extend(m.pose.translation - reach).extend(m.pose.translation + reach);
+  }
+  return box;
+}
+
+template <class T>
+bool boxes_come_close(const Eigen::AlignedBox<T, 3>& a, const Eigen::AlignedBox<T, 3>& b, T h, T margin) {
+  constexpr T kRounding = T(1e-4);  // m
+  const T reach = margin + T(kSurprise) * h * h + kRounding;
+  return a.squaredExteriorDistance(b) <= reach * reach;
 }
 
 template <class T>

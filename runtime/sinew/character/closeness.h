@@ -2,6 +2,7 @@
 // layer.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,15 @@ SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_ax
 template <class T>
 SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b);
 
+/// Holds all of a state's colliders through a step of h seconds, as come_close() looks at them; world axes.
+/// O(bodies) of who is played, else of colliders.
+template <class T>
+Eigen::AlignedBox<T, 3> swept_box(CharacterState<T>& state, T h);
+
+/// Whether come_close() may be true of what two such boxes hold.
+template <class T>
+bool boxes_come_close(const Eigen::AlignedBox<T, 3>& a, const Eigen::AlignedBox<T, 3>& b, T h, T margin);
+
 /// Appends the colliders of a state for a step of h seconds. O(colliders).
 template <class T>
 void append_moving(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
@@ -56,12 +66,14 @@ bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingColl
 template <class T>
 bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit);
 
-#define SINEW_CLOSENESS_INSTANCES(prefix, T)                                                        \
-  prefix SignedDistance<T> distance_of_axis<T>(const Vec3<T>&, const Vec3<T>&, const Transform<T>&, \
-                                               const Collider&, int, T&);                           \
-  prefix SignedDistance<T> distance_between<T>(const PlacedCollider<T>&, const PlacedCollider<T>&); \
-  prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);             \
-  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T, T);         \
+#define SINEW_CLOSENESS_INSTANCES(prefix, T)                                                             \
+  prefix SignedDistance<T> distance_of_axis<T>(const Vec3<T>&, const Vec3<T>&, const Transform<T>&,      \
+                                               const Collider&, int, T&);                                \
+  prefix SignedDistance<T> distance_between<T>(const PlacedCollider<T>&, const PlacedCollider<T>&);      \
+  prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);                  \
+  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T, T);              \
+  prefix Eigen::AlignedBox<T, 3> swept_box<T>(CharacterState<T>&, T);                                    \
+  prefix bool boxes_come_close<T>(const Eigen::AlignedBox<T, 3>&, const Eigen::AlignedBox<T, 3>&, T, T); \
   prefix bool come_close<T>(std::span<const MovingCollider<T>>, std::span<const MovingCollider<T>>, T, T);
 SINEW_CLOSENESS_INSTANCES(extern template, float)
 SINEW_CLOSENESS_INSTANCES(extern template, double)

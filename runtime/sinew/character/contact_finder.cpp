@@ -646,10 +646,10 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{make_finder<T>,      meets_obstacle<T>,        append_moving<T>,
-                                   come_close<T>,       place_colliders<T>,       predict_colliders<T>,
-                                   touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>,
-                                   measure<T>};
+constexpr ContactTerm<T> kContacts{
+    make_finder<T>,      meets_obstacle<T>,        append_moving<T>,   come_close<T>,
+    swept_box<T>,        boxes_come_close<T>,      place_colliders<T>, predict_colliders<T>,
+    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
 
 }  // namespace
 

@@ -254,6 +254,8 @@ struct ContactTerm {
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);
+  Eigen::AlignedBox<T, 3> (*swept_box)(CharacterState<T>& state, T h);
+  bool (*boxes_come_close)(const Eigen::AlignedBox<T, 3>& a, const Eigen::AlignedBox<T, 3>& b, T h, T margin);
   // See touching.h.
   void (*place_colliders)(CharacterState<T>& state, std::span<const Transform<T>> pose,
                           const Vec3<double>& root, const Vec3<double>& origin,

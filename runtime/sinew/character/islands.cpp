@@ -17,7 +17,8 @@ void Islands<T>::reserve(int states, int couplings, int colliders) {
   moving_.reserve(colliders);
   first_moving_.reserve(states);
   grid_.reserve(states);
-  for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_}) v->reserve(states);
+  box_.reserve(states);
+  for (auto* v : {&parent_, &dofs_, &island_, &members_, &awake_, &ball_}) v->reserve(states);
   first_.reserve(states + 1);
   first_tie_.reserve(states + 2);
   ties_.reserve(couplings);
@@ -97,6 +98,14 @@ void Islands<T>::divide_ties(const Couplings<T>& couplings) {
   first_tie_.pop_back();
 }
 
+/// What holds the nth state through the step.
+template <class T>
+const Eigen::AlignedBox<T, 3>& Islands<T>::box(CharacterState<T>& s, int n, const ContactTerm<T>& contacts,
+                                               T h) {
+  if (box_[n].isEmpty()) box_[n] = contacts.swept_box(s, h);
+  return box_[n];
+}
+
 /// The colliders of the nth state.
 template <class T>
 std::span<const MovingCollider<T>> Islands<T>::moving(CharacterState<T>& s, int n,
@@ -119,15 +128,18 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   island_.assign(count, -1);
   moving_.clear();
   first_moving_.assign(count, -1);
+  ball_.resize(count);
+  box_.assign(count, {});
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
   const auto meet = [&](int n, int other) {
     const T margin = (states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin)) *
                      std::max(states[n]->tree.scale.length, states[other]->tree.scale.length);
-    return contacts->come_close(moving(*states[n], n, *contacts, h),
+    return contacts->boxes_come_close(box(*states[n], n, *contacts, h),
+                                      box(*states[other], other, *contacts, h), h, margin) &&
+           contacts->come_close(moving(*states[n], n, *contacts, h),
                                 moving(*states[other], other, *contacts, h), h, margin);
   };
-  const auto center = [&](int n) { return states[n]->middle(); };
   // Together they leave a decimetre, and twice what both may move by.
   const auto reach = [&](int n) {
     return double(states[n]->radius + T(0.05) * states[n]->tree.scale.length + 2 * h * states[n]->pace());
@@ -149,13 +161,13 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   const bool may_meet = contacts && count > 1;
   for (int n = 0; n < count; ++n) {
     if (states[n]->parked) continue;
-    if (may_meet) grid_.add(n, center(n), reach(n));
+    if (may_meet) ball_[n] = grid_.add(n, states[n]->middle(), reach(n));
     if (!states[n]->levels.asleep) awake_.push_back(n);
   }
   if (may_meet) grid_.build();
   for (std::size_t next = 0; may_meet && next < awake_.size();) {  // grows by those who are woken
     const int n = awake_[next++];
-    grid_.overlapping(center(n), reach(n), [&](int other) {
+    grid_.overlapping(ball_[n], [&](int other) {
       CharacterState<T>& s = *states[other];
       // From the side of the first, unless the other sleeps.
       if ((other <= n && !s.levels.asleep) || root_of(other) == root_of(n) || !meet(n, other)) return;

@@ -43,6 +43,7 @@ class Islands {
   static bool takes_part(const CharacterState<T>& s) { return !s.parked && !s.levels.asleep; }
   void wake(int nap, std::span<const std::unique_ptr<CharacterState<T>>> states);
   void wake_tied(std::span<const std::unique_ptr<CharacterState<T>>> states, const Couplings<T>& couplings);
+  const Eigen::AlignedBox<T, 3>& box(CharacterState<T>& state, int n, const ContactTerm<T>& contacts, T h);
   std::span<const MovingCollider<T>> moving(CharacterState<T>& state, int n, const ContactTerm<T>& contacts,
                                             T h);
   int root_of(int state);
@@ -51,10 +52,12 @@ class Islands {
   void join(int a, int b, std::span<const std::unique_ptr<CharacterState<T>>> states, int most_dofs);
 
   NeighbourGrid grid_;
-  std::vector<MovingCollider<T>> moving_;  ///< of who has met somebody in this step
-  std::vector<int> first_moving_;          ///< [state] into moving_; −1: has not
-  std::vector<int> parent_;                ///< [state] union-find; towards the smallest index
-  std::vector<int> dofs_;                  ///< [state] of the island whose root it is
+  std::vector<int> ball_;                     ///< [state] its ball in the grid
+  std::vector<Eigen::AlignedBox<T, 3>> box_;  ///< [state] see swept_box(); empty: nobody has asked
+  std::vector<MovingCollider<T>> moving_;     ///< of who has met somebody in this step
+  std::vector<int> first_moving_;             ///< [state] into moving_; −1: has not
+  std::vector<int> parent_;                   ///< [state] union-find; towards the smallest index
+  std::vector<int> dofs_;                     ///< [state] of the island whose root it is
   std::vector<int> awake_;
   std::vector<int> island_;            ///< [state] number of the island
   std::vector<int> first_, members_;   ///< [island + 1] into members_

@@ -10,6 +10,11 @@ int member_count(const World<T>& world) {
 }
 
 template <class T>
+double reach_of(const World<T>& world, int character) {
+  return double(WorldInternals<T>::of(world).character(character)->radius);
+}
+
+template <class T>
 bool moves_by_itself(const World<T>& world, int member, T h, MovingBall& out) {
   const CharacterState<T>& s = *WorldInternals<T>::of(world).states[std::size_t(member)];
   if (s.parked || s.levels.asleep || (!s.is_prop && s.undisturbed())) return false;

@@ -14,8 +14,9 @@ void NeighbourGrid::reserve(int balls) {
   mask_ = buckets - 1;
 }
 
-void NeighbourGrid::add(int id, const Vec3<double>& center, double radius) {
+int NeighbourGrid::add(int id, const Vec3<double>& center, double radius) {
   balls_.push_back({center, radius, id, 0, 0});
+  return static_cast<int>(balls_.size()) - 1;
 }
 
 void NeighbourGrid::build() {

@@ -16,11 +16,18 @@ class NeighbourGrid {
   /// Set-up for so many balls; nothing allocates afterwards.
   void reserve(int balls);
   void clear() { balls_.clear(); }
-  /// A ball about `center` (m). `id` is what overlapping() answers with; add in ascending order.
-  void add(int id, const Vec3<double>& center, double radius);
+  /// A ball about `center` (m). `id` is what overlapping() answers with; add in ascending order. Returns how
+  /// many were added before.
+  int add(int id, const Vec3<double>& center, double radius);
   /// Sorts what was added into cells.
   void build();
 
+  /// The same for one of the balls themselves, by its number; itself included.
+  template <class Visit>
+  void overlapping(int ball, Visit&& visit) const {
+    const Ball& b = balls_[std::size_t(ball)];
+    overlapping(b.center, b.radius, visit);
+  }
   /// Calls visit(id) for every ball that overlaps the given one. Few cells are looked at, unless the radius
   /// is beyond kLarge.
   template <class Visit>

@@ -15,12 +15,11 @@ constexpr int kSectionsOfAxis = 44;  ///< golden, of a capsule's: to 1e-9 of it
 /// m, along the way near a shape of the host's, and away from it; of its distance, which may be too long.
 constexpr double kLeastStep = 0.02, kMostStep = 0.5, kShareOfDistance = 0.7;
 constexpr int kBisections = 30;
-constexpr int kMostInner = 6;        ///< points of an axis between its ends, as contacts have
-constexpr double kStretched = 3;     ///< of its radius at rest: no pose of a figure reaches further
-constexpr double kPropReach = 1.05;  ///< the same of a prop: its contact points have rounded corners
-constexpr double kChunk = 3;         ///< m of the way that are looked up in the grid at a time
-constexpr int kCellsOfChunk = 25;    ///< that this looks at, about
-constexpr double kFarthest = 1e7;    ///< m
+constexpr int kMostInner = 6;       ///< points of an axis between its ends, as contacts have
+constexpr double kRounded = 1.001;  ///< of its radius: float's digits
+constexpr double kChunk = 3;        ///< m of the way that are looked up in the grid at a time
+constexpr int kCellsOfChunk = 25;   ///< that this looks at, about
+constexpr double kFarthest = 1e7;   ///< m
 
 /// A cast as the shapes meet it.
 struct Probe {
@@ -227,7 +226,7 @@ class Search {
   void meet_state(int n) {
     CharacterState<T>& s = *world_.states[static_cast<std::size_t>(n)];
     if (s.parked || !(s.settings.layers & filter_.layers)) return;
-    const double whole = double(s.radius) * (s.is_prop ? kPropReach : kStretched);
+    const double whole = kRounded * double(s.radius);
     if (world_.plan.contacts && !comes_near(probe_, s.middle(), whole)) return;
     for (std::size_t c = 0; c < s.colliders.size(); ++c) {
       const Collider& collider = s.colliders[c];

@@ -50,9 +50,30 @@ Rig<T>::Rig(const Skeleton& s, const StepPlan<T>& plan)
   forward_kinematics<T>(tree, local, Vec3<T>::Zero(), rest);
   if (plan.contacts) choose_self_pairs(rest, *plan.contacts);
   choose_baked();
-  for (const ContactPoint<T>& p : points) {
-    const Vec3<T> at = rest.origin[p.body] + rest.rotation[p.body] * p.local;
-    radius = std::max(radius, (at - rest.origin[0]).norm() + p.radius);
+  measure_reach(rest);
+}
+
+/// Joints turn as they like and slide as far as their limits.
+template <class T>
+void Rig<T>::measure_reach(const Kinematics<T>& rest) {
+  body_reach.assign(tree.bodies, T(0));
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    T& reach = body_reach[colliders[c].joint];
+    reach = std::max(reach, bound_center[c].norm() + bound_radius[c]);
+  }
+  for (const ContactPoint<T>& p : points)
+    body_reach[p.body] = std::max(body_reach[p.body], p.local.norm() + p.half_axis.norm() + p.radius);
+  std::vector<T> chain(tree.bodies, T(0));  // from the root's origin to the joint, stretched
+  for (int i = 0; i < tree.bodies; ++i) {
+    const int parent = tree.parent[i];
+    chain[i] = parent < 0 ? (rest.origin[i] - rest.origin[0]).norm()
+                          : chain[parent] + T(skeleton.joints[i].rest.translation.norm());
+    for (int k = 0; k < tree.dof_count(i); ++k) {
+      const DofLimits& dof = skeleton.joints[i].dofs[k];
+      const double slide = std::max(std::abs(dof.lower), std::abs(dof.upper));
+      if (parent >= 0 && slide < 1e9 && slides(tree, tree.first_dof[i] + k)) chain[i] += T(slide);
+    }
+    if (body_reach[i] > T(0)) radius = std::max(radius, chain[i] + body_reach[i]);
   }
 }
 

@@ -85,16 +85,18 @@ struct Rig {
   std::vector<Collider> colliders;    ///< the skeleton's, each on a simulated joint
   std::vector<Vec3<T>> bound_center;  ///< [collider] bounding sphere, body axes
   std::vector<T> bound_radius;
+  std::vector<T> body_reach;  ///< [body] m, from its joint to the furthest of its colliders; 0: it has none
   std::vector<ContactPoint<T>> points;
   std::vector<int> first_point;         ///< [collider + 1] into points
   SupportPoints<T> support;             ///< those that may stand on the ground
   std::vector<std::uint8_t> may_touch;  ///< [collider, collider] self collision is possible
   std::vector<std::uint8_t> bakes;      ///< [body] hand, foot or toes: see CharacterDetail::bake
-  T radius;                             ///< m, from the root's origin to the furthest collider at rest
+  T radius;  ///< m, from the root's origin as far as a collider reaches, however its joints are turned
 
   Rig(const Skeleton& skeleton, const StepPlan<T>& plan);
 
  private:
+  void measure_reach(const Kinematics<T>& rest);
   void choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& contacts);
   void choose_baked();
 };

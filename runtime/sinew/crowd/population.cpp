@@ -22,7 +22,7 @@ struct Population::Impl {
   int capacity = 0, joints = 0;
   float strength = 1;                ///< of who has just been added
   float margin = 0;                  ///< m, see kMargin
-  float radius = 0;                  ///< m, of a character about its root
+  double radius = 0;                 ///< m, of a character about its root
   std::vector<int> place_of;         ///< [character] in the world, or −1
   std::vector<int> character_of;     ///< [place], or −1
   std::vector<int> free;             ///< places, the next one last
@@ -67,9 +67,7 @@ std::unique_ptr<Population> Population::create(const Skeleton& skeleton, const P
   impl->capacity = crowd.capacity;
   impl->joints = static_cast<int>(skeleton.joints.size());
   impl->margin = kMargin * static_cast<float>(scale_of(skeleton).length);
-  for (const Transform<float>& t : impl->world->character(0).model())
-    impl->radius =
-        std::max(impl->radius, (t.translation - impl->world->character(0).model()[0].translation).norm());
+  impl->radius = reach_of(*impl->world, 0);
   impl->place_of.assign(crowd.capacity, -1);
   impl->active.assign(crowd.capacity, 0);
   impl->character_of.assign(settings.places, -1);
@@ -126,7 +124,7 @@ void Population::Impl::call_neighbours(double h) {
     called[c] = 0;
     if (!active[c] || place_of[c] >= 0) continue;
     const double moves = h * double(crowd->root_velocity(c).norm());
-    grid.add(c, crowd->model(c)[0].translation.cast<double>(), double(radius) + moves);
+    grid.add(c, crowd->model(c)[0].translation.cast<double>(), radius + moves);
   }
   grid.build();
   for (; n < members; n = next_mover(n + 1))
