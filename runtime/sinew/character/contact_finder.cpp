@@ -36,11 +36,6 @@ std::uint64_t contact_id(int tree_a, int point, int tree_b, int shape) {
          std::uint64_t(shape + 1);
 }
 
-bool is_of_tree(std::uint64_t id, int tree) {
-  const std::uint64_t number = first_contact_id(tree) >> 48;
-  return id >> 48 == number || other_tree(id) == tree;
-}
-
 template <class T>
 bool between_trees(const Contact<T>& c) {
   return c.tree_b >= 0;

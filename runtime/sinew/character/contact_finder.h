@@ -35,6 +35,10 @@ constexpr std::uint64_t first_contact_id(int n) {
 constexpr int other_tree(std::uint64_t id) {
   return static_cast<int>((id >> 16) & 0xffff) - 1;
 }
+/// Whether a contact is of a tree, as either side.
+constexpr bool is_of_tree(std::uint64_t id, int tree) {
+  return id >> 48 == first_contact_id(tree) >> 48 || other_tree(id) == tree;
+}
 constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 constexpr int kFirstHost = 0x4000;  ///< their numbers of the host's shapes begin here, obstacles' at 0
 

@@ -113,7 +113,8 @@ bool limit(std::span<CharacterState<T>* const> states, const Vec3<double>& gravi
   double now = 0, kinetic = 0, loose = 0, internal = 0, ceiling = 0, rounded = 0;
   for (const CharacterState<T>* s : states) ceiling += s->energy_ceiling;
   if (strict || !std::isfinite(ceiling)) ceiling = before;
-  if (never_rises) ceiling = std::min(ceiling, before);  // what swings in flight does not in contact
+  if (never_rises)
+    ceiling = std::min(ceiling, before);  // what swings in flight and loops does not in contact
   pay_back(states, gravity, ceiling, still);
   for (const CharacterState<T>* s : states) {
     const CharacterReport& r = s->report;
@@ -242,7 +243,7 @@ bool EnergyBalance<T>::close(std::span<CharacterState<T>* const> states, std::sp
     const bool afloat = !tied && !strict && std::none_of(contacts.begin(), contacts.end(), [](const auto& c) {
       return c.tree_b < 0 && c.acts();
     });
-    return limit<T>(states, gravity, before, strict, touching, afloat);
+    return limit<T>(states, gravity, before, strict, touching && !tied, afloat);
   }
   bool damped = false;
   for (std::size_t n = 0; n < states.size(); ++n) {

@@ -62,6 +62,7 @@ class IslandStepper {
   void advance_part(T begin, T end, int splits_left);
   void find_contacts(T h);
   void begin_part(T h, T fraction);
+  bool goes_by_turning(std::size_t tree) const;
   bool turns_far(T h) const;
   bool strikes_deep(T h) const;
   void choose_guess(T h);

@@ -287,13 +287,14 @@ std::array<T, 2> elastic_share(const Contact<T>& c, T stick) {
   return {now.col(0).dot(slip), now.col(1).dot(slip)};
 }
 
-/// Of the forces at the end of a step, those that may be taken for smooth in time: all, where the same
-/// contacts `last`; else as far as they have lasted.
+/// Of the forces at the end of a step, those that may be taken for smooth in time: all but leaps, where the
+/// same contacts `last`; else as far as they have lasted.
 template <class T>
 void split(bool last, T share, Contact<T>& c) {
   const T now = normal_force(c);
   c.lasting_force = lasting(now, c.smooth_before, share);
-  c.smooth_force = last ? now : std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
+  c.smooth_force = last ? without_leap(now, c.lasting_last, c.lasting_before)
+                        : std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
 }
 
 /// Re-measures gap, normal, points and slips at the present kinematics of the two bodies (`b` ignored when

@@ -185,6 +185,7 @@ template <class T>
 void close_slowly(T h, Coupling<T>& c) {
   if (!c.closes_slowly) return;
   c.driven = c.closes();
+  T share = T(1);  // that closes of what is open, of all alike: else no rigid body has points at all of them
   for (Stencil<T>& e : c.stencils) {
     e.offset_before = e.offset;
     e.carried_before = e.carried;
@@ -200,8 +201,9 @@ void close_slowly(T h, Coupling<T>& c) {
     e.yields = c.strained && left > T(0);
     T closes = T(kClosingSpeed) * c.speed_scale * h;
     if (e.yields) closes = std::clamp(room, T(0), closes);
-    e.offset *= left > closes ? T(1) - closes / left : T(0);
+    if (left > closes) share = std::min(share, closes / left);
   }
+  for (Stencil<T>& e : c.stencils) e.offset *= T(1) - share;
   c.driven = c.driven || c.closes();
 }
 

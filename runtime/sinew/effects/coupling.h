@@ -160,18 +160,19 @@ TetrahedronHessian<T> tetrahedron_curvature(const Coupling<T>& coupling, const T
 
 constexpr double kClosingSpeed = 0.45;  ///< m/s at which an open loop closes, as contacts depenetrate
 
-/// m/s: how fast what is still open of an element closes.
+/// m/s: how fast what is still open of an element closes; of a loop's points the furthest does.
 template <class T>
 Vec3<T> closing_velocity(const Coupling<T>& c, const Stencil<T>& e) {
-  const T open = e.offset.norm();
-  return open > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / open))
-                     : Vec3<T>(Vec3<T>::Zero());
+  T furthest = T(0);
+  for (const Stencil<T>& other : c.stencils) furthest = std::max(furthest, other.offset.norm());
+  return furthest > T(0) ? Vec3<T>(e.offset * (-T(kClosingSpeed) * c.speed_scale / furthest))
+                         : Vec3<T>(Vec3<T>::Zero());
 }
 
-/// Lets what began open come nearer by h seconds at kClosingSpeed; what was torn apart from outside (a cut, a
-/// teleport) begins anew. A driven root may take a limb further than what that is tied to lets it: the loop
-/// yields, beyond what ten weights pull it apart, and closes with no more than these. Call at the start of a
-/// part of a step, at the pose there.
+/// Lets what began open come nearer by h seconds, the furthest of a loop's points at kClosingSpeed; what was
+/// torn apart from outside (a cut, a teleport) begins anew. A driven root may take a limb further than what
+/// that is tied to lets it: the loop yields, beyond what ten weights pull it apart, and closes with no more
+/// than these. Call at the start of a part of a step, at the pose there.
 template <class T>
 void close_slowly(T h, Coupling<T>& coupling);
 

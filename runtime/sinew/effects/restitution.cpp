@@ -155,6 +155,33 @@ void Restitution<T>::solve_impulses() {
     }
 }
 
+/// Whether something strikes what no unknown moves, nor the world: that gives energy which no tree had.
+template <class T>
+bool Restitution<T>::meets_driven(Trees trees) const {
+  const auto driven = [&](int n, int body) {
+    return n >= 0 && unknown_above<T>(*trees[n].problem.tree, body, unknowns_, first_[n]) < 0;
+  };
+  return std::any_of(impacts_.begin(), impacts_.end(), [&](const Impact& i) {
+    return driven(i.contact->tree_a, i.contact->body_a) || driven(i.contact->tree_b, i.contact->body_b);
+  });
+}
+
+/// J, that the solve took of what strikes, as it moved against what it struck. Uses the impulses' room.
+template <class T>
+double Restitution<T>::taken() {
+  const std::size_t m = impulse_.size();
+  const auto stopped = [](const Impact& i) { return i.contact->approach + i.left; };
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t i = 0; i < impacts_.size(); ++i)
+      if (const T own = delassus_[3 * i * (m + 1)]; own > T(0))
+        impulse_[3 * i] = std::max(T(0), impulse_[3 * i] + missing(3 * i, stopped(impacts_[i])) / own);
+  double sum = 0;
+  for (std::size_t i = 0; i < impacts_.size(); ++i)
+    sum += 0.5 * double(impulse_[3 * i] * (impacts_[i].contact->approach - impacts_[i].left));
+  std::fill(impulse_.begin(), impulse_.end(), T(0));
+  return sum;
+}
+
 /// What a contact stored in the impact is part of what the bounce gives back: it opens within the next step,
 /// whose implicit force would return nothing of it. The surface is let down to where the feature is, and
 /// comes back as for what begins inside something.
@@ -234,9 +261,11 @@ bool Restitution<T>::change_speeds(Trees trees, std::span<Contact<T>> contacts, 
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j < m; ++j)
       for (std::size_t k = 0; k < n; ++k) delassus_[i * m + j] += rows_[i * n + k] * answers_[j * n + k];
+  const bool driven = meets_driven(trees);
+  const double took = driven ? taken() : 0;
   solve_impulses();
   unload(trees);
-  const T share = affordable(budget - energy<T>(trees, gravity));
+  const T share = affordable(driven ? took : budget - energy<T>(trees, gravity));
   change_.assign(n, T(0));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t k = 0; k < n; ++k) change_[k] += share * impulse_[i] * answers_[i * n + k];

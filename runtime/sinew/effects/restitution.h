@@ -4,10 +4,11 @@
 // the normals are added to the velocities that it left, so that the bodies part at e·u: projected
 // Gauss–Seidel on
 //     J M⁻¹ Jᵀ p ≥ e·u − J v,   p ≥ 0, complementary,
-// M the trees' mass matrix over the unknowns. No step gains energy: p is scaled to what the impact took.
-// Simultaneous impacts after Newton's hypothesis. What they press rubs as well: in the same sweeps two
-// impulses along each surface, |p_t| ≤ μp, that leave no slip where they can. What the solve itself pressed
-// has rubbed in it (end_velocities.h).
+// M the trees' mass matrix over the unknowns. No step gains energy: p is scaled to what the impact took;
+// against what is driven, which does work of its own (a bat, a lift), to what it took of their motion against
+// that: ½ Σ p₀(u − Jv), p₀ the impulses that stopped it. Simultaneous impacts after Newton's hypothesis. What
+// they press rubs as well: in the same sweeps two impulses along each surface, |p_t| ≤ μp, that leave no slip
+// where they can. What the solve itself pressed has rubbed in it (end_velocities.h).
 #pragma once
 
 #include <span>
@@ -53,6 +54,8 @@ class Restitution final : public IslandEffect<T> {
   T missing(std::size_t row, T wanted) const;
   void rub(std::size_t impact);
   void solve_impulses();
+  bool meets_driven(Trees trees) const;
+  double taken();
   void unload(Trees trees);
   T affordable(double allowed) const;
   void move(const IslandTree<T>& moved, int first);

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "study/scenes/at_rates.h"
 #include "study/scenes/situation.h"
+#include "study/scenes/things.h"
 
 namespace sinew::study {
 namespace {
@@ -12,13 +14,6 @@ using scene::Scene;
 
 int seeds(bool quick, int full, int shortened = 1) {
   return quick ? shortened : full;
-}
-
-/// Everybody thrown otherwise.
-Scene reseeded(Scene scene, int seed) {
-  for (scene::SceneCharacter& c : scene.characters)
-    if (c.speeds.random > 0) c.speeds.seed += 100u * static_cast<unsigned>(seed);
-  return scene;
 }
 
 Scene alone(Scene scene) {
@@ -39,10 +34,6 @@ double deepest_between(const Judge& judge, int first, int last) {
   return judge.worst(first, last, [&](int f) { return judge.depth_between(f); });
 }
 
-double fastest_of(const Judge& judge, int first, int last, int member = -1) {
-  return judge.worst(first, last, [&](int f) { return judge.fastest(f, member); });
-}
-
 void note_times(const Played& played, Findings& found) {
   double most = 0, sum = 0;
   for (const scene::TelemetryRow& row : played.telemetry.rows) {
@@ -58,23 +49,6 @@ void note_passes(const Played& played, Findings& found) {
   for (const scene::TelemetryRow& row : played.telemetry.rows) passes += row.report.outer_passes;
   found.note("passes of a step, mean",
              passes / double(std::max<std::size_t>(played.telemetry.rows.size(), 1)));
-}
-
-constexpr std::initializer_list<double> kRates = {30.0, 60.0, 120.0};  ///< Hz that a game may step at
-
-/// Plays a scene at each rate (Hz), everybody thrown in so many ways, for look(played, judge). Nothing may be
-/// deeper in floor and obstacles than `depth` (m).
-template <class Look>
-void at_rates(const Scene& scene, std::initializer_list<double> rates, int throws, double depth,
-              Findings& found, const Look& look) {
-  for (const double hz : rates)
-    for (int seed = 0; seed < throws; ++seed) {
-      Scene at = reseeded(scene, seed);
-      at.frame_rate = hz;
-      const Played played(at);
-      found.sound(played, depth);
-      look(played, played.judge());
-    }
 }
 
 constexpr double kBeside = 0.1;  ///< m: nearer than that it is no bystander
@@ -680,7 +654,7 @@ void leash_too_short(const Scene& scene, bool, Findings& found) {
 }  // namespace
 
 std::vector<Situation> situations() {
-  return {
+  std::vector<Situation> all = {
       {"bystanders", "what is near and never touches changes nothing, to the bit", bystanders},
       {"levels", "another's detail changes nothing", levels},
       {"corner", "ten figures at 15 m/s stay above the floor and before the walls", corner},
@@ -730,6 +704,9 @@ std::vector<Situation> situations() {
       {"leash_too_short", "a loop yields to a driven root", leash_too_short},
       {"led_through_each_other", "who is driven into something is driven on", moves_at_walking_pace},
   };
+  const std::vector<Situation> things = situations_of_things();
+  all.insert(all.end(), things.begin(), things.end());
+  return all;
 }
 
 }  // namespace sinew::study
