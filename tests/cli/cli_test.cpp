@@ -5,6 +5,8 @@
 
 #include "cli/command.h"
 #include "fixtures/paths.h"
+#include "import/morphing_leg.h"
+#include "sinew/io/asset.h"
 
 namespace sinew::test {
 namespace {
@@ -72,6 +74,26 @@ TEST(Command, SaysItsVersionAndWhatClipsSayBesideTheirMotion) {
   const Outcome bad = sinew("info " + kCharacter + " --clip-data " + written("bad.json", "{\"clip\": 1}"));
   EXPECT_EQ(bad.code, 1);
   EXPECT_NE(bad.out.find("unknown key 'clip'"), std::string::npos) << bad.out;
+}
+
+TEST(Command, ListsMorphTargets) {
+  const std::string leg = written("leg.gltf", import::test::morphing_leg().dump());
+  const std::string asset = own_directory() + "leg.sinew", lost = own_directory() + "lost.sinew";
+  const Outcome convert = sinew("convert " + leg + " -o " + asset);
+  EXPECT_NE(convert.out.find("2 morph targets"), std::string::npos) << convert.out;
+  Asset without;
+  ASSERT_TRUE(load_asset(asset.c_str(), without).ok());
+  without.report_json.clear();
+  const std::vector<std::uint8_t> bytes = write_asset(without);
+  written("lost.sinew", std::string(bytes.begin(), bytes.end()));
+  const json wanted = json::parse(R"([{"mesh": "skin0", "name": "smile", "vertices": 1},
+                                      {"mesh": "skin0", "name": "frown", "vertices": 1}])");
+  for (const std::string& file : {leg, asset, lost}) {
+    const Outcome info = sinew("info " + file), as_json = sinew("info " + file + " --json");
+    EXPECT_NE(info.out.find("morph targets: frown smile\n"), std::string::npos) << info.out;
+    ASSERT_EQ(as_json.code, 0) << as_json.out;
+    EXPECT_EQ(json::parse(as_json.out)["morph_targets"], wanted) << file;
+  }
 }
 
 TEST(Command, NamesInAnyEncodingAreWritten) {

@@ -199,6 +199,76 @@ TEST(GltfExport, CarriesWhatClipsSayBesideTheirMotion) {
   EXPECT_EQ(again.curve_slots[0].rest, asset.curve_slots[0].rest);
 }
 
+/// The project's character with targets "smile" (0.25 at rest, moved by its walk) and "frown".
+Asset with_face() {
+  Asset asset = mannequin();
+  Mesh& mesh = asset.meshes[0];
+  const std::size_t numbers = mesh.positions.size();
+  std::vector<float> smile(numbers, 0), frown(numbers, 0), tilts(numbers, 0);
+  for (std::size_t k = 30; k < 90; k += 3) smile[k + 2] = 0.01f + 1e-4f * float(k);
+  for (std::size_t k = 0; k < numbers; k += 3) frown[k] = 0.02f, tilts[k + 1] = 0.25f;
+  mesh.morphs.resize(2);
+  EXPECT_TRUE(build_morph_target(smile, {}, 1e-5f, mesh.morphs[0]));
+  EXPECT_TRUE(build_morph_target(frown, tilts, 1e-5f, mesh.morphs[1]));
+  for (const auto& [name, rest] : {std::pair("smile", 0.25f), {"frown", 0.f}}) {
+    mesh.morph_curves.push_back(static_cast<int>(asset.curve_slots.size()));
+    asset.curve_slots.push_back({name, rest});
+  }
+  Clip& walk = asset.clips[static_cast<std::size_t>(asset.find_clip("walk"))];
+  EXPECT_TRUE(walk.loops);
+  walk.curves.push_back({mesh.morph_curves[0], walk.duration / 4, {0, 1, 0.5f, -0.25f}});
+  return asset;
+}
+
+/// Where vertices and normals of a mesh are when each target counts a half.
+std::pair<std::vector<float>, std::vector<float>> half_morphed(const Mesh& mesh) {
+  const std::vector<float> weights(mesh.morphs.size(), 0.5f);
+  std::pair<std::vector<float>, std::vector<float>> out{mesh.positions, mesh.normals};
+  EXPECT_TRUE((MorphJob{mesh.positions, mesh.normals, mesh.morphs, weights, out.first, out.second}.Run()));
+  return out;
+}
+
+TEST(GltfExport, MorphTargetsAndTheirCurvesComeBack) {
+  const Asset asset = with_face();
+  const File file(asset);
+  const std::string path = written("face.glb", file.bytes);
+  const Asset again = converted(path);
+  const Mesh &mesh = asset.meshes[0], &back = again.meshes.at(0);
+  ASSERT_EQ(back.morphs.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(again.curve_slots[static_cast<std::size_t>(back.morph_curves[k])].name,
+              asset.curve_slots[static_cast<std::size_t>(mesh.morph_curves[k])].name);
+  EXPECT_EQ(again.curve_slots[static_cast<std::size_t>(again.find_curve("smile"))].rest, 0.25f);
+  ASSERT_EQ(back.positions.size(), mesh.positions.size());
+  const auto wanted = half_morphed(mesh), found = half_morphed(back);
+  for (std::size_t k = 0; k < wanted.first.size(); ++k) {
+    ASSERT_NEAR(found.first[k], wanted.first[k], 1e-5f) << k;
+    ASSERT_NEAR(found.second[k], wanted.second[k], 2e-3f) << k;
+  }
+  // The weights as other programs see them: one sampler, of the clip that moves them.
+  import::SourceScene scene;
+  std::string error;
+  ASSERT_TRUE(import::read_source(path, {}, scene, error)) << error;
+  for (const import::SourceClip& clip : scene.clips) {
+    ASSERT_EQ(clip.morphs.size(), clip.name == "walk" ? 1u : 0u) << clip.name;
+    if (clip.morphs.empty()) continue;
+    const Motion& motion = file.motions()[static_cast<std::size_t>(asset.find_clip("walk"))];
+    ASSERT_EQ(clip.morphs[0].times.size(), motion.times.size());
+    for (std::size_t k = 0; k < motion.times.size(); ++k) {
+      const double smile = motion.curves[k][static_cast<std::size_t>(mesh.morph_curves[0])];
+      EXPECT_NEAR(double(clip.morphs[0].weights[2 * k]), std::max(0.0, smile),
+                  1e-6);  // assimp's: never below 0
+      EXPECT_EQ(clip.morphs[0].weights[2 * k + 1], 0);
+    }
+  }
+}
+
+TEST(GltfExport, MorphTargetsAreValid) {
+  const Asset asset = with_face();
+  expect_valid(written("face.glb", File(asset).bytes));
+  expect_valid(written("face_splines.glb", File(asset, true).bytes));
+}
+
 /// A sampler's values in the middle between two keys: Hermite's polynomial where it is a spline.
 Eigen::Vector4d midway(const std::vector<float>& values, std::size_t width, bool cubic, std::size_t key,
                        double h) {

@@ -4,7 +4,7 @@
 
 #include "convert/convert.h"
 #include "import/scene_check.h"
-#include "reading.h"
+#include "morphing_leg.h"
 #include "sinew/io/asset.h"
 
 namespace sinew::import::test {
@@ -100,6 +100,13 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Seed{"Gltf", "a.gltf", [] { return with_triangle(kicking_leg(), 0).dump(); }},
                     Seed{"Glb", "a.glb",
                          [] { return as_glb(with_triangle(kicking_leg(), 0), kick_keys_and_corners()); }},
+                    Seed{"MorphingGltf", "a.gltf", [] { return morphing_leg().dump(); }},
+                    Seed{"MorphingGlb", "a.glb",
+                         [] {
+                           std::vector<float> values;
+                           const nlohmann::json gltf = morphing_leg({}, values);
+                           return as_glb(gltf, values);
+                         }},
                     Seed{"Bvh", "a.bvh", [] { return walking_bvh(); }},
                     Seed{"Fbx", "a.fbx", [] { return model("FBX/huesitos.fbx"); }},
                     Seed{"Collada", "a.dae", [] { return model("Collada/box_nested_animation.dae"); }},

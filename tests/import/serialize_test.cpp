@@ -29,15 +29,24 @@ SourceScene full_scene() {
   mesh.indices = {0, 1, 2};
   mesh.bones.push_back({1, Eigen::Matrix4d::Identity(), {{0, 0.5f}, {2, 1.f}}});
   mesh.material = 0;
+  mesh.morphs.push_back({"smile", 0.5f, {{0, 0, 0}, {0, 0.25f, 0}, {0, 0, 0}}});
+  mesh.morphs.push_back({"frown", 0, mesh.morphs[0].moves, mesh.morphs[0].moves});
   s.meshes.push_back(mesh);
   s.materials.push_back({"cloth", {1, 0.5f, 0.25f, 1}, {1, 2, 3}});
-  SourceClip clip{.name = "walk", .duration = 1, .begin = 0.5, .key_rate = 2, .extras = "{}", .channels = {}};
+  SourceClip clip{.name = "walk",
+                  .duration = 1,
+                  .begin = 0.5,
+                  .key_rate = 2,
+                  .extras = "{}",
+                  .channels = {},
+                  .morphs = {}};
   SourceChannel channel;
   channel.node = 1;
   channel.position_times = channel.rotation_times = channel.scale_times = {0, 0.5};
   channel.positions = channel.scales = {Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 5, 6)};
   channel.rotations = {Eigen::Quaterniond::Identity(), Eigen::Quaterniond(0, 1, 0, 0)};
   clip.channels.push_back(channel);
+  clip.morphs.push_back({.mesh = 0, .times = {0, 0.5}, .weights = {0, 0.25f, 0.5f, 1}});
   s.clips.push_back(clip);
   SourceUrdfLink link;
   link.name = "base";
@@ -61,6 +70,11 @@ TEST(Serialize, BringsEverythingBack) {
   EXPECT_EQ(back.meshes[0].bones[0].weights[1].first, 2u);
   EXPECT_EQ(back.clips[0].channels[0].positions[1].z(), 6);
   EXPECT_EQ(back.links[0].mass, 3);
+  EXPECT_EQ(back.meshes[0].morphs[0].name, "smile");
+  EXPECT_EQ(back.meshes[0].morphs[0].weight, 0.5f);
+  EXPECT_EQ(back.meshes[0].morphs[1].tilts[1][1], 0.25f);
+  EXPECT_EQ(back.clips[0].morphs[0].times[1], 0.5);
+  EXPECT_EQ(back.clips[0].morphs[0].weights[3], 1);
 }
 
 TEST(Serialize, RefusesEveryTruncation) {
@@ -141,6 +155,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"BoneNowhere", [](SourceScene& s) { s.meshes[0].bones[0].node = 2; }},
         Fault{"WeightNan", [](SourceScene& s) { s.meshes[0].bones[0].weights[0].second = kNanFloat; }},
         Fault{"WeightOfNoVertex", [](SourceScene& s) { s.meshes[0].bones[0].weights[0].first = 3; }},
+        Fault{"MorphTargetTooShort", [](SourceScene& s) { s.meshes[0].morphs[0].moves.pop_back(); }},
+        Fault{"MorphTargetTiltsTooFew", [](SourceScene& s) { s.meshes[0].morphs[1].tilts.pop_back(); }},
+        Fault{"MorphTargetNan", [](SourceScene& s) { s.meshes[0].morphs[0].moves[1][2] = kNanFloat; }},
+        Fault{"MorphTargetTiltNan", [](SourceScene& s) { s.meshes[0].morphs[1].tilts[1][2] = kNanFloat; }},
+        Fault{"MorphWeightNan", [](SourceScene& s) { s.meshes[0].morphs[0].weight = kNanFloat; }},
+        Fault{"MorphsOfNoMesh", [](SourceScene& s) { s.clips[0].morphs[0].mesh = 1; }},
+        Fault{"MorphKeyMissing", [](SourceScene& s) { s.clips[0].morphs[0].weights.pop_back(); }},
+        Fault{"MorphKeyNan", [](SourceScene& s) { s.clips[0].morphs[0].weights[2] = kNanFloat; }},
+        Fault{"MorphTimesFall", [](SourceScene& s) { s.clips[0].morphs[0].times[1] = -1; }},
         Fault{"ColourNan", [](SourceScene& s) { s.materials[0].base_color[3] = kNanFloat; }},
         Fault{"ChannelNowhere", [](SourceScene& s) { s.clips[0].channels[0].node = 2; }},
         Fault{"TimesFall", [](SourceScene& s) { s.clips[0].channels[0].scale_times[1] = -1; }},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "fixtures/humanoid.h"
@@ -84,6 +85,10 @@ Asset sample_asset() {
   mesh.joints.assign(12, 2);
   mesh.weights = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
   mesh.material = 0;
+  mesh.morphs.resize(2);
+  mesh.morphs[0] = {{{0, 1}, {2, 1}}, {1, 2, 3, 4, 5, -32767}, 0.001f, {0, 0, 7, 0, 0, 9}, 0.5f};
+  mesh.morphs[1] = {{{1, 2}}, {1, 0, 0, 0, 1, 0}, 0.25f, {}, 0};
+  mesh.morph_curves = {1, 0};  // "smile", "strength"
   asset.meshes.push_back(mesh);
   asset.materials.push_back({"clay", {0.5f, 0.4f, 0.3f, 1}, {1, 2, 3}});
   asset.inverse_bind.resize(std::size_t(joints));
@@ -127,6 +132,47 @@ TEST(Asset, HoldsWhatClipsSayBesideTheirMotion) {
   ASSERT_EQ(clip.markers.size(), 2u);
   EXPECT_EQ(clip.markers[1].time, 0.625);
   EXPECT_TRUE(back.clips[1].events.empty());
+}
+
+TEST(Asset, HoldsMorphTargets) {
+  Asset back;
+  ASSERT_TRUE(read_asset(write_asset(sample_asset()), back).ok());
+  const Mesh wanted = sample_asset().meshes[0], mesh = back.meshes[0];
+  EXPECT_EQ(mesh.morph_curves, wanted.morph_curves);
+  ASSERT_EQ(mesh.morphs.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(mesh.morphs[k].moves, wanted.morphs[k].moves);
+    EXPECT_EQ(mesh.morphs[k].tilts, wanted.morphs[k].tilts);
+    EXPECT_EQ(mesh.morphs[k].scale, wanted.morphs[k].scale);
+    EXPECT_EQ(mesh.morphs[k].tilt_scale, wanted.morphs[k].tilt_scale);
+  }
+  EXPECT_EQ(mesh.morphs[0].runs[1].first, 2u);
+  EXPECT_EQ(mesh.morphs[1].runs[0].count, 2u);
+}
+
+TEST(Asset, MorphTargetsThatDoNotFitTheirMeshAreRefused) {
+  const auto refused = [](const auto& spoil, const std::string& reason) {
+    Asset bad = sample_asset(), out;
+    spoil(bad.meshes[0]);
+    const Status status = read_asset(write_asset(bad), out);
+    EXPECT_FALSE(status.ok());
+    EXPECT_EQ(status.reason, reason);
+    EXPECT_EQ(status.index, 0);
+  };
+  const char* const kOther = "mesh has a morph target of other vertices";
+  const char* const kNoCurve = "mesh has a morph target without a curve";
+  refused([](Mesh& m) { m.morphs[0].runs[1].first = 3; }, kOther);
+  refused([](Mesh& m) { m.morphs[0].runs[1].first = 0; }, kOther);
+  refused([](Mesh& m) { m.morphs[0].runs[0].count = 0; }, kOther);
+  refused([](Mesh& m) { m.morphs[1].runs[0].count = 0xFFFFFFFFu; }, kOther);
+  refused([](Mesh& m) { std::swap(m.morphs[0].runs[0], m.morphs[0].runs[1]); }, kOther);
+  refused([](Mesh& m) { m.morphs[0].moves.pop_back(); }, kOther);
+  refused([](Mesh& m) { m.morphs[0].tilts.push_back(0); }, kOther);
+  refused([](Mesh& m) { m.morphs[1].scale = std::numeric_limits<float>::quiet_NaN(); }, kOther);
+  refused([](Mesh& m) { m.morphs[0].tilt_scale = std::numeric_limits<float>::infinity(); }, kOther);
+  refused([](Mesh& m) { m.morph_curves[1] = 2; }, kNoCurve);
+  refused([](Mesh& m) { m.morph_curves[1] = -1; }, kNoCurve);
+  refused([](Mesh& m) { m.morph_curves.pop_back(); }, kNoCurve);
 }
 
 TEST(Asset, NamesOfEventsCurvesAndMasksAreChecked) {
@@ -198,6 +244,21 @@ TEST(Asset, FilesOfTheFirstVersionAreStillRead) {
   EXPECT_EQ(back.skeleton.joints.size(), asset.skeleton.joints.size());
 }
 
+/// version_2_1.sinew: sample_asset() by the writer before meshes had morph targets.
+TEST(Asset, FilesFromBeforeMorphTargetsAreStillRead) {
+  Asset back;
+  const Status status = load_asset((source_dir() + "/tests/io/version_2_1.sinew").c_str(), back);
+  ASSERT_TRUE(status.ok()) << status.reason;
+  const Asset asset = sample_asset();
+  ASSERT_EQ(back.clips.size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) expect_same_motion(asset.clips[c], back.clips[c]);
+  EXPECT_EQ(back.find_curve("smile"), 1);
+  ASSERT_EQ(back.meshes.size(), 1u);
+  EXPECT_EQ(back.meshes[0].positions, asset.meshes[0].positions);
+  EXPECT_TRUE(back.meshes[0].morphs.empty());
+  EXPECT_TRUE(back.meshes[0].morph_curves.empty());
+}
+
 TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {
   const std::vector<std::uint8_t> good = write_asset(sample_asset());
   constexpr unsigned kSeed = 20261121;
@@ -232,6 +293,13 @@ TEST(Asset, DamagedImagesGiveAnErrorOrAValidAssetButNeverACrash) {
       continue;
     }
     ASSERT_TRUE(validate(out.skeleton).ok()) << "mutation " << n;
+    for (const Mesh& mesh : out.meshes) {
+      ASSERT_EQ(mesh.morph_curves.size(), mesh.morphs.size());
+      for (const int slot : mesh.morph_curves) ASSERT_LT(std::size_t(slot), out.curve_slots.size());
+      const std::vector<float> weights(mesh.morphs.size(), 0.5f);
+      std::vector<float> moved(mesh.positions.size());
+      ASSERT_TRUE((MorphJob{mesh.positions, {}, mesh.morphs, weights, moved}.Run().ok()));
+    }
     for (const Clip& clip : out.clips) {
       std::vector<JointJet<float>> jets(out.skeleton.joints.size());
       ASSERT_TRUE((SamplingJob<float>{&clip, 0.3, jets}.Run().ok()));

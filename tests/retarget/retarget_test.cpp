@@ -106,6 +106,43 @@ TEST(Retarget, WhatAClipSaysComesAlongInItsTime) {
   EXPECT_EQ(again.clips[0].events.size(), before.events.size());
 }
 
+TEST(Retarget, MorphTargetsStayWithTheTargetAndFollowTheSourcesCurves) {
+  Asset source = mannequin(), target = mannequin(0.9), out;
+  const auto add_face = [](Asset& asset, std::vector<std::string> names) {
+    Mesh& mesh = asset.meshes[0];
+    for (const std::string& name : names) {
+      mesh.morphs.push_back({{{0, 1}}, {0, 0, 1}, 0.01f, {}, 0});
+      mesh.morph_curves.push_back(static_cast<int>(asset.curve_slots.size()));
+      asset.curve_slots.push_back({name, 0});
+    }
+  };
+  add_face(source, {"blink", "smile"});
+  add_face(target, {"smile", "frown"});
+  const int slot = source.find_curve("smile");
+  Clip& walk = source.clips[std::size_t(source.find_clip("walk"))];
+  walk.curves.push_back({slot, walk.duration, {0.75f}});
+  if (!walk.loops) walk.curves.back().controls.assign(4, 0.75f);
+  Options options;
+  options.clips = {"walk"};
+  nlohmann::json report;
+  const Error error = retarget_clips(source, target, options, out, report);
+  ASSERT_FALSE(error) << error.message;
+  Asset back;
+  ASSERT_TRUE(read_asset(write_asset(out), back));
+  const Mesh& mesh = back.meshes[0];
+  ASSERT_EQ(mesh.morphs.size(), 2u);
+  const auto curve = [&](std::size_t morph) {
+    return back.curve_slots[std::size_t(mesh.morph_curves[morph])].name;
+  };
+  EXPECT_EQ(curve(0), "smile");
+  EXPECT_EQ(curve(1), "frown");
+  const auto& curves = back.clips[0].curves;
+  const auto moved = std::find_if(curves.begin(), curves.end(),
+                                  [&](const FloatCurve& c) { return c.slot == mesh.morph_curves[0]; });
+  ASSERT_NE(moved, curves.end());
+  EXPECT_EQ(moved->controls[0], 0.75f);
+}
+
 TEST(Retarget, AnotherRestPoseIsNoOtherMotion) {
   Asset odd = mannequin();
   turn_rest(odd.skeleton, Role::kUpperArmL, {1.0, 0, 0});

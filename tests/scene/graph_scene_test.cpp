@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -52,6 +54,16 @@ TEST(GraphScene, WalksRunsIsHitFallsGetsUpAndRuns) {
   EXPECT_LT(root(8)[2], 0.35f) << "lies";
   EXPECT_GT(root(12.2)[2], 0.85f) << "is up";
   EXPECT_GT(speed(14.7), 2.0f) << "runs on";
+  const Asset& asset = *recording.characters[0];
+  const auto control = [&](const Frame& frame) {
+    return frame.characters[0].curve(asset, std::size_t(asset.find_curve("control")));
+  };
+  EXPECT_NEAR(control(recording.frames.back()), 1, 1e-5f) << "listens to the player";
+  EXPECT_LT(
+      control(*std::min_element(recording.frames.begin(), recording.frames.end(),
+                                [&](const Frame& a, const Frame& b) { return control(a) < control(b); })),
+      0.1f)
+      << "does not while it gets up";
   // It goes on where it is: nothing leaps. The fastest that anything does here is to fall and to run.
   for (std::size_t k = 1; k < recording.frames.size(); ++k) {
     const auto &now = recording.frames[k].characters[0].model,

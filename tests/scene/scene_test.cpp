@@ -11,6 +11,7 @@
 
 #include "fixtures/paths.h"
 #include "scene/run.h"
+#include "sinew/animation/curve_job.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew::scene {
@@ -122,6 +123,26 @@ TEST(Scene, TonesAreReadAndWhatIsNoneIsRefused) {
     const convert::Error error = load(keys, unused);
     EXPECT_NE(error.message.find(where), std::string::npos) << keys << ": " << error.message;
   }
+}
+
+TEST(Scene, ItsRecordingHoldsTheCurvesOfItsClips) {
+  const Result r = run(R"(, "clips": [{"clip": "get_up_supine"}])", "", 4);
+  const Asset& asset = *r.scene.characters[0].asset;
+  const int control = asset.find_curve("control");
+  ASSERT_GE(control, 0);
+  std::vector<TimeJet<float>> curves(asset.curve_slots.size());
+  float least = 1, most = 0;
+  for (const double t : {0.0, 1.0, 2.9, 3.0, 3.5}) {
+    const Clip& clip = asset.clips[static_cast<std::size_t>(asset.find_clip("get_up_supine"))];
+    ASSERT_TRUE((CurveJob<float>{&clip, t, asset.curve_slots, curves}.Run().ok()));
+    const float value = r.at(t).curve(asset, static_cast<std::size_t>(control));
+    EXPECT_NEAR(value, curves[static_cast<std::size_t>(control)].value, 1e-5f) << t;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  EXPECT_LT(least, 0.1f);
+  EXPECT_GT(most, 0.9f);
+  EXPECT_EQ(CharacterFrame{}.curve(asset, static_cast<std::size_t>(control)), 1);  // its rest
 }
 
 TEST(Scene, UndisturbedPlaybackIsTheClip) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "cli/batch.h"
 #include "cli/convert_folder.h"
@@ -120,6 +121,7 @@ struct InfoCommand {
       for (std::size_t k = 0; k < clips.size(); ++k) report["clips"][k].update(clips[k]);
     report["masks"] = json::object();
     for (const sinew::JointMask& mask : asset.masks) report["masks"][mask.name] = mask.weights;
+    report["morph_targets"] = morph_targets(asset);
     if (json_output)
       std::puts(cli::json_text(report).c_str());
     else
@@ -136,9 +138,26 @@ struct InfoCommand {
     json masks = json::array();
     for (const auto& [name, weights] : report["masks"].items()) masks.push_back(name);
     report["masks"] = masks;
+    std::set<std::string> targets;
+    for (const json& target : report["morph_targets"]) targets.insert(target["name"].get<std::string>());
+    report["morph_targets"] = targets;
     for (json& clip : report["clips"])
       for (const char* what : {"contacts", "events", "curves", "markers"}) clip[what] = clip[what].size();
     return report;
+  }
+
+  /// Of every mesh, each with the vertices that it moves.
+  static json morph_targets(const Asset& asset) {
+    json out = json::array();
+    for (const sinew::Mesh& mesh : asset.meshes)
+      for (std::size_t k = 0; k < mesh.morphs.size(); ++k) {
+        std::size_t vertices = 0;
+        for (const sinew::MorphRun& run : mesh.morphs[k].runs) vertices += run.count;
+        out.push_back({{"mesh", mesh.name},
+                       {"name", asset.curve_slots[static_cast<std::size_t>(mesh.morph_curves[k])].name},
+                       {"vertices", vertices}});
+      }
+    return out;
   }
 
   /// What a clip says beside its motion.

@@ -19,7 +19,23 @@ bool is_asset(const std::string& path) {
   return std::string(head + 4, 4) == "SNEW";
 }
 
-/// Clips of assets that have the joints of `character`, which gains them.
+/// The clips' curves, events and slots take the place of the character's own. Its morph targets follow the
+/// curves of their names, at the end where no clip moves them.
+void take_clips(Asset&& clips, Asset& character) {
+  for (Mesh& mesh : character.meshes)
+    for (int& slot : mesh.morph_curves) {
+      const CurveSlot& own = character.curve_slots[static_cast<std::size_t>(slot)];
+      slot = clips.find_curve(own.name);
+      if (slot >= 0) continue;
+      slot = static_cast<int>(clips.curve_slots.size());
+      clips.curve_slots.push_back(own);
+    }
+  character.clips = std::move(clips.clips);
+  character.curve_slots = std::move(clips.curve_slots);
+  character.event_names = std::move(clips.event_names);
+}
+
+/// Clips of assets that have the joints of `character`, which takes them instead of its own.
 Error add_clips(const std::string& path, Asset& character) {
   Asset clips;
   nlohmann::json report;
@@ -31,9 +47,7 @@ Error add_clips(const std::string& path, Asset& character) {
   for (std::size_t j = 0; j < a.size(); ++j)
     if (a[j].name != b[j].name || a[j].parent != b[j].parent)
       return {path + ": joint '" + a[j].name + "' stands where '" + b[j].name + "' does in --from"};
-  character.clips = std::move(clips.clips);
-  character.curve_slots = std::move(clips.curve_slots);
-  character.event_names = std::move(clips.event_names);
+  take_clips(std::move(clips), character);
   return {};
 }
 

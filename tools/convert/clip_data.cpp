@@ -434,6 +434,7 @@ void add_clip(const ClipEntry& entry, Asset& asset, Clip& clip) {
     for (auto& [time, value] : inside.keys) time = within(time, clip, what);
     FloatCurve fitted = fit_curve(inside, double(clip.duration), clip.loops);
     fitted.slot = asset.find_curve(name);
+    std::erase_if(clip.curves, [&](const FloatCurve& c) { return c.slot == fitted.slot; });
     clip.curves.push_back(std::move(fitted));
   }
   std::sort(clip.curves.begin(), clip.curves.end(),
@@ -476,7 +477,12 @@ void add_all(const ClipData& data, bool may_miss, Asset& asset, Json& report) {
     for (const auto& [curve, keys] : entry.curves) slots.emplace(curve, 0);
     for (const EventEntry& e : entry.events.value_or(std::vector<EventEntry>())) events.insert(e.name);
   }
-  for (const auto& [name, rest] : slots) asset.curve_slots.push_back({name, static_cast<float>(rest)});
+  for (const auto& [name, rest] : slots)  // clips of other skeletons may have brought theirs
+    if (const int slot = asset.find_curve(name); slot < 0)
+      asset.curve_slots.push_back({name, static_cast<float>(rest)});
+    else if (data.curves.count(name) > 0)
+      asset.curve_slots[static_cast<std::size_t>(slot)].rest = static_cast<float>(rest);
+  events.insert(asset.event_names.begin(), asset.event_names.end());
   asset.event_names.assign(events.begin(), events.end());
   for (const auto& [name, entry] : data.masks) {
     asset.masks.push_back(spread(name, entry, asset.skeleton));

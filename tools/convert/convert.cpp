@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <new>
+#include <set>
 
 #include "convert/body.h"
 #include "convert/clip_data.h"
@@ -125,6 +126,15 @@ Error read_extras(const std::string& extras, const std::function<Error(const nlo
   return {};
 }
 
+/// Weights of morph targets are curves; JSON that has one of that name counts instead.
+void add_morph_weights(const Rig& rig, ClipData& data) {
+  for (const auto& [name, rest] : rig.morph_rest) data.curves.emplace(name, rest);
+  for (const Rig::Motion& motion : rig.motions)
+    for (const auto& [name, keys] : motion.morph_keys)
+      if (rig.morph_rest.count(name) > 0)
+        data.clips[motion.name].curves.emplace(name, CurveKeys{keys, false});
+}
+
 /// All that is said of clips beside their motion: in the sources, in files beside them, in the options; what
 /// comes later counts.
 Error gather(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
@@ -139,6 +149,7 @@ Error gather(const std::vector<std::string>& inputs, const std::vector<import::S
               return data.read(json);
             }))
       return in_file(inputs[i], error.message);
+  add_morph_weights(rig, data);
   for (const Rig::Motion& motion : rig.motions)
     if (Error error = read_extras(motion.extras, [&](const nlohmann::json& json) {
           return data.read_clip(motion.name, json, motion.begin);
@@ -204,11 +215,24 @@ std::vector<Clip> demanding_clips(const std::vector<Clip>& clips, const ClipData
   return demanding;
 }
 
+/// Once the asset's curves are known.
+void find_morph_curves(const std::vector<std::vector<std::string>>& names, Asset& asset,
+                       nlohmann::json& report) {
+  std::set<std::string> all;
+  for (std::size_t m = 0; m < names.size(); ++m)
+    for (const std::string& name : names[m]) {
+      asset.meshes[m].morph_curves.push_back(asset.find_curve(name));
+      all.insert(name);
+    }
+  if (!all.empty()) report["morph_targets"] = all;
+}
+
 Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<import::SourceScene>& scenes,
                      const Options& options, const AddForeignClips& add_foreign, Asset& out,
                      nlohmann::json& report) {
   Asset asset;
   ClipData data;
+  std::vector<std::vector<std::string>> morph_names;  // [mesh][morph]
   if (scenes[0].format == "urdf") {
     if (scenes.size() > 1) return in_file(inputs[1], "a URDF takes no further files");
     if (Error error = build_urdf(scenes[0], options, asset, report)) return in_file(inputs[0], error.message);
@@ -235,6 +259,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
     for (Clip& clip : asset.clips) find_contacts(asset.skeleton, rig.height, clip, report);
     note_odd_size(asset.skeleton, rig.height, report);
     asset.meshes = std::move(rig.meshes);
+    morph_names = std::move(rig.morph_names);
     for (Mesh& mesh : asset.meshes)
       for (std::uint16_t& j : mesh.joints) j = static_cast<std::uint16_t>(joint_of_rig[j]);
     asset.materials = std::move(rig.materials);
@@ -247,6 +272,7 @@ Error convert_scenes(const std::vector<std::string>& inputs, const std::vector<i
   }
   if (Error error = add_clip_data(data, !options.clips.empty(), asset, report))
     return in_file(inputs[0], "clip data: " + error.message);
+  find_morph_curves(morph_names, asset, report);
   override_limits(options, asset.skeleton);
   if (Status status = validate(asset.skeleton); !status) return describe(inputs[0], status, asset.skeleton);
   for (const Clip& clip : asset.clips)

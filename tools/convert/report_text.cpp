@@ -95,7 +95,8 @@ std::vector<std::string> whole_report(const json& r) {
   for (const auto& [key, title] : {std::pair("control_joints", "control joints, no body:"),
                                    {"ride_along_joints", "ride along:"},
                                    {"masks", "masks:"},
-                                   {"curves", "curves:"}})
+                                   {"curves", "curves:"},
+                                   {"morph_targets", "morph targets:"}})
     if (!list_of(r, key).empty()) lines.push_back(listed(title, list_of(r, key)));
   for (const json& clip : list_of(r, "clips")) lines.push_back(clip_line(clip));
   for (const json& note : list_of(r, "notes")) lines.push_back("note: " + note.get<std::string>());
@@ -108,7 +109,8 @@ std::vector<std::string> folded_report(const json& r) {
   for (const auto& [key, what] : {std::pair("control_joints", "control joints without a body"),
                                   {"ride_along_joints", "joints that ride along"},
                                   {"masks", "masks"},
-                                  {"curves", "curves"}})
+                                  {"curves", "curves"},
+                                  {"morph_targets", "morph targets"}})
     if (const std::size_t count = list_of(r, key).size(); count > 0)
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + what;
   if (!counts.empty()) lines.push_back(counts);

@@ -330,6 +330,29 @@ double sampling_rate(const SourceClip& clip) {
   return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
 }
 
+/// The weights of morph targets, over the frames that are left. Those of one name move together: the first
+/// mesh says how.
+void add_morph_keys(const SourceScene& scene, const SourceClip& clip, Rig::Motion& motion,
+                    nlohmann::json& report) {
+  const double left_out = motion.begin - clip.begin;
+  const double duration = double(motion.samples.size() - 1) / motion.sample_rate;
+  for (const import::SourceMorphChannel& channel : clip.morphs) {
+    const import::SourceMesh& mesh = scene.meshes[std::size_t(channel.mesh)];
+    for (std::size_t m = 0; m < mesh.morphs.size(); ++m) {
+      std::vector<std::pair<double, double>> keys;
+      for (std::size_t k = 0; k < channel.times.size(); ++k) {
+        const double time = std::clamp(channel.times[k] - left_out, 0.0, duration);
+        if (!keys.empty() && time <= keys.back().first) keys.pop_back();
+        keys.emplace_back(time, double(channel.weights[k * mesh.morphs.size() + m]));
+      }
+      const auto [known, is_new] = motion.morph_keys.emplace(morph_curve(mesh, m), keys);
+      if (!is_new && known->second != keys)
+        report["notes"].push_back("clip '" + clip.name + "': morph targets '" + known->first +
+                                  "' of several meshes move apart; all move as the first does");
+    }
+  }
+}
+
 /// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
 /// rest).
 Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
@@ -371,8 +394,12 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::
     report["notes"].push_back("clip '" + clip.name +
                               "': its first frame is a reference pose, apart from the motion; left out");
   }
-  // A loop comes back to its first pose, the root's place aside.
-  motion.loops = frames > 8 && largest_turn(motion.samples.back(), motion.samples.front()) < 0.01;
+  add_morph_keys(scene, clip, motion, report);
+  // A loop comes back to its first pose, the root's place aside, and to its first face.
+  motion.loops = frames > 8 && largest_turn(motion.samples.back(), motion.samples.front()) < 0.01 &&
+                 std::all_of(motion.morph_keys.begin(), motion.morph_keys.end(), [](const auto& curve) {
+                   return std::abs(curve.second.back().second - curve.second.front().second) < 0.01;
+                 });
   return motion;
 }
 
@@ -446,9 +473,18 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
   }
   rig.materials = materials_of(scene);
   for (const import::SourceMesh& source : scene.meshes) {
-    Mesh mesh;
-    if (!bake_mesh(source, scene, world, to_model, joint_of_node, report, mesh)) continue;
-    (is_of_body(source, scene) ? rig.body_meshes : rig.meshes).push_back(std::move(mesh));
+    BakedMesh baked;
+    if (!bake_mesh(source, scene, world, to_model, joint_of_node, report, baked)) continue;
+    if (is_of_body(source, scene)) {
+      rig.body_meshes.push_back(std::move(baked.mesh));
+      continue;
+    }
+    rig.meshes.push_back(std::move(baked.mesh));
+    for (std::size_t k = 0; k < source.morphs.size(); ++k)
+      if (const std::string name = morph_curve(source, k);
+          std::count(baked.morph_names.begin(), baked.morph_names.end(), name) > 0)
+        rig.morph_rest.emplace(name, double(source.morphs[k].weight));
+    rig.morph_names.push_back(std::move(baked.morph_names));
   }
   for (const Mesh& mesh : rig.skin())
     for (std::size_t k = 0; k < mesh.joints.size(); ++k)

@@ -2,8 +2,10 @@
 // over each clip.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "convert/convert.h"
@@ -29,6 +31,8 @@ struct Rig {
     double begin = 0;                                     ///< s in the file, of the first frame
     std::string extras;                                   ///< see import::SourceClip
     std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
+    /// Of morph targets, by the curve that moves them: (s, weight).
+    std::map<std::string, std::vector<std::pair<double, double>>> morph_keys;
   };
   /// A scene whose clips are for another skeleton.
   struct Foreign {
@@ -38,6 +42,8 @@ struct Rig {
   std::vector<Joint> joints;
   std::vector<Foreign> foreign;  ///< left out
   std::vector<Mesh> meshes;      ///< drawn; model space at rest; Mesh::joints index `joints`
+  std::vector<std::vector<std::string>> morph_names;  ///< [mesh][morph] the curve that moves it
+  std::map<std::string, double> morph_rest;           ///< where no clip moves it
   std::vector<Mesh>
       body_meshes;  ///< named UCX_…, as Unreal names them: the body is fitted to them, not drawn
   std::vector<Material> materials;

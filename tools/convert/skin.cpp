@@ -11,21 +11,55 @@ namespace {
 
 using Matrix = Eigen::Matrix4d;
 
+constexpr double kNoNormal = 1e-12;  ///< as long or shorter: none
+
 /// Normals turn with the cofactor matrix, which also exists where the matrix cannot be inverted; a mirror
 /// turns it round.
-Eigen::Vector3d turned_normal(const Eigen::Matrix3d& a, const Eigen::Vector3d& normal) {
+Eigen::Matrix3d normal_matrix(const Eigen::Matrix3d& a) {
   Eigen::Matrix3d cofactor;
   cofactor << a.col(1).cross(a.col(2)), a.col(2).cross(a.col(0)), a.col(0).cross(a.col(1));
-  const Eigen::Vector3d n =
-      a.determinant() < 0 ? Eigen::Vector3d(-cofactor * normal) : Eigen::Vector3d(cofactor * normal);
-  return n.norm() > 1e-12 ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  return a.determinant() < 0 ? Eigen::Matrix3d(-cofactor) : cofactor;
+}
+
+Eigen::Vector3d turned_normal(const Eigen::Matrix3d& a, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d n = normal_matrix(a) * normal;
+  return n.norm() > kNoNormal ? Eigen::Vector3d(n.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+}
+
+Eigen::Vector3d vector_of(const std::array<float, 3>& v) {
+  return {double(v[0]), double(v[1]), double(v[2])};
+}
+
+/// A target in model space at rest. `blend` [vertex]: source → model.
+MorphTarget bake_morph(const import::SourceMesh& in, const import::SourceMesh::Morph& morph,
+                       const std::vector<Eigen::Matrix3d>& blend) {
+  constexpr float kLeast = 1e-5f;  // m
+  std::vector<float> moves, tilts;
+  for (std::size_t v = 0; v < in.positions.size(); ++v) {
+    const Eigen::Vector3d move = blend[v] * vector_of(morph.moves[v]);
+    for (int k = 0; k < 3; ++k) moves.push_back(static_cast<float>(move[k]));
+    if (morph.tilts.empty() || in.normals.empty()) continue;
+    // Beside a normal of length 1, so that their sum has the right direction at any weight.
+    const Eigen::Matrix3d turn = normal_matrix(blend[v]);
+    const double length = (turn * vector_of(in.normals[v])).norm();
+    const Eigen::Vector3d tilt = turn * vector_of(morph.tilts[v]) / std::max(length, kNoNormal);
+    for (int k = 0; k < 3; ++k) tilts.push_back(length > kNoNormal ? static_cast<float>(tilt[k]) : 0);
+  }
+  MorphTarget target;
+  if (!build_morph_target(moves, tilts, kLeast, target)) return {};  // not finite: it cannot be shown
+  return target;
 }
 
 }  // namespace
 
+std::string morph_curve(const import::SourceMesh& mesh, std::size_t morph) {
+  const std::string& name = mesh.morphs[morph].name;
+  return name.empty() ? mesh.name + " " + std::to_string(morph) : name;
+}
+
 bool bake_mesh(const import::SourceMesh& in, const import::SourceScene& scene,
                const std::vector<Matrix>& world, const Matrix& to_model,
-               const std::map<int, int>& joint_of_node, nlohmann::json& report, Mesh& out) {
+               const std::map<int, int>& joint_of_node, nlohmann::json& report, BakedMesh& out) {
   // What carries vertices without weights: the nearest joint above the mesh's node.
   int carrier = in.node;
   while (carrier >= 0 && !joint_of_node.count(carrier)) carrier = scene.nodes[carrier].parent;
@@ -45,6 +79,7 @@ bool bake_mesh(const import::SourceMesh& in, const import::SourceScene& scene,
     for (const auto& [v, w] : in.bones[b].weights)
       if (w > 0 && joint_of_node.count(in.bones[b].node)) influences[v].push_back({w, static_cast<int>(b)});
   int repaired = 0, unweighted = 0, reduced = 0;
+  std::vector<Eigen::Matrix3d> to_rest;  // [vertex]
   const Matrix mesh_world = in.node >= 0 ? world[in.node] : Matrix(Matrix::Identity());
   for (std::size_t v = 0; v < vertices; ++v) {
     auto& list = influences[v];
@@ -66,6 +101,7 @@ bool bake_mesh(const import::SourceMesh& in, const import::SourceScene& scene,
     }
     if (list.empty()) blend = mesh_world;
     blend = to_model * blend;
+    to_rest.push_back(blend.block<3, 3>(0, 0));
     const Eigen::Vector3d p(in.positions[v][0], in.positions[v][1], in.positions[v][2]);
     const Eigen::Vector3d at = blend.block<3, 3>(0, 0) * p + blend.block<3, 1>(0, 3);
     Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
@@ -92,7 +128,14 @@ bool bake_mesh(const import::SourceMesh& in, const import::SourceScene& scene,
   if (mesh_world.block<3, 3>(0, 0).determinant() < 0 && in.bones.empty())
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
       std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
-  out = std::move(mesh);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < in.morphs.size(); ++k) {
+    MorphTarget target = bake_morph(in, in.morphs[k], to_rest);
+    if (target.runs.empty()) continue;
+    mesh.morphs.push_back(std::move(target));
+    names.push_back(morph_curve(in, k));
+  }
+  out = {std::move(mesh), std::move(names)};
   return true;
 }
 

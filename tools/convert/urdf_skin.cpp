@@ -105,11 +105,12 @@ void add_urdf_skin(const import::SourceScene& scene, nlohmann::json& report, Ass
   for (std::size_t i = 0; i < scene.links.size(); ++i)
     if (!has_mesh[i]) sources.push_back(solids_of(scene.links[i], static_cast<int>(i)));
   for (const SourceMesh& source : sources) {
-    Mesh mesh;
+    BakedMesh baked;
     if (source.indices.empty() ||
-        !bake_mesh(source, scene, world, Eigen::Matrix4d::Identity(), joint_of_node, report, mesh))
+        !bake_mesh(source, scene, world, Eigen::Matrix4d::Identity(), joint_of_node, report, baked))
       continue;
-    asset.meshes.push_back(std::move(mesh));
+    baked.mesh.morphs.clear();  // no clip of a URDF moves them
+    asset.meshes.push_back(std::move(baked.mesh));
   }
   asset.materials = materials_of(scene);
   for (std::size_t i = 0; i < scene.links.size(); ++i) {

@@ -87,6 +87,19 @@ class Animation {
     if (moves) add_channel(node, "translation", track.translations, track.velocities);
   }
 
+  /// Weights of morph targets, as straight lines; left out where they stay at rest.
+  void add_weights(const Motion& motion, const Asset& asset, const FigureNodes::Morphing& morphing) {
+    std::vector<float> weights;
+    bool moves = false;
+    for (const std::vector<double>& values : motion.curves)
+      for (const int slot : morphing.mesh->morph_curves) {
+        const auto at = static_cast<std::size_t>(slot);
+        weights.push_back(static_cast<float>(values[at]));
+        moves = moves || std::abs(values[at] - double(asset.curve_slots[at].rest)) > kStill;
+      }
+    if (moves) add_sampler(morphing.node, "weights", weights, "SCALAR", "LINEAR");
+  }
+
   template <class V>
   void add_channel(int node, const char* path, const std::vector<V>& keys, const std::vector<V>& rates) {
     const bool rotation = std::is_same_v<V, Quat<double>>;
@@ -162,16 +175,20 @@ std::vector<Heading> headings_of(const GltfContent& content) {
 }
 
 /// Every animation: what figures and props do in it together.
-void add_animations(const GltfContent& content, const std::vector<int>& first_nodes,
+void add_animations(const GltfContent& content, const std::vector<FigureNodes>& nodes,
                     const std::vector<int>& prop_nodes, GltfFile& file) {
   for (const Heading& heading : headings_of(content)) {
     // The velocities of a simulated result are not known: straight lines.
     Animation animation(heading.name, *heading.times, content.cubic && heading.clip, file);
     for (std::size_t f = 0; f < content.figures.size(); ++f)
       for (const Motion& motion : content.figures[f].motions) {
-        const std::vector<Joint>& joints = content.figures[f].asset->skeleton.joints;
-        for (std::size_t j = 0; j < joints.size() && motion.name == heading.name; ++j)
-          animation.add_joint(motion, j, joints[j], first_nodes[f] + static_cast<int>(j));
+        if (motion.name != heading.name) continue;
+        const Asset& asset = *content.figures[f].asset;
+        const std::vector<Joint>& joints = asset.skeleton.joints;
+        for (std::size_t j = 0; j < joints.size(); ++j)
+          animation.add_joint(motion, j, joints[j], nodes[f].first_joint + static_cast<int>(j));
+        for (const FigureNodes::Morphing& mesh : nodes[f].morphing)
+          animation.add_weights(motion, asset, mesh);
       }
     for (std::size_t p = 0; p < content.props.size(); ++p)
       if (content.props[p].motion == heading.name) add_prop(content.props[p], prop_nodes[p], animation);
@@ -187,12 +204,12 @@ std::string write_gltf(const GltfContent& content) {
   file.document["asset"] = {{"version", "2.0"}, {"generator", std::string("Sinew ") + version()}};
   file.document["scene"] = 0;
   file.document["scenes"] = {{{"nodes", json::array()}}};
-  std::vector<int> first_nodes, prop_nodes;
-  for (const GltfFigure& figure : content.figures)
-    first_nodes.push_back(add_figure(figure, content.surface, file));
+  std::vector<FigureNodes> nodes;
+  std::vector<int> prop_nodes;
+  for (const GltfFigure& figure : content.figures) nodes.push_back(add_figure(figure, content.surface, file));
   for (const GltfProp& prop : content.props)
     prop_nodes.push_back(add_solid(prop.prop.name, prop.prop.shape, prop.prop.size, file));
-  add_animations(content, first_nodes, prop_nodes, file);
+  add_animations(content, nodes, prop_nodes, file);
   if (content.figures.size() == 1)
     if (const json extras = asset_extras(*content.figures[0].asset); !extras.is_null())
       file.document["extras"] = extras;

@@ -63,13 +63,36 @@ int GltfFile::add_numbers(std::span<const float> values, const char* type, Use u
   const std::size_t width = components(type);
   const int view = add_view(values.data(), values.size_bytes(), use == Use::kVertices ? kVertexData : 0);
   const int accessor = add_accessor(view, kFloat, values.size() / width, type);
-  if (!bounded) return accessor;
-  std::vector<float> least(width, std::numeric_limits<float>::max()), greatest(width, -least[0]);
+  if (bounded) {
+    constexpr float kMost = std::numeric_limits<float>::max();
+    set_bounds(accessor, values, std::vector<float>(width, kMost), std::vector<float>(width, -kMost));
+  }
+  return accessor;
+}
+
+void GltfFile::set_bounds(int accessor, std::span<const float> values, std::vector<float> least,
+                          std::vector<float> greatest) {
+  const std::size_t width = least.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
     least[i % width] = std::min(least[i % width], values[i]);
     greatest[i % width] = std::max(greatest[i % width], values[i]);
   }
   document["accessors"][static_cast<std::size_t>(accessor)].update({{"min", least}, {"max", greatest}});
+}
+
+int GltfFile::add_sparse(std::span<const std::uint32_t> at, std::span<const float> values,
+                         std::size_t count) {
+  json indices = {{"bufferView", add_view(at.data(), at.size_bytes(), 0)}, {"componentType", kUnsignedInt}};
+  json numbers = {{"bufferView", add_view(values.data(), values.size_bytes(), 0)}};
+  const int accessor =
+      add("accessors", {{"componentType", kFloat},
+                        {"count", count},
+                        {"type", "VEC3"},
+                        {"sparse", {{"count", at.size()}, {"indices", indices}, {"values", numbers}}}});
+  const bool everywhere = at.size() == count;  // else some are zero
+  constexpr float kMost = std::numeric_limits<float>::max();
+  set_bounds(accessor, values, std::vector<float>(3, everywhere ? kMost : 0),
+             std::vector<float>(3, everywhere ? -kMost : 0));
   return accessor;
 }
 

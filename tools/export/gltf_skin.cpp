@@ -113,6 +113,36 @@ void tidy_normals(std::vector<float>& normals) {
   }
 }
 
+/// A morph target's attributes: sparse, with the vertices alone that it touches.
+json add_target(const MorphTarget& target, std::size_t vertices, bool normals, GltfFile& file) {
+  std::vector<std::uint32_t> touched;
+  for (const MorphRun& run : target.runs)
+    for (std::uint32_t k = 0; k < run.count; ++k) touched.push_back(run.first + k);
+  const auto add = [&](const std::vector<std::int16_t>& units, float scale) {
+    std::vector<float> deltas;
+    for (const std::int16_t unit : units) deltas.push_back(scale * static_cast<float>(unit));
+    return file.add_sparse(touched, in_y_up(deltas), vertices);
+  };
+  json attributes = {{"POSITION", add(target.moves, target.scale)}};
+  if (normals && !target.tilts.empty()) attributes["NORMAL"] = add(target.tilts, target.tilt_scale);
+  return attributes;
+}
+
+/// Its targets, their names as Blender and others write them, and their weights at rest.
+void add_morphs(const Asset& asset, const Mesh& mesh, int in_file, GltfFile& file) {
+  json targets = json::array(), names = json::array(), weights = json::array();
+  for (std::size_t k = 0; k < mesh.morphs.size(); ++k) {
+    const CurveSlot& curve = asset.curve_slots[static_cast<std::size_t>(mesh.morph_curves[k])];
+    targets.push_back(add_target(mesh.morphs[k], mesh.positions.size() / 3, !mesh.normals.empty(), file));
+    names.push_back(curve.name);
+    weights.push_back(curve.rest);
+  }
+  json& out = file.document["meshes"][static_cast<std::size_t>(in_file)];
+  out["primitives"][0]["targets"] = targets;
+  out["weights"] = weights;
+  out["extras"] = {{"targetNames", names}};
+}
+
 /// `material`: of the file, or -1.
 int add_mesh(const Mesh& mesh, int material, bool textured, GltfFile& file) {
   json attributes = {{"POSITION", file.add_numbers(in_y_up(mesh.positions), "VEC3", Use::kVertices, true)}};
@@ -190,17 +220,20 @@ Mesh shapes_of(const Skeleton& skeleton) {
   return mesh;
 }
 
-void add_mesh_node(const std::string& name, int mesh, int skin, GltfFile& file) {
+int add_mesh_node(const std::string& name, int mesh, int skin, GltfFile& file) {
   json node = {{"name", name}, {"mesh", mesh}};
   if (skin >= 0) node["skin"] = skin;
-  file.document["scenes"][0]["nodes"].push_back(file.add("nodes", node));
+  const int index = file.add("nodes", node);
+  file.document["scenes"][0]["nodes"].push_back(index);
+  return index;
 }
 
 }  // namespace
 
-int add_figure(const GltfFigure& figure, Surface surface, GltfFile& file) {
+FigureNodes add_figure(const GltfFigure& figure, Surface surface, GltfFile& file) {
   const Asset& asset = *figure.asset;
   const int first_node = static_cast<int>(file.document["nodes"].size());
+  FigureNodes out{first_node, {}};
   add_joint_nodes(asset.skeleton, file);
   const bool shapes = surface == Surface::kShapes || (surface == Surface::kSkin && asset.meshes.empty());
   std::vector<Transform<double>> inverse_bind;
@@ -221,11 +254,14 @@ int add_figure(const GltfFigure& figure, Surface surface, GltfFile& file) {
           mesh.material >= 0 ? &asset.materials[static_cast<std::size_t>(mesh.material)] : nullptr;
       if (own && !materials.count(mesh.material)) materials[mesh.material] = add_material(*own, file);
       const int material = own ? materials[mesh.material] : -1;
-      add_mesh_node(mesh.name, add_mesh(mesh, material, own && !own->texture.empty(), file),
-                    mesh.joints.empty() ? -1 : skin, file);
+      const int added = add_mesh(mesh, material, own && !own->texture.empty(), file);
+      const int node = add_mesh_node(mesh.name, added, mesh.joints.empty() ? -1 : skin, file);
+      if (mesh.morphs.empty()) continue;
+      add_morphs(asset, mesh, added, file);
+      out.morphing.push_back({node, &mesh});
     }
   }
-  return first_node;
+  return out;
 }
 
 int add_solid(const std::string& name, Shape shape, const Vec3<float>& size, GltfFile& file) {

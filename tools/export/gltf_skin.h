@@ -6,9 +6,17 @@
 
 namespace sinew::exporting {
 
-/// Adds nodes, skin, meshes and materials; all roots go into the scene. Returns the node of joint 0: those of
-/// the others follow.
-int add_figure(const GltfFigure& figure, Surface surface, GltfFile& file);
+struct FigureNodes {
+  int first_joint = 0;  ///< those of the other joints follow
+  struct Morphing {
+    int node = 0;
+    const Mesh* mesh = nullptr;  ///< of the asset
+  };
+  std::vector<Morphing> morphing;  ///< whose meshes have morph targets
+};
+
+/// Adds nodes, skin, meshes and materials; all roots go into the scene.
+FigureNodes add_figure(const GltfFigure& figure, Surface surface, GltfFile& file);
 
 /// A node with a solid on it; returns it.
 int add_solid(const std::string& name, Shape shape, const Vec3<float>& size, GltfFile& file);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/animation/curve_job.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew::exporting {
@@ -34,13 +35,18 @@ Motion sample_clip(const Asset& asset, const Clip& clip, double rate, Keys keys)
     job.jets = frame;
     (void)job.Run();  // clip and sizes are valid: the asset is
     motion.frames.push_back(std::move(frame));
+    std::vector<TimeJet<double>> jets(asset.curve_slots.size());
+    (void)CurveJob<double>{&clip, t, asset.curve_slots, jets}.Run();
+    std::vector<double>& values = motion.curves.emplace_back();
+    for (const TimeJet<double>& jet : jets) values.push_back(jet.value);
   }
   return motion;
 }
 
 Motion played_motion(const scene::Recording& recording, int character, const std::string& name) {
   const auto n = static_cast<std::size_t>(character);
-  const std::vector<Joint>& joints = recording.characters[n]->skeleton.joints;
+  const Asset& asset = *recording.characters[n];
+  const std::vector<Joint>& joints = asset.skeleton.joints;
   Motion motion{name, nullptr, {}, {}};
   for (const scene::Frame& from : recording.frames) {
     std::vector<JointJet<double>> frame(joints.size());
@@ -54,6 +60,9 @@ Motion played_motion(const scene::Recording& recording, int character, const std
     }
     motion.times.push_back(from.time);
     motion.frames.push_back(std::move(frame));
+    std::vector<double>& values = motion.curves.emplace_back();
+    for (std::size_t slot = 0; slot < asset.curve_slots.size(); ++slot)
+      values.push_back(double(from.characters[n].curve(asset, slot)));
   }
   return motion;
 }

@@ -16,6 +16,7 @@ struct Motion {
   /// [time][joint] relative to the parent; roots in model space, of a simulated result in the world.
   /// Derivatives are the clip's own; those of a simulated result are not known, and 0.
   std::vector<std::vector<JointJet<double>>> frames;
+  std::vector<std::vector<double>> curves = {};  ///< [time][slot of the asset's curves], or empty: at rest
 };
 
 enum class Keys {

@@ -109,6 +109,16 @@ void check_tree(const Json& nodes, const ReadLimits& limits) {
   if (reached != nodes.size()) throw std::runtime_error("nodes form a loop");
 }
 
+/// How many morph targets the mesh has that an animation's target moves; 0 where it moves none.
+std::size_t morph_targets_of(const Json& document, const Json& target, const std::string& where) {
+  if (!target.contains("node")) return 0;
+  const Json& node = document.at("nodes").at(target.at("node").get<std::size_t>());
+  if (!node.contains("mesh")) return 0;
+  const Json& mesh = document.at("meshes").at(index_in(node, "mesh", length_of(document, "meshes"), where));
+  const Json& primitives = mesh.at("primitives");
+  return primitives.empty() ? 0 : length_of(primitives.at(0), "targets");
+}
+
 void check_animation(const Json& document, const Json& animation, const std::string& where) {
   static const Json kNone = Json::array();
   const Json& samplers = animation.at("samplers");
@@ -119,8 +129,13 @@ void check_animation(const Json& document, const Json& animation, const std::str
     if (target.contains("node")) index_in(target, "node", length_of(document, "nodes"), where);
     const Json& input = accessors[index_in(sampler, "input", accessors.size(), where)];
     const Json& output = accessors[index_in(sampler, "output", accessors.size(), where)];
-    if (target.value("path", "") == "weights") continue;  // times the number of morph targets
-    const std::size_t per_key = sampler.value("interpolation", "LINEAR") == "CUBICSPLINE" ? 3 : 1;
+    std::size_t per_key = sampler.value("interpolation", "LINEAR") == "CUBICSPLINE" ? 3 : 1;
+    if (target.value("path", "") == "weights") {
+      if (input.at("count").get<std::size_t>() == 0)  // assimp divides by it
+        throw std::runtime_error(where + ": weights without keys");
+      per_key *= morph_targets_of(document, target, where);
+      if (per_key == 0) continue;  // noted when the clip is read
+    }
     if (output.at("count").get<std::size_t>() != per_key * input.at("count").get<std::size_t>())
       throw std::runtime_error(where + ": key times and values differ in number");
   }

@@ -56,6 +56,8 @@ void for_each_track(SourceClip& clip, Visit visit) {
   for (SourceChannel& c : clip.channels)
     for (auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
       if (!times->empty()) visit(*times);
+  for (SourceMorphChannel& c : clip.morphs)
+    if (!c.times.empty()) visit(c.times);
 }
 
 /// 1/s, of the track with the closest keys by its median interval; 0 when no track has two.
@@ -71,6 +73,73 @@ double key_rate(SourceClip& clip) {
     rate = std::max(rate, 1 / *middle);
   });
   return rate;
+}
+
+/// What a morph target does to the vertices of its mesh.
+SourceMesh::Morph morph_of(const aiMesh& mesh, const aiAnimMesh& target, bool fbx) {
+  SourceMesh::Morph morph;
+  morph.name = clean_text(target.mName.C_Str());
+  morph.weight = fbx ? 0 : target.mWeight;  // assimp 5.2.5 says 1 of each of FBX's
+  const auto differences = [&](const aiVector3D* to, const aiVector3D* from,
+                               std::vector<std::array<float, 3>>& out) {
+    for (unsigned v = 0; to && from && v < mesh.mNumVertices; ++v) {
+      const aiVector3D d = to[v] - from[v];
+      out.push_back({d.x, d.y, d.z});
+    }
+  };
+  differences(target.mVertices, mesh.mVertices, morph.moves);
+  differences(target.mNormals, mesh.mNormals, morph.tilts);
+  return morph;
+}
+
+/// Where keys say nothing of a target (NaN), the line between those before and after; its weight at rest
+/// where none does.
+void fill_gaps(const SourceMesh& mesh, SourceMorphChannel& channel) {
+  const std::size_t count = mesh.morphs.size(), keys = channel.times.size();
+  for (std::size_t m = 0; m < count; ++m) {
+    const auto weight = [&](std::size_t k) -> float& { return channel.weights[k * count + m]; };
+    std::size_t last = keys;  // the last key that is known
+    for (std::size_t k = 0; k < keys; ++k) {
+      if (std::isnan(weight(k))) continue;
+      for (std::size_t gap = last == keys ? 0 : last + 1; gap < k; ++gap) {
+        const double from = channel.times[last == keys ? k : last], to = channel.times[k];
+        const double part = last == keys ? 1 : (channel.times[gap] - from) / (to - from);
+        const float before = weight(last == keys ? k : last);
+        weight(gap) = before + static_cast<float>(part) * (weight(k) - before);
+      }
+      last = k;
+    }
+    for (std::size_t k = last == keys ? 0 : last + 1; k < keys; ++k)
+      weight(k) = last == keys ? mesh.morphs[m].weight : weight(last);
+  }
+}
+
+/// What keys say of each target of a mesh. glTF's say it of all, FBX' of those alone that have a key then.
+SourceMorphChannel morph_channel_of(const aiMeshMorphAnim& in, const SourceMesh& mesh, double ticks,
+                                    const std::string& clip) {
+  const std::size_t count = mesh.morphs.size();
+  SourceMorphChannel channel;
+  for (unsigned k = 0; k < in.mNumKeys; ++k) {
+    const aiMeshMorphKey& key = in.mKeys[k];
+    const double t = key.mTime / ticks;
+    if (!std::isfinite(t)) throw std::runtime_error("a key time is not finite");
+    if (!channel.times.empty() && t <= channel.times.back()) continue;
+    channel.times.push_back(t);
+    channel.weights.resize(channel.times.size() * count, std::numeric_limits<float>::quiet_NaN());
+    float* const weights = &channel.weights[channel.weights.size() - count];
+    const auto set = [&](std::size_t target, double weight) {
+      if (!std::isfinite(weight))
+        throw std::runtime_error("clip '" + clip + "': a weight of mesh '" + mesh.name + "' is not finite");
+      weights[target] = static_cast<float>(weight);
+    };
+    // Of a cubic key assimp 5.2.5 gives all but the first and the last of: tangents, weights, tangents.
+    const bool cubic = count > 1 && key.mNumValuesAndWeights == 3 * count - 2;
+    for (unsigned n = 0; n < key.mNumValuesAndWeights && !cubic; ++n)
+      if (key.mValues[n] < count) set(key.mValues[n], key.mWeights[n]);
+    for (std::size_t m = 0; m < count && cubic; ++m) set(m, key.mWeights[count - 1 + m]);
+  }
+  fill_gaps(mesh, channel);
+  return channel;
 }
 
 bool is_png_or_jpeg(const std::vector<std::uint8_t>& bytes) {
@@ -226,9 +295,18 @@ void SceneBuilder::collect_mesh(const aiMesh& in, int node) {
     if (in.mNormals) mesh.normals.push_back({in.mNormals[v].x, in.mNormals[v].y, in.mNormals[v].z});
     if (in.mTextureCoords[0]) mesh.uvs.push_back({in.mTextureCoords[0][v].x, 1 - in.mTextureCoords[0][v].y});
   }
-  if (in.mNumAnimMeshes > 0)
-    out_.notes.push_back("mesh '" + mesh.name + "': " + std::to_string(in.mNumAnimMeshes) +
-                         " morph targets left out");
+  int damaged = 0;
+  for (unsigned m = 0; m < in.mNumAnimMeshes; ++m) {
+    const aiAnimMesh& target = *in.mAnimMeshes[m];
+    const bool fits = target.mNumVertices == in.mNumVertices;
+    damaged += !fits;
+    mesh.morphs.push_back(fits ? morph_of(in, target, out_.format == "fbx")
+                               : SourceMesh::Morph{});  // clips count all of them
+    if (mesh.morphs.back().moves.empty()) mesh.morphs.back().moves.resize(in.mNumVertices);
+  }
+  if (damaged > 0)
+    out_.notes.push_back("mesh '" + mesh.name + "': " + std::to_string(damaged) +
+                         " morph targets of other vertices left out");
   for (unsigned f = 0; f < in.mNumFaces; ++f)
     if (in.mFaces[f].mNumIndices == 3)
       for (unsigned k = 0; k < 3; ++k) mesh.indices.push_back(in.mFaces[f].mIndices[k]);
@@ -266,6 +344,28 @@ SourceChannel SceneBuilder::channel_of(const aiNodeAnim& in, int node, double ti
   return channel;
 }
 
+/// Of every mesh that the channel's node carries, or that is named so: assimp adds a star and a number to
+/// names of FBX files.
+void SceneBuilder::collect_morphs(const aiMeshMorphAnim& in, double ticks, SourceClip& clip) {
+  const std::string name = clean_text(in.mName.C_Str()), plain = name.substr(0, name.rfind('*'));
+  const int node = node_named(in.mName);
+  const auto moves = [&](const SourceMesh& mesh) {
+    if (node >= 0) return mesh.node == node;
+    return mesh.name == plain || out_.nodes[std::size_t(mesh.node)].original_name == plain;
+  };
+  bool any = false;
+  for (std::size_t m = 0; m < out_.meshes.size(); ++m) {
+    const SourceMesh& mesh = out_.meshes[m];
+    if (mesh.morphs.empty() || !moves(mesh)) continue;
+    any = true;
+    SourceMorphChannel channel = morph_channel_of(in, mesh, ticks, clip.name);
+    channel.mesh = static_cast<int>(m);
+    if (!channel.times.empty()) clip.morphs.push_back(std::move(channel));
+  }
+  if (!any)
+    out_.notes.push_back("clip '" + clip.name + "' moves morph targets of '" + name + "', which has none");
+}
+
 void SceneBuilder::collect_clip(const aiAnimation& in) {
   SourceClip clip;
   clip.name = in.mName.length ? clean_text(in.mName.C_Str()) : "clip_" + std::to_string(out_.clips.size());
@@ -281,6 +381,8 @@ void SceneBuilder::collect_clip(const aiAnimation& in) {
                            clean_text(in.mChannels[c]->mNodeName.C_Str()) +
                            "', which does not exist; left out");
   }
+  for (unsigned c = 0; c < in.mNumMorphMeshChannels; ++c)
+    collect_morphs(*in.mMorphMeshChannels[c], ticks, clip);
   double first = std::numeric_limits<double>::max(), last = 0;
   for_each_track(clip, [&](const std::vector<double>& times) {
     last = std::max(last, times.back());
@@ -299,7 +401,8 @@ void SceneBuilder::collect_clip(const aiAnimation& in) {
   out_.clips.push_back(std::move(clip));
 }
 
-/// Without a skin, what moves is a joint; in BVH every node but the end sites is one.
+/// Without a skin, what moves is a joint, or what carries a mesh that clips only morph; in BVH every node but
+/// the end sites is one.
 void SceneBuilder::mark_bones() {
   if (out_.format == "bvh") {
     for (SourceNode& n : out_.nodes) n.is_bone = n.original_name.rfind("EndSite", 0) != 0;
@@ -307,8 +410,12 @@ void SceneBuilder::mark_bones() {
   }
   if (std::any_of(out_.nodes.begin(), out_.nodes.end(), [](const SourceNode& n) { return n.is_bone; }))
     return;
+  bool any = false;
   for (const SourceClip& clip : out_.clips)
-    for (const SourceChannel& c : clip.channels) out_.nodes[c.node].is_bone = true;
+    for (const SourceChannel& c : clip.channels) any = out_.nodes[c.node].is_bone = true;
+  if (any) return;
+  for (const SourceClip& clip : out_.clips)
+    for (const SourceMorphChannel& c : clip.morphs) out_.nodes[out_.meshes[c.mesh].node].is_bone = true;
 }
 
 }  // namespace sinew::import

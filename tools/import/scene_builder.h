@@ -34,6 +34,7 @@ class SceneBuilder {
   void collect_mesh(const aiMesh& in, int node);
   void collect_clip(const aiAnimation& in);
   SourceChannel channel_of(const aiNodeAnim& in, int node, double ticks, const std::string& clip);
+  void collect_morphs(const aiMeshMorphAnim& in, double ticks, SourceClip& clip);
   void mark_bones();
   int node_named(const aiString& name) const;
   std::vector<std::uint8_t> texture_bytes(const std::string& path) const;

@@ -59,6 +59,12 @@ std::string fault_in_mesh(const SourceScene& s, const SourceMesh& m) {
   if (m.indices.size() % 3 != 0) return "is not made of triangles";
   if (std::any_of(m.indices.begin(), m.indices.end(), [&](std::uint32_t i) { return i >= vertices; }))
     return "has an index out of range";
+  for (const SourceMesh::Morph& morph : m.morphs) {
+    if (morph.moves.size() != vertices || (!morph.tilts.empty() && morph.tilts.size() != vertices))
+      return "has a morph target of another number of vertices";
+    if (!all_finite(morph.moves) || !all_finite(morph.tilts) || !std::isfinite(morph.weight))
+      return "has a morph target '" + morph.name + "' that is not finite";
+  }
   for (const SourceMesh::Bone& b : m.bones) {
     if (!in_range(b.node, s.nodes.size())) return "has a bone that is no node";
     if (!b.inverse_bind.allFinite()) return "has a bind matrix that is not finite";
@@ -89,6 +95,17 @@ std::string fault_in_channel(const SourceChannel& c) {
   return {};
 }
 
+std::string fault_in_morphs(const SourceScene& s, const SourceMorphChannel& c) {
+  if (!in_range(c.mesh, s.meshes.size())) return "moves a mesh that does not exist";
+  const SourceMesh& mesh = s.meshes[std::size_t(c.mesh)];
+  if (c.weights.size() != c.times.size() * mesh.morphs.size())
+    return "mesh '" + mesh.name + "': weights and morph targets differ in number";
+  if (!std::all_of(c.weights.begin(), c.weights.end(), [](float w) { return std::isfinite(w); }))
+    return "mesh '" + mesh.name + "': a weight is not finite";
+  const std::string fault = fault_in_times(c.times, c.times.size());
+  return fault.empty() ? fault : "mesh '" + mesh.name + "': " + fault;
+}
+
 std::string fault_in_clip(const SourceScene& s, const SourceClip& clip) {
   if (!finite(clip.duration, clip.key_rate, clip.begin) || clip.duration < 0 || clip.key_rate < 0)
     return "has no meaningful duration";
@@ -97,6 +114,8 @@ std::string fault_in_clip(const SourceScene& s, const SourceClip& clip) {
     const std::string fault = fault_in_channel(c);
     if (!fault.empty()) return "node '" + s.nodes[c.node].name + "': " + fault;
   }
+  for (const SourceMorphChannel& c : clip.morphs)
+    if (const std::string fault = fault_in_morphs(s, c); !fault.empty()) return fault;
   return {};
 }
 

@@ -93,9 +93,14 @@ const auto bone_io = [](auto& io, auto& b) {
          io.list(b.weights, [](auto& i, auto& w) { return i.pod(w.first) && i.pod(w.second); });
 };
 
+const auto morph_io = [](auto& io, auto& m) {
+  return io.text(m.name) && io.pod(m.weight) && io.array(m.moves) && io.array(m.tilts);
+};
+
 const auto mesh_io = [](auto& io, auto& m) {
   return io.text(m.name) && io.pod(m.node) && io.array(m.positions) && io.array(m.normals) &&
-         io.array(m.uvs) && io.array(m.indices) && io.list(m.bones, bone_io) && io.pod(m.material);
+         io.array(m.uvs) && io.array(m.indices) && io.list(m.bones, bone_io) && io.pod(m.material) &&
+         io.list(m.morphs, morph_io);
 };
 
 const auto material_io = [](auto& io, auto& m) {
@@ -108,9 +113,13 @@ const auto channel_io = [](auto& io, auto& c) {
          vectors(io, c.scales);
 };
 
+const auto morph_channel_io = [](auto& io, auto& c) {
+  return io.pod(c.mesh) && io.array(c.times) && io.array(c.weights);
+};
+
 const auto clip_io = [](auto& io, auto& c) {
   return io.text(c.name) && io.pod(c.duration) && io.pod(c.begin) && io.pod(c.key_rate) &&
-         io.text(c.extras) && io.list(c.channels, channel_io);
+         io.text(c.extras) && io.list(c.channels, channel_io) && io.list(c.morphs, morph_channel_io);
 };
 
 const auto reference_io = [](auto& io, auto& m) {

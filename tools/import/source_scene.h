@@ -35,6 +35,13 @@ struct SourceMesh {
   };
   std::vector<Bone> bones;
   int material = -1;
+  struct Morph {
+    std::string name;                              ///< as in the file, perhaps empty
+    float weight = 0;                              ///< where no clip moves it
+    std::vector<std::array<float, 3>> moves;       ///< [vertex] at weight 1
+    std::vector<std::array<float, 3>> tilts = {};  ///< [vertex] of normals, or empty
+  };
+  std::vector<Morph> morphs;
 };
 
 struct SourceMaterial {
@@ -51,6 +58,13 @@ struct SourceChannel {
   std::vector<Eigen::Vector3d> scales;
 };
 
+/// Weights of the morph targets of one mesh.
+struct SourceMorphChannel {
+  int mesh = -1;
+  std::vector<double> times;   ///< s
+  std::vector<float> weights;  ///< [key][morph]
+};
+
 struct SourceClip {
   std::string name;
   double duration = 0;  ///< s
@@ -58,6 +72,7 @@ struct SourceClip {
   double key_rate = 0;  ///< 1/s, of the channel with the closest keys; 0 when no channel has two
   std::string extras;   ///< glTF: what its author added to the animation, as JSON; else empty
   std::vector<SourceChannel> channels;
+  std::vector<SourceMorphChannel> morphs;
 };
 
 /// A URDF, link by link (SI units, Z up). Joint i moves link i+1…: see `links[k].parent`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "render/muscles.h"
 #include "render/shapes.h"
@@ -51,6 +52,27 @@ struct Palette {
   }
 };
 
+/// Vertices and normals of a mesh as its morph targets have them; those of the mesh where it has none.
+struct Morphed {
+  std::vector<float> moved, tilted;
+  std::span<const float> positions, normals;
+
+  Morphed(const Asset& asset, const Mesh& mesh, const scene::CharacterFrame& frame)
+      : positions(mesh.positions), normals(mesh.normals) {
+    if (mesh.morphs.empty()) return;
+    std::vector<float> weights(mesh.morphs.size(), 0);  // 0 where an asset made by hand names no curve
+    for (std::size_t k = 0; k < std::min(weights.size(), mesh.morph_curves.size()); ++k)
+      weights[k] = frame.curve(asset, static_cast<std::size_t>(mesh.morph_curves[k]));
+    moved.resize(mesh.positions.size());
+    tilted.resize(mesh.normals.size());
+    if (!MorphJob{mesh.positions, mesh.normals, mesh.morphs, weights, moved, tilted}.Run()) return;
+    positions = moved;
+    normals = tilted;
+  }
+  Morphed(const Morphed&) = delete;
+  Morphed& operator=(const Morphed&) = delete;
+};
+
 void append_mesh(const Asset& asset, const Mesh& mesh, const Palette& palette,
                  const scene::CharacterFrame& frame, bool shell, Geometry& out) {
   const Material* material =
@@ -60,6 +82,7 @@ void append_mesh(const Asset& asset, const Mesh& mesh, const Palette& palette,
                : kClay;
   const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
   const std::size_t first_index = out.indices.size();
+  const Morphed at(asset, mesh, frame);
   for (std::size_t v = 0; v < mesh.positions.size() / 3; ++v) {
     Mat3<float> r = Mat3<float>::Zero();
     Vec3<float> t = Vec3<float>::Zero();
@@ -77,9 +100,9 @@ void append_mesh(const Asset& asset, const Mesh& mesh, const Palette& palette,
       load += w * frame.effort_of(j);
     }
     const Vec3<float> p =
-        r * Vec3<float>(mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]) + t;
+        r * Vec3<float>(at.positions[3 * v], at.positions[3 * v + 1], at.positions[3 * v + 2]) + t;
     const Vec3<float> n =
-        (r * Vec3<float>(mesh.normals[3 * v], mesh.normals[3 * v + 1], mesh.normals[3 * v + 2])).normalized();
+        (r * Vec3<float>(at.normals[3 * v], at.normals[3 * v + 1], at.normals[3 * v + 2])).normalized();
     const float glow = glow_of(load);
     const Vec3<float> color = (1 - glow) * base + glow * stress_color(load);
     Vertex made{

@@ -15,6 +15,7 @@
 #include "render/camera.h"
 #include "render/overlay.h"
 #include "render/sink.h"
+#include "sinew/animation/curve_job.h"
 #include "sinew/animation/sampling_job.h"
 
 namespace sinew::render {
@@ -287,6 +288,7 @@ scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const C
     jets[i].rotation = s.joints[i].rest.rotation.cast<float>();
     jets[i].translation = s.joints[i].rest.translation.cast<float>();
   }
+  std::vector<TimeJet<float>> curves(asset->curve_slots.size());
   scene::Recording rec;
   rec.title = s.name;
   rec.frame_rate = o.fps;
@@ -296,6 +298,8 @@ scene::Recording record_asset(const std::shared_ptr<const Asset>& asset, const C
     if (clip) (void)SamplingJob<float>{clip, time, jets}.Run();
     scene::CharacterFrame pose;
     pose.load.assign(s.joints.size(), 0);
+    if (clip && CurveJob<float>{clip, time, asset->curve_slots, curves}.Run())
+      for (const TimeJet<float>& curve : curves) pose.curves.push_back(curve.value);
     for (std::size_t i = 0; i < jets.size(); ++i) {
       const Transform<float> local{jets[i].rotation, jets[i].translation};
       const int parent = s.joints[i].parent;

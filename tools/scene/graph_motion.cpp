@@ -18,7 +18,8 @@ GraphMotion<T>::GraphMotion(const GraphUse& use, const Skeleton& skeleton, const
 }
 
 template <class T>
-Status GraphMotion<T>::at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets) {
+Status GraphMotion<T>::at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets,
+                          std::span<TimeJet<T>> curves) {
   const std::span<const Transform<T>> now = felt.local;
   for (std::size_t j = 0; j < physical_.size() && j < now.size(); ++j) {
     physical_[j] = {};
@@ -29,6 +30,7 @@ Status GraphMotion<T>::at(double t, const Felt<T>& felt, std::vector<JointJet<T>
   const double from = time_ < 0 ? -1e300 : time_, h = time_ < 0 ? 0 : std::max(0.0, t - time_);
   use_.inputs.apply(*use_.graph, state_, from, time_ < 0 ? t + 1e-9 : t - 1e-9);
   GraphStepJob<T> job{use_.graph.get(), state_, T(h), scratch_.get(), jets};
+  job.curves = curves;
   job.physical = physical_;
   job.spare_acceleration = felt.spare_acceleration;
   if (use_.ground) job.ground = use_.ground->for_graph<T>();

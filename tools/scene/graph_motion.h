@@ -36,8 +36,8 @@ class GraphMotion {
  public:
   GraphMotion(const GraphUse& use, const Skeleton& skeleton, const Transform<double>& place);
 
-  /// The motion at t, which does not run backwards.
-  Status at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets);
+  /// The motion at t, which does not run backwards, and what its curves are then.
+  Status at(double t, const Felt<T>& felt, std::vector<JointJet<T>>& jets, std::span<TimeJet<T>> curves);
 
  private:
   void feel(const Felt<T>& felt);

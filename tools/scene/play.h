@@ -45,6 +45,8 @@ class Play {
   const Behaviour<T>* behaviour(int character) const { return behaviours_[character].get(); }
   /// rad/s²: the greatest of a joint, that the last prepare() has set as its target.
   double asked_acceleration(int character) const { return asked_[std::size_t(character)].acceleration; }
+  /// [slot of its asset's curves] at that time.
+  std::span<const TimeJet<T>> curves(int character) const { return players_[character].curves(); }
   bool launched(int prop) const { return launched_[static_cast<std::size_t>(prop)]; }
 
  private:

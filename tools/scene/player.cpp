@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/animation/crossfade.h"
+#include "sinew/animation/curve_job.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -31,7 +32,12 @@ double turn_between(const Quat<double>& from, const Quat<double>& to) {
 
 template <class T>
 Player<T>::Player(const SceneCharacter& c)
-    : c_(c), places_(c.clips.size()), a_(c.asset->skeleton.joints.size()), b_(a_.size()) {
+    : c_(c),
+      places_(c.clips.size()),
+      a_(c.asset->skeleton.joints.size()),
+      b_(a_.size()),
+      curves_(c.asset->curve_slots.size()),
+      clip_curves_(curves_.size()) {
   for (auto& place : places_) place = upright(c.position, c.yaw);
   for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
   if (c.graph.graph) graph_.emplace(c.graph, c.asset->skeleton, upright(c.position, c.yaw));
@@ -46,7 +52,7 @@ bool Player<T>::moves() const {
 template <class T>
 const std::vector<JointJet<T>>& Player<T>::at(double t, const Felt<T>& felt) {
   if (!graph_) return at(t, felt.local);
-  fault_ = graph_->at(t, felt, a_);
+  fault_ = graph_->at(t, felt, a_, curves_);
   return a_;
 }
 
@@ -54,6 +60,7 @@ template <class T>
 const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transform<T>> now) {
   if (graph_) return at(t, Felt<T>{now});
   stand(t, a_);
+  for (std::size_t k = 0; k < curves_.size(); ++k) curves_[k] = TimeJet<T>(T(c_.asset->curve_slots[k].rest));
   bool any = false;
   for (std::size_t i = 0; i < c_.clips.size(); ++i) {
     const ClipUse& use = c_.clips[i];
@@ -69,12 +76,14 @@ const std::vector<JointJet<T>>& Player<T>::at(double t, std::span<const Transfor
       }
       any = true;
     }
-    const SamplingJob<T> job{
-        &c_.asset->clips[chosen_[i]], {use.offset + (t - use.start) * use.rate, use.rate}, b_};
-    (void)job.Run();
+    const Clip& clip = c_.asset->clips[chosen_[i]];
+    const ClipTime time{use.offset + (t - use.start) * use.rate, use.rate};
+    (void)SamplingJob<T>{&clip, time, b_}.Run();
+    (void)CurveJob<T>{&clip, time, c_.asset->curve_slots, clip_curves_}.Run();
     place_root<T>(places_[i].template cast<T>(), b_[0]);
     const EaseWeight<T> w =
         any ? EaseWeight<T>::at(T(t - use.start), T(use.blend)) : EaseWeight<T>{T(1), T(0), T(0)};
+    for (std::size_t k = 0; k < curves_.size(); ++k) curves_[k] += w * (clip_curves_[k] - curves_[k]);
     if (any)
       crossfade<T>(a_, b_, w, a_);
     else

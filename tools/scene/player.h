@@ -30,6 +30,8 @@ class Player {
   const std::vector<JointJet<T>>& at(double t, const Felt<T>& felt);
   bool has_graph() const { return graph_.has_value(); }
   const Status& fault() const { return fault_; }
+  /// [slot of the asset's curves] what they were when a pose was last asked for.
+  std::span<const TimeJet<T>> curves() const { return curves_; }
   /// At time 0, with the speeds that the character starts with.
   std::vector<JointJet<T>> start(std::span<const Transform<T>> now);
 
@@ -43,6 +45,7 @@ class Player {
   std::size_t begun_ = 0;           ///< uses that have started
   std::vector<Transform<T>> held_;  ///< [joint] pose in which the last use with from_pose began
   std::vector<JointJet<T>> a_, b_;
+  std::vector<TimeJet<T>> curves_, clip_curves_;
   std::optional<GraphMotion<T>> graph_;
   Status fault_;
 };

@@ -18,6 +18,7 @@ struct CharacterFrame {
       effort;  ///< [joint] the same of the limit at full strength, fading over 0.1 s: what colours show
   std::vector<float> torque;  ///< [joint] of the most loaded DOF, N·m
   std::vector<float> limit;   ///< [joint] of that DOF and direction, N·m
+  std::vector<float> curves;  ///< [slot of its asset's curves], or empty: all at rest
   int unknown_dofs = 0;       ///< DOFs handed to the optimizer in this frame (0 = playback)
   int total_dofs = 0;
   float microseconds = 0;  ///< of the step
@@ -27,6 +28,11 @@ struct CharacterFrame {
 
   /// What colours show of a joint; 0 where nobody filled `effort`.
   float effort_of(std::size_t joint) const { return joint < effort.size() ? effort[joint] : 0; }
+  /// A curve's value; 0 of a slot that the asset does not have.
+  float curve(const Asset& asset, std::size_t slot) const {
+    if (slot < curves.size()) return curves[slot];
+    return slot < asset.curve_slots.size() ? asset.curve_slots[slot].rest : 0;
+  }
 };
 
 struct PropFrame {

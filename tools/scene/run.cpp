@@ -148,6 +148,8 @@ class Runner {
       const Skeleton& skeleton = c.skeleton();
       CharacterFrame made;
       for (const Transform<T>& x : c.model()) made.model.push_back(x.template cast<float>());
+      for (const TimeJet<T>& curve : play_.curves(static_cast<int>(n)))
+        made.curves.push_back(static_cast<float>(curve.value));
       record_muscles(c, made);
       if (!recording_.frames.empty()) calm(recording_.frames.back().characters[n].effort, made.effort);
       made.most_loaded_joint = static_cast<int>(

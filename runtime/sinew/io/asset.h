@@ -12,6 +12,7 @@
 
 #include "sinew/animation/clip.h"
 #include "sinew/animation/joint_mask.h"
+#include "sinew/animation/morph_job.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -26,6 +27,8 @@ struct Mesh {
   std::vector<std::uint16_t> joints;   ///< [vertex][4] skeleton joint of each influence
   std::vector<float> weights;          ///< [vertex][4], sum 1
   int material = -1;                   ///< index into Asset::materials; -1: none
+  std::vector<MorphTarget> morphs;     ///< move vertices at the bind pose: MorphJob, then skinning
+  std::vector<int> morph_curves;       ///< [morph] slot of Asset::curve_slots: the target's name and weight
 };
 
 /// What a mesh looks like.

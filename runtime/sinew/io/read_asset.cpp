@@ -196,7 +196,34 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& out) {
+/// Whether a target moves vertices that are there, each once, by as many numbers as they have.
+bool is_of_mesh(const MorphTarget& target, std::size_t vertices) {
+  std::size_t touched = 0, next = 0;
+  for (const MorphRun& run : target.runs) {
+    if (run.count == 0 || run.first < next || run.first >= vertices || run.count > vertices - run.first)
+      return false;
+    next = std::size_t(run.first) + run.count;
+    touched += run.count;
+  }
+  return target.moves.size() == 3 * touched && (target.tilts.empty() || target.tilts.size() == 3 * touched) &&
+         std::isfinite(target.scale) && std::isfinite(target.tilt_scale);
+}
+
+Status unpack(const fb::MorphTarget& in, std::size_t vertices, int slots, int index, Mesh& out) {
+  MorphTarget& target = out.morphs.emplace_back();
+  for (unsigned k = 0; k < in.runs()->size(); ++k)
+    target.runs.push_back({in.runs()->Get(k)->first(), in.runs()->Get(k)->count()});
+  target.moves = copied(in.moves());
+  target.tilts = copied(in.tilts());
+  target.scale = in.scale();
+  target.tilt_scale = in.tilt_scale();
+  out.morph_curves.push_back(in.curve());
+  if (!is_of_mesh(target, vertices)) return bad("mesh has a morph target of other vertices", index);
+  if (in.curve() < 0 || in.curve() >= slots) return bad("mesh has a morph target without a curve", index);
+  return {};
+}
+
+Status unpack(const fb::Mesh& in, int joints, int materials, int slots, int index, Mesh& out) {
   out.name = in.name()->str();
   out.positions = copied(in.positions());
   out.normals = copied(in.normals());
@@ -220,6 +247,8 @@ Status unpack(const fb::Mesh& in, int joints, int materials, int index, Mesh& ou
       if (!std::isfinite(v)) return bad("mesh has a number that is not finite", index);
   if (out.material < -1 || out.material >= materials)
     return bad("mesh names a material that does not exist", index);
+  for (unsigned k = 0; k < size_of(in.morphs()); ++k)
+    if (Status status = unpack(*in.morphs()->Get(k), vertices, slots, index, out); !status) return status;
   return {};
 }
 
@@ -316,7 +345,8 @@ Status read_asset(std::span<const std::uint8_t> bytes, Asset& out) {
   const int materials = static_cast<int>(asset.materials.size());
   for (unsigned i = 0; i < size_of(in.meshes()); ++i)
     if (Status status =
-            unpack(*in.meshes()->Get(i), joints, materials, static_cast<int>(i), asset.meshes.emplace_back());
+            unpack(*in.meshes()->Get(i), joints, materials, static_cast<int>(asset.curve_slots.size()),
+                   static_cast<int>(i), asset.meshes.emplace_back());
         !status)
       return status;
   for (unsigned i = 0; i < size_of(in.inverse_bind()); ++i) {

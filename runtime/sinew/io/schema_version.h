@@ -4,6 +4,6 @@
 namespace sinew {
 
 inline constexpr int kSchemaMajor = 2;  // 2: packed clips
-inline constexpr int kSchemaMinor = 1;  // 2.1: curves, events, markers, masks
+inline constexpr int kSchemaMinor = 2;  // 2.1: curves, events, markers, masks; 2.2: morph targets
 
 }  // namespace sinew

@@ -158,6 +158,16 @@ Offset<fb::Clip> pack(FlatBufferBuilder& b, const Clip& clip, const Skeleton& sk
                         step, rotations_offset, translations_offset, curves, events, markers, clip.cycles);
 }
 
+Offset<fb::MorphTarget> pack(FlatBufferBuilder& b, const MorphTarget& target, int curve) {
+  std::vector<fb::MorphRun> runs;
+  for (const MorphRun& run : target.runs) runs.emplace_back(run.first, run.count);
+  const auto runs_offset = b.CreateVectorOfStructs(runs);
+  const auto moves = b.CreateVector(target.moves);
+  const auto tilts =
+      target.tilts.empty() ? Offset<flatbuffers::Vector<std::int16_t>>() : b.CreateVector(target.tilts);
+  return fb::CreateMorphTarget(b, curve, runs_offset, moves, target.scale, tilts, target.tilt_scale);
+}
+
 Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
   const auto name = b.CreateString(mesh.name);
   const auto positions = b.CreateVector(mesh.positions), normals = b.CreateVector(mesh.normals),
@@ -165,7 +175,12 @@ Offset<fb::Mesh> pack(FlatBufferBuilder& b, const Mesh& mesh) {
   const auto indices = b.CreateVector(mesh.indices);
   const auto joints = b.CreateVector(mesh.joints);
   const auto weights = b.CreateVector(mesh.weights);
-  return fb::CreateMesh(b, name, positions, normals, uvs, indices, joints, weights, mesh.material);
+  std::vector<Offset<fb::MorphTarget>> targets;
+  for (std::size_t k = 0; k < mesh.morphs.size(); ++k)
+    targets.push_back(pack(b, mesh.morphs[k], k < mesh.morph_curves.size() ? mesh.morph_curves[k] : -1));
+  using Targets = flatbuffers::Vector<Offset<fb::MorphTarget>>;
+  const auto morphs = targets.empty() ? Offset<Targets>() : b.CreateVector(targets);
+  return fb::CreateMesh(b, name, positions, normals, uvs, indices, joints, weights, mesh.material, morphs);
 }
 
 }  // namespace

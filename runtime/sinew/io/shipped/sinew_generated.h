@@ -57,6 +57,11 @@ struct EventBuilder;
 struct Clip;
 struct ClipBuilder;
 
+struct MorphRun;
+
+struct MorphTarget;
+struct MorphTargetBuilder;
+
 struct Mesh;
 struct MeshBuilder;
 
@@ -446,6 +451,29 @@ FLATBUFFERS_MANUALLY_ALIGNED_STRUCT(8) Marker FLATBUFFERS_FINAL_CLASS {
   }
 };
 FLATBUFFERS_STRUCT_END(Marker, 16);
+
+FLATBUFFERS_MANUALLY_ALIGNED_STRUCT(4) MorphRun FLATBUFFERS_FINAL_CLASS {
+ private:
+  uint32_t first_;
+  uint32_t count_;
+
+ public:
+  MorphRun()
+      : first_(0),
+        count_(0) {
+  }
+  MorphRun(uint32_t _first, uint32_t _count)
+      : first_(flatbuffers::EndianScalar(_first)),
+        count_(flatbuffers::EndianScalar(_count)) {
+  }
+  uint32_t first() const {
+    return flatbuffers::EndianScalar(first_);
+  }
+  uint32_t count() const {
+    return flatbuffers::EndianScalar(count_);
+  }
+};
+FLATBUFFERS_STRUCT_END(MorphRun, 8);
 
 struct Joint FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
   typedef JointBuilder Builder;
@@ -1447,6 +1475,123 @@ inline flatbuffers::Offset<Clip> CreateClipDirect(
       cycles);
 }
 
+struct MorphTarget FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
+  typedef MorphTargetBuilder Builder;
+  enum FlatBuffersVTableOffset FLATBUFFERS_VTABLE_UNDERLYING_TYPE {
+    VT_CURVE = 4,
+    VT_RUNS = 6,
+    VT_MOVES = 8,
+    VT_SCALE = 10,
+    VT_TILTS = 12,
+    VT_TILT_SCALE = 14
+  };
+  int32_t curve() const {
+    return GetField<int32_t>(VT_CURVE, 0);
+  }
+  const flatbuffers::Vector<const sinew::fb::MorphRun *> *runs() const {
+    return GetPointer<const flatbuffers::Vector<const sinew::fb::MorphRun *> *>(VT_RUNS);
+  }
+  const flatbuffers::Vector<int16_t> *moves() const {
+    return GetPointer<const flatbuffers::Vector<int16_t> *>(VT_MOVES);
+  }
+  float scale() const {
+    return GetField<float>(VT_SCALE, 0.0f);
+  }
+  const flatbuffers::Vector<int16_t> *tilts() const {
+    return GetPointer<const flatbuffers::Vector<int16_t> *>(VT_TILTS);
+  }
+  float tilt_scale() const {
+    return GetField<float>(VT_TILT_SCALE, 0.0f);
+  }
+  bool Verify(flatbuffers::Verifier &verifier) const {
+    return VerifyTableStart(verifier) &&
+           VerifyField<int32_t>(verifier, VT_CURVE, 4) &&
+           VerifyOffsetRequired(verifier, VT_RUNS) &&
+           verifier.VerifyVector(runs()) &&
+           VerifyOffsetRequired(verifier, VT_MOVES) &&
+           verifier.VerifyVector(moves()) &&
+           VerifyField<float>(verifier, VT_SCALE, 4) &&
+           VerifyOffset(verifier, VT_TILTS) &&
+           verifier.VerifyVector(tilts()) &&
+           VerifyField<float>(verifier, VT_TILT_SCALE, 4) &&
+           verifier.EndTable();
+  }
+};
+
+struct MorphTargetBuilder {
+  typedef MorphTarget Table;
+  flatbuffers::FlatBufferBuilder &fbb_;
+  flatbuffers::uoffset_t start_;
+  void add_curve(int32_t curve) {
+    fbb_.AddElement<int32_t>(MorphTarget::VT_CURVE, curve, 0);
+  }
+  void add_runs(flatbuffers::Offset<flatbuffers::Vector<const sinew::fb::MorphRun *>> runs) {
+    fbb_.AddOffset(MorphTarget::VT_RUNS, runs);
+  }
+  void add_moves(flatbuffers::Offset<flatbuffers::Vector<int16_t>> moves) {
+    fbb_.AddOffset(MorphTarget::VT_MOVES, moves);
+  }
+  void add_scale(float scale) {
+    fbb_.AddElement<float>(MorphTarget::VT_SCALE, scale, 0.0f);
+  }
+  void add_tilts(flatbuffers::Offset<flatbuffers::Vector<int16_t>> tilts) {
+    fbb_.AddOffset(MorphTarget::VT_TILTS, tilts);
+  }
+  void add_tilt_scale(float tilt_scale) {
+    fbb_.AddElement<float>(MorphTarget::VT_TILT_SCALE, tilt_scale, 0.0f);
+  }
+  explicit MorphTargetBuilder(flatbuffers::FlatBufferBuilder &_fbb)
+        : fbb_(_fbb) {
+    start_ = fbb_.StartTable();
+  }
+  flatbuffers::Offset<MorphTarget> Finish() {
+    const auto end = fbb_.EndTable(start_);
+    auto o = flatbuffers::Offset<MorphTarget>(end);
+    fbb_.Required(o, MorphTarget::VT_RUNS);
+    fbb_.Required(o, MorphTarget::VT_MOVES);
+    return o;
+  }
+};
+
+inline flatbuffers::Offset<MorphTarget> CreateMorphTarget(
+    flatbuffers::FlatBufferBuilder &_fbb,
+    int32_t curve = 0,
+    flatbuffers::Offset<flatbuffers::Vector<const sinew::fb::MorphRun *>> runs = 0,
+    flatbuffers::Offset<flatbuffers::Vector<int16_t>> moves = 0,
+    float scale = 0.0f,
+    flatbuffers::Offset<flatbuffers::Vector<int16_t>> tilts = 0,
+    float tilt_scale = 0.0f) {
+  MorphTargetBuilder builder_(_fbb);
+  builder_.add_tilt_scale(tilt_scale);
+  builder_.add_tilts(tilts);
+  builder_.add_scale(scale);
+  builder_.add_moves(moves);
+  builder_.add_runs(runs);
+  builder_.add_curve(curve);
+  return builder_.Finish();
+}
+
+inline flatbuffers::Offset<MorphTarget> CreateMorphTargetDirect(
+    flatbuffers::FlatBufferBuilder &_fbb,
+    int32_t curve = 0,
+    const std::vector<sinew::fb::MorphRun> *runs = nullptr,
+    const std::vector<int16_t> *moves = nullptr,
+    float scale = 0.0f,
+    const std::vector<int16_t> *tilts = nullptr,
+    float tilt_scale = 0.0f) {
+  auto runs__ = runs ? _fbb.CreateVectorOfStructs<sinew::fb::MorphRun>(*runs) : 0;
+  auto moves__ = moves ? _fbb.CreateVector<int16_t>(*moves) : 0;
+  auto tilts__ = tilts ? _fbb.CreateVector<int16_t>(*tilts) : 0;
+  return sinew::fb::CreateMorphTarget(
+      _fbb,
+      curve,
+      runs__,
+      moves__,
+      scale,
+      tilts__,
+      tilt_scale);
+}
+
 struct Mesh FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
   typedef MeshBuilder Builder;
   enum FlatBuffersVTableOffset FLATBUFFERS_VTABLE_UNDERLYING_TYPE {
@@ -1457,7 +1602,8 @@ struct Mesh FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
     VT_INDICES = 12,
     VT_JOINTS = 14,
     VT_WEIGHTS = 16,
-    VT_MATERIAL = 18
+    VT_MATERIAL = 18,
+    VT_MORPHS = 20
   };
   const flatbuffers::String *name() const {
     return GetPointer<const flatbuffers::String *>(VT_NAME);
@@ -1483,6 +1629,9 @@ struct Mesh FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
   int32_t material() const {
     return GetField<int32_t>(VT_MATERIAL, -1);
   }
+  const flatbuffers::Vector<flatbuffers::Offset<sinew::fb::MorphTarget>> *morphs() const {
+    return GetPointer<const flatbuffers::Vector<flatbuffers::Offset<sinew::fb::MorphTarget>> *>(VT_MORPHS);
+  }
   bool Verify(flatbuffers::Verifier &verifier) const {
     return VerifyTableStart(verifier) &&
            VerifyOffsetRequired(verifier, VT_NAME) &&
@@ -1500,6 +1649,9 @@ struct Mesh FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
            VerifyOffset(verifier, VT_WEIGHTS) &&
            verifier.VerifyVector(weights()) &&
            VerifyField<int32_t>(verifier, VT_MATERIAL, 4) &&
+           VerifyOffset(verifier, VT_MORPHS) &&
+           verifier.VerifyVector(morphs()) &&
+           verifier.VerifyVectorOfTables(morphs()) &&
            verifier.EndTable();
   }
 };
@@ -1532,6 +1684,9 @@ struct MeshBuilder {
   void add_material(int32_t material) {
     fbb_.AddElement<int32_t>(Mesh::VT_MATERIAL, material, -1);
   }
+  void add_morphs(flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<sinew::fb::MorphTarget>>> morphs) {
+    fbb_.AddOffset(Mesh::VT_MORPHS, morphs);
+  }
   explicit MeshBuilder(flatbuffers::FlatBufferBuilder &_fbb)
         : fbb_(_fbb) {
     start_ = fbb_.StartTable();
@@ -1556,8 +1711,10 @@ inline flatbuffers::Offset<Mesh> CreateMesh(
     flatbuffers::Offset<flatbuffers::Vector<uint32_t>> indices = 0,
     flatbuffers::Offset<flatbuffers::Vector<uint16_t>> joints = 0,
     flatbuffers::Offset<flatbuffers::Vector<float>> weights = 0,
-    int32_t material = -1) {
+    int32_t material = -1,
+    flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<sinew::fb::MorphTarget>>> morphs = 0) {
   MeshBuilder builder_(_fbb);
+  builder_.add_morphs(morphs);
   builder_.add_material(material);
   builder_.add_weights(weights);
   builder_.add_joints(joints);
@@ -1578,7 +1735,8 @@ inline flatbuffers::Offset<Mesh> CreateMeshDirect(
     const std::vector<uint32_t> *indices = nullptr,
     const std::vector<uint16_t> *joints = nullptr,
     const std::vector<float> *weights = nullptr,
-    int32_t material = -1) {
+    int32_t material = -1,
+    const std::vector<flatbuffers::Offset<sinew::fb::MorphTarget>> *morphs = nullptr) {
   auto name__ = name ? _fbb.CreateString(name) : 0;
   auto positions__ = positions ? _fbb.CreateVector<float>(*positions) : 0;
   auto normals__ = normals ? _fbb.CreateVector<float>(*normals) : 0;
@@ -1586,6 +1744,7 @@ inline flatbuffers::Offset<Mesh> CreateMeshDirect(
   auto indices__ = indices ? _fbb.CreateVector<uint32_t>(*indices) : 0;
   auto joints__ = joints ? _fbb.CreateVector<uint16_t>(*joints) : 0;
   auto weights__ = weights ? _fbb.CreateVector<float>(*weights) : 0;
+  auto morphs__ = morphs ? _fbb.CreateVector<flatbuffers::Offset<sinew::fb::MorphTarget>>(*morphs) : 0;
   return sinew::fb::CreateMesh(
       _fbb,
       name__,
@@ -1595,7 +1754,8 @@ inline flatbuffers::Offset<Mesh> CreateMeshDirect(
       indices__,
       joints__,
       weights__,
-      material);
+      material,
+      morphs__);
 }
 
 struct Material FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
