@@ -93,9 +93,13 @@ TEST(Bossak, AContactThatHasJustClosedIsAnImpulse) {
   Contact<double> old = bearing(100, 100, 100, 100);
   split<double>(false, 0.6, old);
   EXPECT_NEAR(old.smooth_force, 100, 1e-9);
-  Contact<double> lasts = bearing(100, 20, 0, 0);
+  Contact<double> lasts = bearing(100, 20, 55, 40);
   split<double>(true, 0.6, lasts);
   EXPECT_NEAR(lasts.smooth_force, 100, 1e-9);
+  Contact<double> leaps = bearing(100, 20, 20, 15);
+  split<double>(true, 0.6, leaps);
+  EXPECT_NEAR(leaps.smooth_force, 40, 1e-9) << "twice what it was";
+  EXPECT_NEAR(leaps.lasting_force, 40, 1e-9) << "a leap is not what lasts";
 }
 
 TEST(EndVelocities, AreWhatTheyWereWhereJointsAllowThem) {

@@ -293,8 +293,13 @@ template <class T>
 void split(bool last, T share, Contact<T>& c) {
   const T now = normal_force(c);
   c.lasting_force = lasting(now, c.smooth_before, share);
-  c.smooth_force = last ? without_leap(now, c.lasting_last, c.lasting_before)
-                        : std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
+  if (!last) {
+    c.smooth_force = std::min(now, limited(c.lasting_force, c.lasting_last, c.lasting_before));
+    return;
+  }
+  const T most = most_of_lasting(c.lasting_last, c.lasting_before);
+  c.smooth_force = std::min(now, most);
+  if (most > T(0)) c.lasting_force = std::min(c.lasting_force, most);
 }
 
 /// Re-measures gap, normal, points and slips at the present kinematics of the two bodies (`b` ignored when

@@ -10,8 +10,6 @@ const char* known_to_fail(const std::string& situation) {
     const char *name, *why;
   };
   static constexpr Known kKnown[] = {
-      {"corner",
-       "hands reach 9.3 m/s, 8 wanted, and which is flung is chaotic (9 to 17 in steps of 1/240 s)"},
       {"pit", "a hand reaches 15.1 m/s, 30 with all seeds, 15 wanted; in steps of 1/240 s 37, of 1/960 s 55"},
       {"crowd_pushed",
        "one of twenty is caught by another's legs and does not come back, 0.22 m off; and a hand whirls at "
@@ -22,9 +20,6 @@ const char* known_to_fail(const std::string& situation) {
        "the waist no faster than it can stop them (40 mm where it may use twice as much of its strength), "
        "and "
        "the return alone takes 0.92 s from a metre to a millimetre"},
-      {"stairs",
-       "one of the falls goes on for longer than the ten seconds: 2.2 m/s on the last steps, where 0.1 are "
-       "wanted; which one is chaotic"},
       {"columns",
        "at 120 Hz two are 30.4 mm in each other, 30 wanted: of what clips press 27 mm may be; and when "
        "they are through some are up to 12 mm off their clips, 10 wanted"},
