@@ -108,7 +108,7 @@ TEST(Retarget, WhatAClipSaysComesAlongInItsTime) {
 
 TEST(Retarget, MorphTargetsStayWithTheTargetAndFollowTheSourcesCurves) {
   Asset source = mannequin(), target = mannequin(0.9), out;
-  const auto add_face = [](Asset& asset, std::vector<std::string> names) {
+  const auto add_face = [](Asset& asset, const std::vector<std::string>& names) {
     Mesh& mesh = asset.meshes[0];
     for (const std::string& name : names) {
       mesh.morphs.push_back({{{0, 1}}, {0, 0, 1}, 0.01f, {}, 0});

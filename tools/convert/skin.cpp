@@ -101,7 +101,7 @@ bool bake_mesh(const import::SourceMesh& in, const import::SourceScene& scene,
     }
     if (list.empty()) blend = mesh_world;
     blend = to_model * blend;
-    to_rest.push_back(blend.block<3, 3>(0, 0));
+    to_rest.emplace_back(blend.block<3, 3>(0, 0));
     const Eigen::Vector3d p(in.positions[v][0], in.positions[v][1], in.positions[v][2]);
     const Eigen::Vector3d at = blend.block<3, 3>(0, 0) * p + blend.block<3, 1>(0, 3);
     Eigen::Vector3d n = Eigen::Vector3d::UnitZ();

@@ -25,7 +25,7 @@ const char* known_to_fail(const std::string& situation) {
        "they are through some are up to 12 mm off their clips, 10 wanted"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
       {"trolley",
-       "loses 5 % of 2 m/s in four seconds, 2 % wanted: what hinges gain as wheels wobble the energy balance "
+       "loses 4 % of 2 m/s in four seconds, 2 % wanted: what hinges gain as wheels wobble the energy balance "
        "takes from all that moves; in steps of 1/240 s 0.3 %"},
   };
   for (const Known& known : kKnown)

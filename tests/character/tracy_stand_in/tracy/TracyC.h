@@ -21,6 +21,7 @@ inline std::vector<std::string> names{""};
 #else
 #define COLOUR
 #endif
+// NOLINTBEGIN(bugprone-reserved-identifier): these are Tracy's
 inline std::uint64_t ___tracy_alloc_srcloc_name(std::uint32_t, const char*, std::size_t, const char*,
                                                 std::size_t, const char* name, std::size_t length COLOUR) {
 #ifdef TRACY_ASKS_FOR_A_COLOUR
@@ -37,3 +38,4 @@ inline TracyCZoneCtx ___tracy_emit_zone_begin_alloc(std::uint64_t place, int act
 inline void ___tracy_emit_zone_end(TracyCZoneCtx zone) {
   told.push_back("end " + names[zone.id]);
 }
+// NOLINTEND(bugprone-reserved-identifier)
