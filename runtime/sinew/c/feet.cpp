@@ -75,19 +75,13 @@ sinew_status read_foot(const sinew_foot& from, int foot, FootInput<float>& to) {
 /// FootState.
 template <class C, class S, class Copy>
 void list_numbers(C& c, S& s, Copy&& copy) {
-  std::size_t n = 0;
-  const auto jet = [&](auto& x) {
-    copy(c.numbers[n], x.value);
-    copy(c.numbers[n + 1], x.rate);
-    copy(c.numbers[n + 2], x.acceleration);
-    n += 3;
-  };
+  NumberList list{c.numbers, copy};
   for (auto* vector : {&s.point, &s.normal, &s.lock})
-    for (auto& x : *vector) copy(c.numbers[n++], x);
-  jet(s.height.x);
-  for (auto& slope : s.slope) jet(slope.x);
-  for (auto& offset : s.offset) jet(offset);
-  jet(s.grip);
+    for (auto& x : *vector) list.number(x);
+  list.jet(s.height.x);
+  for (auto& slope : s.slope) list.jet(slope.x);
+  for (auto& offset : s.offset) list.jet(offset);
+  list.jet(s.grip);
   static_assert(std::size(C{}.numbers) == 30);
 }
 
@@ -154,11 +148,6 @@ sinew_feet_state state_of(const Remembered& from) {
   return to;
 }
 
-bool finite(const JointJet<float>& jet) {
-  return jet.rotation.coeffs().allFinite() && jet.omega.allFinite() && jet.alpha.allFinite() &&
-         jet.translation.allFinite() && jet.velocity.allFinite() && jet.acceleration.allFinite();
-}
-
 /// Runs the job; what it changed of the pose is as before where it fails.
 sinew_status run_or_undo(const OwnedAsset& owned, const FootPlacementJob<float>& job, const Remembered& after,
                          sinew_feet_state& state) {
@@ -171,7 +160,7 @@ sinew_status run_or_undo(const OwnedAsset& owned, const FootPlacementJob<float>&
   Status status = job.Run();
   const sinew_feet_state written = state_of(after);
   const bool good = in_range(written) && std::all_of(changed.begin(), changed.end(), [&](int joint) {
-                      return finite(job.jets[std::size_t(joint)]);
+                      return is_finite(job.jets[std::size_t(joint)]);
                     });
   if (status && !good)
     status = Status::error(Code::kOutOfRange, "a jet, ground or level is absurdly far or fast");

@@ -109,19 +109,13 @@ LookSettings<float> in_float(const LookSettings<double>& s) {
 /// copy(number of the C struct, number of the state) for all that fades, in the order of LookState.
 template <class C, class S, class Copy>
 void list_numbers(C& c, S& s, Copy&& copy) {
-  std::size_t n = 0;
-  const auto jet = [&](auto& x) {
-    copy(c.numbers[n], x.value);
-    copy(c.numbers[n + 1], x.rate);
-    copy(c.numbers[n + 2], x.acceleration);
-    n += 3;
-  };
+  NumberList list{c.numbers, copy};
   for (auto* track : {&s.body, &s.head}) {
-    for (auto& offset : track->offset) jet(offset);
-    for (auto& angle : track->angles) jet(angle.x);
+    for (auto& offset : track->offset) list.jet(offset);
+    for (auto& angle : track->angles) list.jet(angle.x);
   }
-  copy(c.numbers[n], s.elapsed);
-  copy(c.numbers[n + 1], s.duration);
+  list.number(s.elapsed);
+  list.number(s.duration);
   static_assert(std::size(C{}.numbers) == 26);
 }
 

@@ -19,6 +19,23 @@ inline sinew_status check_jets(const OwnedAsset& owned, const sinew_jet* jets, i
   return SINEW_OK;
 }
 
+/// The numbers of a state that the caller keeps, one after the other beside those that have names here:
+/// copy(number there, number here) takes them either way.
+template <class Number, class Copy>
+struct NumberList {
+  Number* next;
+  Copy& copy;
+
+  void number(auto& x) { copy(*next++, x); }
+  void jet(auto& x) {
+    number(x.value);
+    number(x.rate);
+    number(x.acceleration);
+  }
+};
+template <class Number, class Copy>
+NumberList(Number*, Copy&) -> NumberList<Number, Copy>;
+
 /// job(const OwnedAsset&, const S& settings, jets) → status, with what the caller set.
 template <class S, class C, class List, class Job>
 sinew_status run(sinew_asset asset, const C* settings, List&& list, sinew_jet* jets, int count,

@@ -138,7 +138,7 @@ void append_moving(CharacterState<T>& s, T h, std::vector<MovingCollider<T>>& ou
 
 namespace {
 
-constexpr int kMostBounds = 128;  ///< bodies of who is held by bounds on its speeds
+constexpr int kMostBounds = 128;  ///< bodies whose speeds are bounded one from the other
 
 /// By bounds on the animation's speeds from the root down: what reaches e from the joint of a body moves no
 /// faster than turn·e + shift against the root's centre of mass, which is what animated_speed() adds up.
