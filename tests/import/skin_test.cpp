@@ -81,6 +81,36 @@ TEST(Skin, OneBoneMayHaveABindMatrixPerMesh) {  // traps 32 and 33
   }
 }
 
+// assimp 5.2.5 crashes without them, and reads beyond the end of those that are too few.
+TEST(Skin, WithoutBindMatricesIsModelledInItsJointsFrames) {  // as the specification says
+  std::vector<float> values;
+  Json gltf = skinned_by(three_times({0.5f, 0.5f, 0, 0}), 5126, {3}, values);
+  gltf["skins"][0].erase("inverseBindMatrices");
+  for (const std::string& file : {std::string("a.gltf"), std::string("a.glb")}) {
+    const Outcome outcome = read_content(file, file == "a.glb" ? as_glb(gltf, values) : gltf.dump());
+    ASSERT_TRUE(outcome.ok) << outcome.error;
+    ASSERT_EQ(outcome.scene.meshes.at(0).bones.size(), 2u);
+    for (const SourceMesh::Bone& bone : outcome.scene.meshes[0].bones) {
+      EXPECT_TRUE(bone.inverse_bind.isIdentity(0)) << bone.inverse_bind;
+      ASSERT_EQ(bone.weights.size(), 3u);
+      EXPECT_EQ(bone.weights[2].second, 0.5f);
+    }
+  }
+}
+
+TEST(Skin, BindMatricesAndJointsThatAreNotThereAreRefused) {
+  const Json whole = skinned({0.5f, 0.5f, 0, 0}, {0});
+  const auto error = [&](const char* key, const Json& value) {
+    Json gltf = whole;
+    gltf["skins"][0][key] = value;
+    return read_content("a.gltf", gltf.dump()).error;
+  };
+  EXPECT_EQ(error("joints", {0, 1, 2}), "skin 0: not a bind matrix for each of its joints");
+  EXPECT_EQ(error("joints", {0, 99}), "skin 0: a joint points nowhere");
+  EXPECT_EQ(error("inverseBindMatrices", 0), "skin 0: not a bind matrix for each of its joints");
+  EXPECT_EQ(error("inverseBindMatrices", 99), "skin 0: 'inverseBindMatrices' points nowhere");
+}
+
 const std::string kPng("\x89PNG\r\n\x1a\n", 8);
 
 /// with_triangle() painted with an image.

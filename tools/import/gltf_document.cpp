@@ -109,6 +109,24 @@ void check_tree(const Json& nodes, const ReadLimits& limits) {
   if (reached != nodes.size()) throw std::runtime_error("nodes form a loop");
 }
 
+/// assimp 5.2.5 reads a matrix for each joint, whatever there is.
+void check_skins(const Json& document) {
+  const Json& skins = document.at("skins");
+  for (std::size_t k = 0; k < skins.size(); ++k) {
+    const std::string where = "skin " + std::to_string(k);
+    const Json& joints = skins[k].at("joints");
+    for (const Json& joint : joints)
+      if (!joint.is_number_unsigned() || joint.get<std::size_t>() >= length_of(document, "nodes"))
+        throw std::runtime_error(where + ": a joint points nowhere");
+    if (!skins[k].contains("inverseBindMatrices")) continue;
+    const Json& binds =
+        document.at("accessors")
+            .at(index_in(skins[k], "inverseBindMatrices", length_of(document, "accessors"), where));
+    if (binds.value("type", "") != "MAT4" || binds.value("count", std::size_t(0)) < joints.size())
+      throw std::runtime_error(where + ": not a bind matrix for each of its joints");
+  }
+}
+
 /// How many morph targets the mesh has that an animation's target moves; 0 where it moves none.
 std::size_t morph_targets_of(const Json& document, const Json& target, const std::string& where) {
   if (!target.contains("node")) return 0;
@@ -248,7 +266,8 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
   }
   decode_uris(document);
   const std::string rest = content.substr(begin + length);
-  out.floats = widen_normalized(
+  if (document.contains("skins")) check_skins(document);
+  out.floats = add_floats(
       document, [&](std::size_t k) { return buffer_bytes(document, k, rest, read_beside); }, kFloatsFile,
       limits);
   out.content = document.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -80,6 +80,9 @@ class Widening {
       if (accessor.value("normalized", false) || weights.count(k) > 0)
         widen(accessor, "accessor " + std::to_string(k), component, components);
     }
+    if (document_.contains("skins"))
+      for (Json& skin : document_.at("skins"))
+        if (!skin.contains("inverseBindMatrices")) bind_as_modelled(skin);
     if (!floats_.empty()) document_.at("buffers").push_back({{"byteLength", floats_.size()}, {"uri", file}});
     return std::move(floats_);
   }
@@ -105,18 +108,38 @@ class Widening {
     if (begin + count * components * sizeof(float) > limits_.max_file_bytes)
       throw std::runtime_error(what + " is too large");
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t c = 0; c < components; ++c) {
-        const float value = widened(bytes.data() + first + offset + i * stride + c * size, component);
-        const auto raw = std::bit_cast<std::array<char, sizeof value>>(value);
-        floats_.append(raw.data(), raw.size());
-      }
-    Json& views = document_.at("bufferViews");
-    accessor["bufferView"] = views.size();
+      for (std::size_t c = 0; c < components; ++c)
+        append(widened(bytes.data() + first + offset + i * stride + c * size, component));
+    accessor["bufferView"] = document_.at("bufferViews").size();
     accessor["componentType"] = int(kFloat);
     for (const char* key : {"normalized", "byteOffset", "min", "max"}) accessor.erase(key);
-    views.push_back({{"buffer", document_.at("buffers").size()},
-                     {"byteOffset", begin},
-                     {"byteLength", floats_.size() - begin}});
+    add_view(begin);
+  }
+
+  /// Its mesh was modelled in each joint's own frame: a matrix of 1 for each.
+  void bind_as_modelled(Json& skin) {
+    const std::size_t begin = floats_.size(), joints = skin.at("joints").size();
+    for (std::size_t k = 0; k < joints; ++k)
+      for (int entry = 0; entry < 16; ++entry) append(entry % 5 == 0 ? 1.f : 0.f);
+    skin["inverseBindMatrices"] = document_.at("accessors").size();
+    document_.at("accessors")
+        .push_back({{"bufferView", document_["bufferViews"].size()},
+                    {"componentType", int(kFloat)},
+                    {"count", joints},
+                    {"type", "MAT4"}});
+    add_view(begin);
+  }
+
+  void append(float value) {
+    const auto raw = std::bit_cast<std::array<char, sizeof value>>(value);
+    floats_.append(raw.data(), raw.size());
+  }
+
+  /// Of the floats from `begin` on.
+  void add_view(std::size_t begin) {
+    document_["bufferViews"].push_back({{"buffer", document_.at("buffers").size()},
+                                        {"byteOffset", begin},
+                                        {"byteLength", floats_.size() - begin}});
   }
 
   const std::string& buffer(std::size_t number) {
@@ -133,8 +156,8 @@ class Widening {
 
 }  // namespace
 
-std::string widen_normalized(Json& document, const std::function<std::string(std::size_t)>& bytes_of,
-                             const std::string& file, const ReadLimits& limits) {
+std::string add_floats(Json& document, const std::function<std::string(std::size_t)>& bytes_of,
+                       const std::string& file, const ReadLimits& limits) {
   if (!document.contains("accessors") || !document.contains("buffers")) return {};
   return Widening(document, bytes_of, limits).run(file);
 }
