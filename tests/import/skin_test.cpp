@@ -82,7 +82,7 @@ TEST(Skin, OneBoneMayHaveABindMatrixPerMesh) {  // traps 32 and 33
 }
 
 // assimp 5.2.5 crashes without them, and reads beyond the end of those that are too few.
-TEST(Skin, WithoutBindMatricesIsModelledInItsJointsFrames) {  // as the specification says
+TEST(Skin, WithoutBindMatricesIsModelledInItsJointsFrames) {  // trap 52
   std::vector<float> values;
   Json gltf = skinned_by(three_times({0.5f, 0.5f, 0, 0}), 5126, {3}, values);
   gltf["skins"][0].erase("inverseBindMatrices");
