@@ -253,6 +253,42 @@ TEST(Snapshot, GoesIntoAWorldWhosePropsWereAddedElsewhere) {
   }
 }
 
+TEST(Snapshot, CarriesJointsThatRideAlong) {
+  const auto with_sockets = [](double length) {
+    Skeleton skeleton = fixtures::humanoid();
+    for (const char* name : {"socket_l", "socket_r", "tail"}) {
+      Joint socket;
+      socket.name = name;
+      socket.parent = skeleton.find("chest");
+      socket.rest.translation = {length, 0.02, 0};
+      skeleton.joints.push_back(socket);
+    }
+    return skeleton;
+  };
+  const auto add = [](World<float>& world, const Skeleton& skeleton) {
+    Status status;
+    EXPECT_EQ(world.add_character(skeleton, {}, status), 0) << status.reason;
+    EXPECT_TRUE(world.character(0).set_target(fixtures::idle<float>(skeleton, 0)).ok());
+    EXPECT_TRUE(world.character(0).reset().ok());
+  };
+  const Skeleton skeleton = with_sockets(0.2);
+  World<float> first({}), second({}), longer({});
+  add(first, skeleton);
+  add(second, skeleton);
+  add(longer, with_sockets(0.3));
+  for (int n = 1; n <= 20; ++n) {
+    std::vector<JointJet<float>> target = fixtures::idle<float>(skeleton, n / 60.0);
+    target.back().translation.y() += 0.01F * float(n);
+    EXPECT_TRUE(first.character(0).set_target(target).ok());
+    ASSERT_TRUE(first.step(1.0F / 60).ok());
+  }
+  const std::vector<std::byte> bytes = saved(first);
+  ASSERT_TRUE(second.restore(bytes).ok());
+  EXPECT_EQ(saved(second), bytes);
+  EXPECT_EQ(second.character(0).local().back().translation, first.character(0).local().back().translation);
+  EXPECT_FALSE(longer.restore(bytes).ok());
+}
+
 TEST(Snapshot, OfASkeletonOfAnotherStatureIsRefused) {
   fixtures::Playing<float> playing;
   Skeleton taller = fixtures::humanoid();

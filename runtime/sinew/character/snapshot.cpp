@@ -81,13 +81,14 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
 /// What a joint's pose is predicted from. Where a prop was added, or a character stands at rest, is no part
 /// of a world's make-up: roots are predicted from the world's origin.
 template <class T>
-Transform<T> predicted_pose(const Tree<T>& tree, std::size_t i) {
-  return tree.parent[i] < 0 ? Transform<T>() : tree.rest[i];
+Transform<T> predicted_pose(const CharacterState<T>& s, std::size_t i) {
+  if (i >= static_cast<std::size_t>(s.tree.bodies)) return s.skeleton.joints[i].rest.template cast<T>();
+  return s.tree.parent[i] < 0 ? Transform<T>() : s.tree.rest[i];
 }
 
 template <class T>
 void visit_pose(CharacterState<T>& s, ByteStream& stream) {
-  const auto rest = [&](std::size_t i) { return predicted_pose(s.tree, i); };
+  const auto rest = [&](std::size_t i) { return predicted_pose(s, i); };
   const auto visit = [&](const char* name, auto visit_joint) {
     ResidualCoder<T> coder(name, stream, true);
     for (std::size_t i = 0; i < s.local.size(); ++i) visit_joint(coder, i, s.local[i]);
@@ -356,7 +357,7 @@ std::uint64_t layout_of(const MovingParts<T>& world) {
     add(s->muscle_strength.size());
     for (const JointType type : s->tree.type) add(static_cast<std::uint64_t>(type));
     for (std::size_t i = 0; i < s->local.size(); ++i) {
-      const Transform<T> predicted = predicted_pose(s->tree, i);
+      const Transform<T> predicted = predicted_pose(*s, i);
       add_numbers(predicted.rotation.coeffs());
       add_numbers(predicted.translation);
     }
