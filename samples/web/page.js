@@ -96,6 +96,8 @@ class Stage {
     this.sun.shadow.mapSize.set(1024, 1024);
     for (const side of ['left', 'bottom']) this.sun.shadow.camera[side] = -3;
     for (const side of ['right', 'top']) this.sun.shadow.camera[side] = 3;
+    this.sun.shadow.camera.far = 20;
+    this.sun.shadow.normalBias = 0.02;  // m
     this.scene.add(this.sun, this.sun.target);
     const floor = new THREE.Mesh(new THREE.PlaneGeometry(400, 400), new THREE.MeshStandardMaterial({ color: 0x46515d }));
     floor.rotation.x = -Math.PI / 2;
@@ -147,7 +149,10 @@ async function start() {
   const character = new Character(module, asset);
   const stage = new Stage(element('view'));
   const bones = new Bones(character, gltf.scene);
-  gltf.scene.traverse((node) => { node.castShadow = node.receiveShadow = node.isMesh; });
+  gltf.scene.traverse((node) => {
+    node.castShadow = node.receiveShadow = node.isMesh;
+    if (node.name.startsWith('UCX_')) node.visible = false;  // what bodies are fitted to
+  });
   stage.scene.add(gltf.scene);
   const ball = new THREE.SphereGeometry(module._page_ball_radius(), 24, 16);
   const balls = Array.from({ length: module._page_balls() }, () => {
