@@ -13,28 +13,25 @@ run_as_processors() {
     result=0
     if [ $processor = old ]; then
       GLIBC_TUNABLES=$without_fma "$@" --processor baseline >"$folder/old" 2>"$folder/old.log" || result=$?
-      processor='~old'
     else
       "$@" --processor $processor >"$folder/$processor" 2>"$folder/$processor.log" || result=$?
     fi
     case $result in
       0) machines+=($processor) ;;
       77) ;;
-      *) cat "$folder/${processor#'~'}.log" >&2; return 1 ;;
+      *) cat "$folder/$processor.log" >&2; return 1 ;;
     esac
   done
 }
 
 # table FOLDER FIRST OTHER…: prints which lines of FOLDER/OTHER are those of FOLDER/FIRST, as Markdown. Fails, and names
-# scene, precision and machines, where they differ. ~OTHER has another C library, whose functions in double are its own
-# (skeleton/portable_math.h): there, lines in double may differ.
+# scene, precision and machines, where they differ.
 table() {
   local folder=$1
   shift
   (cd "$folder" && awk -v machines="$*" '
     BEGIN {
       count = split(machines, machine, " ")
-      for (m = 1; m <= count; ++m) foreign[m] = sub(/^~/, "", machine[m])
     }
     FNR == 1 { ++file }
     { sub(/\r$/, "") }  # of Windows
@@ -48,9 +45,8 @@ table() {
         printf "| %s |", line[n]
         for (m = 1; m <= count; ++m) {
           same = hash[line[n], m] == hash[line[n], 1]
-          allowed = foreign[m] && line[n] ~ / double$/
-          printf " %s |", same ? "=" : allowed ? "C library" : "differs"
-          if (!same && !allowed)
+          printf " %s |", same ? "=" : "differs"
+          if (!same)
             faults[++wrong] = line[n] " differs: " machine[1] " " hash[line[n], 1] ", " machine[m] " " hash[line[n], m]
         }
         print ""
@@ -58,5 +54,5 @@ table() {
       fflush()
       for (n = 1; n <= wrong; ++n) print faults[n] > "/dev/stderr"
       exit lines == 0 || wrong > 0
-    }' "${@#'~'}")
+    }' "$@")
 }

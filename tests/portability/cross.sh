@@ -44,14 +44,14 @@ build() {  # build TARGET NINJA-TARGETS -- CMAKE-OPTIONS…: with warnings as er
   fi
 }
 
-lines() {  # lines MACHINE COMMAND…: what it prints about the scenes; as of table(), ~MACHINE has another C library
-  local machine=$1 name=${1#'~'}
+lines() {  # lines MACHINE COMMAND…: what it prints about the scenes
+  local machine=$1
   shift
-  echo "running: $name …" >&2
-  if ! "$@" "$asset" "$graph" >"$folder/lines/$name" 2>"$folder/$name.run.log"; then
-    rm "$folder/lines/$name"
-    tail -n 5 "$folder/$name.run.log" >&2
-    echo "cross.sh: pose_hashes does not run on $name" >&2
+  echo "running: $machine …" >&2
+  if ! "$@" "$asset" "$graph" >"$folder/lines/$machine" 2>"$folder/$machine.run.log"; then
+    rm "$folder/lines/$machine"
+    tail -n 5 "$folder/$machine.run.log" >&2
+    echo "cross.sh: pose_hashes does not run on $machine" >&2
     return 1
   fi
   machines+=("$machine")
@@ -59,7 +59,7 @@ lines() {  # lines MACHINE COMMAND…: what it prints about the scenes; as of ta
 
 aarch64() {
   build aarch64 pose_hashes -- -DCMAKE_TOOLCHAIN_FILE="$here/aarch64.cmake" -DSINEW_FLATBUFFERS="$folder/headers" &&
-    lines '~aarch64' qemu-aarch64 -L /usr/aarch64-linux-gnu "$folder/aarch64/tests/portability/pose_hashes"
+    lines aarch64 qemu-aarch64 -L /usr/aarch64-linux-gnu "$folder/aarch64/tests/portability/pose_hashes"
 }
 # Statically, so that it asks for no library; the C interface's DLL is built as well.
 mingw() {
@@ -68,7 +68,7 @@ mingw() {
     echo "skipped: mingw is built and not run: wine is not installed (tools/setup.sh --cross)" >&2
     return
   fi
-  lines '~mingw' env WINEDEBUG=-all WINEPREFIX="$folder/wine" wine "$folder/mingw/tests/portability/pose_hashes.exe"
+  lines mingw env WINEDEBUG=-all WINEPREFIX="$folder/wine" wine "$folder/mingw/tests/portability/pose_hashes.exe"
 }
 # As samples/web builds the runtime. Debian's emscripten takes a newer node for a browser where that has fetch().
 wasm() {
@@ -81,7 +81,7 @@ wasm() {
     echo "cross.sh: wasm is not built (whole log: $log)" >&2
     return 1
   fi
-  lines '~wasm' "${node[@]}" "$folder/wasm/sinew/tests/portability/pose_hashes.js"
+  lines wasm "${node[@]}" "$folder/wasm/sinew/tests/portability/pose_hashes.js"
 }
 clang() {
   build clang all -- -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ &&

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Shows that poses have the same bits on every processor that this one can be taken for: with SSE2 alone, with AVX2, with
-# AVX-512 in the runtime's kernels; in float, too, where the C library does without fused multiplication.
+# AVX-512 in the runtime's kernels, and where the C library does without fused multiplication, too.
 # Usage: tests/portability/processors.sh POSE_HASHES ASSET.sinew GRAPH.sgraph
 # Exits with 1 and names scene, precision and processors where they differ, with 77 where there is only one.
 set -euo pipefail

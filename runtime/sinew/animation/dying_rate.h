@@ -18,7 +18,7 @@ struct DyingRate {
 
   static DyingRate at(T elapsed, T slowing, T loss) {
     const T y = slowing, z = loss, slow = portable::exp(-y * elapsed), fast = portable::exp(-z * elapsed);
-    const T gone_slow = -std::expm1(-y * elapsed) / y, gone_fast = -std::expm1(-z * elapsed) / z;
+    const T gone_slow = -portable::expm1(-y * elapsed) / y, gone_fast = -portable::expm1(-z * elapsed) / z;
     const T lag[3] = {(gone_slow - gone_fast) / (z - y), (slow - fast) / (z - y),
                       (z * fast - y * slow) / (z - y)};
     return {{gone_slow + y * lag[0], slow + y * lag[1], y * lag[2] - y * slow}, {lag[0], lag[1], lag[2]}};

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
+
 namespace sinew {
 
 void Pendulum::advance(const Vec2& pressed, double frequency, double h) {
-  const double c = std::cosh(frequency * h), s = std::sinh(frequency * h);
+  const double grows = portable::expm1(frequency * h), dies = portable::expm1(-frequency * h);
+  const double c = 1 + (grows + dies) / 2, s = (grows - dies) / 2;
   const Vec2 off = place - pressed;
   place = pressed + c * off + (s / frequency) * velocity;
   velocity = s * frequency * off + c * velocity;
@@ -21,13 +24,13 @@ Vec2 press(const Pendulum& body, double frequency, const Vec2& goal, const Sole&
 
 Vec2 capture_point_after(const Vec2& now, double frequency, double seconds, const Sole& stance) {
   const Vec2 edge = stance.nearest(now, 0);
-  return edge + std::exp(frequency * seconds) * (now - edge);
+  return edge + portable::exp(frequency * seconds) * (now - edge);
 }
 
 int stepping_foot(const Feet& feet, const Vec2& capture_point, const Vec2& middle, const BalanceLaw& law) {
-  const Vec2 ahead(std::cos(feet.yaw), std::sin(feet.yaw)), left(-ahead.y(), ahead.x());
+  const Vec2 ahead(portable::cos(feet.yaw), portable::sin(feet.yaw)), left(-ahead.y(), ahead.x());
   const Vec2 falls = capture_point - middle;
-  if (std::abs(std::atan2(std::abs(falls.dot(left)), std::abs(falls.dot(ahead)))) > law.sideways)
+  if (std::abs(portable::atan2(std::abs(falls.dot(left)), std::abs(falls.dot(ahead)))) > law.sideways)
     return falls.dot(left) > 0 ? 0 : 1;
   const double lead = (feet.place[0] - feet.place[1]).dot(falls.normalized());
   if (std::abs(lead) > law.margin) return lead < 0 ? 0 : 1;
@@ -35,7 +38,7 @@ int stepping_foot(const Feet& feet, const Vec2& capture_point, const Vec2& middl
 }
 
 Vec2 within_reach(const Feet& feet, int swing, const Vec2& wanted, const BalanceLaw& law) {
-  const Vec2 ahead(std::cos(feet.yaw), std::sin(feet.yaw)), left(-ahead.y(), ahead.x());
+  const Vec2 ahead(portable::cos(feet.yaw), portable::sin(feet.yaw)), left(-ahead.y(), ahead.x());
   const Vec2 stance = feet.place[static_cast<std::size_t>(1 - swing)];
   const double side = swing == 0 ? 1 : -1;
   Vec2 from_stance = wanted - stance;
@@ -46,7 +49,7 @@ Vec2 within_reach(const Feet& feet, int swing, const Vec2& wanted, const Balance
 }
 
 bool out_of_reach(double beyond, double frequency, int steps_left, const BalanceLaw& law) {
-  const double dies = std::exp(-frequency * law.step_time);
+  const double dies = portable::exp(-frequency * law.step_time);
   double reach = 0, share = 1;
   for (int n = 0; n < steps_left; ++n) {
     share *= dies;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
+
 namespace sinew {
 namespace {
 
@@ -46,7 +48,7 @@ Fit fit_pose(std::span<const double> mass, std::span<const Vec3<double>> pose,
     across += mass[n] * (a.x() * b.y() - a.y() * b.x());
   }
   Fit fit;
-  fit.place.yaw = along == 0 && across == 0 ? 0 : std::atan2(across, along);
+  fit.place.yaw = along == 0 && across == 0 ? 0 : portable::atan2(across, along);
   const Quat<double> turn = fit.place.turn();
   const Vec3<double> moved = to - turn * from;
   fit.place.x = moved.x();

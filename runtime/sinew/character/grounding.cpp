@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/muscle/joint_coordinates.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -27,7 +28,7 @@ Displacement towards(const Transform<T>& wanted, const Transform<T>& is) {
   const Quat<double> off =
       is.rotation.template cast<double>() * wanted.rotation.template cast<double>().conjugate();
   Displacement d;
-  d.yaw = 2 * std::atan2(off.z(), off.w());
+  d.yaw = 2 * portable::atan2(off.z(), off.w());
   const Vec3<double> from = wanted.translation.template cast<double>();
   const Vec3<double> to = is.translation.template cast<double>(), turned = d.turn() * from;
   d.x = to.x() - turned.x();

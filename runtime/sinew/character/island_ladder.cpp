@@ -8,6 +8,7 @@
 #include "sinew/character/unknowns.h"
 #include "sinew/effects/gravity.h"
 #include "sinew/optimizer/time_scheme.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -24,7 +25,8 @@ double least_kinetic(const CharacterState<T>& s, const Vec3<T>& place, double h)
   for (int i = 0; i < s.tree.bodies; ++i) {
     const Vec3<T> way = s.problem.kinematics.center[i] - s.history.center[i] - place;
     const Mat3<T> turn = s.history.rotation[i].transpose() * s.problem.kinematics.rotation[i];
-    const double cosine = std::clamp((double(turn.trace()) - 1) / 2, -1.0, 1.0), angle = std::acos(cosine);
+    const double cosine = std::clamp((double(turn.trace()) - 1) / 2, -1.0, 1.0),
+                 angle = portable::atan2(std::sqrt((1 - cosine) * (1 + cosine)), cosine);
     const double most_mobile = s.tree.inertia[i].template cast<double>().inverse().norm();
     sum += double(s.tree.mass[i]) * double(way.squaredNorm());
     if (std::isfinite(most_mobile)) sum += angle * angle / most_mobile;

@@ -178,7 +178,8 @@ template <class T>
 void report_help(CharacterState<T>& s) {
   if (!s.grounded() || !s.floats) return;
   const auto size = [&](int first) {
-    return std::hypot(double(s.torque[first]), double(s.torque[first + 1]), double(s.torque[first + 2]));
+    return Vec3<double>(double(s.torque[first]), double(s.torque[first + 1]), double(s.torque[first + 2]))
+        .norm();
   };
   s.report.help_force = size(0);
   s.report.help_torque = size(3);

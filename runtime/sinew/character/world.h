@@ -27,6 +27,7 @@
 #include "sinew/muscle/tone.h"
 #include "sinew/optimizer/accuracy.h"
 #include "sinew/skeleton/parallel_for.h"
+#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/skeleton.h"
 
 namespace sinew {
@@ -49,7 +50,7 @@ struct Displacement {
   /// Whether it moves anything.
   bool any() const { return x != 0 || y != 0 || yaw != 0; }
   /// By yaw, about the world's vertical.
-  Quat<double> turn() const { return Quat<double>(Eigen::AngleAxisd(yaw, Vec3<double>::UnitZ())); }
+  Quat<double> turn() const { return {portable::cos(yaw / 2), 0, 0, portable::sin(yaw / 2)}; }
   /// The one that leads back: then() of the two is none.
   Displacement inverse() const {
     const Vec3<double> back = turn().conjugate() * Vec3<double>(-x, -y, 0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
+
 namespace sinew {
 namespace {
 
@@ -15,7 +17,7 @@ void append_shared(const Collider& c, const Vec3<double>& straight, const Vec3<d
                    double volume, double round, std::vector<FlowSpot<T>>& out) {
   const int count = (straight.x() > 0 ? 2 : 1) * (straight.y() > 0 ? 2 : 1) * (straight.z() > 0 ? 2 : 1);
   const Mat3<double> axes = c.local.rotation.toRotationMatrix();
-  const Vec3<double> roots((drag_areas / count).array().pow(1.0 / 3));
+  const Vec3<double> roots = (drag_areas / count).unaryExpr([](double area) { return portable::cbrt(area); });
   FlowSpot<T> spot;
   spot.body = c.joint;
   spot.spread = (axes * roots.asDiagonal() * axes.transpose()).cast<T>();

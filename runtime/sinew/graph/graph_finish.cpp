@@ -8,6 +8,7 @@
 #include "sinew/animation/foot_placement_job.h"
 #include "sinew/graph/graph_contacts.h"
 #include "sinew/graph/graph_walk.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -30,7 +31,7 @@ bool whole(const TimeJet<T>& weight) {
 template <class T>
 bool ground_ahead(const GraphHeader<T>& header, const GraphFeet& feet, const GraphGround<T>& ground, T height,
                   T& mean) {
-  const double c = std::cos(header.heading), s = std::sin(header.heading);
+  const double c = portable::cos(header.heading), s = portable::sin(header.heading);
   const double forward = double(header.travel.velocity[0]), left = double(header.travel.velocity[1]);
   const Vec3<double> velocity(c * forward - s * left, s * forward + c * left, 0);
   const Vec3<double> centre = Vec3<double>(header.place[0], header.place[1], double(height) + kAbove) +

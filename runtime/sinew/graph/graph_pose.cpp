@@ -12,6 +12,7 @@
 #include "sinew/animation/root_motion.h"
 #include "sinew/animation/sampling_job.h"
 #include "sinew/graph/graph_finish.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -27,7 +28,7 @@ TravelVelocity<T> take_travel(JointJet<T>& root, Vec3<T>& place, T& heading) {
   const Vec3<T> v = back * travel.velocity, a = back * travel.acceleration;
   const T turn = travel.omega.z();
   place = travel.translation;
-  heading = 2 * std::atan2(travel.rotation.z(), travel.rotation.w());
+  heading = 2 * portable::atan2(travel.rotation.z(), travel.rotation.w());
   root = motion.body;
   return {{v.x(), v.y(), turn}, {a.x() + turn * v.y(), a.y() - turn * v.x(), travel.alpha.z()}};
 }
@@ -369,7 +370,7 @@ void Pose<T>::travel() {
   const TravelVelocity<T> before = header.travel, &now = pose.travel;
   const double h = double(s_.h);
   const auto world = [](const TravelVelocity<T>& t, double heading, Vec3<double>& v, Vec3<double>& a) {
-    const double c = std::cos(heading), s = std::sin(heading), turn = double(t.velocity[2]);
+    const double c = portable::cos(heading), s = portable::sin(heading), turn = double(t.velocity[2]);
     const double x = double(t.velocity[0]), y = double(t.velocity[1]);
     const double ax = double(t.change[0]) - turn * y, ay = double(t.change[1]) + turn * x;
     v << c * x - s * y, s * x + c * y, 0;
@@ -386,7 +387,7 @@ void Pose<T>::travel() {
   header.travel = now;
   JointJet<T> travel;
   const double half = header.heading / 2;
-  travel.rotation = Quat<T>(T(std::cos(half)), T(0), T(0), T(std::sin(half)));
+  travel.rotation = Quat<T>(T(portable::cos(half)), T(0), T(0), T(portable::sin(half)));
   travel.omega = {T(0), T(0), now.velocity[2]};
   travel.alpha = {T(0), T(0), now.change[2]};
   const TimeJet<T> height = level();

@@ -5,6 +5,7 @@
 
 #include "sinew/graph/graph_finish.h"
 #include "sinew/graph/graph_walk.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 namespace {
@@ -115,7 +116,8 @@ double GraphParameters<T>::heading() {
 
 template <class T>
 void GraphParameters<T>::put(const Vec3<double>& place, double heading) {
-  const double apart = std::hypot(place.x() - block_.header().place[0], place.y() - block_.header().place[1]);
+  const double apart =
+      portable::hypot(place.x() - block_.header().place[0], place.y() - block_.header().place[1]);
   if (graph_.feet().node >= 0 && apart > kElsewhere) begin_feet(block_.feet());
   block_.header().place[0] = place.x();
   block_.header().place[1] = place.y();
