@@ -21,8 +21,8 @@ struct Fallen : Pushed {
   std::vector<BehaviourEvent> told;
   double decided = -1, stood = -1;  ///< s
 
-  explicit Fallen(const BehaviourSettings& settings = {})
-      : Pushed("stand"), behaviour(asset.skeleton, settings, status) {
+  explicit Fallen(const BehaviourSettings& settings = {}, float ground_height = 0)
+      : Pushed("stand", RootDrive::kGrounded, ground_height), behaviour(asset.skeleton, settings, status) {
     EXPECT_TRUE(status) << status.reason;
     EXPECT_TRUE(behaviour.use_get_ups(asset.skeleton, asset.clips));
     behave = [this](std::span<JointJet<float>> wanted) {
@@ -148,6 +148,28 @@ TEST(GetUp, WhoFellStandsAgainOnItsAnimation) {
     EXPECT_EQ(body.character().strength(), 1.f);
     body.run(6);
     EXPECT_GT(body.root_height(), 0.9);
+  }
+}
+
+TEST(GetUp, StandsAgainOnGroundOfAnyHeight) {
+  for (const float height : {0.65f, 3.f}) {
+    Fallen body({}, height);
+    body.falls(150, 0);
+    body.run_until_it_stands(25);
+    EXPECT_EQ(body.count(BehaviourEventKind::kStanding), 1) << height;
+    body.run(2);
+    EXPECT_GT(body.root_height(), 0.9) << height;
+  }
+}
+
+TEST(GetUp, APushIsStoodOnGroundOfAnyHeight) {
+  for (const float height : {0.65f, 10.f}) {
+    Fallen body({}, height);
+    body.run(0.3);
+    body.push(30, kPi);
+    body.run(4);
+    EXPECT_EQ(body.count(BehaviourEventKind::kFallen), 0) << height;
+    EXPECT_GT(body.root_height(), 0.85) << height;
   }
 }
 

@@ -26,8 +26,18 @@ struct Pushed {
   int solved = 0;  ///< frames with unknowns
   std::function<void(std::span<JointJet<float>>)> behave;
 
-  explicit Pushed(const char* name, RootDrive root = RootDrive::kGrounded) {
+  float ground = 0;  ///< m, height of the box that it stands on, where it does
+
+  explicit Pushed(const char* name, RootDrive root = RootDrive::kGrounded, float ground_height = 0)
+      : ground(ground_height) {
     EXPECT_TRUE(load_asset((binary_dir() + "/sample.sinew").c_str(), asset));
+    if (ground > 0) {
+      Collider box;
+      box.shape = Shape::kBox;
+      box.size = {20, 20, double(ground) / 2};
+      box.local.translation.z() = double(ground) / 2;
+      EXPECT_TRUE(world.add_obstacle(box));
+    }
     CharacterSettings settings;
     settings.root = root;
     Status status;
@@ -41,7 +51,10 @@ struct Pushed {
   }
   Character<float> character() { return world.character(hero); }
   double time() const { return frame * double(h); }
-  void sample() { (void)SamplingJob<float>{clip, time(), jets}.Run(); }
+  void sample() {
+    (void)SamplingJob<float>{clip, time(), jets}.Run();
+    jets[0].translation.z() += ground;
+  }
   void step(const Vec3<float>& force = Vec3<float>::Zero()) {
     ++frame;
     sample();
@@ -63,7 +76,7 @@ struct Pushed {
     for (const int end = frame + static_cast<int>(std::lround(0.1 / double(h))); frame < end;)
       step(force.cast<float>());
   }
-  double root_height() { return double(character().model()[0].translation.z()); }
+  double root_height() { return double(character().model()[0].translation.z() - ground); }
 };
 
 }  // namespace sinew::fixtures

@@ -41,7 +41,11 @@ convert::Error Play<T>::add_all() {
       return {"character '" + c.name + "': " + status.reason};
     players_.emplace_back(c);
     auto& behaviour = behaviours_.emplace_back();
-    if (c.behaviour) behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, *c.behaviour, status);
+    if (c.behaviour) {
+      BehaviourSettings own = *c.behaviour;
+      own.gravity = std::max(s_.world.gravity.norm(), 1e-3);
+      behaviour = std::make_unique<Behaviour<T>>(c.asset->skeleton, own, status);
+    }
     if (!status) return {"character '" + c.name + "' can't keep its balance: " + status.reason};
     if (behaviour)
       (void)behaviour->use_get_ups(c.asset->skeleton, c.asset->clips);  // without any it stays down

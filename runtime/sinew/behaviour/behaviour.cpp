@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew {
@@ -31,14 +33,8 @@ constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
 constexpr double kLie = 0.5, kNeverStill = 4;          ///< s; s after which it need not lie still
 
 Quat<double> upright(const Quat<double>& turned) {
-  const double size = std::hypot(turned.w(), turned.z());
+  const double size = portable::hypot(turned.w(), turned.z());
   return size > 0 ? Quat<double>(turned.w() / size, 0, 0, turned.z() / size) : Quat<double>::Identity();
-}
-
-Vec3<double> log_of(const Quat<double>& q) {
-  const Eigen::AngleAxisd turn(q);
-  const double angle = std::remainder(turn.angle(), 2 * 3.14159265358979323846);
-  return angle * turn.axis();
 }
 
 }  // namespace
@@ -137,13 +133,14 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
   jets[0] = root;
 }
 
-/// What the animation does in this frame.
+/// What the animation does in this frame, and on which ground.
 template <class T>
 void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
   const MassMotion clip = body_.mass_of(jets, model_);
   clip_velocity_ = from_above(clip.velocity);
   clip_body_ = from_above(clip.place);
   Vec2 middle = Vec2::Zero();
+  ground_ = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
     const Quat<TimeJet<T>>& q = ankle.rotation;
@@ -153,6 +150,8 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
             .normalized();
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
+    for (const Vec3<T>& touches : body_.soles[side])
+      ground_ = std::min(ground_, (clip_ankle_[side] * Vec3<double>(touches.template cast<double>())).z());
   }
   from_clip_ = clip_body_ - middle;
 }
@@ -171,8 +170,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   const auto h = static_cast<double>(step);
   const MeasuredBody is = measure(character);
   const bool known = std::exchange(measured_, true);
-  spin_ =
-      known ? Vec3<double>(log_of(is.root.rotation * root_before_.conjugate()) / h) : Vec3<double>::Zero();
+  spin_ = known ? Vec3<double>(rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h)
+                : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   see_clip(jets);
   if (report_.state == BehaviourState::kClip) {
@@ -182,8 +181,9 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     return;
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
-  if (is.root.translation.z() < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
-    return fall(character, BehaviourReason::kTilted, is.root.translation.z());
+  const double high = is.root.translation.z() - ground_;
+  if (high < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
+    return fall(character, BehaviourReason::kTilted, high);
   if (report_.state == BehaviourState::kPassive) {
     if (character.unknown()[0] == 0) return give_up(character);
     if (report_.time < settings_.reaction) return;
@@ -257,9 +257,9 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   report_.state = BehaviourState::kBalance;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
-  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z(), 0.3 * unit_));
+  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
   const Quat<double> wanted = jets[0].rotation.template cast<double>();
-  turn_ = log_of(is.root.rotation * wanted.conjugate());
+  turn_ = rotation_log<double>(is.root.rotation * wanted.conjugate());
   turn_rate_ = spin_;
   turn_acceleration_.setZero();
   height_ = {is.root.translation.z() - double(jets[0].translation.z()), 0.0, 0.0};
@@ -271,7 +271,7 @@ template <class T>
 Feet Behaviour<T>::feet_now(const Transform<double>& root) const {
   const Vec3<double> ahead = root.rotation * forward_;
   return {{from_above(foot_[0].translation), from_above(foot_[1].translation)},
-          std::atan2(ahead.y(), ahead.x())};
+          portable::atan2(ahead.y(), ahead.x())};
 }
 
 template <class T>
@@ -372,7 +372,9 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
     for (int a = 0; a < 3; ++a)
       stance.ankle[side][a] = TimeJet<double>(lifted_.translation[a]) + way[a] * share;
     stance.ankle[side][2] += up;
-    stance.foot[side] = lifted_.rotation.slerp(share.value, foot_[side].rotation);
+    stance.foot[side] = lifted_.rotation *
+                        rotation_exp<double>(share.value * rotation_log<double>(lifted_.rotation.conjugate() *
+                                                                                foot_[side].rotation));
   }
   // As high as the clip, but no higher than straight legs reach.
   double lower = 0;
@@ -411,7 +413,7 @@ Displacement Behaviour<T>::to_feet() const {
   const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation),
              clip = clip_foot_[0] - clip_foot_[1];
   Displacement further;
-  further.yaw = std::atan2(clip.x() * stands.y() - clip.y() * stands.x(), clip.dot(stands));
+  further.yaw = portable::atan2(clip.x() * stands.y() - clip.y() * stands.x(), clip.dot(stands));
   const Vec2 middle = clip_body_ - from_clip_,
              from = from_above(further.turn() * Vec3<double>(middle.x(), middle.y(), 0)),
              to = from_above(foot_[0].translation + foot_[1].translation) / 2;
@@ -426,7 +428,7 @@ int Behaviour<T>::misplaced() const {
   const Vec2 stands = from_above(foot_[0].translation) - from_above(foot_[1].translation);
   const Vec2 clip = clip_foot_[0] - clip_foot_[1];
   const auto yaw_of = [&](std::size_t side) {
-    return log_of(foot_[side].rotation * clip_ankle_[side].rotation.conjugate()).z();
+    return rotation_log<double>(foot_[side].rotation * clip_ankle_[side].rotation.conjugate()).z();
   };
   const bool apart = std::abs(stands.norm() - clip.norm()) > kMisplaced * unit_;
   const double line = to_feet().yaw;
@@ -473,7 +475,8 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
 template <class T>
 bool Behaviour<T>::lies(const Character<T>& character, double h) {
   const MeasuredBody is = measure(character);
-  if (std::exchange(measured_, true)) spin_ = log_of(is.root.rotation * root_before_.conjugate()) / h;
+  if (std::exchange(measured_, true))
+    spin_ = rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h;
   root_before_ = is.root.rotation;
   const double speed = character.report().momentum.norm() / body_.total_mass, time = std::sqrt(unit_);
   const bool still = speed < kLieStill * time && spin_.norm() < kTurnsStill / time;
@@ -500,7 +503,9 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
   if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
   let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
-  if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, strength_)) {
+  if (report_.state == BehaviourState::kDown && may_get_up()) see_clip(jets);
+  if (report_.state == BehaviourState::kDown && may_get_up() &&
+      get_up_.begin(character, strength_, ground_)) {
     report_.state = BehaviourState::kGather;
     ++report_.tries;
     tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);

@@ -51,7 +51,7 @@ enum class BehaviourReason : std::uint8_t {
   kNone,         ///< there is nothing to explain
   kAsked,        ///< the host wanted it
   kBeyondReach,  ///< number: m that the capture point was beyond what steps reach
-  kTilted,       ///< number: m, height of the root
+  kTilted,       ///< number: m, height of the root over the ground
   kNotGathered,  ///< number: m off the pose from which it was to rise
   kLeftItsClip,  ///< number: m off it
   kTookTooLong,  ///< number: s
@@ -168,6 +168,7 @@ class Behaviour {
   Vec2 from_clip_ = Vec2::Zero();          ///< the clip's centre of mass from the middle of its feet
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
+  double ground_ = 0;  ///< m, height of what the clip's feet stand on
   std::array<Transform<double>, 2> clip_ankle_;
   int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
   Sole only_;                   ///< of the foot that stands while the other is put back

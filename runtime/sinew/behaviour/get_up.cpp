@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/portable_math.h"
+
 namespace sinew {
 namespace {
 
@@ -26,14 +28,14 @@ double smooth(double u) {
 }
 
 template <class T>
-void put_at(const Displacement& place, JointJet<T>& root) {
+void put_at(const Displacement& place, double ground, JointJet<T>& root) {
   const Quat<double> turn = place.turn();
   const Quat<T>& rotation = turn.cast<T>();
   root.rotation = rotation * root.rotation;
   root.velocity = rotation * root.velocity;
   root.acceleration = rotation * root.acceleration;
   const Vec3<double> at =
-      turn * Vec3<double>(root.translation.template cast<double>()) + Vec3<double>(place.x, place.y, 0);
+      turn * Vec3<double>(root.translation.template cast<double>()) + Vec3<double>(place.x, place.y, ground);
   root.translation = at.cast<T>();
 }
 
@@ -57,17 +59,18 @@ void GetUp<T>::prepare(const Skeleton& skeleton, std::span<const Clip> clips,
   fade_.duration = T(0);
 }
 
-/// Where the body is, in the frame in which targets are given.
+/// Where the body is, in the frame in which targets are given, over its ground.
 template <class T>
 void GetUp<T>::look(const Character<T>& character) {
   clips_.points().place(character.model(), is_);
   const Displacement back = character.displacement().inverse();
   const Quat<double> turn = back.turn();
-  for (Vec3<double>& p : is_) p = turn * p + Vec3<double>(back.x, back.y, 0);
+  for (Vec3<double>& p : is_) p = turn * p + Vec3<double>(back.x, back.y, -ground_);
 }
 
 template <class T>
-bool GetUp<T>::begin(Character<T>& character, double strength) {
+bool GetUp<T>::begin(Character<T>& character, double strength, double ground) {
+  ground_ = ground;
   look(character);
   GetUpChoice choice = clips_.choose(is_, tried_);
   if (choice.entry < 0) {  // all failed: once more
@@ -107,7 +110,7 @@ bool GetUp<T>::gather_to(const Character<T>& character, const GetUpChoice& choic
 /// The clip's root where the clip is played.
 template <class T>
 void GetUp<T>::put(std::span<JointJet<T>> jets) const {
-  put_at(place_, jets[0]);
+  put_at(place_, ground_, jets[0]);
 }
 
 template <class T>
@@ -172,7 +175,7 @@ void GetUp<T>::move_time(double h) {
   time_.rate = std::max(time_.rate + h * time_.acceleration, 0.0);
   time_.value += h * time_.rate;
   waits_ = wanted < 0.1 ? waits_ + h : 0;
-  caught_ *= std::exp(-h / (kCaught * std::sqrt(unit_)));
+  caught_ *= portable::exp(-h / (kCaught * std::sqrt(unit_)));
 }
 
 template <class T>
@@ -207,7 +210,7 @@ GetUpOutcome GetUp<T>::rise(const Character<T>& character, std::span<JointJet<T>
   if (waits_ > kMostWait * std::sqrt(unit_) || elapsed_ > kMostTime * std::sqrt(unit_))
     return fail(GetUpOutcome::kTooLong);
   const double low = clips_.variants()[static_cast<std::size_t>(variant_)].end_height -
-                     double(character.model()[0].translation.z());
+                     (double(character.model()[0].translation.z()) - ground_);
   const bool stands = time_.value >= kNearlyUp * end && low < kStraight * unit_;
   if (!stands || off_ > kEndsWithin * unit_) return GetUpOutcome::kRises;
   return GetUpOutcome::kUp;

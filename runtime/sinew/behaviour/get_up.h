@@ -36,8 +36,9 @@ class GetUp {
                double unit, double weight);
   /// Whether there is a clip to get up by.
   bool possible() const { return !clips_.empty(); }
-  /// From where the body lies. `strength`: of its muscles when it stands. Whether there is a way.
-  bool begin(Character<T>& character, double strength);
+  /// From where the body lies. `strength`: of its muscles when it stands; `ground`: m, height of what it is
+  /// to stand on. Whether there is a way.
+  bool begin(Character<T>& character, double strength, double ground);
   /// Moves on by h s, and writes what the body is to do.
   GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
   /// Forgets which clips failed.
@@ -68,6 +69,7 @@ class GetUp {
   double strength_ = 1, elapsed_ = 0, waits_ = 0, off_ = 0, strong_from_ = 0;
   double caught_ = 0;   ///< m, that it was off when it began to rise: a limb under the body, that comes free
   Displacement place_;  ///< of the clip
+  double ground_ = 0;   ///< m, height of its ground
   TimeJet<double> time_{0.0};
   double rate_change_ = 0;  ///< 1/s², how τ'' changes: that time itself is C²
   InertialState<T> fade_;

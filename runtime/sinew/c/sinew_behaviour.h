@@ -89,7 +89,7 @@ enum sinew_behaviour_reason_values {
   SINEW_BEHAVIOUR_REASON_NONE = 0,           ///< none is told
   SINEW_BEHAVIOUR_REASON_ASKED = 1,          ///< the host wanted it
   SINEW_BEHAVIOUR_REASON_BEYOND_REACH = 2,   ///< number: m that the capture point was beyond what steps reach
-  SINEW_BEHAVIOUR_REASON_TILTED = 3,         ///< number: m, height of the root
+  SINEW_BEHAVIOUR_REASON_TILTED = 3,         ///< number: m, height of the root over the ground
   SINEW_BEHAVIOUR_REASON_NOT_GATHERED = 4,   ///< number: m off the pose from which it was to rise
   SINEW_BEHAVIOUR_REASON_LEFT_ITS_CLIP = 5,  ///< number: m off it
   SINEW_BEHAVIOUR_REASON_TOOK_TOO_LONG = 6   ///< number: s
