@@ -49,6 +49,25 @@ TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
   }
 }
 
+TEST(Command, OutputsThatAreInputsAreRefusedAndLeftAlone) {
+  const std::string scene =
+      written("one.json", R"({"duration": 0.1, "characters": [{"asset": ")" + kAsset + R"("}]})");
+  const std::string own = own_directory() + "own.glb", before = bytes_of(scene);
+  fs::copy_file(kCharacter, own, fs::copy_options::overwrite_existing);
+  const std::string character = bytes_of(own);
+  expect_refused("convert " + own + " -o " + own, "own.glb: is the input");
+  expect_refused("convert " + own + " -o " + own_directory() + "x.sinew --report " + own,
+                 "own.glb: is the input");
+  expect_refused(
+      "convert " + own + " -o " + own_directory() + "x.sinew --report " + own_directory() + "x.sinew",
+      "two outputs cannot be one file");
+  expect_refused("retarget " + kAsset + " --to " + own + " -o " + own, "own.glb: is the input");
+  expect_refused("simulate " + scene + " -o " + scene, "one.json: is the input");
+  expect_refused("graph compile " + scene + " -o " + scene, "one.json: is the input");
+  EXPECT_EQ(bytes_of(own), character);
+  EXPECT_EQ(bytes_of(scene), before);
+}
+
 TEST(Command, ConvertGivesTheSameBytesInEveryProcessAndPlace) {
   const std::string elsewhere = own_directory() + "elsewhere";
   fs::create_directories(elsewhere);

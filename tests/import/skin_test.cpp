@@ -98,6 +98,26 @@ TEST(Skin, WithoutBindMatricesIsModelledInItsJointsFrames) {  // trap 52
   }
 }
 
+// assimp 5.2.5 gives a mesh one skin, whichever of its nodes has which.
+TEST(Skin, NodesThatShareAMeshHaveSkinsOfTheirOwn) {  // trap 54
+  Json gltf = skinned({0.5f, 0.5f, 0, 0}, {1, 2});
+  for (Json& node : gltf["nodes"])
+    if (node.contains("mesh")) node["mesh"] = 0;
+  gltf["nodes"].push_back({{"name", "stone"}, {"mesh", 0}});
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size() - 1);
+  const Outcome outcome = read_content("a.gltf", gltf.dump());
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  ASSERT_EQ(outcome.scene.meshes.size(), 3u);
+  for (const SourceMesh& mesh : outcome.scene.meshes) {
+    if (mesh.node == index_of(outcome.scene, "stone")) {
+      EXPECT_TRUE(mesh.bones.empty());
+    } else {
+      ASSERT_EQ(mesh.bones.size(), 2u);
+      EXPECT_EQ(mesh.bones[0].inverse_bind(0, 3), mesh.node == index_of(outcome.scene, "body0") ? -1 : -2);
+    }
+  }
+}
+
 TEST(Skin, BindMatricesAndJointsThatAreNotThereAreRefused) {
   const Json whole = skinned({0.5f, 0.5f, 0, 0}, {0});
   const auto error = [&](const char* key, const Json& value) {

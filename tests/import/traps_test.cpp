@@ -171,6 +171,43 @@ TEST(Gltf, MirrorsAndUnevenScalesStayInTheNodes) {  // traps 30 and 31
   EXPECT_EQ(local.diagonal(), Eigen::Vector4d(-1, 2, 3, 1));
 }
 
+TEST(Gltf, PartsThatAMirrorsAnimationLeavesAloneStay) {  // trap 31
+  Json gltf = kicking_leg();
+  gltf["nodes"][1]["scale"] = {-1, 1, 1};
+  gltf["animations"][0]["channels"][0]["target"] = {{"node", 0}, {"path", "rotation"}};
+  gltf["nodes"][0]["scale"] = {-1, 1, 1};
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  const SourceChannel& channel = outcome.scene.clips.at(0).channels.at(0);
+  ASSERT_FALSE(channel.scales.empty());
+  EXPECT_EQ(channel.scales[0], Eigen::Vector3d(-1, 1, 1));
+}
+
+TEST(Gltf, ChannelsThatMoveNoNodeAreLeftOut) {  // trap 53
+  Json gltf = kicking_leg();
+  Json& channels = gltf["animations"][0]["channels"];
+  const Json rotation = channels[0];
+  const auto pointer = [](const char* to) {
+    return Json{{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", to}}}}}};
+  };
+  channels.push_back({{"sampler", 0}, {"target", pointer("/materials/0/emissiveFactor")}});
+  channels.push_back({{"sampler", 0}, {"target", {{"path", "translation"}}}});
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  ASSERT_EQ(outcome.scene.clips.at(0).channels.size(), 1u);
+  EXPECT_THAT(outcome.scene.notes, testing::Contains("animation 0: 2 channels move no node, not read"));
+  // What points at a node's rotation is a channel as any.
+  const std::size_t node = rotation["target"]["node"];
+  channels = {rotation};
+  channels[0]["target"] = pointer(("/nodes/" + std::to_string(node) + "/rotation").c_str());
+  const Outcome pointed = read_gltf(gltf);
+  ASSERT_TRUE(pointed.ok) << pointed.error;
+  ASSERT_EQ(pointed.scene.clips.at(0).channels.size(), 1u);
+  EXPECT_EQ(pointed.scene.clips[0].channels[0].node, outcome.scene.clips[0].channels[0].node);
+  EXPECT_EQ(pointed.scene.clips[0].channels[0].rotations.size(),
+            outcome.scene.clips[0].channels[0].rotations.size());
+}
+
 TEST(Gltf, ExtensionThatOnlyTouchesTheLooksIsNoObstacle) {
   Json gltf = kicking_leg();
   gltf["extensionsRequired"] = {"KHR_texture_transform"};

@@ -26,6 +26,26 @@ convert::Error check_writable(const std::string& path) {
   return {};
 }
 
+convert::Error check_outputs(const std::vector<std::string>& outputs,
+                             const std::vector<std::string>& inputs) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    std::error_code none;
+    return std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none) ||
+           std::filesystem::equivalent(a, b, none);
+  };
+  for (std::size_t n = 0; n < outputs.size(); ++n) {
+    const std::string& output = outputs[n];
+    if (output.empty()) continue;
+    for (const std::string& input : inputs)
+      if (!input.empty() && same(output, input)) return {output + ": is the input"};
+    for (std::size_t other = 0; other < n; ++other)
+      if (!outputs[other].empty() && same(output, outputs[other]))
+        return {output + ": two outputs cannot be one file"};
+    if (convert::Error error = check_writable(output)) return error;
+  }
+  return {};
+}
+
 convert::Error write_atomically(const std::string& path, const void* data, std::size_t size) {
   if (convert::Error error = check_writable(path)) return error;
   const std::string temporary = path + ".tmp" + std::to_string(getpid());

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "convert/convert.h"
 
@@ -10,6 +11,10 @@ namespace sinew::cli {
 
 /// Why a file cannot be made there: asked before any work is done for it.
 convert::Error check_writable(const std::string& path);
+
+/// Whether every output can be written, none of them is an input, and no two are one file; empty names are
+/// none.
+convert::Error check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 /// Writes to a temporary file in the same directory and renames: readers see the old file or the new one,
 /// never half.

@@ -159,6 +159,7 @@ Error GraphCommand::check() const {
 }
 
 Error GraphCommand::compile() const {
+  if (Error error = check_outputs({output}, {input})) return error;
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
   for (const std::string& warning : compiled.warnings) say_error("warning: " + warning);
@@ -176,6 +177,7 @@ Error GraphCommand::compile() const {
 }
 
 Error GraphCommand::dot() const {
+  if (Error error = check_outputs({output}, {input})) return error;
   Compiled compiled;
   if (Error error = load(input, compiled)) return error;
   const std::string text = graph_tools::graph_dot(compiled.graph);
@@ -214,6 +216,7 @@ Error GraphCommand::plot() const {
 }
 
 Error GraphCommand::replay() const {
+  if (Error error = check_outputs({output}, {input, asset, recording})) return error;
   Compiled compiled;
   Asset with;
   Graph graph;
@@ -230,6 +233,7 @@ Error GraphCommand::replay() const {
 }
 
 Error GraphCommand::trace() {
+  if (Error error = check_outputs({output, recording}, {input, asset, script})) return error;
   Compiled compiled;
   Asset with;
   Graph graph;

@@ -53,8 +53,7 @@ struct ConvertCommand {
     if (dry_run || again || watch) return {"--dry-run, --again and --watch are for folders and for --each"};
     json options, report;
     Asset asset;
-    for (const std::string& path : {output, report_file})
-      if (Error error = path.empty() ? Error{} : cli::check_writable(path)) return error;
+    if (Error error = cli::check_outputs({output, report_file}, inputs)) return error;
     if (Error error = source.read(options)) return error;
     if (retarget) options["retarget"] = true;
     if (Error error =
@@ -243,6 +242,7 @@ struct SimulateCommand {
   Error run() const {
     bool as_json = false;
     if (Error error = cli::telemetry_format(output, as_json)) return error;
+    if (Error error = cli::check_outputs({output}, {scene_file})) return error;
     sinew::scene::Scene scene;
     if (Error error = cli::load_scene(scene_file, scheme, scene)) return error;
     if (Error error = turn_dial(scene)) return {scene_file + ": " + error.message};
@@ -338,8 +338,7 @@ struct ExportCommand {
                                       : sinew::exporting::Surface::kNone;
     json conversion, report = {{"animations", json::array()}, {"notes", json::array()}};
     if (Error error = what.check()) return error;
-    std::error_code none;
-    if (std::filesystem::equivalent(input, what.output, none)) return {what.output + ": is the input"};
+    if (Error error = cli::check_outputs({what.output}, {input})) return error;
     if (Error error = source.read(conversion)) return error;
     if (std::filesystem::path(input).extension() == ".json") {
       sinew::scene::Scene scene;

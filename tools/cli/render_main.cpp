@@ -80,6 +80,7 @@ struct RenderCommand {
   }
 
   Error render_scene(const sinew::scene::Scene& scene) {
+    if (Error error = cli::check_outputs({output, telemetry_file}, {input})) return error;
     sinew::scene::Recording recording;
     sinew::scene::Telemetry telemetry;
     if (Error error = sinew::scene::run_scene(scene, recording, telemetry, {}))

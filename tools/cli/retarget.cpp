@@ -100,8 +100,9 @@ void RetargetCommand::add(CLI::App& app) {
 }
 
 Error RetargetCommand::run() const {
-  for (const std::string& path : {output, report_file})
-    if (Error error = path.empty() ? Error{} : check_writable(path)) return error;
+  std::vector<std::string> inputs = clips;
+  inputs.insert(inputs.end(), {from, to, map_file});
+  if (Error error = check_outputs({output, report_file}, inputs)) return error;
   retarget::Options options;
   options.clips = names;
   options.froude = time == "froude";

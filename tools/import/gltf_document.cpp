@@ -3,7 +3,9 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -137,6 +139,62 @@ std::size_t morph_targets_of(const Json& document, const Json& target, const std
   return primitives.empty() ? 0 : length_of(primitives.at(0), "targets");
 }
 
+/// "/nodes/7/rotation" of KHR_animation_pointer as the target of an ordinary channel; false where it points
+/// at something else.
+bool resolve_pointer(Json& target) {
+  std::istringstream pointer(target.value("extensions", Json::object())
+                                 .value("KHR_animation_pointer", Json::object())
+                                 .value("pointer", ""));
+  std::string start, list, path, rest;
+  std::size_t node = 0;
+  std::getline(pointer, start, '/');
+  std::getline(pointer, list, '/');
+  if (!start.empty() || list != "nodes" || !(pointer >> node) || pointer.get() != '/') return false;
+  std::getline(pointer, path, '/');
+  if (std::getline(pointer, rest)) return false;
+  target = {{"node", node}, {"path", path}};
+  return true;
+}
+
+/// Leaves only channels that move a node: assimp 5.2.5 takes what has no target for one of some node.
+void drop_untargeted_channels(Json& animation, const std::string& where, std::vector<std::string>& notes) {
+  Json kept = Json::array();
+  Json& channels = animation.at("channels");
+  for (Json& channel : channels) {
+    Json& target = channel.at("target");
+    if (target.value("path", "") == "pointer") resolve_pointer(target);
+    const std::string path = target.value("path", "");
+    if (target.contains("node") &&
+        (path == "translation" || path == "rotation" || path == "scale" || path == "weights"))
+      kept.push_back(std::move(channel));
+  }
+  if (const std::size_t dropped = channels.size() - kept.size(); dropped > 0)
+    notes.push_back(where + ": " + std::to_string(dropped) +
+                    (dropped == 1 ? " channel moves" : " channels move") + " no node, not read");
+  channels = std::move(kept);
+}
+
+/// assimp 5.2.5 gives a mesh the skin of whichever of its nodes comes last: each skin takes a copy.
+void part_shared_meshes(Json& document) {
+  if (!document.contains("meshes")) return;
+  Json& meshes = document.at("meshes");
+  const std::size_t count = meshes.size();
+  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> copies;  // (mesh, skin) → mesh
+  std::vector<bool> taken(count);
+  for (Json& node : document.at("nodes")) {
+    if (!node.contains("mesh")) continue;
+    const std::size_t mesh = index_in(node, "mesh", count, "a node");
+    const std::int64_t skin = node.value("skin", std::int64_t(-1));
+    const auto [found, fresh] = copies.try_emplace({mesh, skin}, mesh);
+    if (fresh && taken[mesh]) {
+      found->second = meshes.size();
+      meshes.push_back(Json(meshes[mesh]));
+    }
+    taken[mesh] = true;
+    node["mesh"] = found->second;
+  }
+}
+
 void check_animation(const Json& document, const Json& animation, const std::string& where) {
   static const Json kNone = Json::array();
   const Json& samplers = animation.at("samplers");
@@ -253,12 +311,20 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       out.node_names.push_back(nodes[k].value("name", ""));
       nodes[k]["name"] = node_tag(k);
+      if (nodes[k].contains("matrix")) continue;
+      // For parts that an animation leaves alone assimp 5.2.5 takes a matrix apart, which mirrors all axes or
+      // none.
+      nodes[k].emplace("translation", Json::array({0, 0, 0}));
+      nodes[k].emplace("rotation", Json::array({0, 0, 0, 1}));
+      nodes[k].emplace("scale", Json::array({1, 1, 1}));
     }
+    part_shared_meshes(document);
   }
   if (document.contains("animations")) {
-    const Json& animations = document.at("animations");
+    Json& animations = document.at("animations");
     for (std::size_t a = 0; a < animations.size(); ++a) {
       const std::string where = "animation " + std::to_string(a);
+      drop_untargeted_channels(animations[a], where, out.notes);
       check_animation(document, animations[a], where);
       note_curves(animations[a], where, out.notes);
       out.animation_extras.push_back(extras_of(animations[a]));
