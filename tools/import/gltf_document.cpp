@@ -178,13 +178,16 @@ void drop_untargeted_channels(Json& animation, const std::string& where, std::ve
 void part_shared_meshes(Json& document) {
   if (!document.contains("meshes")) return;
   Json& meshes = document.at("meshes");
-  const std::size_t count = meshes.size();
-  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> copies;  // (mesh, skin) → mesh
+  const std::size_t count = meshes.size(), none = length_of(document, "skins");
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> copies;  // (mesh, skin) → mesh
   std::vector<bool> taken(count);
-  for (Json& node : document.at("nodes")) {
+  Json& nodes = document.at("nodes");
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Json& node = nodes[k];
     if (!node.contains("mesh")) continue;
-    const std::size_t mesh = index_in(node, "mesh", count, "a node");
-    const std::int64_t skin = node.value("skin", std::int64_t(-1));
+    const std::string where = "node " + std::to_string(k);
+    const std::size_t mesh = index_in(node, "mesh", count, where);
+    const std::size_t skin = node.contains("skin") ? index_in(node, "skin", none, where) : none;
     const auto [found, fresh] = copies.try_emplace({mesh, skin}, mesh);
     if (fresh && taken[mesh]) {
       found->second = meshes.size();
