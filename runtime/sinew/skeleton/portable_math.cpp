@@ -72,7 +72,7 @@ double arctangent(double n, double d) {
                                  0.6435011087932844,
                                  0.7188299996216245,
                                  0.7853981633974483};
-  const int eighth = static_cast<int>(8 * (n / d) + 0.5);
+  const int eighth = static_cast<int>(rounded(8 * (n / d)));
   const double tangent = eighth / 8.0;
   const double rest = (n - tangent * d) / (d + tangent * n), square = rest * rest;
   constexpr std::array<double, 7> kOdd = {1. / 3, 1. / 5, 1. / 7, 1. / 9, 1. / 11, 1. / 13, 1. / 15};
