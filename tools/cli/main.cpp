@@ -53,7 +53,9 @@ struct ConvertCommand {
     if (dry_run || again || watch) return {"--dry-run, --again and --watch are for folders and for --each"};
     json options, report;
     Asset asset;
-    if (Error error = cli::check_outputs({output, report_file}, inputs)) return error;
+    std::vector<std::string> read = inputs;
+    read.insert(read.end(), {source.options_file, source.clip_data});
+    if (Error error = cli::check_outputs({output, report_file}, read)) return error;
     if (Error error = source.read(options)) return error;
     if (retarget) options["retarget"] = true;
     if (Error error =

@@ -139,9 +139,9 @@ std::size_t morph_targets_of(const Json& document, const Json& target, const std
   return primitives.empty() ? 0 : length_of(primitives.at(0), "targets");
 }
 
-/// "/nodes/7/rotation" of KHR_animation_pointer as the target of an ordinary channel; false where it points
-/// at something else.
-bool resolve_pointer(Json& target) {
+/// "/nodes/7/rotation" of KHR_animation_pointer becomes the target of an ordinary channel; what points at
+/// something else stays.
+void resolve_pointer(Json& target) {
   std::istringstream pointer(target.value("extensions", Json::object())
                                  .value("KHR_animation_pointer", Json::object())
                                  .value("pointer", ""));
@@ -149,11 +149,9 @@ bool resolve_pointer(Json& target) {
   std::size_t node = 0;
   std::getline(pointer, start, '/');
   std::getline(pointer, list, '/');
-  if (!start.empty() || list != "nodes" || !(pointer >> node) || pointer.get() != '/') return false;
+  if (!start.empty() || list != "nodes" || !(pointer >> node) || pointer.get() != '/') return;
   std::getline(pointer, path, '/');
-  if (std::getline(pointer, rest)) return false;
-  target = {{"node", node}, {"path", path}};
-  return true;
+  if (!std::getline(pointer, rest)) target = {{"node", node}, {"path", path}};
 }
 
 /// Leaves only channels that move a node: assimp 5.2.5 takes what has no target for one of some node.
@@ -315,8 +313,7 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
       out.node_names.push_back(nodes[k].value("name", ""));
       nodes[k]["name"] = node_tag(k);
       if (nodes[k].contains("matrix")) continue;
-      // For parts that an animation leaves alone assimp 5.2.5 takes a matrix apart, which mirrors all axes or
-      // none.
+      // Else assimp 5.2.5 takes a matrix apart for what an animation leaves alone: all axes mirrored or none.
       nodes[k].emplace("translation", Json::array({0, 0, 0}));
       nodes[k].emplace("rotation", Json::array({0, 0, 0, 1}));
       nodes[k].emplace("scale", Json::array({1, 1, 1}));

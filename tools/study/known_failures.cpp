@@ -71,10 +71,9 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
     {"ragdoll_hit_in_the_same_frame",
      "one step needs more passes than its budget: the hand leaves at 170 m/s and turns 20 rad in it"},
     {"ellipsoidal_limit",
-     "in double the torque turns by 1.2 % in a step while the joint gives way, 1 wanted, by chance of a last "
-     "digit: with loads that are 1e-6 to 2e-4 greater by 1 to 7 % in either precision, as its direction is "
-     "that "
-     "of a rate of next to nothing"},
+     "in double the torque turns by 1.2 % in a step while the joint gives way, 1 wanted, by chance of a "
+     "last digit: with loads that are 1e-6 to 2e-4 greater by 1 to 7 % in one precision or both, as its "
+     "direction is that of a rate of next to nothing"},
     {"baked_limbs",
      "limp hands whirl after blows that act at once, and no two runs stay together: with a blow that differs "
      "by 1e-4 unbaked ones are 36 degrees apart after two seconds, and baked ones 45 to 50 from unbaked "

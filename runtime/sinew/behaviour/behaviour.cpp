@@ -503,13 +503,14 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
   if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
   let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
-  if (report_.state == BehaviourState::kDown && may_get_up()) see_clip(jets);
-  if (report_.state == BehaviourState::kDown && may_get_up() &&
-      get_up_.begin(character, strength_, ground_)) {
-    report_.state = BehaviourState::kGather;
-    ++report_.tries;
-    tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
-    return rise(character, jets, h);
+  if (report_.state == BehaviourState::kDown && may_get_up()) {
+    see_clip(jets);
+    if (get_up_.begin(character, strength_, ground_)) {
+      report_.state = BehaviourState::kGather;
+      ++report_.tries;
+      tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
+      return rise(character, jets, h);
+    }
   }
   std::copy(last_.begin(), last_.end(), jets.begin());
 }

@@ -39,7 +39,7 @@ double rounded(double x) {
   return (x + kUnits) - kUnits;
 }
 
-/// sin (Quarters 0) or cos (1) by the quarter of a turn that x is nearest to.
+/// Of x and so many quarters of a turn more (0: the sine, 1: the cosine), from the quarter nearest to x.
 double sine(double x, int quarters) {
   // Parts of π/2 with 33 bits each but the last: products with the first two by whole numbers below 2²⁰ are
   // exact.
