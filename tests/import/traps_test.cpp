@@ -198,7 +198,7 @@ TEST(Gltf, ChannelsThatMoveNoNodeAreLeftOut) {  // trap 53
   EXPECT_THAT(outcome.scene.notes, testing::Contains("animation 0: 2 channels move no node, not read"));
   // What points at a node's rotation is a channel as any.
   const std::size_t node = rotation["target"]["node"];
-  channels = {rotation};
+  channels = Json::array({rotation});
   channels[0]["target"] = pointer(("/nodes/" + std::to_string(node) + "/rotation").c_str());
   const Outcome pointed = read_gltf(gltf);
   ASSERT_TRUE(pointed.ok) << pointed.error;
