@@ -439,10 +439,17 @@ int Behaviour<T>::misplaced() const {
              : 1;
 }
 
+/// Moves the animation by what `further` is in the frame in which targets are given.
+template <class T>
+void Behaviour<T>::displace(Character<T>& character, const Displacement& further) {
+  const Displacement by = character.displacement();
+  (void)character.displace(by.inverse().then(further).then(by));
+}
+
 /// The clip again, from where the feet stand now.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  (void)character.displace(to_feet());
+  displace(character, to_feet());
   risen_ = false;
   give_up(character);
   fades_ = true;
@@ -553,7 +560,7 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   see_clip(jets);
   swing_ = -1;
   choose_support(measure(character));
-  (void)character.displace(to_feet());  // the animation faces as the body does
+  displace(character, to_feet());  // the animation faces as the body does
   const MeasuredBody is = measure(character);
   spin_.setZero();
   root_before_ = is.root.rotation;

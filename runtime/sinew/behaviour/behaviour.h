@@ -143,6 +143,7 @@ class Behaviour {
   void move_swing(double h);
   void write_stance(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
+  static void displace(Character<T>& character, const Displacement& further);
   void finish(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
   void let_go(Character<T>& character, double h);
