@@ -143,7 +143,7 @@ def body_ref(b):
 
 
 def displacement(d):
-    return "by %s, turned %s deg" % (tuple_of((float(d["x"]), float(d["y"]))), text_of(math.degrees(float(d["yaw"]))))
+    return "by %s, turned %s deg" % (tuple_of(tuple(float(d[k]) for k in "xyz")), text_of(math.degrees(float(d["yaw"]))))
 
 
 SCALAR = r"(float|double|sinew::TimeJet<(float|double)>)"

@@ -88,7 +88,7 @@ class FuzzInputs {
   std::vector<std::uint64_t> assets_, graphs_, worlds_, people_, props_, loops_, effects_, bodies_, gone_;
 
  private:
-  std::array<std::array<double, 3>, 4> triples_{};
+  std::array<std::array<double, 4>, 4> triples_{};  ///< one more: for a displacement
   std::size_t next_ = 0;
 };
 

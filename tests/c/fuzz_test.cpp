@@ -331,7 +331,7 @@ class Sequence : FuzzMotion {
     report.size = rarely() ? std::uint32_t(below(1000)) : sizeof report;
     sinew_view view{};
     sinew_transform pose{};
-    double numbers[3];
+    double numbers[4];
     float force[3];
     switch (below(6)) {
       case 0:

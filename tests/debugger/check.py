@@ -43,7 +43,7 @@ EXPECTED = {  # variable: by gdb; by Visual Studio, where that differs
     "ground": ("kGround",),
     "wall": ("kObstacle 3",),
     "hand": ("kCharacter 1, joint 9",),
-    "displacement": ("by (1, 2), turned 28.6479 deg", "by (1, 2), turned 0.5 rad"),
+    "displacement": ("by (1, 2, 0), turned 28.6479 deg", "by (1, 2, 0), turned 0.5 rad"),
 }
 
 

@@ -20,6 +20,7 @@ constexpr double kHeight = 0.12;                         ///< s, in which the bo
 constexpr double kStraight = 0.985;                      ///< of a leg's length, that it reaches
 constexpr double kStill = 0.05;                          ///< m/s
 constexpr double kSame = 0.01;                           ///< m
+constexpr double kLevel = 0.02;                          ///< m
 constexpr double kFallen = 0.6;                          ///< of the root's height
 constexpr double kUpright = 0.77;                        ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
@@ -61,15 +62,16 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
 template <class T>
 MeasuredBody Behaviour<T>::measure(const Character<T>& character) {
   const Displacement back = character.displacement().inverse();
-  const Transform<double> home{back.turn(), {back.x, back.y, 0}};
+  const Transform<double> home{back.turn(), {back.x, back.y, back.z}};
   MeasuredBody is;
   const std::span<const Transform<T>> model = character.model();
   const auto place = [&](int joint) {
     return home * model[static_cast<std::size_t>(joint)].template cast<double>();
   };
   is.mass = body_.mass_of(model);
+  const Vec3<double> velocity = character.report().momentum / body_.total_mass - carried_.at(is.mass.place);
+  is.mass.velocity = home.rotation * velocity;
   is.mass.place = home * is.mass.place;
-  is.mass.velocity = home.rotation * Vec3<double>(character.report().momentum / body_.total_mass);
   is.root = place(0);
   for (std::size_t side = 0; side < 2; ++side) is.foot[side] = place(body_.legs[side].foot);
   return is;
@@ -88,29 +90,65 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
     return {};
   }
   report_.time += double(h);
+  see_clip(jets);
+  see_ground(character);
+  act(character, jets, h);
+  ride(character, jets[0], double(h));
+  return {};
+}
+
+/// What bears the body, and how much of its way the animation does not go by itself.
+template <class T>
+void Behaviour<T>::see_ground(const Character<T>& character) {
+  const BearingGround& ground = character.report().ground;
+  carried_ = {};
+  if (!(ground.force > 0)) return;
+  level_ = ground.place.z() - character.displacement().z;
+  const double speed = ground.velocity.squaredNorm();
+  if (speed == 0 && ground.turn_rate == 0) return;
+  const Vec3<double> own = character.displacement().turn() * clip_slide_;
+  const double share = speed > 0 ? 1 - std::clamp(own.dot(ground.velocity) / speed, 0.0, 1.0) : 1;
+  carried_ = {ground.place, share * ground.velocity, share * ground.turn_rate};
+}
+
+/// The animation goes along with ground that moves.
+template <class T>
+void Behaviour<T>::ride(Character<T>& character, JointJet<T>& root, double h) {
+  if (!carried_.moves()) return;
+  const Displacement turn{0, 0, h * carried_.turn_rate};
+  const Vec3<double> way = carried_.place - turn.turn() * carried_.place + h * carried_.velocity;
+  (void)character.displace({way.x(), way.y(), turn.yaw, way.z()});
+  const Displacement by = character.displacement();
+  const Vec3<double> is = by.turn() * root.translation.template cast<double>() + Vec3<double>(by.x, by.y, by.z);
+  const Vec3<double> velocity = by.turn().conjugate() * carried_.at(is);
+  const Vec3<double> spin = root.rotation.conjugate().template cast<double>() *
+                            Vec3<double>(0, 0, carried_.turn_rate);
+  root.velocity += velocity.template cast<T>();
+  root.omega += spin.template cast<T>();
+}
+
+template <class T>
+void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h) {
   switch (report_.state) {
     case BehaviourState::kFall:
     case BehaviourState::kDown:
-      lie(character, jets, double(h));
-      return {};
+      return lie(character, jets, double(h));
     case BehaviourState::kGather:
     case BehaviourState::kRise:
-      rise(character, jets, double(h));
-      return {};
+      return rise(character, jets, double(h));
     default:
       break;
   }
   watch(character, jets, h);
   if (report_.state == BehaviourState::kFall) {
     std::copy(last_.begin(), last_.end(), jets.begin());
-    return {};
+    return;
   }
   if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
     write_stance(jets, double(h));
   fade(jets, h);
   std::copy(jets.begin(), jets.end(), last_.begin());
   asked_ = true;
-  return {};
 }
 
 /// From one plan's pose into the next; the root is solved for, and is where it is.
@@ -150,8 +188,11 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
             .normalized();
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
-    for (const Vec3<T>& touches : body_.soles[side])
-      ground_ = std::min(ground_, (clip_ankle_[side] * Vec3<double>(touches.template cast<double>())).z());
+    for (const Vec3<T>& touches : body_.soles[side]) {
+      const double z = (clip_ankle_[side] * Vec3<double>(touches.template cast<double>())).z();
+      if (z < ground_) clip_slide_ = rate_of(ankle.translation).template cast<double>();
+      ground_ = std::min(ground_, z);
+    }
   }
   from_clip_ = clip_body_ - middle;
 }
@@ -173,7 +214,6 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   spin_ = known ? Vec3<double>(rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h)
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
-  see_clip(jets);
   if (report_.state == BehaviourState::kClip) {
     if (!is_pushed(is, h)) return;
     report_ = {.state = BehaviourState::kPassive};
@@ -485,7 +525,7 @@ bool Behaviour<T>::lies(const Character<T>& character, double h) {
   if (std::exchange(measured_, true))
     spin_ = rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h;
   root_before_ = is.root.rotation;
-  const double speed = character.report().momentum.norm() / body_.total_mass, time = std::sqrt(unit_);
+  const double speed = is.mass.velocity.norm(), time = std::sqrt(unit_);
   const bool still = speed < kLieStill * time && spin_.norm() < kTurnsStill / time;
   rest_ = still ? rest_ + h : 0;
   return rest_ > kLie * time || report_.time > kNeverStill * time;
@@ -511,7 +551,10 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
   let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
   if (report_.state == BehaviourState::kDown && may_get_up()) {
-    see_clip(jets);
+    if (std::abs(level_ - ground_) > kLevel * unit_) {  // it has fallen, or been thrown, to another level
+      displace(character, {0, 0, 0, level_ - ground_});
+      level_ = ground_;
+    }
     if (get_up_.begin(character, strength_, ground_)) {
       report_.state = BehaviourState::kGather;
       ++report_.tries;
@@ -557,7 +600,6 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   allowed_ = false;
   get_up_.forget();
   tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
-  see_clip(jets);
   swing_ = -1;
   choose_support(measure(character));
   displace(character, to_feet());  // the animation faces as the body does

@@ -74,6 +74,20 @@ struct BehaviourReport {
   int tries = 0;             ///< to get up, since it fell
 };
 
+/// A frame of reference that moves over the ground, world.
+struct CarriedFrame {
+  Vec3<double> place = Vec3<double>::Zero();     ///< m
+  Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s, there
+  double turn_rate = 0;                          ///< rad/s, about the vertical
+
+  /// Whether it does.
+  bool moves() const { return turn_rate != 0 || velocity != Vec3<double>::Zero(); }
+  /// m/s, at a point of it.
+  Vec3<double> at(const Vec3<double>& point) const {
+    return velocity + Vec3<double>(0, 0, turn_rate).cross(point - place);
+  }
+};
+
 /// What the last step left of a body, in the frame in which targets are given.
 struct MeasuredBody {
   MassMotion mass;                        ///< of the whole body
@@ -128,6 +142,9 @@ class Behaviour {
   MeasuredBody measure(const Character<T>& character);
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(std::span<const JointJet<T>> jets);
+  void see_ground(const Character<T>& character);
+  void act(Character<T>& character, std::span<JointJet<T>> jets, T h);
+  void ride(Character<T>& character, JointJet<T>& root, double h);
   bool is_pushed(const MeasuredBody& is, double h) const;
   void keep_balance(Character<T>& character, const MeasuredBody& is);
   void give_up(Character<T>& character);
@@ -170,6 +187,9 @@ class Behaviour {
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
   double ground_ = 0;  ///< m, height of what the clip's feet stand on
+  double level_ = 0;   ///< m, that of what the body stands or lies on
+  Vec3<double> clip_slide_ = Vec3<double>::Zero();  ///< m/s, of the clip's lower foot
+  CarriedFrame carried_;                            ///< by ground that moves
   std::array<Transform<double>, 2> clip_ankle_;
   int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
   Sole only_;                   ///< of the foot that stands while the other is put back

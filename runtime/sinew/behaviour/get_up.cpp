@@ -65,7 +65,7 @@ void GetUp<T>::look(const Character<T>& character) {
   clips_.points().place(character.model(), is_);
   const Displacement back = character.displacement().inverse();
   const Quat<double> turn = back.turn();
-  for (Vec3<double>& p : is_) p = turn * p + Vec3<double>(back.x, back.y, -ground_);
+  for (Vec3<double>& p : is_) p = turn * p + Vec3<double>(back.x, back.y, back.z - ground_);
 }
 
 template <class T>
@@ -210,7 +210,7 @@ GetUpOutcome GetUp<T>::rise(const Character<T>& character, std::span<JointJet<T>
   if (waits_ > kMostWait * std::sqrt(unit_) || elapsed_ > kMostTime * std::sqrt(unit_))
     return fail(GetUpOutcome::kTooLong);
   const double low = clips_.variants()[static_cast<std::size_t>(variant_)].end_height -
-                     (double(character.model()[0].translation.z()) - ground_);
+                     (double(character.model()[0].translation.z()) - character.displacement().z - ground_);
   const bool stands = time_.value >= kNearlyUp * end && low < kStraight * unit_;
   if (!stands || off_ > kEndsWithin * unit_) return GetUpOutcome::kRises;
   return GetUpOutcome::kUp;

@@ -248,6 +248,7 @@ sinew_status sinew_character_get_displacement(sinew_character character, double*
     out[0] = by.x;
     out[1] = by.y;
     out[2] = by.yaw;
+    out[3] = by.z;
     return sinew_status(SINEW_OK);
   });
 }
@@ -259,7 +260,7 @@ sinew_status sinew_character_take_displacement(sinew_character character) {
 sinew_status sinew_character_displace(sinew_character character, const double* further) {
   if (!further) return fail(SINEW_INVALID_ARGUMENT, kNull);
   return change(character, [&](Character<float> c) {
-    return c.displace({further[0], further[1], further[2]});
+    return c.displace({further[0], further[1], further[2], further[3]});
   });
 }
 

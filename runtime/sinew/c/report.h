@@ -31,7 +31,11 @@ inline void fill_report(const CharacterReport& r, sinew_character_report& out) {
   out.kinetic_energy = r.kinetic_energy;
   out.potential_energy = r.potential_energy;
   out.elastic_energy = r.elastic_energy;
+  out.ground_force = r.ground.force;
+  out.ground_turn_rate = r.ground.turn_rate;
   for (int k = 0; k < 3; ++k) {
+    out.ground_place[k] = r.ground.place[k];
+    out.ground_velocity[k] = r.ground.velocity[k];
     out.momentum[k] = r.momentum[k];
     out.angular_momentum[k] = r.angular_momentum[k];
   }

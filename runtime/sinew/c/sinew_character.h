@@ -94,6 +94,10 @@ typedef struct sinew_character_report {
   double help_torque;          ///< N m
   double estimated_error;      ///< m
   double position[3];          ///< m, of the root's origin
+  double ground_force;         ///< N, up: of what bears it; 0: nothing does, and it was not played
+  double ground_place[3];      ///< m, world: where it presses
+  double ground_velocity[3];   ///< m/s, of what is there
+  double ground_turn_rate;     ///< rad/s, about the vertical
 } sinew_character_report;
 
 /// A clip that a character follows: what it shows at `time` (as sinew_clip_sample) is wanted at the end of
@@ -173,12 +177,12 @@ SINEW_API sinew_status sinew_character_set_help(sinew_character character, doubl
 /// significance, most, check_every and bake of its settings.
 SINEW_API sinew_status sinew_character_set_detail(sinew_character character, double significance,
                                                   sinew_level most, int32_t check_every, int32_t bake);
-/// Where a grounded character follows its animation since something moved it: [3] x, y (m), yaw (rad).
-SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[3]);
+/// Where a grounded character follows its animation since something moved it: [4] x, y (m), yaw (rad), z (m).
+SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[4]);
 /// The host has moved the character's place itself: targets are given there from now on.
 SINEW_API sinew_status sinew_character_take_displacement(sinew_character character);
-/// Puts its animation elsewhere: by [3] x, y (m), yaw (rad).
-SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[3]);
+/// Puts its animation elsewhere: by [4] x, y (m), yaw (rad), z (m), in the world.
+SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[4]);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
                                                      const double point[3], const double impulse[3]);

@@ -227,11 +227,12 @@ Status Character<T>::take_displacement() {
 template <class T>
 Status Character<T>::displace(const Displacement& further) {
   if (!state_) return nobody();
-  if (!std::isfinite(further.x) || !std::isfinite(further.y) || !std::isfinite(further.yaw))
+  if (!std::isfinite(further.x) || !std::isfinite(further.y) || !std::isfinite(further.yaw) ||
+      !std::isfinite(further.z))
     return Status::error(Code::kNotFinite, "displacement is not finite");
   const Displacement all = state_->grounding.by.then(further);
   constexpr double kFarthest = 1e6;  // m, or rad
-  if (std::max({std::abs(all.x), std::abs(all.y), std::abs(all.yaw)}) > kFarthest)
+  if (std::max({std::abs(all.x), std::abs(all.y), std::abs(all.yaw), std::abs(all.z)}) > kFarthest)
     return Status::error(Code::kOutOfRange, "displacement is beyond 1e6 m, or rad");
   displace_target(*state_, further);
   return {};

@@ -85,7 +85,7 @@ JointJet<T> displaced(const Displacement& by, const JointJet<T>& jet) {
   out.rotation = rotation * jet.rotation;
   out.velocity = rotation * jet.velocity;
   out.acceleration = rotation * jet.acceleration;
-  const Vec3<double> place = turn * jet.translation.template cast<double>() + Vec3<double>(by.x, by.y, 0);
+  const Vec3<double> place = turn * jet.translation.template cast<double>() + Vec3<double>(by.x, by.y, by.z);
   out.translation = place.template cast<T>();
   return out;
 }

@@ -220,6 +220,24 @@ void IslandStepper<T>::advance_by(const TimeScheme<T>& scheme, T h) {
   }
 }
 
+/// What a contact bears of a tree, and how what bears it moves, by its force; places from the common origin.
+template <class T>
+void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround& ground) const {
+  if (c.tree_a == c.tree_b) return;
+  const bool is_a = c.tree_a == tree;
+  const double up = double(normal_force(c) * (is_a ? c.normal.z() : -c.normal.z()));
+  if (!(up > 0)) return;
+  const Vec3<T> touch = c.point - c.radius * c.normal;
+  ground.force += up;
+  ground.place += up * touch.template cast<double>();
+  const int below = is_a ? c.tree_b : c.tree_a;
+  if (below < 0) return;
+  const CharacterState<T>& bears = *states_[below];
+  const int body = is_a ? c.body_b : c.body_a;
+  ground.velocity += up * bears.point_velocity(body, touch).template cast<double>();
+  ground.turn_rate += up * double(angular_velocity(bears.history, body).z());
+}
+
 template <class T>
 void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   const TreeProblem<T>& p = s.problem;
@@ -236,6 +254,12 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
     ++r.contacts;
     if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
+    add_bearing(c, tree, r.ground);
+  }
+  if (r.ground.force > 0) {
+    r.ground.place = r.ground.place / r.ground.force + settings_.common_origin;
+    r.ground.velocity /= r.ground.force;
+    r.ground.turn_rate /= r.ground.force;
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));

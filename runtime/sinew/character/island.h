@@ -145,6 +145,7 @@ class IslandStepper {
   void number_bodies();
   void advance_all(T h);
   void advance_by(const TimeScheme<T>& scheme, T h);
+  void add_bearing(const Contact<T>& contact, int tree, BearingGround& ground) const;
   void report(CharacterState<T>& state, int tree);
 
   const WorldSettings* world_ = nullptr;

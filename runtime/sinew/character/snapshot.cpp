@@ -256,6 +256,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     stream.value("displaced along x", s.grounding.by.x);
     stream.value("displaced along y", s.grounding.by.y);
     stream.value("displaced about z", s.grounding.by.yaw);
+    stream.value("displaced along z", s.grounding.by.z);
     stream.value("stands as it should", s.grounding.rest);
     stream.value("help, N", s.grounding.help_force);
     stream.value("help, N·m", s.grounding.help_torque);

@@ -46,21 +46,31 @@ struct Displacement {
   double x = 0;    ///< m, world
   double y = 0;    ///< m, world
   double yaw = 0;  ///< rad, about Z
+  double z = 0;    ///< m, world: to ground of another height
 
   /// Whether it moves anything.
-  bool any() const { return x != 0 || y != 0 || yaw != 0; }
+  bool any() const { return x != 0 || y != 0 || yaw != 0 || z != 0; }
   /// By yaw, about the world's vertical.
   Quat<double> turn() const { return {portable::cos(yaw / 2), 0, 0, portable::sin(yaw / 2)}; }
   /// The one that leads back: then() of the two is none.
   Displacement inverse() const {
     const Vec3<double> back = turn().conjugate() * Vec3<double>(-x, -y, 0);
-    return {back.x(), back.y(), -yaw};
+    return {back.x(), back.y(), -yaw, -z};
   }
   /// This one, and after it another.
   Displacement then(const Displacement& next) const {
     const Vec3<double> to = next.turn() * Vec3<double>(x, y, 0);
-    return {to.x() + next.x, to.y() + next.y, yaw + next.yaw};
+    return {to.x() + next.x, to.y() + next.y, yaw + next.yaw, z + next.z};
   }
+};
+
+/// What bears a body from below, of all contacts that bear it by their share, and how it moves: still where
+/// it is static.
+struct BearingGround {
+  double force = 0;                              ///< N, up; 0: nothing bears it, and the rest is 0
+  Vec3<double> place = Vec3<double>::Zero();     ///< m, world: where it presses
+  Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s, of what is there
+  double turn_rate = 0;                          ///< rad/s, about the vertical
 };
 
 /// What World::add_character() is told of one character. Refused where strength, a limit of the root's or a
@@ -111,6 +121,7 @@ struct CharacterReport {
   double penetration = 0;                                ///< m, deepest contact
   double help_force = 0;                                 ///< N that bore a grounded root besides the ground
   double help_torque = 0;                                ///< N·m, likewise
+  BearingGround ground;  ///< at the end of the step; not told of who was only played, and after restore()
   /// m, where Accuracy::estimate_error asks for it: how far this step alone, by its finite length, took the
   /// character from the exact motion (rms of all mass). 0 where the animation was played: that is exact.
   double estimated_error = 0;
@@ -223,8 +234,9 @@ class Character {
   Displacement displacement() const;
   /// The host has moved the character's place itself: targets are given there from now on.
   Status take_displacement();
-  /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that. For who
-  /// stands there already, within millimetres, as after a step; the rest returns over time.
+  /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that, in the
+  /// world. For who stands there already, within millimetres, as after a step, or is taken along by what it
+  /// stands on; the rest returns over time.
   Status displace(const Displacement& further);
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);

@@ -98,16 +98,16 @@ class Character(_Affected):
 
     @property
     def displacement(self):
-        """x, y (m), yaw (rad)."""
-        out = (ctypes.c_double * 3)()
+        """x, y (m), yaw (rad), z (m)."""
+        out = (ctypes.c_double * 4)()
         self._call(lib.sinew_character_get_displacement, byref(out))
         return tuple(out)
 
     def take_displacement(self):
         self._call(lib.sinew_character_take_displacement)
 
-    def displace(self, x, y, yaw):
-        self._call(lib.sinew_character_displace, three((x, y, yaw)))
+    def displace(self, x, y, yaw, z=0.0):
+        self._call(lib.sinew_character_displace, (ctypes.c_double * 4)(x, y, yaw, z))
 
     def apply_impulse(self, joint, point, impulse):
         self._call(lib.sinew_character_apply_impulse, joint, three(point), three(impulse))
