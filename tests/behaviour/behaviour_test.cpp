@@ -1,5 +1,6 @@
 // A standing body that is pushed: it presses, steps, puts the foot back, or falls.
 #include "pushed.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew {
 namespace {
@@ -84,6 +85,82 @@ TEST(Behaviour, IsKnockedDownWhenAsked) {
   body.run(4);
   EXPECT_EQ(body.behaviour.state(), BehaviourState::kDown);
   EXPECT_LT(body.root_height(), 0.3);
+}
+
+/// Stands on a box that is led by its velocity and a turn rate.
+struct Riding : Balancing {
+  Vec3<double> velocity = Vec3<double>::Zero();
+  double turn_rate = 0;
+  bool led_by_host = false;  ///< the host has the animation go along
+
+  Riding(const Vec3<double>& v, double turns, bool host = false)
+      : velocity(v), turn_rate(turns), led_by_host(host) {
+    Skeleton box;
+    Joint joint;
+    joint.name = "box";
+    joint.type = JointType::kFree;
+    joint.mass = 500;
+    joint.inertia = Vec3<double>(700, 700, 1300).asDiagonal();
+    box.joints = {joint};
+    box.body_count = 1;
+    Collider top;
+    top.shape = Shape::kBox;
+    top.size = {20, 20, 0.15};
+    box.colliders = {top};
+    CharacterSettings led;
+    platform = world.add_character(box, led, status);
+    EXPECT_TRUE(status) << status.reason;
+    ground = 0.65f;
+    lead(0);
+    (void)world.character(platform).reset();
+    sample();
+    for (JointJet<float>& jet : std::span(jets).first(1)) jet.velocity += velocity.cast<float>();
+    (void)character().set_target(jets);
+    (void)character().reset();
+    behave = [this, balance = behave](std::span<JointJet<float>> wanted) {
+      lead(time());
+      if (led_by_host) {
+        wanted[0].translation += (time() * velocity).cast<float>();
+        wanted[0].velocity += velocity.cast<float>();
+      }
+      balance(wanted);
+    };
+  }
+  void lead(double time) {
+    JointJet<float> at;
+    at.rotation = rotation_exp<double>(Vec3<double>(0, 0, time * turn_rate)).cast<float>();
+    at.omega = Vec3<float>(0, 0, float(turn_rate));
+    at.translation = (Vec3<double>(0, 0, 0.5) + time * velocity).cast<float>();
+    at.velocity = velocity.cast<float>();
+    (void)world.character(platform).set_target({&at, 1});
+  }
+  /// m, of the root from the box's middle, in its axes.
+  Vec3<float> on_platform() {
+    return world.character(platform).model()[0].inverse() * character().model()[0].translation;
+  }
+  int platform = -1;
+};
+
+TEST(Behaviour, StandsOnGroundThatMoves) {
+  struct Ride {
+    Vec3<double> velocity;
+    double turn_rate;
+    bool host;
+  };
+  for (const Ride& ride :
+       {Ride{{0.8, 0, 0}, 0, false}, Ride{{0.8, 0, 0}, 0, true}, Ride{{0, 0, 0.5}, 0, false},
+        Ride{{0, 0, -0.05}, 0, true}, Ride{{0, 0, 0}, 0.5, false}}) {
+    Riding body(ride.velocity, ride.turn_rate, ride.host);
+    const Vec3<float> stood = body.on_platform();
+    body.run(4);
+    EXPECT_LT((body.on_platform() - stood).norm(), 0.03f)
+        << ride.velocity.transpose() << ", host " << ride.host;
+    body.push(15, kLeft);
+    body.run(5);
+    const Vec3<float> now = body.on_platform() - stood;
+    EXPECT_LT(now.norm(), 0.5f) << ride.velocity.transpose() << ", host " << ride.host;
+    EXPECT_LT(std::abs(now.z()), 0.03f) << ride.velocity.transpose() << ", host " << ride.host;
+  }
 }
 
 TEST(Behaviour, RepeatsToTheBit) {

@@ -1,6 +1,7 @@
 // A body that lies gets up by itself: which clip it chooses, that it stands again, when it may not, and what
 // becomes of one that is pushed while it rises.
 #include <algorithm>
+#include <array>
 
 #include "fixtures/counting_new.h"
 #include "fixtures/known_failure.h"
@@ -183,10 +184,10 @@ TEST(GetUp, StandsAgainOnGroundOfAnyHeight) {
 }
 
 TEST(GetUp, APushIsStoodOnGroundOfAnyHeight) {
-  for (const float height : {0.65f, 10.f}) {
+  for (const float height : {0.f, 0.65f, 10.f}) {
     Fallen body({}, height);
     body.run(0.3);
-    body.push(30, kPi);
+    body.push(20, kPi);
     body.run(4);
     EXPECT_EQ(body.count(BehaviourEventKind::kFallen), 0) << height;
     EXPECT_GT(body.root_height(), 0.85) << height;
@@ -201,6 +202,67 @@ TEST(GetUp, WhoStandsAgainIsPlayedAgain) {
     body.run(12);
     EXPECT_EQ(body.character().report().unknown_dofs, 0) << direction;
   }
+}
+
+/// What a body does frame by frame, and what was saved of it on the way.
+struct Saved {
+  int frame = 0;
+  std::vector<std::byte> world, behaviour;
+};
+
+TEST(GetUp, WhatWasSavedGoesOnToTheBit) {
+  constexpr int kFrames = 15 * 60, kEvery = 41, kFollowed = 45;
+  const auto falls = [](Fallen& body) {  // at 0.3 s
+    if (body.frame == 18) body.behaviour.knock_down(body.character());
+    body.step(body.frame >= 18 && body.frame < 24 ? Vec3<float>(900, 500, 0) : Vec3<float>::Zero());
+  };
+  std::vector<std::vector<Transform<float>>> poses;
+  std::vector<Saved> saved;
+  std::array<bool, 8> states{};
+  Fallen body;
+  for (int n = 0; n < kFrames; ++n) {
+    falls(body);
+    const auto model = body.character().model();
+    poses.emplace_back(model.begin(), model.end());
+    if (n % kEvery != 0) continue;
+    Saved& now = saved.emplace_back();
+    now.frame = body.frame;
+    now.world.resize(body.world.snapshot_capacity());
+    now.world.resize(body.world.save(now.world));
+    now.behaviour.resize(body.behaviour.saved_bytes());
+    EXPECT_EQ(body.behaviour.save(body.character(), now.behaviour), now.behaviour.size());
+    states[static_cast<std::size_t>(body.behaviour.state())] = true;
+  }
+  for (const BehaviourState state : {BehaviourState::kClip, BehaviourState::kBalance, BehaviourState::kFall,
+                                     BehaviourState::kGather, BehaviourState::kRise})
+    EXPECT_TRUE(states[static_cast<std::size_t>(state)]) << int(state);
+  for (const Saved& from : saved) {
+    Fallen again;
+    ASSERT_TRUE(again.world.restore(from.world));
+    ASSERT_TRUE(again.behaviour.restore(from.behaviour));
+    for (again.frame = from.frame; again.frame < std::min(from.frame + kFollowed, kFrames);) {
+      falls(again);
+      const auto& wanted = poses[static_cast<std::size_t>(again.frame - 1)];
+      for (std::size_t i = 0; i < wanted.size(); ++i)
+        ASSERT_EQ(again.character().model()[i].translation, wanted[i].translation)
+            << "saved at " << from.frame << ", frame " << again.frame;
+    }
+  }
+}
+
+TEST(GetUp, RefusesWhatNoSuchBehaviourSaved) {
+  Fallen body;
+  std::vector<std::byte> saved(body.behaviour.saved_bytes());
+  EXPECT_EQ(body.behaviour.save(body.character(), std::span(saved).first(saved.size() - 1)), 0u);
+  ASSERT_EQ(body.behaviour.save(body.character(), saved), saved.size());
+  EXPECT_TRUE(body.behaviour.restore(saved));
+  saved[saved.size() / 2] ^= std::byte{1};
+  EXPECT_EQ(body.behaviour.restore(saved).code, Code::kBadFile);
+  saved[saved.size() / 2] ^= std::byte{1};
+  EXPECT_FALSE(body.behaviour.restore(std::span(saved).first(8)));
+  Status status;
+  Behaviour<float> other(body.asset.skeleton, {}, status);  // has no clips
+  EXPECT_FALSE(other.restore(saved));
 }
 
 TEST(GetUp, NeverMeansNever) {

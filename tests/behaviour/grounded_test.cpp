@@ -1,5 +1,6 @@
 // RootDrive::kGrounded: the clip is the answer until the root needs more than the ground can give.
 #include "pushed.h"
+#include "sinew/effects/static_shape.h"
 
 namespace sinew {
 namespace {
@@ -23,6 +24,92 @@ TEST(Grounded, StandingAndWalkingArePlayedToTheBit) {
     }
     EXPECT_EQ(grounded.solved, 0) << name;
   }
+}
+
+/// Ground 30 cm above the floor, of whatever kind.
+struct Raised : Pushed {
+  explicit Raised(const char* name, RootDrive root = RootDrive::kGrounded) : Pushed(name, root) {
+    ground = 0.3f;
+  }
+  void begin() {
+    sample();
+    (void)character().set_target(jets);
+    (void)character().reset();
+  }
+};
+
+/// Plays on ground that `add` puts into the world as on the floor: nothing is solved, and muscles do as much.
+template <class Add>
+void expect_as_on_the_floor(const char* name, RootDrive root, const Add& add) {
+  Pushed floor(name, root);
+  Raised raised(name, root);
+  add(raised.world);
+  raised.begin();
+  for (int n = 0; n < 240; ++n) {
+    floor.step();
+    raised.step();
+    const auto wanted = floor.character().torque(), is = raised.character().torque();
+    for (std::size_t dof = 6; dof < wanted.size(); ++dof)
+      ASSERT_NEAR(is[dof], wanted[dof], 0.1 + 2e-3 * std::abs(double(wanted[dof])))
+          << name << " frame " << n << " dof " << dof;
+    ASSERT_LE(raised.character().report().help_torque, floor.character().report().help_torque + 0.05);
+  }
+  EXPECT_EQ(floor.solved, 0) << name;
+  EXPECT_EQ(raised.solved, 0) << name;
+  EXPECT_NEAR(raised.character().position().z() - floor.character().position().z(), 0.3, 1e-6);
+}
+
+TEST(Grounded, BoxesAreGroundAsTheFloorIs) {
+  for (const char* name : {"stand", "walk"})
+    for (const RootDrive root : {RootDrive::kGrounded, RootDrive::kKinematic})
+      expect_as_on_the_floor(name, root, [](World<float>& world) {
+        for (const double x : {-3.0, 3.0, 9.0}) {  // side by side
+          Collider box;
+          box.shape = Shape::kBox;
+          box.size = {3, 2, 0.15};
+          box.local.translation = {x, 0, 0.15};
+          ASSERT_TRUE(world.add_obstacle(box));
+        }
+      });
+}
+
+TEST(Grounded, ShapesOfTheHostAreGroundAsTheFloorIs) {
+  const std::vector<double> heights(16, 0.3);
+  const HeightField field(heights, 4, {-10, -10, 0}, 10);
+  for (const char* name : {"stand", "walk"})
+    expect_as_on_the_floor(name, RootDrive::kGrounded,
+                           [&](World<float>& world) { ASSERT_TRUE(world.add_obstacle(field, 0.8)); });
+}
+
+TEST(Grounded, SlidesWhereBoxesAreIcy) {
+  Raised body("walk");
+  Collider ice;
+  ice.shape = Shape::kBox;
+  ice.size = {20, 20, 0.15};
+  ice.local.translation.z() = 0.15;
+  ice.friction = 0.01;
+  ASSERT_TRUE(body.world.add_obstacle(ice));
+  body.begin();
+  body.run(2);
+  EXPECT_GT(body.solved, 0);  // what a walk asks for is more than such ground gives
+}
+
+TEST(Grounded, AWallBesideIsNoGround) {
+  Pushed plain("stand");
+  Pushed beside("stand");
+  Collider wall;
+  wall.shape = Shape::kBox;
+  wall.size = {0.1, 2, 1};
+  const double arm = 0.45;
+  wall.local.translation = {0, arm + 2, 1};
+  ASSERT_TRUE(beside.world.add_obstacle(wall));
+  for (int n = 0; n < 60; ++n) {
+    plain.step();
+    beside.step();
+    for (std::size_t dof = 0; dof < plain.character().torque().size(); ++dof)
+      ASSERT_NEAR(plain.character().torque()[dof], beside.character().torque()[dof], 0.02);
+  }
+  EXPECT_EQ(beside.solved, 0);
 }
 
 TEST(Toned, StandingAndWalkingArePlayedToTheBit) {

@@ -274,7 +274,8 @@ class Sequence : FuzzMotion {
     }
     sinew_behaviour_report report{};
     report.size = sizeof report;
-    switch (below(7)) {
+    std::size_t size = 0;
+    switch (below(9)) {
       case 0:
         return sinew_character_add_behaviour(handle(people_), or_null(&s));
       case 1:
@@ -286,6 +287,18 @@ class Sequence : FuzzMotion {
       case 4:
         return sinew_character_get_behaviour_events(handle(people_), or_null(events.data()), index(5),
                                                     or_null(&count));
+      case 5: {
+        balanced_.resize(1 << 16);
+        const sinew_status status = sinew_character_save_behaviour(handle(people_), or_null(balanced_.data()),
+                                                                   balanced_.size(), or_null(&size));
+        balanced_.resize(status == SINEW_OK ? size : 0);
+        return status;
+      }
+      case 6:
+        if (!balanced_.empty() && below(4) == 0)
+          balanced_[std::size_t(below(balanced_.size()))] ^= char(1 << below(8));
+        return sinew_character_restore_behaviour(handle(people_), or_null(balanced_.data()),
+                                                 balanced_.size());
       default:
         return sinew_character_balance(handle(people_), or_null(jets.data()), info.joints, real(0.005, 0.03));
     }

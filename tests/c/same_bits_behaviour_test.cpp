@@ -141,6 +141,34 @@ TEST(CInterfaceGetUp, GoesTheWayOfTheSameRunInCpp) {
   EXPECT_EQ(std::memcmp(run.poses.data(), wanted.poses.data(), run.poses.size() * sizeof(float)), 0);
 }
 
+TEST(CInterfaceGetUp, IsRestoredBesideItsWorld) {
+  constexpr int kSavedAt = kKnockedAt + 60, kFollowed = 40;
+  Grounded scene;
+  for (int n = 0; n < kSavedAt; ++n) (void)scene.frame(n);
+  std::vector<std::byte> world(1 << 16), behaviour(1 << 16);
+  std::size_t size = 0;
+  ASSERT_EQ(sinew_world_save(scene.world, SINEW_SNAPSHOT_STATE, world.data(), world.size(), &size), SINEW_OK);
+  world.resize(size);
+  EXPECT_EQ(sinew_character_save_behaviour(scene.hero, nullptr, 0, &size), SINEW_TOO_SMALL);
+  ASSERT_EQ(sinew_character_save_behaviour(scene.hero, behaviour.data(), behaviour.size(), &size), SINEW_OK);
+  behaviour.resize(size);
+  Shown first, again;
+  for (int n = 0; n < kFollowed; ++n) {
+    (void)scene.frame(kSavedAt + n);
+    first.add(scene.model().data, std::size_t(scene.model().count));
+  }
+  ASSERT_EQ(sinew_world_restore(scene.world, SINEW_SNAPSHOT_STATE, world.data(), world.size()), SINEW_OK);
+  ASSERT_EQ(sinew_character_restore_behaviour(scene.hero, behaviour.data(), behaviour.size()), SINEW_OK);
+  for (int n = 0; n < kFollowed; ++n) {
+    (void)scene.frame(kSavedAt + n);
+    again.add(scene.model().data, std::size_t(scene.model().count));
+  }
+  EXPECT_EQ(first.poses, again.poses);
+  behaviour[behaviour.size() / 2] ^= std::byte{4};
+  EXPECT_EQ(sinew_character_restore_behaviour(scene.hero, behaviour.data(), behaviour.size()),
+            SINEW_BAD_FILE);
+}
+
 TEST(CInterfaceGetUp, WhoMayNotLiesUntilHeMay) {
   Grounded scene;
   sinew_behaviour_settings settings = initialised(sinew_behaviour_settings_init);

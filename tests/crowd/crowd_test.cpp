@@ -84,7 +84,7 @@ std::vector<double> slow_torques(const Skeleton& skeleton, std::span<const Joint
   std::vector<StandingPoint<double>> room(support.points.size());
   if (settings.ground)
     share_support<double>(support, kinematics.rotation, kinematics.origin,
-                          settings.ground_height - origin.z(), {}, room, force, moment);
+                          LevelGround<double>{settings.ground_height - origin.z()}, {}, room, force, moment);
   project_wrenches<double>(tree, kinematics, force, moment, torque);
   return torque;
 }

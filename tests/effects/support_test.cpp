@@ -31,7 +31,8 @@ struct Standing {
   void share() {
     const SupportPoints<double> support(tree, points);
     std::vector<StandingPoint<double>> room(support.points.size());
-    share_support<double>(support, kinematics.rotation, kinematics.origin, 0.0, {}, room, force, moment);
+    share_support<double>(support, kinematics.rotation, kinematics.origin, LevelGround<double>{0.0}, {}, room,
+                          force, moment);
   }
   V total(const std::vector<V>& of) const {
     V sum = V::Zero();

@@ -184,8 +184,8 @@ Demand demand_of(const Clip& clip, Pass& pass) {
   Demand demand{std::vector<std::vector<double>>(tree.dofs), std::vector<std::vector<double>>(tree.dofs)};
   for (int f = 0; f < frames_of(clip); ++f) {
     if (!pass.run(clip, f)) continue;
-    share_support<double>(support, pass.kinematics.rotation, pass.kinematics.origin, floor, {}, room,
-                          pass.force, pass.moment);
+    share_support<double>(support, pass.kinematics.rotation, pass.kinematics.origin,
+                          LevelGround<double>{floor}, {}, room, pass.force, pass.moment);
     project_wrenches<double>(tree, pass.kinematics, pass.force, pass.moment, torque);
     for (int d = 0; d < tree.dofs; ++d) {
       demand.plus[d].push_back(torque[d]);

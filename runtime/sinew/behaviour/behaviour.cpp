@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
+#include "sinew/skeleton/digest.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -69,7 +71,7 @@ MeasuredBody Behaviour<T>::measure(const Character<T>& character) {
     return home * model[static_cast<std::size_t>(joint)].template cast<double>();
   };
   is.mass = body_.mass_of(model);
-  const Vec3<double> velocity = character.report().momentum / body_.total_mass - carried_.at(is.mass.place);
+  const Vec3<double> velocity = last_step_.momentum / body_.total_mass - carried_.at(is.mass.place);
   is.mass.velocity = home.rotation * velocity;
   is.mass.place = home * is.mass.place;
   is.root = place(0);
@@ -85,10 +87,13 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   events_count_ = 0;
   if (std::exchange(knocked_, false)) tell(BehaviourEventKind::kFallen, BehaviourReason::kAsked);
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
-  if (!acts && character.unknown()[0] == 0) {
+  const bool restored = std::exchange(restored_, false);
+  if (!restored) last_step_.root_unknown = character.unknown()[0] != 0;
+  if (!acts && !last_step_.root_unknown) {
     measured_ = asked_ = false;
     return {};
   }
+  if (!restored) look_back(character);
   report_.time += double(h);
   see_clip(jets);
   see_ground(character);
@@ -97,10 +102,17 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   return {};
 }
 
+/// At what its character's last step has done.
+template <class T>
+void Behaviour<T>::look_back(const Character<T>& character) {
+  const CharacterReport& report = character.report();
+  last_step_ = {report.momentum, report.ground, character.unknown()[0] != 0};
+}
+
 /// What bears the body, and how much of its way the animation does not go by itself.
 template <class T>
 void Behaviour<T>::see_ground(const Character<T>& character) {
-  const BearingGround& ground = character.report().ground;
+  const BearingGround& ground = last_step_.ground;
   carried_ = {};
   if (!(ground.force > 0)) return;
   level_ = ground.place.z() - character.displacement().z;
@@ -119,10 +131,11 @@ void Behaviour<T>::ride(Character<T>& character, JointJet<T>& root, double h) {
   const Vec3<double> way = carried_.place - turn.turn() * carried_.place + h * carried_.velocity;
   (void)character.displace({way.x(), way.y(), turn.yaw, way.z()});
   const Displacement by = character.displacement();
-  const Vec3<double> is = by.turn() * root.translation.template cast<double>() + Vec3<double>(by.x, by.y, by.z);
+  const Vec3<double> is =
+      by.turn() * root.translation.template cast<double>() + Vec3<double>(by.x, by.y, by.z);
   const Vec3<double> velocity = by.turn().conjugate() * carried_.at(is);
-  const Vec3<double> spin = root.rotation.conjugate().template cast<double>() *
-                            Vec3<double>(0, 0, carried_.turn_rate);
+  const Vec3<double> spin =
+      root.rotation.conjugate().template cast<double>() * Vec3<double>(0, 0, carried_.turn_rate);
   root.velocity += velocity.template cast<T>();
   root.omega += spin.template cast<T>();
 }
@@ -225,7 +238,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   if (high < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
     return fall(character, BehaviourReason::kTilted, high);
   if (report_.state == BehaviourState::kPassive) {
-    if (character.unknown()[0] == 0) return give_up(character);
+    if (!last_step_.root_unknown) return give_up(character);
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
@@ -264,9 +277,7 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
   if (report_.capture_depth < 2 * law_.margin || speed > 2 * kStill) return;
   home_ = misplaced();
   if (home_ < 0) return may_finish(is) ? finish(character) : void();
-  only_ = {};
-  body_.add_sole(1 - home_, foot_[static_cast<std::size_t>(1 - home_)], only_);
-  only_.close();
+  find_only();
 }
 
 template <class T>
@@ -276,10 +287,26 @@ Vec2 Behaviour<T>::goal() const {
   return from_above(foot_[0].translation + foot_[1].translation) / 2 + from_above(off);
 }
 
+/// Of the feet that stand.
+template <class T>
+void Behaviour<T>::find_support() {
+  support_ = {};
+  for (int side = 0; side < 2; ++side)
+    if (side != swing_) body_.add_sole(side, foot_[static_cast<std::size_t>(side)], support_);
+  support_.close();
+}
+
+/// Of the foot that stands while the other is put back.
+template <class T>
+void Behaviour<T>::find_only() {
+  only_ = {};
+  body_.add_sole(1 - home_, foot_[static_cast<std::size_t>(1 - home_)], only_);
+  only_.close();
+}
+
 /// Where the feet are now they stand, upright, at the clip's height.
 template <class T>
 void Behaviour<T>::choose_support(const MeasuredBody& is) {
-  support_ = {};
   for (std::size_t side = 0; side < 2; ++side) {
     if (static_cast<int>(side) == swing_) continue;
     Transform<double>& foot = foot_[side];
@@ -287,9 +314,8 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
     foot.rotation =
         upright(foot.rotation * clip_ankle_[side].rotation.conjugate()) * clip_ankle_[side].rotation;
     foot.translation.z() = clip_ankle_[side].translation.z();
-    body_.add_sole(static_cast<int>(side), foot, support_);
   }
-  support_.close();
+  find_support();
 }
 
 template <class T>
@@ -647,6 +673,66 @@ void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_help(-1, -1);
   report_ = {};
   allowed_ = false;
+}
+
+template <class T>
+void Behaviour<T>::visit(StateBytes& bytes) {
+  BehaviourReport& r = report_;
+  bytes(r.state, r.steps, r.capture_depth, r.time, r.fell_beyond, r.tries);
+  bytes(plan_.place, plan_.velocity, plan_.acceleration, frequency_, foot_, swing_, home_, swing_time_,
+        lifted_, turn_, turn_rate_, turn_acceleration_, spin_, height_, root_before_, level_);
+  bytes(measured_, strength_, rest_, allowed_, knocked_, risen_, last_, asked_, fades_, fade_, fade_numbers_);
+  BearingGround& ground = last_step_.ground;
+  bytes(last_step_.momentum, last_step_.root_unknown, ground.force, ground.place, ground.velocity,
+        ground.turn_rate);
+  get_up_.visit(bytes);
+}
+
+/// Of saved bytes, and of what they were saved by.
+template <class T>
+std::uint64_t Behaviour<T>::check_of(std::span<const std::byte> bytes) const {
+  const std::array<int, 2> clips{static_cast<int>(get_up_.clips().variants().size()),
+                                 get_up_.clips().entries()};
+  return digest(bytes, digest(std::as_bytes(std::span(clips))));
+}
+
+template <class T>
+std::size_t Behaviour<T>::saved_bytes() {
+  StateBytes counts;
+  visit(counts);
+  return sizeof(std::uint64_t) + counts.size();
+}
+
+template <class T>
+std::size_t Behaviour<T>::save(const Character<T>& character, std::span<std::byte> out) {
+  const std::size_t size = saved_bytes();
+  if (out.size() < size || !character.valid()) return 0;
+  if (!restored_) look_back(character);
+  const std::span<std::byte> body = out.subspan(sizeof(std::uint64_t), size - sizeof(std::uint64_t));
+  StateBytes writes(body);
+  visit(writes);
+  const std::uint64_t check = check_of(body);
+  std::memcpy(out.data(), &check, sizeof check);
+  return size;
+}
+
+template <class T>
+Status Behaviour<T>::restore(std::span<const std::byte> saved) {
+  if (saved.size() != saved_bytes())
+    return Status::error(Code::kInvalidArgument, "not what such a behaviour saved: another size");
+  const std::span<const std::byte> body = saved.subspan(sizeof(std::uint64_t));
+  std::uint64_t check = 0;
+  std::memcpy(&check, saved.data(), sizeof check);
+  if (check != check_of(body))
+    return Status::error(Code::kBadFile,
+                         "what was saved is damaged, or a behaviour with other clips saved it");
+  StateBytes reads(body);
+  visit(reads);
+  find_support();
+  if (home_ >= 0) find_only();
+  restored_ = true;
+  events_count_ = 0;
+  return {};
 }
 
 template class Behaviour<float>;

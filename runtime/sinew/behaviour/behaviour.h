@@ -95,6 +95,13 @@ struct MeasuredBody {
   std::array<Transform<double>, 2> foot;  ///< of the foot joints: left, right
 };
 
+/// What a behaviour asks of its character after a step.
+struct LastStep {
+  Vec3<double> momentum = Vec3<double>::Zero();  ///< kg·m/s
+  BearingGround ground;
+  bool root_unknown = false;
+};
+
 /// Keeps one character on its feet: each character needs its own.
 template <class T>
 class Behaviour {
@@ -130,6 +137,17 @@ class Behaviour {
 
   /// What it does now.
   const BehaviourReport& report() const { return report_; }
+  // A behaviour is saved beside its world, between steps, and restored beside it: together they go on to the
+  // bit. What is set up (settings, clips to get up by) is not part of it.
+
+  /// Bytes that save() writes.
+  std::size_t saved_bytes();
+  /// What it remembers, and what it is going to ask of its character. Bytes written, or 0 where `out` is too
+  /// small. O(joints), no allocation.
+  std::size_t save(const Character<T>& character, std::span<std::byte> out);
+  /// Refuses what save() of such a behaviour did not write, with nothing changed.
+  Status restore(std::span<const std::byte> saved);
+
   /// Of the last update.
   std::span<const BehaviourEvent> events() const { return {events_.data(), events_count_}; }
   /// By which it gets up.
@@ -142,7 +160,12 @@ class Behaviour {
   MeasuredBody measure(const Character<T>& character);
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(std::span<const JointJet<T>> jets);
+  void look_back(const Character<T>& character);
   void see_ground(const Character<T>& character);
+  void visit(StateBytes& bytes);
+  std::uint64_t check_of(std::span<const std::byte> bytes) const;
+  void find_support();
+  void find_only();
   void act(Character<T>& character, std::span<JointJet<T>> jets, T h);
   void ride(Character<T>& character, JointJet<T>& root, double h);
   bool is_pushed(const MeasuredBody& is, double h) const;
@@ -186,8 +209,10 @@ class Behaviour {
   Vec2 from_clip_ = Vec2::Zero();          ///< the clip's centre of mass from the middle of its feet
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
-  double ground_ = 0;  ///< m, height of what the clip's feet stand on
-  double level_ = 0;   ///< m, that of what the body stands or lies on
+  LastStep last_step_;
+  bool restored_ = false;                           ///< that is the restored world\'s
+  double ground_ = 0;                               ///< m, height of what the clip's feet stand on
+  double level_ = 0;                                ///< m, that of what the body stands or lies on
   Vec3<double> clip_slide_ = Vec3<double>::Zero();  ///< m/s, of the clip's lower foot
   CarriedFrame carried_;                            ///< by ground that moves
   std::array<Transform<double>, 2> clip_ankle_;

@@ -46,6 +46,7 @@ class GetUpClips {
   /// In the order of the clips, each followed by its mirror image.
   std::span<const GetUpVariant> variants() const { return variants_; }
   /// As choose() names it; must exist.
+  int entries() const { return static_cast<int>(entries_.size()); }
   const GetUpEntry& entry(int index) const { return entries_[static_cast<std::size_t>(index)]; }
   /// By which poses are compared.
   const PosePoints<T>& points() const { return points_; }

@@ -187,3 +187,21 @@ sinew_status sinew_character_get_behaviour_events(sinew_character character, sin
     return sinew_status(SINEW_OK);
   });
 }
+
+sinew_status sinew_character_save_behaviour(sinew_character character, void* out, size_t capacity,
+                                            size_t* size) {
+  return with_behaviour(character, [&](Behaviour<float>& behaviour, const Character<float>& c) {
+    if (!size || (!out && capacity != 0)) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    *size = behaviour.saved_bytes();
+    if (behaviour.save(c, {static_cast<std::byte*>(out), capacity}) == 0)
+      return fail(SINEW_TOO_SMALL, "room for fewer bytes than the behaviour remembers");
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_character_restore_behaviour(sinew_character character, const void* bytes, size_t size) {
+  return with_behaviour(character, [&](Behaviour<float>& behaviour, const Character<float>&) {
+    if (!bytes) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    return answer(behaviour.restore({static_cast<const std::byte*>(bytes), size}));
+  });
+}

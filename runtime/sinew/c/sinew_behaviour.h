@@ -104,7 +104,8 @@ typedef struct sinew_behaviour_event {
 
 /// The library's defaults.
 SINEW_API sinew_status sinew_behaviour_settings_init(sinew_behaviour_settings* settings);
-/// Set-up; a second one takes the place of the first. Not part of snapshots. `settings` may be null.
+/// Set-up; a second one takes the place of the first. What it remembers is no part of a world's snapshots:
+/// see sinew_character_save_behaviour. `settings` may be null.
 SINEW_API sinew_status sinew_character_add_behaviour(sinew_character character,
                                                      const sinew_behaviour_settings* settings);
 /// Set-up: the clips by which it gets up, of those of an asset with the character's skeleton the ones named
@@ -123,5 +124,12 @@ SINEW_API sinew_status sinew_character_get_behaviour(sinew_character character, 
 SINEW_API sinew_status sinew_character_get_behaviour_events(sinew_character character,
                                                             sinew_behaviour_event* out, int32_t capacity,
                                                             int32_t* count);
+/// Copies all that its behaviour remembers, to be restored when its world is to the same moment; sizes as of
+/// sinew_world_save.
+SINEW_API sinew_status sinew_character_save_behaviour(sinew_character character, void* out, size_t capacity,
+                                                      size_t* size);
+/// Refuses what sinew_character_save_behaviour of such a behaviour did not write, with nothing changed.
+SINEW_API sinew_status sinew_character_restore_behaviour(sinew_character character, const void* bytes,
+                                                         size_t size);
 
 #endif

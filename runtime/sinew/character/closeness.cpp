@@ -208,16 +208,6 @@ bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingColl
   });
 }
 
-template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit) {
-  const T margin = T(kCloseMargin) * unit + T(kSurprise) * h * h;
-  return std::any_of(colliders.begin(), colliders.end(), [&](const MovingCollider<T>& c) {
-    const SignedDistance<double> d = shape.distance(c.pose.translation.template cast<double>());
-    const T closing = std::max(-c.velocity.dot(d.normal.template cast<T>()), T(0));
-    return T(d.distance) < c.radius + margin + c.any + h * closing;
-  });
-}
-
 SINEW_CLOSENESS_INSTANCES(template, float)
 SINEW_CLOSENESS_INSTANCES(template, double)
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "sinew/character/state.h"
-#include "sinew/effects/static_shape.h"
 
 namespace sinew {
 
@@ -62,16 +61,11 @@ constexpr double kCloseMargin =
 template <class T>
 bool come_close(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h, T margin);
 
-/// Whether some come within a few centimetres (times `unit`, see Scale::length) of a shape of the host's.
-template <class T>
-bool comes_close(std::span<const MovingCollider<T>> colliders, const StaticShape& shape, T h, T unit);
-
 #define SINEW_CLOSENESS_INSTANCES(prefix, T)                                                             \
   prefix SignedDistance<T> distance_of_axis<T>(const Vec3<T>&, const Vec3<T>&, const Transform<T>&,      \
                                                const Collider&, int, T&);                                \
   prefix SignedDistance<T> distance_between<T>(const PlacedCollider<T>&, const PlacedCollider<T>&);      \
   prefix void append_moving<T>(CharacterState<T>&, T, std::vector<MovingCollider<T>>&);                  \
-  prefix bool comes_close<T>(std::span<const MovingCollider<T>>, const StaticShape&, T, T);              \
   prefix Eigen::AlignedBox<T, 3> swept_box<T>(CharacterState<T>&, T);                                    \
   prefix bool boxes_come_close<T>(const Eigen::AlignedBox<T, 3>&, const Eigen::AlignedBox<T, 3>&, T, T); \
   prefix bool come_close<T>(std::span<const MovingCollider<T>>, std::span<const MovingCollider<T>>, T, T);

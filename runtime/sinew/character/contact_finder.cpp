@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sinew/character/contacts.h"
+#include "sinew/character/near_ground.h"
 #include "sinew/optimizer/contact_rows.h"
 #include "sinew/skeleton/hooks.h"
 
@@ -589,6 +590,38 @@ double half_thickness_of(const Collider& obstacle, double floor, double unit) {
   return size.minCoeff();
 }
 
+/// Whether colliders end deeper than `depth` in a shape of the host's, or pass within reach of it faster than
+/// it is thick (`thin`, m). By their middles, ends and corners.
+template <class T>
+bool goes_into(const ColliderPaths<T>& paths, const Vec3<double>& origin, const StaticShape& shape, T depth,
+               T thin) {
+  for (std::size_t n = 0; n < paths.to.size(); ++n) {
+    const PlacedCollider<T>& to = paths.to[n];
+    const Collider& collider = *to.collider;
+    const auto distance = [&](const Vec3<T>& local) {
+      return T(shape.distance(origin + (to.pose * local).template cast<double>()).distance);
+    };
+    const T middle = distance(Vec3<T>::Zero());
+    if (middle > to.radius) {
+      const T way = (to.pose.translation - paths.from[n].pose.translation).norm();
+      if (way > thin && middle < to.radius + way) return true;
+      continue;
+    }
+    const Vec3<T> size = collider.size.template cast<T>();
+    const T radius = collider.shape == Shape::kBox ? T(0) : size.x();
+    if (middle - radius < -depth) return true;
+    if (collider.shape == Shape::kCapsule)
+      for (const T end : {-size.z(), size.z()})
+        if (distance({T(0), T(0), end}) - radius < -depth) return true;
+    if (collider.shape != Shape::kBox) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3<T> sign(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1), corner & 4 ? T(1) : T(-1));
+      if (distance(size.cwiseProduct(sign)) < -depth) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 template <class T>
@@ -597,7 +630,6 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
   const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
   const T pressed = T(kPressedByClips) * s.tree.scale.length;
-  scratch.moving.clear();
   scratch.from.clear();
   scratch.to.clear();
   const auto paths = [&] {
@@ -623,13 +655,10 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       const T thin = T(half_thickness_of(obstacle, around.floor, double(s.tree.scale.length)));
       meets = touch_on_the_way<T>(paths(), {scratch.obstacle, scratch.obstacle}, std::min(pressed, thin / 2));
     });
-  const auto movers = [&] {
-    if (scratch.moving.empty()) append_moving(s, h, scratch.moving);
-    return std::span<const MovingCollider<T>>(scratch.moving);
-  };
   return meets || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
-           return o.shape->distance(center).distance < double(reach) &&
-                  comes_close(movers(), *o.shape, h, s.tree.scale.length);
+           if (!(o.shape->distance(center).distance < double(reach))) return false;
+           const T thin = T(o.shape->half_thickness());
+           return goes_into(paths(), origin, *o.shape, std::min(pressed, thin / 2), thin);
          });
 }
 
@@ -641,10 +670,19 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{
-    make_finder<T>,      meets_obstacle<T>,        append_moving<T>,   come_close<T>,
-    swept_box<T>,        boxes_come_close<T>,      place_colliders<T>, predict_colliders<T>,
-    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
+constexpr ContactTerm<T> kContacts{make_finder<T>,
+                                   meets_obstacle<T>,
+                                   find_ground<T>,
+                                   append_moving<T>,
+                                   come_close<T>,
+                                   swept_box<T>,
+                                   boxes_come_close<T>,
+                                   place_colliders<T>,
+                                   predict_colliders<T>,
+                                   touch_on_the_way<T>,
+                                   append_contact_points<T>,
+                                   share_stiffness<T>,
+                                   measure<T>};
 
 }  // namespace
 

@@ -234,20 +234,23 @@ class ContactFinder final : public ContactSearch<T> {
 /// Room for meets_obstacle().
 template <class T>
 struct ObstacleScratch {
-  std::vector<MovingCollider<T>> moving;
   std::vector<PlacedCollider<T>> from, to, obstacle;
 
   void reserve(int colliders) {
-    moving.reserve(colliders);
     for (auto* v : {&from, &to}) v->reserve(colliders);
     obstacle.reserve(1);
   }
 };
 
-/// Whether the animation meets an obstacle on its way to the target, within h seconds; or comes within a few
-/// centimetres of a shape of the host's. O(colliders) for each obstacle that is within their reach.
+/// Whether the animation meets an obstacle or a shape of the host's on its way to the target, within h
+/// seconds, deeper than kPressedByClips. O(colliders) for each that is within their reach.
 template <class T>
 bool meets_obstacle(CharacterState<T>& state, const Surroundings& around, T h, ObstacleScratch<T>& scratch);
+
+template <class T>
+struct NearGround;
+template <class T>
+struct GroundProbe;
 
 /// What a world's step asks of contacts.
 template <class T>
@@ -255,6 +258,9 @@ struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
   bool (*meets_obstacle)(CharacterState<T>& state, const Surroundings& around, T h,
                          ObstacleScratch<T>& scratch);
+  /// See near_ground.h.
+  const GroundProbe<T>* (*find_ground)(const CharacterState<T>& state, const WorldSettings& world,
+                                       const Surroundings& around, NearGround<T>& room);
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);

@@ -30,15 +30,22 @@ void add_effect_wrenches(CharacterState<T>& s, const WorldSettings& world, const
 
 /// What bears on the ground in a check of a character.
 template <class T>
-Standing<T> standing_of(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan) {
-  return {stands(s, world, plan) ? plan.support : nullptr, s.rig->support, T(world.ground_height),
-          T(world.ground_friction), s.grounded() ? T(s.total_mass * world.gravity.norm()) : T(0)};
+Standing<T> standing_of(const CharacterState<T>& s, const CheckContext<T>& c) {
+  const WorldSettings& world = c.world;
+  return {stands(s, world, c.plan, c.ground) ? c.plan.support : nullptr,
+          s.rig->support,
+          T(world.ground_height),
+          T(world.ground_friction),
+          s.grounded() ? T(s.total_mass * world.gravity.norm()) : T(0),
+          c.ground};
 }
 
 /// What the muscles would have to give, with nothing that acts from outside left out.
 template <class T>
-void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                       CheckScratch<T> scratch) {
+void check_under_loads(CharacterState<T>& s, T h, const CheckContext<T>& c) {
+  const WorldSettings& world = c.world;
+  const StepPlan<T>& plan = c.plan;
+  CheckScratch<T> scratch = c.scratch;
   TreeProblem<T>& p = s.problem;
   const Vec3<T> origin = s.target[0].translation, gravity = world.gravity.template cast<T>();
   inertial_wrenches<T>(s.tree, s.target, gravity, origin, p.kinematics, s.motion, p.force, p.moment);
@@ -48,7 +55,7 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     add();
     add_wrenches<T>(p.kinematics, p.force, p.moment, scratch.body);
   };
-  const Standing<T> standing = standing_of(s, world, plan);
+  const Standing<T> standing = standing_of(s, c);
   scratch.body = s.motion.body;  // to the bit what check_motion makes
   scratch.rotation = p.kinematics.rotation;
   scratch.origin = p.kinematics.origin;
@@ -65,16 +72,22 @@ void check_under_loads(CharacterState<T>& s, const WorldSettings& world, const S
     for (int a = 0; a < row.count; ++a) p.gradient[row.dof + a] += row.slope(row.value) * row.gradient[a];
 }
 
-/// The same; whether it is more by `most` than the animation asks muscles with a tone for by itself.
+/// The same of the animation by itself.
 template <class T>
-bool asks_for_more(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                   const CheckScratch<T>& scratch, T most) {
+void check_animation(CharacterState<T>& s, const CheckContext<T>& c) {
+  check_motion<T>(s.tree, s.target, c.world.gravity.template cast<T>(), standing_of(s, c), c.scratch,
+                  s.problem.gradient);
+}
+
+/// What it asks for under loads; whether it is more by `most` than the animation asks muscles with a tone for
+/// by itself.
+template <class T>
+bool asks_for_more(CharacterState<T>& s, T h, const CheckContext<T>& context, T most) {
   if (s.problem.law.present.tone) {
-    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
-                    s.problem.gradient);
+    check_animation(s, context);
     keep_feed_forward(s);
   }
-  check_under_loads(s, world, plan, h, scratch);
+  check_under_loads(s, h, context);
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
 }
 
@@ -106,38 +119,35 @@ bool has_plain_check(const CharacterState<T>& s) {
 }
 
 template <class T>
-bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan) {
-  return plan.support && world.ground && world.ground_support && s.settings.ground_contact;
+bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan,
+            const GroundProbe<T>* ground) {
+  return plan.support && (world.ground || ground) && world.ground_support && s.settings.ground_contact;
 }
 
 template <class T>
-bool play(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-          const CheckScratch<T>& scratch) {
-  if (s.is_struck(T(world.accuracy.return_time))) return false;
+bool play(CharacterState<T>& s, T h, const CheckContext<T>& context) {
+  if (s.is_struck(T(context.world.accuracy.return_time))) return false;
   if (has_plain_check(s))
-    check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
-                    s.problem.gradient);
-  else if (asks_for_more(s, world, plan, h, scratch, T(1)))
+    check_animation(s, context);
+  else if (asks_for_more(s, h, context, T(1)))
     return false;
-  return play_checked(s, world, h);
+  return play_checked(s, context.world, h);
 }
 
 template <class T>
-void begin_tone(CharacterState<T>& s, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                const CheckScratch<T>& scratch) {
+void begin_tone(CharacterState<T>& s, T h, const CheckContext<T>& context) {
   if (!s.problem.law.present.tone || s.passive()) return;
   constexpr T kLittle = T(0.5);  // of what makes a muscle give way
   s.grounding.returns = false;
   s.acted_on = !has_plain_check(s);
   if (s.acted_on) {
-    s.acted_on = asks_for_more(s, world, plan, h, scratch, kLittle);
+    s.acted_on = asks_for_more(s, h, context, kLittle);
     for (int i = 0; i < s.tree.bodies; ++i)
       if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
     s.clear_deviations();
     return;
   }
-  check_motion<T>(s.tree, s.target, world.gravity.template cast<T>(), standing_of(s, world, plan), scratch,
-                  s.problem.gradient);
+  check_animation(s, context);
   keep_feed_forward(s);
 }
 

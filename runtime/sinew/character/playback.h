@@ -11,16 +11,25 @@ namespace sinew {
 template <class T>
 bool has_plain_check(const CharacterState<T>& state);
 
-/// Whether the floor bears what a driven root would.
+/// What a check is made with.
 template <class T>
-bool stands(const CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan);
+struct CheckContext {
+  const WorldSettings& world;
+  const StepPlan<T>& plan;
+  const GroundProbe<T>* ground = nullptr;  ///< null: nothing but the floor is near (near_ground.h)
+  CheckScratch<T> scratch;
+};
+
+/// Whether the ground bears what a driven root would: the floor, or what else there is.
+template <class T>
+bool stands(const CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan,
+            const GroundProbe<T>* ground);
 
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
 /// they can't. Leaves the history behind, and the totals to whoever asks for them. `room` must be one of the
 /// rig's size.
 template <class T>
-bool play(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
-          const CheckScratch<T>& scratch);
+bool play(CharacterState<T>& state, T h, const CheckContext<T>& context);
 
 /// The same where `state.problem.gradient` holds what the muscles would have to give.
 template <class T>
@@ -29,8 +38,7 @@ bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 /// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
 /// with the ground's share; and which are to give way to pushes and effects. Ends a return. O(bodies).
 template <class T>
-void begin_tone(CharacterState<T>& state, const WorldSettings& world, const StepPlan<T>& plan, T h,
-                const CheckScratch<T>& scratch);
+void begin_tone(CharacterState<T>& state, T h, const CheckContext<T>& context);
 
 /// What held a grounded root besides the ground, into the report.
 template <class T>
@@ -45,16 +53,15 @@ void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 template <class T>
 void synchronise(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
 
-#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                  \
-  prefix bool has_plain_check<T>(const CharacterState<T>&);                                  \
-  prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&); \
-  prefix bool play<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T,       \
-                      const CheckScratch<T>&);                                               \
-  prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                  \
-  prefix void begin_tone<T>(CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, T, \
-                            const CheckScratch<T>&);                                         \
-  prefix void report_help<T>(CharacterState<T>&);                                            \
-  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                        \
+#define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                 \
+  prefix bool has_plain_check<T>(const CharacterState<T>&);                                 \
+  prefix bool stands<T>(const CharacterState<T>&, const WorldSettings&, const StepPlan<T>&, \
+                        const GroundProbe<T>*);                                             \
+  prefix bool play<T>(CharacterState<T>&, T, const CheckContext<T>&);                       \
+  prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                 \
+  prefix void begin_tone<T>(CharacterState<T>&, T, const CheckContext<T>&);                 \
+  prefix void report_help<T>(CharacterState<T>&);                                           \
+  prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                       \
   prefix void synchronise<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)

@@ -242,8 +242,12 @@ void visit_tone(CharacterState<T>& s, ByteStream& stream) {
 
 template <class T>
 void visit_state(CharacterState<T>& s, ByteStream& stream) {
-  std::uint8_t root = static_cast<std::uint8_t>(s.settings.root);
+  constexpr std::uint8_t kDisplaced = 0x80;
+  std::uint8_t root =
+      static_cast<std::uint8_t>(s.settings.root) | (s.grounding.by.any() ? kDisplaced : std::uint8_t{0});
   stream.value("root drive", root);
+  const bool displaced = (root & kDisplaced) != 0;
+  root &= static_cast<std::uint8_t>(~kDisplaced);
   std::uint8_t parked = s.parked ? 1 : 0;
   stream.value("out of the world", parked);
   if (stream.reading()) s.parked = parked != 0;
@@ -252,7 +256,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("strength", s.settings.strength);
   if (stream.reading()) s.grounding = {};
   visit_tone(s, stream);
-  if (s.grounded() || s.problem.law.present.tone || stream.bounding()) {
+  if (s.grounded() || displaced || s.problem.law.present.tone || stream.bounding()) {
     stream.value("displaced along x", s.grounding.by.x);
     stream.value("displaced along y", s.grounding.by.y);
     stream.value("displaced about z", s.grounding.by.yaw);

@@ -117,6 +117,7 @@ void World<T>::Impl::reserve() {
     const SolveCapacity& capacity = n == 0 ? most : small_capacity;
     workers[n]->stepper.reserve(capacity, static_cast<int>(obstacles.size()));
     workers[n]->obstacle_scratch.reserve(rooms.largest.colliders);
+    workers[n]->near_ground.obstacles.reserve(obstacles.size());
     workers[n]->sets.reserve(capacity);
     workers[n]->members.reserve(capacity.trees);
     workers[n]->ties.reserve(couplings.all().size());

@@ -9,6 +9,8 @@
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
+#include "sinew/character/near_ground.h"
+#include "sinew/character/playback.h"
 #include "sinew/character/snapshot.h"
 #include "sinew/character/touching_sets.h"
 #include "sinew/effects/check_batch.h"
@@ -64,6 +66,7 @@ struct World<T>::Impl {
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
     ObstacleScratch<T> obstacle_scratch;
+    NearGround<T> near_ground;
     TouchingSets<T> sets;
     std::size_t number = 0;
     ContactLog<T>* log = nullptr;  ///< of the island that it steps; null where nobody listens
@@ -146,8 +149,9 @@ struct World<T>::Impl {
   bool play_alone(CharacterState<T>& state, Worker& worker);
   bool may_play(CharacterState<T>& state, Worker& worker) const;
   bool checks(const CharacterState<T>& state) const;
-  CheckScratch<T> scratch_of_check(const CharacterState<T>& state, Worker& worker) const;
-  bool checks_in_batches(const CharacterState<T>& state, const Worker& worker) const;
+  const GroundProbe<T>* ground_near(const CharacterState<T>& state, Worker& worker) const;
+  CheckContext<T> context_of_check(const CharacterState<T>& state, Worker& worker) const;
+  bool checks_in_batches(const CharacterState<T>& state, Worker& worker) const;
   void check_later(int island, Worker& worker, double spent);
   void check_alike(Worker& worker, const Unchecked& one);
   void solve_alone(int island, Worker& worker, double spent);

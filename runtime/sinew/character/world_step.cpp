@@ -49,8 +49,8 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
   const auto may_be_solved = [](const CharacterState<T>* s) { return s->levels.allowed >= Level::kPartial; };
   if (std::any_of(members.begin(), members.end(), may_be_solved)) return false;
   for (CharacterState<T>* s : members) {
-    const bool checked = s->levels.allowed == Level::kChecked && s->undisturbed() &&
-                         play(*s, settings, plan, h, scratch_of_check(*s, worker));
+    const bool checked =
+        s->levels.allowed == Level::kChecked && s->undisturbed() && play(*s, h, context_of_check(*s, worker));
     if (!checked) follow(*s, settings, h);
     s->levels.did = checked ? Level::kChecked : Level::kPlayback;
   }
@@ -71,17 +71,25 @@ bool World<T>::Impl::checks(const CharacterState<T>& s) const {
   return s.levels.steps % every == 0 || s.pushed() || s.levels.level > Level::kChecked;
 }
 
+/// What it may stand on besides the floor; null: nothing.
 template <class T>
-CheckScratch<T> World<T>::Impl::scratch_of_check(const CharacterState<T>& s, Worker& worker) const {
-  return {worker.check_scratch.data(), s.tree.bodies, s.tree.bodies,
-          static_cast<int>(s.rig->support.points.size())};
+const GroundProbe<T>* World<T>::Impl::ground_near(const CharacterState<T>& s, Worker& worker) const {
+  if (!plan.contacts || !plan.support) return nullptr;
+  return plan.contacts->find_ground(s, settings, surroundings(), worker.near_ground);
+}
+
+template <class T>
+CheckContext<T> World<T>::Impl::context_of_check(const CharacterState<T>& s, Worker& worker) const {
+  return {settings, plan, ground_near(s, worker),
+          CheckScratch<T>{worker.check_scratch.data(), s.tree.bodies, s.tree.bodies,
+                          static_cast<int>(s.rig->support.points.size())}};
 }
 
 /// Plays who may play. False, with nothing moved, where its muscles can't.
 template <class T>
 bool World<T>::Impl::play_alone(CharacterState<T>& s, Worker& worker) {
   const bool checked = checks(s);
-  if (checked && !play(s, settings, plan, h, scratch_of_check(s, worker))) return false;
+  if (checked && !play(s, h, context_of_check(s, worker))) return false;
   if (!checked) follow(s, settings, h);
   s.levels.did = checked ? Level::kChecked : Level::kPlayback;
   return true;
@@ -96,9 +104,10 @@ bool World<T>::Impl::play_set(std::span<CharacterState<T>* const> members, Worke
 
 /// Whether the check of who may play can be made in a batch.
 template <class T>
-bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, const Worker& worker) const {
+bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
-    return settings.batches && worker.checks && has_plain_check(s) && !s.grounded() && checks(s);
+    return settings.batches && worker.checks && has_plain_check(s) && !s.grounded() && checks(s) &&
+           !ground_near(s, worker);
   return false;
 }
 
@@ -106,7 +115,7 @@ bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, const Worker&
 template <class T>
 void World<T>::Impl::check_later(int island, Worker& worker, double spent) {
   CharacterState<T>* state = worker.members[0];
-  const Unchecked last{island, state, stands(*state, settings, plan), spent};
+  const Unchecked last{island, state, stands<T>(*state, settings, plan, nullptr), spent};
   if (const Unchecked* full = add_waiting(worker.unchecked, last, worker.checks->lanes(), kMostWaiting))
     check_alike(worker, *full);
 }
@@ -138,8 +147,8 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
     const double again = now(settings.detail.budget);
     const Unchecked& u = batch[n];
     CharacterState<T>* state = u.state;
-    const bool played = checked ? play_checked(*state, settings, h)
-                                : play(*state, settings, plan, h, scratch_of_check(*state, worker));
+    const bool played =
+        checked ? play_checked(*state, settings, h) : play(*state, h, context_of_check(*state, worker));
     const double spent = u.spent + share + now(settings.detail.budget) - again;
     worker.members.assign(1, state);
     worker.ties.clear();
@@ -158,7 +167,7 @@ void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   synchronise(s, worker.jets);
-  begin_tone(s, settings, plan, h, scratch_of_check(s, worker));
+  begin_tone(s, h, context_of_check(s, worker));
   log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
@@ -176,7 +185,7 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
   if (play_set(members, worker)) return 0;
   for (CharacterState<T>* s : members) {
     synchronise(*s, worker.jets);
-    begin_tone(*s, settings, plan, h, scratch_of_check(*s, worker));
+    begin_tone(*s, h, context_of_check(*s, worker));
   }
   const int count =
       worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);

@@ -19,11 +19,13 @@ struct CheckScratch {
   std::span<Vec3<T>> origin;             ///< [joint] from the root's, world axes
   std::span<StandingPoint<T>> standing;  ///< [point]
   std::span<BearingPoint<T>> bearing;    ///< [point]
+  std::span<GroundUnder<T>> under;       ///< [point]
 
   static constexpr std::size_t bytes(int bodies, int joints, int points) {
     return std::size_t(bodies) * (sizeof(BodyMotion<T>) + sizeof(Mat3<T>) + 2 * sizeof(Vec3<T>)) +
            std::size_t(joints) * sizeof(Vec3<T>) +
-           std::size_t(points) * (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>));
+           std::size_t(points) *
+               (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>) + sizeof(GroundUnder<T>));
   }
   /// In `memory` of that many bytes, aligned as T is.
   CheckScratch(void* memory, int bodies, int joints, int points) {
@@ -38,6 +40,7 @@ struct CheckScratch {
     take(origin, joints);
     take(standing, points);
     take(bearing, points);
+    take(under, points);
   }
 };
 
@@ -64,14 +67,14 @@ template <class T>
 }
 
 /// And back to the axes of those that may stand.
-template <class T>
-[[gnu::always_inline]] inline void wrenches_to_bodies(const SupportPoints<Number<T>>& points, const T& ground,
-                                                      const CheckScratch<T>& r) {
+template <class T, class Ground>
+[[gnu::always_inline]] inline void wrenches_to_bodies(const SupportPoints<Number<T>>& points,
+                                                      const Ground& ground, const CheckScratch<T>& r) {
   for (std::size_t i = 0; i < r.body.size(); ++i) {
     const Number<T> reach = Number<T>(SupportSettings{}.reach);
-    if (!may_stand<T>(points, int(i), r.origin[i], ground, reach)) continue;
+    if (!ground.may_stand(points, int(i), r.origin[i], reach)) continue;
     // To the world and back rounds: who has no point within reach keeps what it had.
-    const auto near = r.origin[i].z() - ground < T(points.bound[i] + reach);
+    const auto near = ground.near(points, int(i), r.origin[i], reach);
     const Vec3<T> force = r.rotation[i].transpose() * r.force[i],
                   moment = r.rotation[i].transpose() * (r.moment[i] - r.origin[i].cross(r.force[i]));
     r.body[i].force = select(near, force, r.body[i].force);
@@ -79,10 +82,9 @@ template <class T>
   }
 }
 
-/// The ground's share goes from the wrenches of the bodies that may stand on it. `ground`: its height from
-/// the root's origin, m.
-template <class T>
-void stand(const SupportPoints<Number<T>>& points, const T& ground, const CheckScratch<T>& r) {
+/// The ground's share goes from the wrenches of the bodies that may stand on it.
+template <class T, class Ground>
+void stand(const SupportPoints<Number<T>>& points, const Ground& ground, const CheckScratch<T>& r) {
   wrenches_in_world(r);
   share_support<T>(points, r.rotation, r.origin.first(r.body.size()), ground, {}, r.standing, r.force,
                    r.moment);
@@ -108,11 +110,14 @@ struct Standing {
   T ground = T(0);    ///< m, its height
   T friction = T(1);  ///< the floor's
   T weight = T(0);    ///< N, of a character that has nothing but the ground; 0: its root bears the rest
+  const GroundProbe<T>* probe = nullptr;  ///< instead, where there is more than a floor
 
   /// Takes off what the ground bears; `height`: of the root above it, m.
   void bear(T height, const CheckScratch<T>& scratch) const {
     if (!support) return;
-    if (weight > T(0))
+    if (probe)
+      support->on_surroundings(points, *probe, weight, scratch);
+    else if (weight > T(0))
       support->balance(points, -height, friction, weight, scratch);
     else
       support->stand(points, -height, scratch);

@@ -1,6 +1,7 @@
 #include "sinew/effects/support.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sinew/effects/check_pass.h"
 
@@ -40,8 +41,14 @@ SupportPoints<T> points_of(const Tree<T>& tree, std::span<const ContactPoint<T>>
 constexpr double kBearsNothing = 1e-4;  ///< of a point's full share: left out
 
 template <class T>
-void balance(const SupportPoints<T>& points, const T& ground, T friction, T weight,
-             const CheckScratch<T>& r) {
+void stand_on_floor(const SupportPoints<T>& points, const T& ground, const CheckScratch<T>& r) {
+  stand<T>(points, LevelGround<T>{ground}, r);
+}
+
+/// bearing_of(point): normal of the ground under it, and its friction.
+template <class T, class Ground, class BearingOf>
+void balance(const SupportPoints<T>& points, const Ground& ground, T weight, const CheckScratch<T>& r,
+             BearingOf bearing_of) {
   wrenches_in_world(r);
   Vec3<T> force = Vec3<T>::Zero(), moment = Vec3<T>::Zero();
   for (std::size_t i = 0; i < r.body.size(); ++i) {
@@ -52,8 +59,9 @@ void balance(const SupportPoints<T>& points, const T& ground, T friction, T weig
   share_support_to<T>(points, r.rotation, r.origin.first(r.body.size()), ground, {}, r.standing, r.force,
                       r.moment, [&](int body, const StandingPoint<T>& s, const Vec3<T>& push) {
                         if (!(s.share > T(kBearsNothing))) return;
-                        const T grip = friction * points.points[&s - r.standing.data()].friction;
-                        r.bearing[count++] = {s.place, Vec3<T>::UnitZ(), s.share, grip, body, push};
+                        const auto point = &s - r.standing.data();
+                        const auto [normal, friction] = bearing_of(point);
+                        r.bearing[count++] = {s.place, normal, s.share, friction, body, push};
                       });
   const std::span<BearingPoint<T>> bearing = r.bearing.first(count);
   balance_ground<T>(bearing, force, moment, weight, points.unit);
@@ -65,7 +73,36 @@ void balance(const SupportPoints<T>& points, const T& ground, T friction, T weig
 }
 
 template <class T>
-constexpr SupportTerm<T> kSupport{points_of<T>, stand<T>, balance<T>};
+void balance_on_floor(const SupportPoints<T>& points, const T& ground, T friction, T weight,
+                      const CheckScratch<T>& r) {
+  balance(points, LevelGround<T>{ground}, weight, r, [&](std::ptrdiff_t point) {
+    return std::pair{Vec3<T>(Vec3<T>::UnitZ()), friction * points.points[point].friction};
+  });
+}
+
+template <class T>
+void stand_on_surroundings(const SupportPoints<T>& points, const GroundProbe<T>& probe, T weight,
+                           const CheckScratch<T>& r) {
+  const T reach = T(SupportSettings{}.reach) * points.unit;
+  for (std::size_t i = 0; i < r.body.size(); ++i) {
+    const bool near = points.first[i] < points.first[i + 1] &&
+                      probe.near(probe.surroundings, r.origin[i], points.bound[i] + reach);
+    for (int k = points.first[i]; k < points.first[i + 1]; ++k) {
+      const auto& point = points.points[k];
+      r.under[k] = near ? probe.under(probe.surroundings, r.origin[i] + r.rotation[i] * point.local, point)
+                        : GroundUnder<T>{};
+    }
+  }
+  const ProbedGround<T> ground{r.under};
+  if (!(weight > T(0))) return stand<T>(points, ground, r);
+  balance(points, ground, weight, r, [&](std::ptrdiff_t point) {
+    return std::pair{r.under[point].normal, r.under[point].friction};
+  });
+}
+
+template <class T>
+constexpr SupportTerm<T> kSupport{points_of<T>, stand_on_floor<T>, balance_on_floor<T>,
+                                  stand_on_surroundings<T>};
 
 }  // namespace
 

@@ -52,22 +52,78 @@ struct StandingPoint {
   T share;        ///< of what it may bear: 1 on the floor, smoothly 0 at the reach
 };
 
-/// Whether any lane's body may have a point within the reach of the ground.
+/// A level floor, for share_support_to().
 template <class T>
-[[gnu::always_inline]] inline bool may_stand(const SupportPoints<Number<T>>& points, int body,
-                                             const Vec3<T>& origin, const T& ground, Number<T> reach) {
-  return points.first[body] < points.first[body + 1] &&
-         any(origin.z() - ground < T(points.bound[body] + reach));
-}
+struct LevelGround {
+  T height;  ///< m, from the common origin
+
+  /// Which lanes' bodies may have a point within the reach.
+  [[gnu::always_inline]] auto near(const SupportPoints<Number<T>>& points, int body, const Vec3<T>& origin,
+                                   Number<T> reach) const {
+    return origin.z() - height < T(points.bound[body] + reach);
+  }
+  /// Whether any lane's has.
+  [[gnu::always_inline]] bool may_stand(const SupportPoints<Number<T>>& points, int body,
+                                        const Vec3<T>& origin, Number<T> reach) const {
+    return points.first[body] < points.first[body + 1] && any(near(points, body, origin, reach));
+  }
+  /// Where a point with its centre `at` would touch, m.
+  [[gnu::always_inline]] Vec3<T> lowest(int, Vec3<T> at, Number<T> radius) const {
+    at.z() -= T(radius);
+    return at;
+  }
+  /// m, of a place that would touch.
+  [[gnu::always_inline]] T gap(int, const Vec3<T>& at) const { return at.z() - height; }
+  [[gnu::always_inline]] const T& height_at(int, const Vec3<T>&) const {
+    return height;
+  }  ///< m, of the ground
+};
+
+/// What is under a point that may stand where the ground is no level floor.
+template <class T>
+struct GroundUnder {
+  T gap = T(1e9);                     ///< m, negative inside
+  Vec3<T> normal = Vec3<T>::UnitZ();  ///< outwards, unit
+  T friction = T(1);                  ///< μ of the two
+};
+
+/// Answers what static surroundings are under points, m from the common origin, in a check.
+template <class T>
+struct GroundProbe {
+  const void* surroundings = nullptr;
+  /// Whether something may be within `reach` of a point.
+  bool (*near)(const void* surroundings, const Vec3<T>& point, T reach) = nullptr;
+  /// Of all that can be stood on, what is nearest to a point of a body.
+  GroundUnder<T> (*under)(const void* surroundings, const Vec3<T>& center,
+                          const typename SupportPoints<T>::Point& point) = nullptr;
+};
+
+/// The same for share_support_to(), when it has been asked.
+template <class T>
+struct ProbedGround {
+  std::span<const GroundUnder<T>> under;  ///< [point]
+
+  bool near(const SupportPoints<T>& points, int body, const Vec3<T>&, T reach) const {
+    for (int k = points.first[body]; k < points.first[body + 1]; ++k)
+      if (under[k].gap < reach) return true;
+    return false;
+  }
+  bool may_stand(const SupportPoints<T>& points, int body, const Vec3<T>& origin, T reach) const {
+    return near(points, body, origin, reach);
+  }
+  Vec3<T> lowest(int k, const Vec3<T>& at, T radius) const { return at - radius * under[k].normal; }
+  T gap(int k, const Vec3<T>&) const { return under[k].gap; }
+  T height_at(int k, const Vec3<T>& at) const { return at.z() - under[k].gap; }
+};
 
 /// Shares the support out: put(body, point in `room`, force) for every point that may stand. `rotation`,
 /// `origin` [body]: see Kinematics. `force` and `moment` [body] hold the wrenches that the motion asks for,
-/// about the common origin; `ground` is the floor's height from it. Nothing in flight. `room` [point]. T may
-/// be a pack of characters (pack.h). O(points).
-template <class T, class Put>
+/// about the common origin; `ground`: a LevelGround or a ProbedGround. Nothing in flight. `room` [point]. T
+/// may be a pack of characters (pack.h). O(points).
+template <class T, class Ground, class Put>
 [[gnu::always_inline]] inline void share_support_to(const SupportPoints<Number<T>>& points,
                                                     std::span<const Mat3<T>> rotation,
-                                                    std::span<const Vec3<T>> origin, const T& ground,
+                                                    std::span<const Vec3<T>> origin, const Ground& ground,
                                                     const SupportSettings& settings,
                                                     std::span<StandingPoint<T>> room,
                                                     std::span<const Vec3<T>> force,
@@ -85,12 +141,12 @@ template <class T, class Put>
   // multipliers.
   T sum = zero, y_sum = zero, x_sum = zero, yy = zero, xy = zero, xx = zero;
   for (int i = 0; i < bodies; ++i) {
-    if (!may_stand<T>(points, i, origin[i], ground, reach)) continue;
+    if (!ground.may_stand(points, i, origin[i], reach)) continue;
     for (int k = points.first[i]; k < points.first[i + 1]; ++k) {
       const auto& point = points.points[k];
-      Vec3<T> at = origin[i] + rotation[i] * point.local.template cast<T>();
-      at.z() -= T(point.radius);
-      const T down = one - largest<T>(zero, smallest<T>(one, (at.z() - ground) * T(1 / reach)));
+      const Vec3<T> at =
+          ground.lowest(k, origin[i] + rotation[i] * point.local.template cast<T>(), point.radius);
+      const T down = one - largest<T>(zero, smallest<T>(one, ground.gap(k, at) * T(1 / reach)));
       const T w = down * down;
       room[k] = {at, w};
       sum += w;
@@ -121,21 +177,21 @@ template <class T, class Put>
   struct Lean {
     T x, y;
   };
-  const auto lean = [&](int body, const Vec3<T>& at) {
-    const Vec3<T>& hip = origin[points.limb[body]];
-    const T height = hip.z() - ground;
+  const auto lean = [&](int body, const StandingPoint<T>& s) {
+    const Vec3<T>&hip = origin[points.limb[body]], &at = s.place;
+    const T height = hip.z() - ground.height_at(int(&s - room.data()), at);
     const T slope = select(height > T(reach), T(one / height), zero);
     return Lean{slope * (hip.x() - at.x()), slope * (hip.y() - at.y())};
   };
   const auto for_each_standing = [&](auto visit) {
     for (int i = 0; i < bodies; ++i)
-      if (may_stand<T>(points, i, origin[i], ground, reach))
+      if (ground.may_stand(points, i, origin[i], reach))
         for (int k = points.first[i]; k < points.first[i + 1]; ++k) visit(i, room[k]);
   };
   T carried = zero, x_mean = zero, y_mean = zero, steepest = zero;
   for_each_standing([&](int body, const StandingPoint<T>& s) {
     const T up = lift(s);
-    const Lean away = lean(body, s.place);
+    const Lean away = lean(body, s);
     carried += up;
     x_mean += up * away.x;
     y_mean += up * away.y;
@@ -155,7 +211,7 @@ template <class T, class Put>
     const T raw = lift(s);
     const auto bears = both(standing, raw > zero);
     const T up = scale * raw;
-    const Lean away = lean(body, s.place);
+    const Lean away = lean(body, s);
     const Vec3<T> push(select(bears, T(up * (x_push + follow * away.x)), zero),
                        select(bears, T(up * (y_push + follow * away.y)), zero), select(bears, up, zero));
     put(body, s, push);
@@ -163,9 +219,9 @@ template <class T, class Put>
 }
 
 /// Subtracts the support forces from the body wrenches (before project_wrenches), see share_support_to.
-template <class T>
+template <class T, class Ground>
 void share_support(const SupportPoints<Number<T>>& points, std::span<const Mat3<T>> rotation,
-                   std::span<const Vec3<T>> origin, const T& ground, const SupportSettings& settings,
+                   std::span<const Vec3<T>> origin, const Ground& ground, const SupportSettings& settings,
                    std::span<StandingPoint<T>> room, std::span<Vec3<T>> force, std::span<Vec3<T>> moment) {
   share_support_to<T>(points, rotation, origin, ground, settings, room, force, moment,
                       [&](int body, const StandingPoint<T>& s, const Vec3<T>& push) {
@@ -191,6 +247,9 @@ struct SupportTerm {
   /// `weight`, N.
   void (*balance)(const SupportPoints<T>& points, const T& ground, T friction, T weight,
                   const CheckScratch<T>& scratch);
+  /// Either (`weight` 0: a driven root) on what is around.
+  void (*on_surroundings)(const SupportPoints<T>& points, const GroundProbe<T>& ground, T weight,
+                          const CheckScratch<T>& scratch);
 };
 
 /// What World::declare takes. Without, what a driven root bears is not asked of the floor: legs hang.

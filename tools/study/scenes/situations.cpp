@@ -510,6 +510,35 @@ void run_on_a_platform(const Scene& scene, bool, Findings& found) {
   }
 }
 
+/// Members by turns: what is ridden, and who rides it.
+void moving_ground(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, {30.0, 60.0, 120.0}, 1, 0.03, found, [&](const Played& played, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    const auto from_ground = [&](int frame, int m) {
+      const auto& model = played.recording.frames[static_cast<std::size_t>(frame)].characters;
+      const auto ground = static_cast<std::size_t>(m - 1);
+      return Eigen::Vector3d(model[ground].model[0].rotation.conjugate().template cast<double>() *
+                             (judge.center_of_mass(frame, m) - judge.center_of_mass(frame, m - 1)));
+    };
+    for (int m = 1; m < judge.members(); m += 2) {
+      const Eigen::Vector3d first = from_ground(0, m), last = from_ground(end, m);
+      double lowest = first.z();
+      for (int f = 0; f <= end; ++f) lowest = std::min(lowest, from_ground(f, m).z());
+      found.at_least("lowest centre of mass over its ground (m)", lowest, 0.8);
+      found.at_most("from where it stood on its ground at the end (m)", (last - first).norm(), 0.6);
+    }
+  });
+}
+
+void level_below(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, {30.0, 60.0, 120.0}, 1, 0.03, found, [&](const Played&, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    const double height = judge.center_of_mass(0, 0).z() - 1, now = judge.center_of_mass(end, 0).z();
+    found.at_most("higher or lower at the end than it stands on the floor (m)", std::abs(now - height), 0.02);
+    found.at_most("fastest body at the end (m/s)", judge.fastest(end, 0), 0.3);
+  });
+}
+
 /// m, that whoever was pushed is off where it would be otherwise, `later` (s) than the push or after it.
 double off_its_clip(const Scene& scene, double hz, double later, Findings& found) {
   Scene at = scene;
@@ -701,6 +730,10 @@ std::vector<Situation> situations() {
       {"getting_up", "who gets up does so on the floor, not through it", getting_up},
       {"columns", "two columns walk into each other and on", columns},
       {"hanging_bridge", "who falls on a hanging bridge comes to rest there", hanging_bridge},
+      {"moving_ground", "pushed on a walkway, a lift and a turntable they keep standing there",
+       moving_ground},
+      {"level_below", "who is knocked off a table stands up on the floor", level_below},
+      {"walk_on_boxes", "what holds it is the ground alone, which may be boxes", run_on_a_platform},
       {"leash_too_short", "a loop yields to a driven root", leash_too_short},
       {"led_through_each_other", "who is driven into something is driven on", moves_at_walking_pace},
   };

@@ -150,7 +150,7 @@ void check(const Rig& rig, const Batch& batch, const Lanes& lanes) {
     if (posed && p >= 0) orientation[i] = orientation[p] * orientation[i];
   }
   const Vec3<P> root = scratch.body[0].arm;
-  if (rig.support) stand<P>(*rig.support, P(rig.ground_height) - root.z(), scratch);
+  if (rig.support) stand<P>(*rig.support, LevelGround<P>{P(rig.ground_height) - root.z()}, scratch);
   project_bodies<P>(tree, scratch.body, [&](int dof, const P& torque) {
     store<0, P::kLanes>(torque, batch.torque + dof * lanes.stride + lanes.first);
   });

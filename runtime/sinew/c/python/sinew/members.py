@@ -241,6 +241,12 @@ class Character(_Affected):
         self._call(lib.sinew_character_get_graph_curves, byref(out), most, byref(count))
         return out[:count.value]
 
+    def save_behaviour(self):
+        return saved(lib.sinew_character_save_behaviour, self.handle)
+
+    def restore_behaviour(self, saved):
+        self._call(lib.sinew_character_restore_behaviour, bytes(saved), len(saved))
+
     def save_graph(self):
         return saved(lib.sinew_character_save_graph, self.handle)
 

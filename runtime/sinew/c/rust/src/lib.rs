@@ -133,6 +133,11 @@ impl Character {
         self.view(ViewKind::LOAD).map(|view| unsafe { copied(&view) })
     }
 
+    /// Copies all that its behaviour remembers, for `restore_behaviour`.
+    pub fn behaviour_snapshot(&self) -> Result<Vec<u8>> {
+        with_room(|bytes| self.save_behaviour(bytes))
+    }
+
     /// Copies all that its graph remembers, for `restore_graph`.
     pub fn graph_snapshot(&self) -> Result<Vec<u8>> {
         with_room(|bytes| self.save_graph(bytes))
