@@ -345,6 +345,65 @@ TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
   EXPECT_THAT(made, NotesSay("1 joint changes its distance to the parent, by up to 100 mm"));
 }
 
+/// kicking_leg() with these keys: s, rad about X.
+nlohmann::json leg_turned_by(const std::vector<std::pair<double, double>>& keys) {
+  nlohmann::json gltf = kicking_leg();
+  std::vector<float> values;
+  for (const auto& key : keys) values.push_back(static_cast<float>(key.first));
+  for (const auto& key : keys)
+    for (const double x : {std::sin(key.second / 2), 0.0, 0.0, std::cos(key.second / 2)})
+      values.push_back(static_cast<float>(x));
+  for (std::size_t a = 0; a < 2; ++a) {
+    const std::size_t numbers = keys.size() * (a == 0 ? 1 : 4);
+    gltf["accessors"][a]["count"] = keys.size();
+    gltf["bufferViews"][a]["byteOffset"] = a == 0 ? 0 : keys.size() * sizeof(float);
+    gltf["bufferViews"][a]["byteLength"] = numbers * sizeof(float);
+  }
+  gltf["accessors"][0]["max"] = {keys.back().first};
+  set_buffer(gltf, values);
+  return gltf;
+}
+
+/// Still for a second at 30 keys/s, but for `more`.
+std::vector<std::pair<double, double>> still_but_for(const std::vector<std::pair<double, double>>& more) {
+  std::vector<std::pair<double, double>> keys = more;
+  for (int k = 0; k <= 30; ++k) keys.emplace_back(k / 30.0, 0);
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+TEST(Conversion, KeysBetweenEvenSamplesAreFollowed) {  // trap 20
+  for (const double between : {0.5, 0.37}) {           // of the time between two keys
+    const double t = (15 + between) / 30, angle = 1.5;
+    const Converted made = convert_gltf(leg_turned_by(still_but_for({{t, angle}})));
+    ASSERT_EQ(made.asset.clips.size(), 1u);
+    const auto rotation_at = [&](double time) {
+      std::vector<Transform<double>> pose(made.asset.skeleton.joints.size());
+      EXPECT_TRUE((SamplingJob<double>{&made.asset.clips[0], time, {}, pose}.Run().ok()));
+      return pose[0].rotation;
+    };
+    EXPECT_NEAR(rotation_at(0).angularDistance(rotation_at(t)), angle, 0.01);  // 1 mm at 10 cm
+    EXPECT_FALSE(testing::Value(made, NotesSay("off by")));
+  }
+}
+
+TEST(Conversion, KeysTooCloseToFollowAreSaid) {  // a step between two samples
+  std::vector<std::pair<double, double>> keys;
+  for (int k = 0; k <= 30; ++k) keys.emplace_back(k / 30.0, k <= 15 ? 0 : 1.5);
+  keys.insert(keys.begin() + 16, {0.501, 1.5});
+  EXPECT_THAT(convert_gltf(leg_turned_by(keys)),
+              NotesSay("keys less than 1/120 s from others are left out; joint 'leg' passes one by"));
+}
+
+TEST(Conversion, ErrorsBeyondWhatWasAskedForAreSaid) {
+  const Scratch scratch;
+  const std::string file = scratch.write("a.gltf", kicking_leg().dump()).string();
+  EXPECT_FALSE(testing::Value(convert({file}), NotesSay("asked for")));
+  const Converted made = convert({file}, {{"fit_error_mm", 1e-4}});  // less than numbers of 16 bits can hold
+  EXPECT_THAT(made, NotesSay("clip 'kick': joint 'leg' is off by"));
+  EXPECT_THAT(made, NotesSay("more than the 0.0001 mm asked for"));
+}
+
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {
   const Scratch scratch;
   const std::string file = scratch.write("Läufer 1.bvh", "HIERARCHY").string();

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
 #include <set>
 
+#include "convert/fit/chain_error.h"
 #include "convert/roles.h"
 #include "convert/skin.h"
 
@@ -272,8 +275,10 @@ double largest_turn(const std::vector<Transform<double>>& a, const std::vector<T
 /// as fast as it then goes on.
 bool begins_with_reference_pose(const Rig::Motion& motion) {
   if (motion.samples.size() < 9) return false;
-  const double leap = largest_turn(motion.samples[0], motion.samples[1]);
-  return leap * motion.sample_rate > 40 && leap > 10 * largest_turn(motion.samples[1], motion.samples[2]);
+  const auto speed = [&](int f) {  // rad/s
+    return largest_turn(motion.samples[f], motion.samples[f + 1]) / (motion.time(f + 1) - motion.time(f));
+  };
+  return speed(0) > 40 && speed(0) > 10 * speed(1);
 }
 
 constexpr double kMostSamples = 3e7;  ///< joints × frames of a clip: an hour of motion capture, 2 GB
@@ -326,8 +331,68 @@ std::string foreign_skeleton(const Rig& rig, const SourceScene& from, const std:
   return fault;
 }
 
+constexpr double kClosest = 1.0 / 120;  ///< s between samples: no body moves so fast that it takes more
+constexpr double kSameTime = 0.01;      ///< of a sample's time: 1 mm where 30 keys/s change speed by 3 m/s
+
 double sampling_rate(const SourceClip& clip) {
-  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 1 / kClosest);
+}
+
+/// When to sample a clip whose keys are not even, s.
+struct UnevenTimes {
+  std::vector<double> samples;  ///< empty: even samples come at all keys
+  std::vector<double> missed;   ///< keys that come closer than kClosest to others, rising
+};
+
+/// When keys move nodes, s, those of most tracks first, then the earlier.
+std::vector<double> key_times(const SourceClip& clip, double merged) {
+  std::vector<double> all;
+  for (const SourceChannel& c : clip.channels)
+    for (const auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
+      if (times->size() > 1) all.insert(all.end(), times->begin(), times->end());
+  std::sort(all.begin(), all.end());
+  std::vector<std::pair<double, int>> counted;  // s, tracks
+  for (const double t : all)
+    if (counted.empty() || t - counted.back().first > merged)
+      counted.emplace_back(t, 1);
+    else
+      ++counted.back().second;
+  std::stable_sort(counted.begin(), counted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<double> times;
+  for (const auto& [t, tracks] : counted) times.push_back(t);
+  return times;
+}
+
+/// Where even samples at `rate` would miss keys: all keys that are kClosest apart, those of most tracks
+/// first, and between them instants about 1/rate apart.
+UnevenTimes uneven_times(const SourceClip& clip, double rate) {
+  constexpr double kMerged = 0.001;  // of a sample's time: numbers in files are no more exact
+  if (!(clip.duration > 0)) return {};
+  const std::vector<double> keys = key_times(clip, kMerged / rate);
+  const double even = std::round(clip.duration * rate) / clip.duration;  // ends with the clip
+  const auto is_even = [&](double t) { return std::abs(t * even - std::round(t * even)) <= kSameTime; };
+  if (std::all_of(keys.begin(), keys.end(), is_even)) return {};
+  UnevenTimes out;
+  std::set<double> chosen{0, clip.duration};
+  constexpr double kGap = (1 - kSameTime) * kClosest;
+  for (const double key : keys) {
+    const auto after = chosen.lower_bound(key);
+    if ((after == chosen.end() || *after - key >= kGap) &&
+        (after == chosen.begin() || key - *std::prev(after) >= kGap))
+      chosen.insert(key);
+    else if (chosen.count(key) == 0)
+      out.missed.push_back(key);
+  }
+  std::sort(out.missed.begin(), out.missed.end());
+  if (std::all_of(chosen.begin(), chosen.end(), is_even)) return out;
+  for (const double key : chosen) {
+    const double from = out.samples.empty() ? 0 : out.samples.back();
+    const int parts = std::max(1, static_cast<int>(std::lround((key - from) * rate)));
+    for (int k = 1; k < parts; ++k) out.samples.push_back(from + k * (key - from) / parts);
+    out.samples.push_back(key);
+  }
+  return out;
 }
 
 /// The weights of morph targets, over the frames that are left. Those of one name move together: the first
@@ -335,7 +400,7 @@ double sampling_rate(const SourceClip& clip) {
 void add_morph_keys(const SourceScene& scene, const SourceClip& clip, Rig::Motion& motion,
                     nlohmann::json& report) {
   const double left_out = motion.begin - clip.begin;
-  const double duration = double(motion.samples.size() - 1) / motion.sample_rate;
+  const double duration = motion.time(static_cast<int>(motion.samples.size()) - 1);
   for (const import::SourceMorphChannel& channel : clip.morphs) {
     const import::SourceMesh& mesh = scene.meshes[std::size_t(channel.mesh)];
     for (std::size_t m = 0; m < mesh.morphs.size(); ++m) {
@@ -353,44 +418,94 @@ void add_morph_keys(const SourceScene& scene, const SourceClip& clip, Rig::Motio
   }
 }
 
-/// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
-/// rest).
-Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
-                   const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
+/// All joints at t, local; every joint's node is looked up in `nodes` (-1: not in this file, stays at rest).
+std::vector<Transform<double>> pose_at(const SourceScene& scene, const SourceClip& clip, double t,
+                                       const std::vector<int>& nodes, const Matrix& to_model,
+                                       const Rig& rig) {
+  const std::vector<Matrix> world = node_transforms(scene, &clip, t);
+  std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    const int parent = rig.joints[j].parent;
+    const Transform<double> rest_local =
+        parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
+    model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]])
+                             : (parent < 0 ? rest_local : model[parent] * rest_local);
+    local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
+    local[j].rotation.normalize();
+  }
+  return local;
+}
+
+/// Notes how far lines between the samples pass by keys that were not sampled, if by more than was asked for.
+/// `truth`: [missed][joint].
+void note_missed_keys(const Rig& rig, const Rig::Motion& motion, const std::vector<double>& missed,
+                      const std::vector<std::vector<Transform<double>>>& truth, const Options& options,
+                      nlohmann::json& report) {
+  if (missed.empty()) return;
+  std::vector<int> parents;
+  for (const Rig::Joint& joint : rig.joints) parents.push_back(joint.parent);
+  ChainError chain(truth, parents, options.fit_distance_cm / 100);
+  std::vector<JointMotion> lines(rig.joints.size());
+  int next = 1;  // the first sample that is later
+  for (const double t : missed) {
+    while (next + 1 < static_cast<int>(motion.samples.size()) && motion.time(next) < t) ++next;
+    const double from = motion.time(next - 1), u = (t - from) / (motion.time(next) - from);
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+      const Transform<double>&a = motion.samples[next - 1][j], &b = motion.samples[next][j];
+      lines[j].push_back(
+          {a.rotation.slerp(u, b.rotation), a.translation + u * (b.translation - a.translation)});
+    }
+  }
+  for (std::size_t j = 0; j < lines.size(); ++j) chain.set(static_cast<int>(j), std::move(lines[j]));
+  chain.update();
+  int worst = 0;
+  for (int j = 1; j < chain.joints(); ++j)
+    if (chain.error(j, chain.worst_frame(j)) > chain.error(worst, chain.worst_frame(worst))) worst = j;
+  const double mm = 1000 * chain.error(worst, chain.worst_frame(worst));
+  if (mm <= options.fit_error_mm) return;
+  char line[160];
+  std::snprintf(line, sizeof line, "' passes one by %.3g mm at %.4g s", mm, missed[chain.worst_frame(worst)]);
+  report["notes"].push_back("clip '" + motion.name +
+                            "': keys less than 1/120 s from others are left out; joint '" +
+                            rig.joints[worst].name + line);
+}
+
+/// One clip, sampled at `uneven` times, or evenly where there are none; `nodes`: see pose_at().
+Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, UnevenTimes uneven,
+                   const std::vector<int>& nodes, const Matrix& to_model, const Rig& rig,
+                   const Options& options, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
   motion.begin = clip.begin;
   motion.extras = clip.extras;
   motion.sample_rate = sampling_rate(clip);
-  const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
-  if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
+  motion.times = std::move(uneven.samples);
+  int frames = static_cast<int>(motion.times.size());
+  if (motion.times.empty()) {
+    frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
+    if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
+  }
   bool scaled = false;
   for (const SourceChannel& c : clip.channels)
     for (const Eigen::Vector3d& s : c.scales) scaled = scaled || (s - c.scales.front()).norm() > 1e-3;
   if (scaled)
     report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
-  for (int f = 0; f < frames; ++f) {
-    const std::vector<Matrix> world = node_transforms(scene, &clip, f / motion.sample_rate);
-    std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
-    for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-      const int parent = rig.joints[j].parent;
-      const Transform<double> rest_local =
-          parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
-      model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]])
-                               : (parent < 0 ? rest_local : model[parent] * rest_local);
-      local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
-      local[j].rotation.normalize();
-    }
-    motion.samples.push_back(std::move(local));
-  }
+  const auto pose = [&](double t) { return pose_at(scene, clip, t, nodes, to_model, rig); };
+  for (int f = 0; f < frames; ++f) motion.samples.push_back(pose(motion.time(f)));
+  std::vector<std::vector<Transform<double>>> at_missed;
+  for (const double t : uneven.missed) at_missed.push_back(pose(t));
+  note_missed_keys(rig, motion, uneven.missed, at_missed, options, report);
   if (const auto [count, largest] = stretch(motion); count > 0)
     report["notes"].push_back(
         "clip '" + clip.name + "': " + std::to_string(count) +
         (count == 1 ? " joint changes its" : " joints change their") + " distance to the parent, by up to " +
         std::to_string(std::lround(1e3 * largest)) + " mm; physics follows the clip there");
   if (begins_with_reference_pose(motion)) {
+    const double left_out = motion.time(1);
     motion.samples.erase(motion.samples.begin());
-    motion.begin += 1 / motion.sample_rate;
+    motion.begin += left_out;
+    if (!motion.times.empty()) motion.times.erase(motion.times.begin());
+    for (double& t : motion.times) t -= left_out;
     report["notes"].push_back("clip '" + clip.name +
                               "': its first frame is a reference pose, apart from the motion; left out");
   }
@@ -543,9 +658,14 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       if (!options.clips.empty() &&
           std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end())
         continue;
-      if (clip.duration * sampling_rate(clip) * double(rig.joints.size()) > kMostSamples)
+      const double most = kMostSamples / double(rig.joints.size());
+      bool too_long = clip.duration * sampling_rate(clip) > most;
+      UnevenTimes uneven;
+      if (!too_long) uneven = uneven_times(clip, sampling_rate(clip));
+      too_long |= double(uneven.samples.size() + uneven.missed.size()) > most;
+      if (too_long)
         return {"clip '" + clip.name + "' is too long to convert: " + std::to_string(clip.duration) + " s"};
-      Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
+      Rig::Motion motion = sample(from, clip, std::move(uneven), of_joint, to, rig, options, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";
       rig.motions.push_back(std::move(motion));
