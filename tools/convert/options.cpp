@@ -89,9 +89,11 @@ std::string reference_options() {
   return R"(// Options of `sinew convert --options FILE.json`. All are optional; these are the defaults.
 {
   // Metres per unit of the source. 0: what the file says; where it says nothing or the character would be
-  // taller than 5 m or shorter than 5 cm, guessed from the first frame's height and reported.
+  // taller than 5 m or shorter than 5 cm, guessed from the first frame's height and reported. Further files with
+  // clips: by the lengths of their bones.
   "unit": 0,
-  // Up axis of the source: "x", "y" or "z". "": what the file says, else the taller of y and z in the first frame.
+  // Up axis of the source: "x", "y" or "z". "": what the file says, else the taller of y and z in the first frame;
+  // of further files with clips, what brings their bones closest to the character's.
   "up": "",
   // Axis of the source that the character faces at rest: "x", "-x", "y", "-y", "z" or "-z". "": found by its toes,
   // else by its left and right, where names tell them.

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "convert/fit/chain_error.h"
@@ -25,6 +26,7 @@ using Matrix = Eigen::Matrix4d;
 
 constexpr double kForeign = std::numbers::pi / 6;  ///< rad, between the directions of one bone in two files
 constexpr double kShortBone = 0.02;                ///< of the height: shorter ones say nothing
+constexpr double kCmu = 0.056444;                  ///< m, unit of the CMU motion library, by its own notes
 
 template <class V>
 V interpolate(const std::vector<double>& times, const std::vector<V>& keys, double t, const V& otherwise) {
@@ -203,7 +205,6 @@ double choose_scale(double stated, double height, double widest, const char*& ho
   how = stated > 0 ? "guessed from the first frame's height: the file's makes no sense"
                    : "guessed from the first frame's height";
   if (height < 1e-9) return 1;
-  constexpr double kCmu = 0.056444;  // of the CMU motion library, by its own notes
   const auto is_person = [&](double unit) { return height * unit > 1.35 && height * unit < 2.1; };
   if (stated >
       0) {  // wrong by what exporters forget: CMU's unit, centimetres or millimetres for metres, or back
@@ -329,6 +330,121 @@ std::string foreign_skeleton(const Rig& rig, const SourceScene& from, const std:
             " degrees off this one's";
   }
   return fault;
+}
+
+/// [joint] the way from its parent, in units of the file; zero where one of both is not in it.
+std::vector<Eigen::Vector3d> bones_of(const Rig& rig, const std::vector<Matrix>& world,
+                                      const std::vector<int>& nodes) {
+  std::vector<Eigen::Vector3d> bones(rig.joints.size(), Eigen::Vector3d::Zero());
+  for (std::size_t j = 0; j < bones.size(); ++j)
+    if (const int parent = rig.joints[j].parent; parent >= 0 && nodes[j] >= 0 && nodes[parent] >= 0)
+      bones[j] = (world[nodes[j]] - world[nodes[parent]]).block<3, 1>(0, 3);
+  return bones;
+}
+
+/// Metres per unit of a file whose bones are `theirs`, by the rig's, m, if any are in both: a usual unit
+/// where one is near. Notes bones that differ.
+std::optional<double> unit_by_bones(const Rig& rig, const SourceScene& from,
+                                    const std::vector<Eigen::Vector3d>& ours,
+                                    const std::vector<Eigen::Vector3d>& theirs, nlohmann::json& report) {
+  constexpr double kNear = 1.25;  // characters of one skeleton differ by as much
+  std::vector<double> ratios;
+  for (std::size_t j = 0; j < ours.size(); ++j)
+    if (theirs[j].norm() > 0 && ours[j].norm() > kShortBone * rig.height)
+      ratios.push_back(ours[j].norm() / theirs[j].norm());
+  if (ratios.empty()) return {};
+  std::sort(ratios.begin(), ratios.end());
+  const double low = ratios[ratios.size() / 4], high = ratios[ratios.size() - 1 - ratios.size() / 4];
+  double unit = ratios[ratios.size() / 2];
+  const double measured = unit;
+  if (high > kNear * low) {
+    char line[120];
+    std::snprintf(line, sizeof line, "its bones do not agree on its unit: half of them say %.3g to %.3g m",
+                  low, high);
+    report["notes"].push_back("'" + from.name + "': " + line);
+  }
+  double nearest = std::log(kNear);
+  for (const double usual : {rig.unit, from.meters_per_unit, 1.0, 0.01, 0.0254, kCmu, 0.1, 0.001})
+    if (usual > 0 && std::abs(std::log(usual / measured)) < nearest) {
+      nearest = std::abs(std::log(usual / measured));
+      unit = usual;
+    }
+  return unit;
+}
+
+/// Up axis and turn about the vertical, by how alike bones become.
+struct Axes {
+  int up = 1;
+  double turned = 0;  ///< rad
+  double alike = -2;  ///< mean cosine between bones, by their lengths
+};
+
+/// Those of `ups` that bring bones `theirs` closest to the rig's, in model space. A file whose vertical is
+/// the rig's also faces as it does; others may face any quarter.
+Axes axes_by_bones(const Rig& rig, const std::vector<int>& ups, const std::vector<Eigen::Vector3d>& ours,
+                   const std::vector<Eigen::Vector3d>& theirs) {
+  constexpr double kBetter = 1e-3;  // the first of equals counts
+  Axes best;
+  for (const int up : ups)
+    for (int quarter = 0; quarter < (up == rig.up ? 1 : 4); ++quarter) {
+      Axes axes{up, rig.turned + quarter * std::numbers::pi / 2, 0};
+      const Eigen::Matrix3d turn = basis(axes.up, 1, axes.turned).block<3, 3>(0, 0);
+      double weight = 0;
+      for (std::size_t j = 0; j < ours.size(); ++j) {
+        axes.alike += ours[j].dot(turn * theirs[j]);
+        weight += ours[j].norm() * theirs[j].norm();
+      }
+      axes.alike /= std::max(weight, 1e-300);
+      if (axes.alike > best.alike + kBetter) best = axes;
+    }
+  return best;
+}
+
+/// What takes a file that adds clips to model space, by options, by what it says, and by its joints
+/// (`nodes`, of each of the rig's) beside those of the rig's own file `scene`. Notes where that comes from.
+Matrix place_clips(const Rig& rig, const SourceScene& scene, const SourceScene& from,
+                   const std::vector<int>& nodes, const Options& options, nlohmann::json& report) {
+  constexpr double kAlike = 0.7;  // 45 degrees: else the file's rest is no pose, as in many BVH
+  std::vector<int> own;
+  for (const Rig::Joint& joint : rig.joints) own.push_back(joint.node);
+  const Matrix to_model = basis(rig.up, rig.unit, rig.turned);
+  const auto our_bones = [&](std::vector<Matrix> world) {
+    for (Matrix& m : world) m = to_model * m;
+    return bones_of(rig, world, own);
+  };
+  const auto pose = [](const SourceScene& of, bool first) {
+    return node_transforms(of, first && !of.clips.empty() ? &of.clips.front() : nullptr, 0);
+  };
+  const auto ours = our_bones(pose(scene, false)), theirs = bones_of(rig, pose(from, false), nodes);
+
+  Rig other;
+  nlohmann::json chosen;
+  choose_unit(from, joint_nodes(from), options, !from.meshes.empty(), other, chosen);
+  std::string unit_from = chosen["unit"]["from"], up_from = chosen["up"]["from"];
+  if (options.unit <= 0)
+    if (const std::optional<double> unit = unit_by_bones(rig, from, ours, theirs, report)) {
+      other.unit = *unit;
+      unit_from = "by its bones' lengths";
+    }
+  const bool up_known = !options.up.empty() || from.up_axis >= 0;
+  const bool comparable =
+      std::any_of(theirs.begin(), theirs.end(), [](const auto& b) { return b.norm() > 0; });
+  std::vector<int> ups{other.up};
+  if (!up_known && comparable) {
+    ups = {rig.up, 1, 2};
+    up_from = "by its bones at rest";
+  }
+  Axes axes = axes_by_bones(rig, ups, ours, theirs);
+  if (axes.alike < kAlike && comparable && !(up_known && other.up == rig.up)) {
+    const bool skinned = !scene.meshes.empty();  // else the first frame is the rig's rest
+    axes = axes_by_bones(rig, ups, our_bones(pose(scene, !skinned)), bones_of(rig, pose(from, true), nodes));
+    if (!up_known) up_from = "by its bones in the first frame";
+  }
+  char line[200];
+  std::snprintf(line, sizeof line, "unit %.6g m (%s), up %c (%s)", other.unit, unit_from.c_str(),
+                "xyz"[axes.up], up_from.c_str());
+  report["notes"].push_back("'" + from.name + "': " + line);
+  return basis(axes.up, other.unit, axes.turned);
 }
 
 constexpr double kClosest = 1.0 / 120;  ///< s between samples: no body moves so fast that it takes more
@@ -624,19 +740,17 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     if (&from == &scene) {
       for (std::size_t j = 0; j < rig.joints.size(); ++j) of_joint[j] = rig.joints[j].node;
     } else {
-      Rig other;
-      nlohmann::json ignored;
       const std::vector<int> other_nodes = joint_nodes(from);
       if (other_nodes.empty() || from.format == "urdf")
         return {"'" + from.name + "' cannot be added: " +
                 (from.format == "urdf" ? "a URDF takes no part in other characters"
                                        : "it has no joints: no skin, and no clip that moves a node")};
-      choose_unit(from, other_nodes, options, !from.meshes.empty(), other, ignored);
-      to = basis(other.up, other.unit, rig.turned);
       std::map<std::string, int> by_name;
       for (const int n : other_nodes) by_name.emplace(plain_name(from.nodes[n].original_name), n);
       int matched = 0;
       std::string why;
+      nlohmann::json placed;
+      placed["notes"] = nlohmann::json::array();
       for (std::size_t j = 0; j < rig.joints.size(); ++j)
         if (const auto found = by_name.find(plain_name(rig.joints[j].name)); found != by_name.end()) {
           of_joint[j] = found->second;
@@ -645,14 +759,17 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       if (2 * matched < static_cast<int>(std::min(rig.joints.size(), by_name.size())))
         why = "'" + from.name + "' shares " + (matched == 0 ? "no" : "only " + std::to_string(matched)) +
               " joint name" + (matched > 1 ? "s" : "") + " with '" + scene.name + "'";
-      else
+      else {
+        to = place_clips(rig, scene, from, of_joint, options, placed);
         why = foreign_skeleton(rig, from, of_joint, to);
+      }
       if (!why.empty()) {
         rig.foreign.push_back({static_cast<std::size_t>(&from - scenes.data()), why});
         continue;
       }
       report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " +
                                 std::to_string(rig.joints.size()) + " joints matched by name");
+      for (const nlohmann::json& note : placed["notes"]) report["notes"].push_back(note);
     }
     for (const SourceClip& clip : from.clips) {
       if (!options.clips.empty() &&
