@@ -75,6 +75,31 @@ TEST(Gltf, NodesAndClipsWithoutNamesGetSome) {  // trap 11
   EXPECT_FALSE(outcome.scene.clips[0].name.empty());
 }
 
+TEST(Gltf, NodesOfOtherScenesAreLeftOutAndNoted) {
+  Json gltf = kicking_leg();
+  EXPECT_TRUE(read_gltf(gltf).scene.notes.empty());
+  gltf["nodes"].push_back({{"name", "stage"}, {"children", Json::array({3})}});
+  gltf["nodes"].push_back({{"name", "lamp"}});
+  gltf["scenes"].push_back({{"nodes", Json::array({2})}});
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(index_of(outcome.scene, "lamp"), -1);
+  EXPECT_THAT(outcome.scene.notes,
+              testing::Contains("2 nodes are not in the file's default scene; left out"));
+}
+
+TEST(Gltf, MeshesOfPointsOrLinesAreLeftOutAndNoted) {
+  for (const int mode : {0, 1, 2, 3}) {
+    Json gltf = with_triangle(kicking_leg(), 1);
+    gltf["meshes"][0]["primitives"][0]["mode"] = mode;
+    const Outcome outcome = read_gltf(gltf);
+    ASSERT_TRUE(outcome.ok) << outcome.error;
+    EXPECT_TRUE(outcome.scene.meshes.empty());
+    EXPECT_THAT(outcome.scene.notes, testing::Contains("mesh 'skirt' is of points or lines; left out"))
+        << mode;
+  }
+}
+
 TEST(Gltf, MeshOnTwoNodesIsReadTwice) {
   Json gltf = with_triangle(kicking_leg(), 0);
   gltf["nodes"][1]["mesh"] = 0;
