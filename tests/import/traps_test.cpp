@@ -374,6 +374,28 @@ TEST(Urdf, LockedJointAndEffortOfZeroAreRead) {  // traps 40 and 43
   EXPECT_EQ(outcome.scene.links[1].effort, 0);
 }
 
+TEST(Urdf, LockedJointStandsWhereItIsLocked) {  // trap 43
+  const auto origin = [](const char* type, const char* limit) {
+    const Outcome outcome = read_content(
+        "a.urdf",
+        short_urdf(knee("<origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/><axis xyz=\"2 0 0\"/>"
+                        "<limit " +
+                            std::string(limit) + " effort=\"10\" velocity=\"5\"/>",
+                        type)));
+    EXPECT_TRUE(outcome.ok) << outcome.error;
+    return outcome.scene.links[1].origin;
+  };
+  const Transform<double> free = origin("revolute", "lower=\"-1\" upper=\"0.5\"");
+  const Transform<double> turned = origin("revolute", "lower=\"0.5\" upper=\"0.5\"");
+  EXPECT_LT(turned.rotation.angularDistance(free.rotation *
+                                            Quat<double>(Eigen::AngleAxisd(0.5, Vec3<double>::UnitX()))),
+            1e-12);
+  EXPECT_EQ(turned.translation, free.translation);
+  const Transform<double> moved = origin("prismatic", "lower=\"0.5\" upper=\"0.5\"");
+  EXPECT_LT((moved.translation - Vec3<double>(0, 0.5, 1)).norm(), 1e-12);  // its x axis is the parent's y
+  EXPECT_EQ(moved.rotation.coeffs(), free.rotation.coeffs());
+}
+
 TEST(Urdf, FloatingJointIsFree) {  // trap 46
   const Outcome outcome = read_content("a.urdf", short_urdf(knee("", "floating")));
   ASSERT_TRUE(outcome.ok) << outcome.error;
