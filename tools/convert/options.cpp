@@ -151,8 +151,10 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
   if (json.is_null()) return {};
   if (!json.is_object()) return {"options are not a JSON object"};
   Options o;
+  std::string option;  // the one that is read
   try {
     for (const auto& [key, value] : json.items()) {
+      option = key;
       if (key == "unit")
         o.unit = value.get<double>();
       else if (key == "up")
@@ -170,7 +172,10 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
       else if (key == "muscles")
         o.muscles = parse_muscles(value);
       else if (key == "joints") {
-        for (const auto& [name, joint] : value.items()) o.joints[name] = parse_joint(joint, name);
+        for (const auto& [name, joint] : value.items()) {
+          option = "joints." + name;
+          o.joints[name] = parse_joint(joint, name);
+        }
       } else if (key == "strength")
         o.strength = value.get<double>();
       else if (key == "strength_margin")
@@ -206,7 +211,7 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
       if (negative) return {"option '" + key + "' is negative"};
     }
   } catch (const nlohmann::json::exception& e) {
-    return {std::string("option has the wrong type: ") + import::plain_words(e)};
+    return {"option '" + option + "' has the wrong type: " + import::plain_words(e)};
   } catch (const BadOption& e) {
     return {e.what()};
   }
