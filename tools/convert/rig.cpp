@@ -454,59 +454,60 @@ double sampling_rate(const SourceClip& clip) {
   return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 1 / kClosest);
 }
 
-/// When to sample a clip whose keys are not even, s.
-struct UnevenTimes {
-  std::vector<double> samples;  ///< empty: even samples come at all keys
-  std::vector<double> missed;   ///< keys that come closer than kClosest to others, rising
+/// A key that moves nodes.
+struct Key {
+  double time = 0;  ///< s
+  int tracks = 0;   ///< that have it
 };
 
-/// When keys move nodes, s, those of most tracks first, then the earlier.
-std::vector<double> key_times(const SourceClip& clip, double merged) {
+/// Keys in time; those at less than `merged` s count as one.
+std::vector<Key> keys_of(const SourceClip& clip, double merged) {
   std::vector<double> all;
   for (const SourceChannel& c : clip.channels)
     for (const auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
       if (times->size() > 1) all.insert(all.end(), times->begin(), times->end());
   std::sort(all.begin(), all.end());
-  std::vector<std::pair<double, int>> counted;  // s, tracks
+  std::vector<Key> keys;
   for (const double t : all)
-    if (counted.empty() || t - counted.back().first > merged)
-      counted.emplace_back(t, 1);
+    if (keys.empty() || t - keys.back().time > merged)
+      keys.push_back({t, 1});
     else
-      ++counted.back().second;
-  std::stable_sort(counted.begin(), counted.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::vector<double> times;
-  for (const auto& [t, tracks] : counted) times.push_back(t);
-  return times;
+      ++keys.back().tracks;
+  return keys;
 }
 
-/// Where even samples at `rate` would miss keys: all keys that are kClosest apart, those of most tracks
-/// first, and between them instants about 1/rate apart.
-UnevenTimes uneven_times(const SourceClip& clip, double rate) {
+/// The keys of a clip that has some between even samples at `rate`, else none: those of most tracks first,
+/// then the earlier.
+std::vector<Key> uneven_keys(const SourceClip& clip, double rate) {
   constexpr double kMerged = 0.001;  // of a sample's time: numbers in files are no more exact
   if (!(clip.duration > 0)) return {};
-  const std::vector<double> keys = key_times(clip, kMerged / rate);
+  std::vector<Key> keys = keys_of(clip, kMerged / rate);
   const double even = std::round(clip.duration * rate) / clip.duration;  // ends with the clip
-  const auto is_even = [&](double t) { return std::abs(t * even - std::round(t * even)) <= kSameTime; };
-  if (std::all_of(keys.begin(), keys.end(), is_even)) return {};
-  UnevenTimes out;
-  std::set<double> chosen{0, clip.duration};
+  if (std::all_of(keys.begin(), keys.end(), [&](const Key& k) {
+        return std::abs(k.time * even - std::round(k.time * even)) <= kSameTime;
+      }))
+    return {};
+  std::stable_sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) { return x.tracks > y.tracks; });
+  return keys;
+}
+
+/// Adds a time unless it is too close to another.
+void add_time(double time, std::set<double>& times) {
   constexpr double kGap = (1 - kSameTime) * kClosest;
-  for (const double key : keys) {
-    const auto after = chosen.lower_bound(key);
-    if ((after == chosen.end() || *after - key >= kGap) &&
-        (after == chosen.begin() || key - *std::prev(after) >= kGap))
-      chosen.insert(key);
-    else if (chosen.count(key) == 0)
-      out.missed.push_back(key);
-  }
-  std::sort(out.missed.begin(), out.missed.end());
-  if (std::all_of(chosen.begin(), chosen.end(), is_even)) return out;
-  for (const double key : chosen) {
-    const double from = out.samples.empty() ? 0 : out.samples.back();
-    const int parts = std::max(1, static_cast<int>(std::lround((key - from) * rate)));
-    for (int k = 1; k < parts; ++k) out.samples.push_back(from + k * (key - from) / parts);
-    out.samples.push_back(key);
+  const auto after = times.lower_bound(time);
+  if ((after == times.end() || *after - time >= kGap) &&
+      (after == times.begin() || time - *std::prev(after) >= kGap))
+    times.insert(time);
+}
+
+/// The times, and between them instants about 1/rate apart.
+std::vector<double> filled(const std::set<double>& times, double rate) {
+  std::vector<double> out;
+  for (const double time : times) {
+    const double from = out.empty() ? 0 : out.back();
+    const int parts = std::max(1, static_cast<int>(std::lround((time - from) * rate)));
+    for (int k = 1; k < parts; ++k) out.push_back(from + k * (time - from) / parts);
+    out.push_back(time);
   }
   return out;
 }
@@ -552,20 +553,21 @@ std::vector<Transform<double>> pose_at(const SourceScene& scene, const SourceCli
   return local;
 }
 
-/// Notes how far lines between the samples pass by keys that were not sampled, if by more than was asked for.
-/// `truth`: [missed][joint].
-void note_missed_keys(const Rig& rig, const Rig::Motion& motion, const std::vector<double>& missed,
-                      const std::vector<std::vector<Transform<double>>>& truth, const Options& options,
-                      nlohmann::json& report) {
-  if (missed.empty()) return;
+using Poses = std::vector<std::vector<Transform<double>>>;  ///< [time][joint]
+
+/// How far lines between the samples of a motion pass by keys; `truth`: the poses at them.
+ChainError passed_by(const Rig& rig, const Rig::Motion& motion, const std::vector<Key>& keys,
+                     const Poses& truth, double skin_distance) {
   std::vector<int> parents;
   for (const Rig::Joint& joint : rig.joints) parents.push_back(joint.parent);
-  ChainError chain(truth, parents, options.fit_distance_cm / 100);
+  ChainError chain(truth, parents, skin_distance);
+  std::vector<double> times;
+  for (std::size_t f = 0; f < motion.samples.size(); ++f) times.push_back(motion.time(static_cast<int>(f)));
   std::vector<JointMotion> lines(rig.joints.size());
-  int next = 1;  // the first sample that is later
-  for (const double t : missed) {
-    while (next + 1 < static_cast<int>(motion.samples.size()) && motion.time(next) < t) ++next;
-    const double from = motion.time(next - 1), u = (t - from) / (motion.time(next) - from);
+  for (const Key& key : keys) {
+    const auto later = std::lower_bound(times.begin() + 1, times.end() - 1, key.time);
+    const std::size_t next = static_cast<std::size_t>(later - times.begin());
+    const double u = (key.time - times[next - 1]) / (times[next] - times[next - 1]);
     for (std::size_t j = 0; j < lines.size(); ++j) {
       const Transform<double>&a = motion.samples[next - 1][j], &b = motion.samples[next][j];
       lines[j].push_back(
@@ -574,20 +576,72 @@ void note_missed_keys(const Rig& rig, const Rig::Motion& motion, const std::vect
   }
   for (std::size_t j = 0; j < lines.size(); ++j) chain.set(static_cast<int>(j), std::move(lines[j]));
   chain.update();
-  int worst = 0;
-  for (int j = 1; j < chain.joints(); ++j)
-    if (chain.error(j, chain.worst_frame(j)) > chain.error(worst, chain.worst_frame(worst))) worst = j;
-  const double mm = 1000 * chain.error(worst, chain.worst_frame(worst));
-  if (mm <= options.fit_error_mm) return;
-  char line[160];
-  std::snprintf(line, sizeof line, "' passes one by %.3g mm at %.4g s", mm, missed[chain.worst_frame(worst)]);
-  report["notes"].push_back("clip '" + motion.name +
-                            "': keys less than 1/120 s from others are left out; joint '" +
-                            rig.joints[worst].name + line);
+  return chain;
 }
 
-/// One clip, sampled at `uneven` times, or evenly where there are none; `nodes`: see pose_at().
-Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, UnevenTimes uneven,
+/// Joint of the largest error at a key.
+int worst_joint(const ChainError& chain, int key) {
+  int worst = 0;
+  for (int j = 1; j < chain.joints(); ++j)
+    if (chain.error(j, key) > chain.error(worst, key)) worst = j;
+  return worst;
+}
+
+/// Samples a motion evenly and, where that passes by `keys` farther than half of the error that is allowed,
+/// at the keys that most tracks have and at those that are still passed by. Notes keys that are all the same.
+template <class Pose>
+void take_samples(const Rig& rig, const SourceClip& clip, const std::vector<Key>& keys, const Pose& pose,
+                  const Options& options, Rig::Motion& motion, nlohmann::json& report) {
+  constexpr double kShare = 0.5;  // the fit comes on top
+  constexpr double kFill = 60;    // 1/s, between keys that are far apart: the curve is to go straight there
+  constexpr int kRounds = 8;      // each takes a large part of what is left
+  const double stated = motion.sample_rate;
+  const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * stated)) + 1);
+  if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
+  for (int f = 0; f < frames; ++f) motion.samples.push_back(pose(motion.time(f)));
+  if (keys.empty()) return;
+  Poses truth;
+  for (const Key& key : keys) truth.push_back(pose(key.time));
+  const auto errors = [&] { return passed_by(rig, motion, keys, truth, options.fit_distance_cm / 100); };
+  ChainError chain = errors();
+  std::set<double> times{0, clip.duration};
+  const double even_error = chain.largest();
+  const double bound = kShare * options.fit_error_mm / 1000;
+  if (even_error > bound) {
+    const Rig::Motion even = motion;
+    for (const Key& key : keys)
+      if (2 * key.tracks >= keys.front().tracks) add_time(key.time, times);
+    std::size_t before = 0;
+    for (int round = 0; round < kRounds && before != times.size(); ++round) {
+      before = times.size();
+      motion.sample_rate = stated;
+      motion.times = filled(times, std::min(stated, kFill));
+      motion.samples.clear();
+      for (const double t : motion.times) motion.samples.push_back(pose(t));
+      chain = errors();
+      for (std::size_t k = 0; k < keys.size(); ++k)
+        if (chain.error(worst_joint(chain, int(k)), int(k)) > bound) add_time(keys[k].time, times);
+    }
+    if (chain.largest() > 0.9 * even_error) {  // what is missed is too close to other keys
+      motion = even;
+      chain = errors();
+    }
+  }
+  int key = 0;
+  for (int k = 1; k < chain.frames(); ++k)
+    if (chain.error(worst_joint(chain, k), k) > chain.error(worst_joint(chain, key), key)) key = k;
+  const int joint = worst_joint(chain, key);
+  const double mm = 1000 * chain.error(joint, key);
+  if (mm <= options.fit_error_mm) return;
+  char line[160];
+  std::snprintf(line, sizeof line, "' passes one by %.3g mm at %.4g s", mm, keys[std::size_t(key)].time);
+  report["notes"].push_back("clip '" + motion.name +
+                            "': keys less than 1/120 s from others are left out; joint '" +
+                            rig.joints[std::size_t(joint)].name + line);
+}
+
+/// One clip; `keys`: see uneven_keys(); `nodes`: see pose_at().
+Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<Key>& keys,
                    const std::vector<int>& nodes, const Matrix& to_model, const Rig& rig,
                    const Options& options, nlohmann::json& report) {
   Rig::Motion motion;
@@ -595,22 +649,14 @@ Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, UnevenTimes
   motion.begin = clip.begin;
   motion.extras = clip.extras;
   motion.sample_rate = sampling_rate(clip);
-  motion.times = std::move(uneven.samples);
-  int frames = static_cast<int>(motion.times.size());
-  if (motion.times.empty()) {
-    frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
-    if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
-  }
   bool scaled = false;
   for (const SourceChannel& c : clip.channels)
     for (const Eigen::Vector3d& s : c.scales) scaled = scaled || (s - c.scales.front()).norm() > 1e-3;
   if (scaled)
     report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
   const auto pose = [&](double t) { return pose_at(scene, clip, t, nodes, to_model, rig); };
-  for (int f = 0; f < frames; ++f) motion.samples.push_back(pose(motion.time(f)));
-  std::vector<std::vector<Transform<double>>> at_missed;
-  for (const double t : uneven.missed) at_missed.push_back(pose(t));
-  note_missed_keys(rig, motion, uneven.missed, at_missed, options, report);
+  take_samples(rig, clip, keys, pose, options, motion, report);
+  const std::size_t frames = motion.samples.size();
   if (const auto [count, largest] = stretch(motion); count > 0)
     report["notes"].push_back(
         "clip '" + clip.name + "': " + std::to_string(count) +
@@ -777,12 +823,12 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
         continue;
       const double most = kMostSamples / double(rig.joints.size());
       bool too_long = clip.duration * sampling_rate(clip) > most;
-      UnevenTimes uneven;
-      if (!too_long) uneven = uneven_times(clip, sampling_rate(clip));
-      too_long |= double(uneven.samples.size() + uneven.missed.size()) > most;
+      std::vector<Key> keys;
+      if (!too_long) keys = uneven_keys(clip, sampling_rate(clip));
+      too_long |= double(keys.size()) > most;
       if (too_long)
         return {"clip '" + clip.name + "' is too long to convert: " + std::to_string(clip.duration) + " s"};
-      Rig::Motion motion = sample(from, clip, std::move(uneven), of_joint, to, rig, options, report);
+      Rig::Motion motion = sample(from, clip, keys, of_joint, to, rig, options, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";
       rig.motions.push_back(std::move(motion));
