@@ -36,6 +36,9 @@ TEST(Command, BadFilesAreNamedInOneLineAndNothingIsLeftBehind) {
   expect_refused(
       "convert " + kCharacter + " --options " + written("o.json", "{\"total_mass\": 1e999}") + " -o " + out,
       "o.json");
+  expect_refused(
+      "convert " + kCharacter + " --options " + written("o.json", R"({"strict": "yes"})") + " -o " + out,
+      "o.json: option 'strict' has the wrong type");
   expect_refused("info " + written("cut.sinew", std::string("\x10\0\0\0SNEW____________", 20)), "cut.sinew");
   expect_refused("render " + kAsset + " -o /no/such/directory/x.png", "/no/such/directory");
   expect_refused("render " + kAsset + " -o " + own_directory() + "x.avi", "x.avi");

@@ -28,7 +28,9 @@ TEST(Convert, OptionsAreCheckedByName) {
   Options options;
   EXPECT_NE(Options::parse({{"totalmass", 3}}, options).message.find("totalmass"), std::string::npos);
   EXPECT_NE(Options::parse({{"total_mass", -3}}, options).message.find("total_mass"), std::string::npos);
-  EXPECT_TRUE(Options::parse({{"up", 3}}, options));
+  EXPECT_EQ(Options::parse({{"up", 3}}, options).message.rfind("option 'up' has the wrong type", 0), 0u);
+  const auto joint = nlohmann::json::parse(R"({"joints": {"head": {"mass": "5"}}})");
+  EXPECT_EQ(Options::parse(joint, options).message.rfind("option 'joints.head' has the wrong type", 0), 0u);
   EXPECT_TRUE(Options::parse({{"up", "w"}}, options));
   EXPECT_FALSE(Options::parse(nlohmann::json::parse(reference_options(), nullptr, true, true), options));
 }

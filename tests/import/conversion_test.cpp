@@ -147,6 +147,83 @@ TEST(SeveralFiles, ClipsOfAnotherSkeletonAreRefusedAndNeverTwistTheCharacter) {
               testing::HasSubstr("for another skeleton: from 'leg' to 'shin' its bone goes 90 degrees off"));
 }
 
+/// A leg with a foot in metres and Y up, whose joints' frames have Z up, as Blender writes them.
+std::string leg_of_blender() {
+  nlohmann::json gltf = import::test::kicking_leg();
+  gltf["nodes"] = nlohmann::json::parse(R"([
+    {"name": "hip", "children": [1], "translation": [0, 1, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]},
+    {"name": "leg", "children": [2]},
+    {"name": "foot", "children": [3], "translation": [0, 0, -0.5]},
+    {"name": "toes", "translation": [0, -0.2, 0]}])");
+  nlohmann::json& animation = gltf["animations"][0];
+  for (const int node : {2, 3}) {
+    animation["channels"].push_back(animation["channels"][0]);
+    animation["channels"].back()["target"]["node"] = node;
+  }
+  return gltf.dump();
+}
+
+/// The same leg in centimetres and Z up. It lies in the first frame and stands in the second, or stays lying.
+std::string lying_leg_bvh(const std::string& leg = "leg", bool stays = false) {
+  const std::string turned = "0 0 0 0 90 0 0 0 0 0 0 0\n", at_rest = "0 0 0 0 0 0 0 0 0 0 0 0\n";
+  return "HIERARCHY\nROOT " + leg +
+         "\n{\n  OFFSET 0 0 0\n"
+         "  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+         "  JOINT foot\n  {\n    OFFSET 0 0 -50\n    CHANNELS 3 Zrotation Xrotation Yrotation\n"
+         "    JOINT toes\n    {\n      OFFSET 0 -20 0\n      CHANNELS 3 Zrotation Xrotation Yrotation\n"
+         "      End Site\n      {\n        OFFSET 0 -5 0\n      }\n    }\n  }\n}\n"
+         "MOTION\nFrames: 2\nFrame Time: 0.1\n" +
+         turned + (stays ? turned : at_rest);
+}
+
+TEST(SeveralFiles, UnitAndAxesOfClipsAreFoundByTheBonesOfTheCharacter) {
+  const Scratch scratch;
+  const std::string leg = scratch.write("leg.gltf", leg_of_blender()).string();
+  const std::string lying = scratch.write("lying.bvh", lying_leg_bvh()).string();
+  const Converted made = convert({leg, lying});
+  ASSERT_EQ(made.error, "");
+  EXPECT_THAT(made, NotesSay("'lying': unit 0.01 m (by its bones' lengths), up z (by its bones at rest)"));
+  const Clip& clip = made.asset.clips.back();
+  std::vector<Transform<double>> pose(made.asset.skeleton.joints.size());
+  ASSERT_TRUE((SamplingJob<double>{&clip, clip.duration, {}, pose}.Run().ok()));
+  for (std::size_t j = 0; j < pose.size(); ++j) {  // at rest, where it faces x as the character does
+    const Transform<double>& rest = made.asset.skeleton.joints[j].rest;
+    EXPECT_LT(pose[j].rotation.angularDistance(rest.rotation), 0.01) << made.asset.skeleton.joints[j].name;
+    if (j > 0) {  // the root travels
+      EXPECT_LT((pose[j].translation - rest.translation).norm(), 1e-3);
+    }
+  }
+}
+
+TEST(SeveralFiles, OptionsHoldForAddedFilesToo) {
+  const Scratch scratch;
+  const std::string leg = scratch.write("leg.bvh", lying_leg_bvh()).string();
+  const std::string more = scratch.write("more.bvh", lying_leg_bvh("leg", true)).string();
+  EXPECT_THAT(convert({leg, more}, {{"unit", 0.02}, {"up", "z"}}),
+              NotesSay("'more': unit 0.02 m (option), up z (option)"));
+}
+
+TEST(SeveralFiles, BonesOfOtherProportionsAreSaid) {
+  const Scratch scratch;
+  const std::string leg = scratch.write("leg.gltf", leg_of_blender()).string();
+  std::string bvh = lying_leg_bvh();
+  bvh.replace(bvh.find("-50"), 3, "-30");
+  const Converted made = convert({leg, scratch.write("short.bvh", bvh).string()});
+  EXPECT_THAT(made,
+              NotesSay("'short': its bones do not agree on its unit: half of them say 0.01 to 0.0167 m"));
+}
+
+TEST(SeveralFiles, ClipsThatShareNoJointAreRefused) {
+  const Scratch scratch;
+  const std::string leg = scratch.write("leg.bvh", lying_leg_bvh()).string();
+  std::string bvh = import::test::walking_bvh();
+  bvh.replace(bvh.find("leg"), 3, "arm");
+  const std::string arm = scratch.write("arm.bvh", bvh).string();
+  const std::string error = convert({leg, arm}).error;
+  EXPECT_EQ(error.rfind(arm + ": ", 0), 0u) << error;
+  EXPECT_THAT(error, testing::HasSubstr("shares no joint name with 'leg'"));
+}
+
 TEST(SeveralFiles, WhatCannotBeUsedIsAnErrorAndNotLeftOut) {
   const Scratch scratch;
   const std::string leg = scratch.write("leg.gltf", import::test::skinned({1, 0, 0, 0}, {0}).dump()).string();
@@ -343,6 +420,65 @@ TEST(Conversion, BoneThatChangesItsLengthKeepsDoingSo) {  // trap 35
   const auto leg = static_cast<std::size_t>(joint_named(made, "leg"));
   EXPECT_NEAR(jets[leg].translation.norm(), 0.6, 1.1e-3);  // the curve's budget is 1 mm
   EXPECT_THAT(made, NotesSay("1 joint changes its distance to the parent, by up to 100 mm"));
+}
+
+/// kicking_leg() with these keys: s, rad about X.
+nlohmann::json leg_turned_by(const std::vector<std::pair<double, double>>& keys) {
+  nlohmann::json gltf = kicking_leg();
+  std::vector<float> values;
+  for (const auto& key : keys) values.push_back(static_cast<float>(key.first));
+  for (const auto& key : keys)
+    for (const double x : {std::sin(key.second / 2), 0.0, 0.0, std::cos(key.second / 2)})
+      values.push_back(static_cast<float>(x));
+  for (std::size_t a = 0; a < 2; ++a) {
+    const std::size_t numbers = keys.size() * (a == 0 ? 1 : 4);
+    gltf["accessors"][a]["count"] = keys.size();
+    gltf["bufferViews"][a]["byteOffset"] = a == 0 ? 0 : keys.size() * sizeof(float);
+    gltf["bufferViews"][a]["byteLength"] = numbers * sizeof(float);
+  }
+  gltf["accessors"][0]["max"] = {keys.back().first};
+  set_buffer(gltf, values);
+  return gltf;
+}
+
+/// Still for a second at 30 keys/s, but for `more`.
+std::vector<std::pair<double, double>> still_but_for(const std::vector<std::pair<double, double>>& more) {
+  std::vector<std::pair<double, double>> keys = more;
+  for (int k = 0; k <= 30; ++k) keys.emplace_back(k / 30.0, 0);
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+TEST(Conversion, KeysBetweenEvenSamplesAreFollowed) {  // trap 20
+  for (const double between : {0.5, 0.37}) {           // of the time between two keys
+    const double t = (15 + between) / 30, angle = 1.5;
+    const Converted made = convert_gltf(leg_turned_by(still_but_for({{t, angle}})));
+    ASSERT_EQ(made.asset.clips.size(), 1u);
+    const auto rotation_at = [&](double time) {
+      std::vector<Transform<double>> pose(made.asset.skeleton.joints.size());
+      EXPECT_TRUE((SamplingJob<double>{&made.asset.clips[0], time, {}, pose}.Run().ok()));
+      return pose[0].rotation;
+    };
+    EXPECT_NEAR(rotation_at(0).angularDistance(rotation_at(t)), angle, 0.01);  // 1 mm at 10 cm
+    EXPECT_FALSE(testing::Value(made, NotesSay("off by")));
+  }
+}
+
+TEST(Conversion, KeysTooCloseToFollowAreSaid) {  // a step between two samples
+  std::vector<std::pair<double, double>> keys;
+  for (int k = 0; k <= 30; ++k) keys.emplace_back(k / 30.0, k <= 15 ? 0 : 1.5);
+  keys.insert(keys.begin() + 16, {0.501, 1.5});
+  EXPECT_THAT(convert_gltf(leg_turned_by(keys)),
+              NotesSay("keys less than 1/120 s from others are left out; joint 'leg' passes one by"));
+}
+
+TEST(Conversion, ErrorsBeyondWhatWasAskedForAreSaid) {
+  const Scratch scratch;
+  const std::string file = scratch.write("a.gltf", kicking_leg().dump()).string();
+  EXPECT_FALSE(testing::Value(convert({file}), NotesSay("asked for")));
+  const Converted made = convert({file}, {{"fit_error_mm", 1e-4}});  // less than numbers of 16 bits can hold
+  EXPECT_THAT(made, NotesSay("clip 'kick': joint 'leg' is off by"));
+  EXPECT_THAT(made, NotesSay("more than the 0.0001 mm asked for"));
 }
 
 TEST(Conversion, NamesInMessagesAreThoseOfTheFile) {

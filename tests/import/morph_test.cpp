@@ -41,6 +41,25 @@ TEST(Morph, TargetsComeWithTheirNamesWeightsAndKeys) {
   EXPECT_EQ(channel.weights, Morphing{}.keys);
 }
 
+TEST(Morph, ANodesOwnWeightsGoBeforeThoseOfItsMesh) {
+  nlohmann::json gltf = morphing_leg();
+  gltf["nodes"].push_back(gltf["nodes"][2]);  // first with the weights of the mesh, then with its own
+  gltf["nodes"][3]["weights"] = {0.75, 0.5};
+  gltf["scenes"][0]["nodes"].push_back(3);
+  for (const bool own_first : {false, true}) {
+    if (own_first) std::swap(gltf["nodes"][2], gltf["nodes"][3]);
+    const Outcome outcome = read_content("a.gltf", gltf.dump());
+    ASSERT_TRUE(outcome.ok) << outcome.error;
+    ASSERT_EQ(outcome.scene.meshes.size(), 2u);
+    const SourceMesh &own = outcome.scene.meshes[own_first ? 0 : 1],
+                     &plain = outcome.scene.meshes[own_first ? 1 : 0];
+    EXPECT_EQ(own.morphs[0].weight, 0.75f);
+    EXPECT_EQ(own.morphs[1].weight, 0.5f);
+    EXPECT_EQ(plain.morphs[0].weight, 0.25f);
+    EXPECT_EQ(plain.morphs[1].weight, 0);
+  }
+}
+
 TEST(Morph, CubicKeysAreTheirValuesWithoutTheTangents) {
   Morphing with;
   with.interpolation = "CUBICSPLINE";

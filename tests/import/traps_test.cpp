@@ -75,6 +75,31 @@ TEST(Gltf, NodesAndClipsWithoutNamesGetSome) {  // trap 11
   EXPECT_FALSE(outcome.scene.clips[0].name.empty());
 }
 
+TEST(Gltf, NodesOfOtherScenesAreLeftOutAndNoted) {
+  Json gltf = kicking_leg();
+  EXPECT_TRUE(read_gltf(gltf).scene.notes.empty());
+  gltf["nodes"].push_back({{"name", "stage"}, {"children", Json::array({3})}});
+  gltf["nodes"].push_back({{"name", "lamp"}});
+  gltf["scenes"].push_back({{"nodes", Json::array({2})}});
+  const Outcome outcome = read_gltf(gltf);
+  ASSERT_TRUE(outcome.ok) << outcome.error;
+  EXPECT_EQ(index_of(outcome.scene, "lamp"), -1);
+  EXPECT_THAT(outcome.scene.notes,
+              testing::Contains("2 nodes are not in the file's default scene; left out"));
+}
+
+TEST(Gltf, MeshesOfPointsOrLinesAreLeftOutAndNoted) {
+  for (const int mode : {0, 1, 2, 3}) {
+    Json gltf = with_triangle(kicking_leg(), 1);
+    gltf["meshes"][0]["primitives"][0]["mode"] = mode;
+    const Outcome outcome = read_gltf(gltf);
+    ASSERT_TRUE(outcome.ok) << outcome.error;
+    EXPECT_TRUE(outcome.scene.meshes.empty());
+    EXPECT_THAT(outcome.scene.notes, testing::Contains("mesh 'skirt' is of points or lines; left out"))
+        << mode;
+  }
+}
+
 TEST(Gltf, MeshOnTwoNodesIsReadTwice) {
   Json gltf = with_triangle(kicking_leg(), 0);
   gltf["nodes"][1]["mesh"] = 0;
@@ -347,6 +372,28 @@ TEST(Urdf, LockedJointAndEffortOfZeroAreRead) {  // traps 40 and 43
   EXPECT_TRUE(outcome.scene.links[1].has_limits);
   EXPECT_EQ(outcome.scene.links[1].lower, outcome.scene.links[1].upper);
   EXPECT_EQ(outcome.scene.links[1].effort, 0);
+}
+
+TEST(Urdf, LockedJointStandsWhereItIsLocked) {  // trap 43
+  const auto origin = [](const char* type, const char* limit) {
+    const Outcome outcome = read_content(
+        "a.urdf",
+        short_urdf(knee("<origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/><axis xyz=\"2 0 0\"/>"
+                        "<limit " +
+                            std::string(limit) + " effort=\"10\" velocity=\"5\"/>",
+                        type)));
+    EXPECT_TRUE(outcome.ok) << outcome.error;
+    return outcome.scene.links[1].origin;
+  };
+  const Transform<double> free = origin("revolute", "lower=\"-1\" upper=\"0.5\"");
+  const Transform<double> turned = origin("revolute", "lower=\"0.5\" upper=\"0.5\"");
+  EXPECT_LT(turned.rotation.angularDistance(free.rotation *
+                                            Quat<double>(Eigen::AngleAxisd(0.5, Vec3<double>::UnitX()))),
+            1e-12);
+  EXPECT_EQ(turned.translation, free.translation);
+  const Transform<double> moved = origin("prismatic", "lower=\"0.5\" upper=\"0.5\"");
+  EXPECT_LT((moved.translation - Vec3<double>(0, 0.5, 1)).norm(), 1e-12);  // its x axis is the parent's y
+  EXPECT_EQ(moved.rotation.coeffs(), free.rotation.coeffs());
 }
 
 TEST(Urdf, FloatingJointIsFree) {  // trap 46

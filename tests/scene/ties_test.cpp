@@ -71,6 +71,8 @@ TEST(Ties, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(refusal(R"("loops": [{"a": {"joint": "hand_l"}}])"), HasSubstr("'b' is missing"));
   EXPECT_THAT(refusal(R"("loops": [{"kind": "knot", "a": {}, "b": {}}])"), HasSubstr("loops[0].kind"));
   EXPECT_THAT(refusal(R"("loops": [{"a": {"joint": "tail"}, "b": {}}])"), HasSubstr("unknown joint 'tail'"));
+  EXPECT_THAT(refusal(R"("loops": [{"a": {"joint": "hand_l"}, "b": {"character": 0, "at": [0, 0, 1]}}])"),
+              HasSubstr("names a character but no joint of it (loops[0].b)"));
   EXPECT_THAT(refusal(R"("loops": [{"a": {"prop": "ball"}, "b": {}}])"), HasSubstr("unknown prop"));
   EXPECT_THAT(refusal(R"("loops": [{"kind": "rod", "a": {"joint": "hand_l"}, "b": {}}])"),
               HasSubstr("a rod needs a length"));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/files.h"
+#include "convert/options.h"
 
 namespace sinew::cli {
 
@@ -43,8 +44,11 @@ std::vector<std::string> SourceOptions::arguments() const {
 
 Error SourceOptions::read(json& out) const {
   out = json::object();
-  if (!options_file.empty())
+  if (!options_file.empty()) {
     if (Error error = read_json(options_file, out)) return error;
+    convert::Options checked;
+    if (Error error = convert::Options::parse(out, checked)) return {options_file + ": " + error.message};
+  }
   if (!clip_data.empty())
     if (Error error = read_json(clip_data, out["clip_data"])) return error;
   if (unit != 0) out["unit"] = unit;  // NaN too: refused by name

@@ -58,6 +58,18 @@ nlohmann::json describe(const Clip& clip, const Skeleton& skeleton, double keys_
           {"memory_per_joint_second", double(controls) / joint_seconds}};
 }
 
+/// Notes where a clip's curves are farther from the samples than was asked for.
+void note_error(const Clip& clip, const Skeleton& skeleton, const FitReport& fitted, double asked_mm,
+                nlohmann::json& report) {
+  constexpr double kRounding = 1.01;  // the search reckons with doubles, clips are floats
+  if (fitted.max_mm <= kRounding * asked_mm) return;
+  char line[96];
+  std::snprintf(line, sizeof line, "' is off by %.3g mm at %.4g s, more than the %.3g mm asked for",
+                fitted.max_mm, fitted.worst_time, asked_mm);
+  report["notes"].push_back("clip '" + clip.name + "': joint '" +
+                            skeleton.joints[static_cast<std::size_t>(fitted.worst_joint)].name + line);
+}
+
 /// Rig joints in skeleton order.
 void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Options& options, Asset& asset,
                std::vector<Clip>& references, nlohmann::json& report) {
@@ -71,6 +83,7 @@ void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Optio
     input.name = motion.name;
     input.loops = motion.loops;
     input.sample_rate = motion.sample_rate;
+    input.times = motion.times;
     input.samples.clear();
     for (const auto& frame : motion.samples) {
       std::vector<Transform<double>> ordered(frame.size());
@@ -80,6 +93,7 @@ void fit_clips(const Rig& rig, const std::vector<int>& joint_of_rig, const Optio
     FitReport fitted;
     asset.clips.push_back(fit_clip(input, fit_options(options), fitted));
     references.push_back(std::move(fitted.reference));
+    note_error(asset.clips.back(), asset.skeleton, fitted, options.fit_error_mm, report);
     report["clips"].push_back(describe(asset.clips.back(), asset.skeleton, motion.sample_rate, fitted));
   }
 }

@@ -89,9 +89,11 @@ std::string reference_options() {
   return R"(// Options of `sinew convert --options FILE.json`. All are optional; these are the defaults.
 {
   // Metres per unit of the source. 0: what the file says; where it says nothing or the character would be
-  // taller than 5 m or shorter than 5 cm, guessed from the first frame's height and reported.
+  // taller than 5 m or shorter than 5 cm, guessed from the first frame's height and reported. Further files with
+  // clips: by the lengths of their bones.
   "unit": 0,
-  // Up axis of the source: "x", "y" or "z". "": what the file says, else the taller of y and z in the first frame.
+  // Up axis of the source: "x", "y" or "z". "": what the file says, else the taller of y and z in the first frame;
+  // of further files with clips, what brings their bones closest to the character's.
   "up": "",
   // Axis of the source that the character faces at rest: "x", "-x", "y", "-y", "z" or "-z". "": found by its toes,
   // else by its left and right, where names tell them.
@@ -149,8 +151,10 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
   if (json.is_null()) return {};
   if (!json.is_object()) return {"options are not a JSON object"};
   Options o;
+  std::string option;  // the one that is read
   try {
     for (const auto& [key, value] : json.items()) {
+      option = key;
       if (key == "unit")
         o.unit = value.get<double>();
       else if (key == "up")
@@ -168,7 +172,10 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
       else if (key == "muscles")
         o.muscles = parse_muscles(value);
       else if (key == "joints") {
-        for (const auto& [name, joint] : value.items()) o.joints[name] = parse_joint(joint, name);
+        for (const auto& [name, joint] : value.items()) {
+          option = "joints." + name;
+          o.joints[name] = parse_joint(joint, name);
+        }
       } else if (key == "strength")
         o.strength = value.get<double>();
       else if (key == "strength_margin")
@@ -204,7 +211,7 @@ Error Options::parse(const nlohmann::json& json, Options& out) {
       if (negative) return {"option '" + key + "' is negative"};
     }
   } catch (const nlohmann::json::exception& e) {
-    return {std::string("option has the wrong type: ") + import::plain_words(e)};
+    return {"option '" + option + "' has the wrong type: " + import::plain_words(e)};
   } catch (const BadOption& e) {
     return {e.what()};
   }

@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 
+#include "convert/fit/chain_error.h"
 #include "convert/roles.h"
 #include "convert/skin.h"
 
@@ -22,6 +26,7 @@ using Matrix = Eigen::Matrix4d;
 
 constexpr double kForeign = std::numbers::pi / 6;  ///< rad, between the directions of one bone in two files
 constexpr double kShortBone = 0.02;                ///< of the height: shorter ones say nothing
+constexpr double kCmu = 0.056444;                  ///< m, unit of the CMU motion library, by its own notes
 
 template <class V>
 V interpolate(const std::vector<double>& times, const std::vector<V>& keys, double t, const V& otherwise) {
@@ -200,7 +205,6 @@ double choose_scale(double stated, double height, double widest, const char*& ho
   how = stated > 0 ? "guessed from the first frame's height: the file's makes no sense"
                    : "guessed from the first frame's height";
   if (height < 1e-9) return 1;
-  constexpr double kCmu = 0.056444;  // of the CMU motion library, by its own notes
   const auto is_person = [&](double unit) { return height * unit > 1.35 && height * unit < 2.1; };
   if (stated >
       0) {  // wrong by what exporters forget: CMU's unit, centimetres or millimetres for metres, or back
@@ -272,8 +276,10 @@ double largest_turn(const std::vector<Transform<double>>& a, const std::vector<T
 /// as fast as it then goes on.
 bool begins_with_reference_pose(const Rig::Motion& motion) {
   if (motion.samples.size() < 9) return false;
-  const double leap = largest_turn(motion.samples[0], motion.samples[1]);
-  return leap * motion.sample_rate > 40 && leap > 10 * largest_turn(motion.samples[1], motion.samples[2]);
+  const auto speed = [&](int f) {  // rad/s
+    return largest_turn(motion.samples[f], motion.samples[f + 1]) / (motion.time(f + 1) - motion.time(f));
+  };
+  return speed(0) > 40 && speed(0) > 10 * speed(1);
 }
 
 constexpr double kMostSamples = 3e7;  ///< joints × frames of a clip: an hour of motion capture, 2 GB
@@ -326,8 +332,184 @@ std::string foreign_skeleton(const Rig& rig, const SourceScene& from, const std:
   return fault;
 }
 
+/// [joint] the way from its parent, in units of the file; zero where one of both is not in it.
+std::vector<Eigen::Vector3d> bones_of(const Rig& rig, const std::vector<Matrix>& world,
+                                      const std::vector<int>& nodes) {
+  std::vector<Eigen::Vector3d> bones(rig.joints.size(), Eigen::Vector3d::Zero());
+  for (std::size_t j = 0; j < bones.size(); ++j)
+    if (const int parent = rig.joints[j].parent; parent >= 0 && nodes[j] >= 0 && nodes[parent] >= 0)
+      bones[j] = (world[nodes[j]] - world[nodes[parent]]).block<3, 1>(0, 3);
+  return bones;
+}
+
+/// Metres per unit of a file whose bones are `theirs`, by the rig's, m, if any are in both: a usual unit
+/// where one is near. Notes bones that differ.
+std::optional<double> unit_by_bones(const Rig& rig, const SourceScene& from,
+                                    const std::vector<Eigen::Vector3d>& ours,
+                                    const std::vector<Eigen::Vector3d>& theirs, nlohmann::json& report) {
+  constexpr double kNear = 1.25;  // characters of one skeleton differ by as much
+  std::vector<double> ratios;
+  for (std::size_t j = 0; j < ours.size(); ++j)
+    if (theirs[j].norm() > 0 && ours[j].norm() > kShortBone * rig.height)
+      ratios.push_back(ours[j].norm() / theirs[j].norm());
+  if (ratios.empty()) return {};
+  std::sort(ratios.begin(), ratios.end());
+  const double low = ratios[ratios.size() / 4], high = ratios[ratios.size() - 1 - ratios.size() / 4];
+  double unit = ratios[ratios.size() / 2];
+  const double measured = unit;
+  if (high > kNear * low) {
+    char line[120];
+    std::snprintf(line, sizeof line, "its bones do not agree on its unit: half of them say %.3g to %.3g m",
+                  low, high);
+    report["notes"].push_back("'" + from.name + "': " + line);
+  }
+  double nearest = std::log(kNear);
+  for (const double usual : {rig.unit, from.meters_per_unit, 1.0, 0.01, 0.0254, kCmu, 0.1, 0.001})
+    if (usual > 0 && std::abs(std::log(usual / measured)) < nearest) {
+      nearest = std::abs(std::log(usual / measured));
+      unit = usual;
+    }
+  return unit;
+}
+
+/// Up axis and turn about the vertical, by how alike bones become.
+struct Axes {
+  int up = 1;
+  double turned = 0;  ///< rad
+  double alike = -2;  ///< mean cosine between bones, by their lengths
+};
+
+/// Those of `ups` that bring bones `theirs` closest to the rig's, in model space. A file whose vertical is
+/// the rig's also faces as it does; others may face any quarter.
+Axes axes_by_bones(const Rig& rig, const std::vector<int>& ups, const std::vector<Eigen::Vector3d>& ours,
+                   const std::vector<Eigen::Vector3d>& theirs) {
+  constexpr double kBetter = 1e-3;  // the first of equals counts
+  Axes best;
+  for (const int up : ups)
+    for (int quarter = 0; quarter < (up == rig.up ? 1 : 4); ++quarter) {
+      Axes axes{up, rig.turned + quarter * std::numbers::pi / 2, 0};
+      const Eigen::Matrix3d turn = basis(axes.up, 1, axes.turned).block<3, 3>(0, 0);
+      double weight = 0;
+      for (std::size_t j = 0; j < ours.size(); ++j) {
+        axes.alike += ours[j].dot(turn * theirs[j]);
+        weight += ours[j].norm() * theirs[j].norm();
+      }
+      axes.alike /= std::max(weight, 1e-300);
+      if (axes.alike > best.alike + kBetter) best = axes;
+    }
+  return best;
+}
+
+/// What takes a file that adds clips to model space, by options, by what it says, and by its joints
+/// (`nodes`, of each of the rig's) beside those of the rig's own file `scene`. Notes where that comes from.
+Matrix place_clips(const Rig& rig, const SourceScene& scene, const SourceScene& from,
+                   const std::vector<int>& nodes, const Options& options, nlohmann::json& report) {
+  constexpr double kAlike = 0.7;  // 45 degrees: else the file's rest is no pose, as in many BVH
+  std::vector<int> own;
+  for (const Rig::Joint& joint : rig.joints) own.push_back(joint.node);
+  const Matrix to_model = basis(rig.up, rig.unit, rig.turned);
+  const auto our_bones = [&](std::vector<Matrix> world) {
+    for (Matrix& m : world) m = to_model * m;
+    return bones_of(rig, world, own);
+  };
+  const auto pose = [](const SourceScene& of, bool first) {
+    return node_transforms(of, first && !of.clips.empty() ? &of.clips.front() : nullptr, 0);
+  };
+  const auto ours = our_bones(pose(scene, false)), theirs = bones_of(rig, pose(from, false), nodes);
+
+  Rig other;
+  nlohmann::json chosen;
+  choose_unit(from, joint_nodes(from), options, !from.meshes.empty(), other, chosen);
+  std::string unit_from = chosen["unit"]["from"], up_from = chosen["up"]["from"];
+  if (options.unit <= 0)
+    if (const std::optional<double> unit = unit_by_bones(rig, from, ours, theirs, report)) {
+      other.unit = *unit;
+      unit_from = "by its bones' lengths";
+    }
+  const bool up_known = !options.up.empty() || from.up_axis >= 0;
+  const bool comparable =
+      std::any_of(theirs.begin(), theirs.end(), [](const auto& b) { return b.norm() > 0; });
+  std::vector<int> ups{other.up};
+  if (!up_known && comparable) {
+    ups = {rig.up, 1, 2};
+    up_from = "by its bones at rest";
+  }
+  Axes axes = axes_by_bones(rig, ups, ours, theirs);
+  if (axes.alike < kAlike && comparable && !(up_known && other.up == rig.up)) {
+    const bool skinned = !scene.meshes.empty();  // else the first frame is the rig's rest
+    axes = axes_by_bones(rig, ups, our_bones(pose(scene, !skinned)), bones_of(rig, pose(from, true), nodes));
+    if (!up_known) up_from = "by its bones in the first frame";
+  }
+  char line[200];
+  std::snprintf(line, sizeof line, "unit %.6g m (%s), up %c (%s)", other.unit, unit_from.c_str(),
+                "xyz"[axes.up], up_from.c_str());
+  report["notes"].push_back("'" + from.name + "': " + line);
+  return basis(axes.up, other.unit, axes.turned);
+}
+
+constexpr double kClosest = 1.0 / 120;  ///< s between samples: no body moves so fast that it takes more
+constexpr double kSameTime = 0.01;      ///< of a sample's time: 1 mm where 30 keys/s change speed by 3 m/s
+
 double sampling_rate(const SourceClip& clip) {
-  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 120.0);
+  return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 1 / kClosest);
+}
+
+/// A key that moves nodes.
+struct Key {
+  double time = 0;  ///< s
+  int tracks = 0;   ///< that have it
+};
+
+/// Keys in time; those at less than `merged` s count as one.
+std::vector<Key> keys_of(const SourceClip& clip, double merged) {
+  std::vector<double> all;
+  for (const SourceChannel& c : clip.channels)
+    for (const auto* times : {&c.position_times, &c.rotation_times, &c.scale_times})
+      if (times->size() > 1) all.insert(all.end(), times->begin(), times->end());
+  std::sort(all.begin(), all.end());
+  std::vector<Key> keys;
+  for (const double t : all)
+    if (keys.empty() || t - keys.back().time > merged)
+      keys.push_back({t, 1});
+    else
+      ++keys.back().tracks;
+  return keys;
+}
+
+/// The keys of a clip that has some between even samples at `rate`, else none: those of most tracks first,
+/// then the earlier.
+std::vector<Key> uneven_keys(const SourceClip& clip, double rate) {
+  constexpr double kMerged = 0.001;  // of a sample's time: numbers in files are no more exact
+  if (!(clip.duration > 0)) return {};
+  std::vector<Key> keys = keys_of(clip, kMerged / rate);
+  const double even = std::round(clip.duration * rate) / clip.duration;  // ends with the clip
+  if (std::all_of(keys.begin(), keys.end(), [&](const Key& k) {
+        return std::abs(k.time * even - std::round(k.time * even)) <= kSameTime;
+      }))
+    return {};
+  std::stable_sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) { return x.tracks > y.tracks; });
+  return keys;
+}
+
+/// Adds a time unless it is too close to another.
+void add_time(double time, std::set<double>& times) {
+  constexpr double kGap = (1 - kSameTime) * kClosest;
+  const auto after = times.lower_bound(time);
+  if ((after == times.end() || *after - time >= kGap) &&
+      (after == times.begin() || time - *std::prev(after) >= kGap))
+    times.insert(time);
+}
+
+/// The times, and between them instants about 1/rate apart.
+std::vector<double> filled(const std::set<double>& times, double rate) {
+  std::vector<double> out;
+  for (const double time : times) {
+    const double from = out.empty() ? 0 : out.back();
+    const int parts = std::max(1, static_cast<int>(std::lround((time - from) * rate)));
+    for (int k = 1; k < parts; ++k) out.push_back(from + k * (time - from) / parts);
+    out.push_back(time);
+  }
+  return out;
 }
 
 /// The weights of morph targets, over the frames that are left. Those of one name move together: the first
@@ -335,7 +517,7 @@ double sampling_rate(const SourceClip& clip) {
 void add_morph_keys(const SourceScene& scene, const SourceClip& clip, Rig::Motion& motion,
                     nlohmann::json& report) {
   const double left_out = motion.begin - clip.begin;
-  const double duration = double(motion.samples.size() - 1) / motion.sample_rate;
+  const double duration = motion.time(static_cast<int>(motion.samples.size()) - 1);
   for (const import::SourceMorphChannel& channel : clip.morphs) {
     const import::SourceMesh& mesh = scene.meshes[std::size_t(channel.mesh)];
     for (std::size_t m = 0; m < mesh.morphs.size(); ++m) {
@@ -353,44 +535,139 @@ void add_morph_keys(const SourceScene& scene, const SourceClip& clip, Rig::Motio
   }
 }
 
-/// One clip, sampled evenly; every joint's node is looked up in `nodes` (-1: not in this file, stays at
-/// rest).
-Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<int>& nodes,
-                   const Matrix& to_model, const Rig& rig, nlohmann::json& report) {
+/// All joints at t, local; every joint's node is looked up in `nodes` (-1: not in this file, stays at rest).
+std::vector<Transform<double>> pose_at(const SourceScene& scene, const SourceClip& clip, double t,
+                                       const std::vector<int>& nodes, const Matrix& to_model,
+                                       const Rig& rig) {
+  const std::vector<Matrix> world = node_transforms(scene, &clip, t);
+  std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    const int parent = rig.joints[j].parent;
+    const Transform<double> rest_local =
+        parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
+    model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]])
+                             : (parent < 0 ? rest_local : model[parent] * rest_local);
+    local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
+    local[j].rotation.normalize();
+  }
+  return local;
+}
+
+using Poses = std::vector<std::vector<Transform<double>>>;  ///< [time][joint]
+
+/// How far lines between the samples of a motion pass by keys; `truth`: the poses at them.
+ChainError passed_by(const Rig& rig, const Rig::Motion& motion, const std::vector<Key>& keys,
+                     const Poses& truth, double skin_distance) {
+  std::vector<int> parents;
+  for (const Rig::Joint& joint : rig.joints) parents.push_back(joint.parent);
+  ChainError chain(truth, parents, skin_distance);
+  std::vector<double> times;
+  for (std::size_t f = 0; f < motion.samples.size(); ++f) times.push_back(motion.time(static_cast<int>(f)));
+  std::vector<JointMotion> lines(rig.joints.size());
+  for (const Key& key : keys) {
+    const auto later = std::lower_bound(times.begin() + 1, times.end() - 1, key.time);
+    const std::size_t next = static_cast<std::size_t>(later - times.begin());
+    const double u = (key.time - times[next - 1]) / (times[next] - times[next - 1]);
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+      const Transform<double>&a = motion.samples[next - 1][j], &b = motion.samples[next][j];
+      lines[j].push_back(
+          {a.rotation.slerp(u, b.rotation), a.translation + u * (b.translation - a.translation)});
+    }
+  }
+  for (std::size_t j = 0; j < lines.size(); ++j) chain.set(static_cast<int>(j), std::move(lines[j]));
+  chain.update();
+  return chain;
+}
+
+/// Joint of the largest error at a key.
+int worst_joint(const ChainError& chain, int key) {
+  int worst = 0;
+  for (int j = 1; j < chain.joints(); ++j)
+    if (chain.error(j, key) > chain.error(worst, key)) worst = j;
+  return worst;
+}
+
+/// Samples a motion evenly and, where that passes by `keys` farther than half of the error that is allowed,
+/// at the keys that most tracks have and at those that are still passed by. Notes keys that are all the same.
+template <class Pose>
+void take_samples(const Rig& rig, const SourceClip& clip, const std::vector<Key>& keys, const Pose& pose,
+                  const Options& options, Rig::Motion& motion, nlohmann::json& report) {
+  constexpr double kShare = 0.5;  // the fit comes on top
+  constexpr double kFill = 60;    // 1/s, between keys that are far apart: the curve is to go straight there
+  constexpr int kRounds = 8;      // each takes a large part of what is left
+  const double stated = motion.sample_rate;
+  const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * stated)) + 1);
+  if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
+  for (int f = 0; f < frames; ++f) motion.samples.push_back(pose(motion.time(f)));
+  if (keys.empty()) return;
+  Poses truth;
+  for (const Key& key : keys) truth.push_back(pose(key.time));
+  const auto errors = [&] { return passed_by(rig, motion, keys, truth, options.fit_distance_cm / 100); };
+  ChainError chain = errors();
+  std::set<double> times{0, clip.duration};
+  const double even_error = chain.largest();
+  const double bound = kShare * options.fit_error_mm / 1000;
+  if (even_error > bound) {
+    const Rig::Motion even = motion;
+    for (const Key& key : keys)
+      if (2 * key.tracks >= keys.front().tracks) add_time(key.time, times);
+    std::size_t before = 0;
+    for (int round = 0; round < kRounds && before != times.size(); ++round) {
+      before = times.size();
+      motion.sample_rate = stated;
+      motion.times = filled(times, std::min(stated, kFill));
+      motion.samples.clear();
+      for (const double t : motion.times) motion.samples.push_back(pose(t));
+      chain = errors();
+      for (std::size_t k = 0; k < keys.size(); ++k)
+        if (chain.error(worst_joint(chain, int(k)), int(k)) > bound) add_time(keys[k].time, times);
+    }
+    if (chain.largest() > 0.9 * even_error) {  // what is missed is too close to other keys
+      motion = even;
+      chain = errors();
+    }
+  }
+  int key = 0;
+  for (int k = 1; k < chain.frames(); ++k)
+    if (chain.error(worst_joint(chain, k), k) > chain.error(worst_joint(chain, key), key)) key = k;
+  const int joint = worst_joint(chain, key);
+  const double mm = 1000 * chain.error(joint, key);
+  if (mm <= options.fit_error_mm) return;
+  char line[160];
+  std::snprintf(line, sizeof line, "' passes one by %.3g mm at %.4g s", mm, keys[std::size_t(key)].time);
+  report["notes"].push_back("clip '" + motion.name +
+                            "': keys less than 1/120 s from others are left out; joint '" +
+                            rig.joints[std::size_t(joint)].name + line);
+}
+
+/// One clip; `keys`: see uneven_keys(); `nodes`: see pose_at().
+Rig::Motion sample(const SourceScene& scene, const SourceClip& clip, const std::vector<Key>& keys,
+                   const std::vector<int>& nodes, const Matrix& to_model, const Rig& rig,
+                   const Options& options, nlohmann::json& report) {
   Rig::Motion motion;
   motion.name = clip.name;
   motion.begin = clip.begin;
   motion.extras = clip.extras;
   motion.sample_rate = sampling_rate(clip);
-  const int frames = std::max(1, static_cast<int>(std::lround(clip.duration * motion.sample_rate)) + 1);
-  if (frames > 1) motion.sample_rate = (frames - 1) / clip.duration;
   bool scaled = false;
   for (const SourceChannel& c : clip.channels)
     for (const Eigen::Vector3d& s : c.scales) scaled = scaled || (s - c.scales.front()).norm() > 1e-3;
   if (scaled)
     report["notes"].push_back("clip '" + clip.name + "': scale keys; positions follow them, sizes do not");
-  for (int f = 0; f < frames; ++f) {
-    const std::vector<Matrix> world = node_transforms(scene, &clip, f / motion.sample_rate);
-    std::vector<Transform<double>> model(rig.joints.size()), local(rig.joints.size());
-    for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-      const int parent = rig.joints[j].parent;
-      const Transform<double> rest_local =
-          parent < 0 ? rig.joints[j].rest : rig.joints[parent].rest.inverse() * rig.joints[j].rest;
-      model[j] = nodes[j] >= 0 ? rigid(to_model * world[nodes[j]])
-                               : (parent < 0 ? rest_local : model[parent] * rest_local);
-      local[j] = parent < 0 ? model[j] : model[parent].inverse() * model[j];
-      local[j].rotation.normalize();
-    }
-    motion.samples.push_back(std::move(local));
-  }
+  const auto pose = [&](double t) { return pose_at(scene, clip, t, nodes, to_model, rig); };
+  take_samples(rig, clip, keys, pose, options, motion, report);
+  const std::size_t frames = motion.samples.size();
   if (const auto [count, largest] = stretch(motion); count > 0)
     report["notes"].push_back(
         "clip '" + clip.name + "': " + std::to_string(count) +
         (count == 1 ? " joint changes its" : " joints change their") + " distance to the parent, by up to " +
         std::to_string(std::lround(1e3 * largest)) + " mm; physics follows the clip there");
   if (begins_with_reference_pose(motion)) {
+    const double left_out = motion.time(1);
     motion.samples.erase(motion.samples.begin());
-    motion.begin += 1 / motion.sample_rate;
+    motion.begin += left_out;
+    if (!motion.times.empty()) motion.times.erase(motion.times.begin());
+    for (double& t : motion.times) t -= left_out;
     report["notes"].push_back("clip '" + clip.name +
                               "': its first frame is a reference pose, apart from the motion; left out");
   }
@@ -509,19 +786,17 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
     if (&from == &scene) {
       for (std::size_t j = 0; j < rig.joints.size(); ++j) of_joint[j] = rig.joints[j].node;
     } else {
-      Rig other;
-      nlohmann::json ignored;
       const std::vector<int> other_nodes = joint_nodes(from);
       if (other_nodes.empty() || from.format == "urdf")
         return {"'" + from.name + "' cannot be added: " +
                 (from.format == "urdf" ? "a URDF takes no part in other characters"
                                        : "it has no joints: no skin, and no clip that moves a node")};
-      choose_unit(from, other_nodes, options, !from.meshes.empty(), other, ignored);
-      to = basis(other.up, other.unit, rig.turned);
       std::map<std::string, int> by_name;
       for (const int n : other_nodes) by_name.emplace(plain_name(from.nodes[n].original_name), n);
       int matched = 0;
       std::string why;
+      nlohmann::json placed;
+      placed["notes"] = nlohmann::json::array();
       for (std::size_t j = 0; j < rig.joints.size(); ++j)
         if (const auto found = by_name.find(plain_name(rig.joints[j].name)); found != by_name.end()) {
           of_joint[j] = found->second;
@@ -530,22 +805,30 @@ Error build_rig(const std::vector<SourceScene>& scenes, const Options& options, 
       if (2 * matched < static_cast<int>(std::min(rig.joints.size(), by_name.size())))
         why = "'" + from.name + "' shares " + (matched == 0 ? "no" : "only " + std::to_string(matched)) +
               " joint name" + (matched > 1 ? "s" : "") + " with '" + scene.name + "'";
-      else
+      else {
+        to = place_clips(rig, scene, from, of_joint, options, placed);
         why = foreign_skeleton(rig, from, of_joint, to);
+      }
       if (!why.empty()) {
         rig.foreign.push_back({static_cast<std::size_t>(&from - scenes.data()), why});
         continue;
       }
       report["notes"].push_back("'" + from.name + "': " + std::to_string(matched) + " of " +
                                 std::to_string(rig.joints.size()) + " joints matched by name");
+      for (const nlohmann::json& note : placed["notes"]) report["notes"].push_back(note);
     }
     for (const SourceClip& clip : from.clips) {
       if (!options.clips.empty() &&
           std::find(options.clips.begin(), options.clips.end(), clip.name) == options.clips.end())
         continue;
-      if (clip.duration * sampling_rate(clip) * double(rig.joints.size()) > kMostSamples)
+      const double most = kMostSamples / double(rig.joints.size());
+      bool too_long = clip.duration * sampling_rate(clip) > most;
+      std::vector<Key> keys;
+      if (!too_long) keys = uneven_keys(clip, sampling_rate(clip));
+      too_long |= double(keys.size()) > most;
+      if (too_long)
         return {"clip '" + clip.name + "' is too long to convert: " + std::to_string(clip.duration) + " s"};
-      Rig::Motion motion = sample(from, clip, of_joint, to, rig, report);
+      Rig::Motion motion = sample(from, clip, keys, of_joint, to, rig, options, report);
       if (motion.samples.size() < 2) report["notes"].push_back("clip '" + clip.name + "' is a single pose");
       while (!taken.insert(motion.name).second) motion.name += "_2";
       rig.motions.push_back(std::move(motion));

@@ -26,13 +26,17 @@ struct Rig {
   };
   struct Motion {
     std::string name;
-    double sample_rate = 30;
+    double sample_rate = 30;    ///< Hz, of even samples; in the middle, of uneven ones
+    std::vector<double> times;  ///< s, of samples whose times are uneven; else empty
     bool loops = false;
     double begin = 0;                                     ///< s in the file, of the first frame
     std::string extras;                                   ///< see import::SourceClip
     std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local
     /// Of morph targets, by the curve that moves them: (s, weight).
     std::map<std::string, std::vector<std::pair<double, double>>> morph_keys;
+
+    /// s, of a frame.
+    double time(int frame) const { return times.empty() ? frame / sample_rate : times[std::size_t(frame)]; }
   };
   /// A scene whose clips are for another skeleton.
   struct Foreign {

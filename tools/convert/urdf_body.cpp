@@ -111,7 +111,7 @@ Error build_urdf(const import::SourceScene& scene, const Options& options, Asset
       joint.type = JointType::kFixed;
     }
     if (link.has_limits && joint.type != JointType::kFixed && link.lower == link.upper) {
-      note("joint '" + link.joint_name + "' is locked (lower limit equals upper); fixed");
+      note("joint '" + link.joint_name + "' is locked (lower limit equals upper); fixed there");
       joint.type = JointType::kFixed;
     }
     if (link.has_limits && joint.type != JointType::kFixed && (link.lower > 0 || link.upper < 0))

@@ -1,5 +1,6 @@
 #include "import/gltf_document.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 
 #include "import/gltf_floats.h"
 #include "import/plain_words.h"
@@ -154,6 +156,32 @@ void resolve_pointer(Json& target) {
   if (!std::getline(pointer, rest)) target = {{"node", node}, {"path", path}};
 }
 
+/// assimp reads one scene; notes nodes that are not in it.
+void note_other_scenes(const Json& document, std::vector<std::string>& notes) {
+  if (length_of(document, "scenes") == 0) return;
+  const Json& scenes = document.at("scenes");
+  const std::size_t scene =
+      document.contains("scene") ? index_in(document, "scene", scenes.size(), "file") : 0;
+  const Json& nodes = document.at("nodes");
+  std::vector<bool> seen(nodes.size());
+  std::vector<Json> open;
+  if (scenes[scene].contains("nodes"))
+    open.assign(scenes[scene]["nodes"].begin(), scenes[scene]["nodes"].end());
+  while (!open.empty()) {
+    const Json node = open.back();
+    open.pop_back();
+    if (!node.is_number_unsigned() || node.get<std::size_t>() >= nodes.size()) continue;  // assimp refuses it
+    const std::size_t k = node.get<std::size_t>();
+    if (seen[k]) continue;
+    seen[k] = true;
+    if (nodes[k].contains("children"))
+      open.insert(open.end(), nodes[k]["children"].begin(), nodes[k]["children"].end());
+  }
+  if (const auto others = std::count(seen.begin(), seen.end(), false); others > 0)
+    notes.push_back(std::to_string(others) + (others == 1 ? " node is" : " nodes are") +
+                    " not in the file's default scene; left out");
+}
+
 /// Leaves only channels that move a node: assimp 5.2.5 takes what has no target for one of some node.
 void drop_untargeted_channels(Json& animation, const std::string& where, std::vector<std::string>& notes) {
   Json kept = Json::array();
@@ -172,12 +200,13 @@ void drop_untargeted_channels(Json& animation, const std::string& where, std::ve
   channels = std::move(kept);
 }
 
-/// assimp 5.2.5 gives a mesh the skin of whichever of its nodes comes last: each skin takes a copy.
+/// assimp 5.2.5 gives a mesh the skin of whichever of its nodes comes last, and does not read a node's own
+/// weights of morph targets: each skin takes a copy, and so do such weights, which become the copy's.
 void part_shared_meshes(Json& document) {
   if (!document.contains("meshes")) return;
   Json& meshes = document.at("meshes");
   const std::size_t count = meshes.size(), none = length_of(document, "skins");
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> copies;  // (mesh, skin) → mesh
+  std::map<std::tuple<std::size_t, std::size_t, std::string>, std::size_t> copies;  // with skin, weights
   std::vector<bool> taken(count);
   Json& nodes = document.at("nodes");
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -186,12 +215,15 @@ void part_shared_meshes(Json& document) {
     const std::string where = "node " + std::to_string(k);
     const std::size_t mesh = index_in(node, "mesh", count, where);
     const std::size_t skin = node.contains("skin") ? index_in(node, "skin", none, where) : none;
-    const auto [found, fresh] = copies.try_emplace({mesh, skin}, mesh);
-    if (fresh && taken[mesh]) {
+    const bool own_weights = node.contains("weights") && node.at("weights").is_array();
+    const auto [found, fresh] =
+        copies.try_emplace({mesh, skin, own_weights ? node.at("weights").dump() : ""}, mesh);
+    if (fresh && (taken[mesh] || own_weights)) {
       found->second = meshes.size();
       meshes.push_back(Json(meshes[mesh]));
+      if (own_weights) meshes.back()["weights"] = node.at("weights");
     }
-    taken[mesh] = true;
+    taken[mesh] = taken[mesh] || !own_weights;
     node["mesh"] = found->second;
   }
 }
@@ -309,6 +341,7 @@ GltfDocument prepare(const std::string& content, bool binary, const ReadLimits& 
   if (document.contains("nodes")) {
     Json& nodes = document.at("nodes");
     check_tree(nodes, limits);
+    note_other_scenes(document, out.notes);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       out.node_names.push_back(nodes[k].value("name", ""));
       nodes[k]["name"] = node_tag(k);

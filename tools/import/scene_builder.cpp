@@ -322,7 +322,10 @@ void SceneBuilder::collect_mesh(const aiMesh& in, int node) {
     out_.nodes[made.node].is_bone = true;
     mesh.bones.push_back(std::move(made));
   }
-  if (!mesh.indices.empty()) out_.meshes.push_back(std::move(mesh));
+  if (mesh.indices.empty())
+    out_.notes.push_back("mesh '" + mesh.name + "' is of points or lines; left out");
+  else
+    out_.meshes.push_back(std::move(mesh));
 }
 
 SourceChannel SceneBuilder::channel_of(const aiNodeAnim& in, int node, double ticks,

@@ -80,7 +80,7 @@ struct SourceUrdfLink {
   std::string name, joint_name;
   int parent = -1;
   JointType type = JointType::kFixed;  ///< "floating" → kFree, "continuous" → kRevolute without limits
-  Transform<double> origin;            ///< joint frame → parent link
+  Transform<double> origin;  ///< joint frame → parent link, at rest: of a locked joint, where it is locked
   Vec3<double> axis = Vec3<double>::UnitX();
   bool has_inertial = false;
   double mass = 0;

@@ -101,6 +101,14 @@ void add_visual(const urdf::Visual& visual, SourceUrdfLink& link) {
     link.meshes.back().color = linear(visual.material->color);
 }
 
+/// A joint that has one position only stands there at rest.
+void place_locked(SourceUrdfLink& link) {
+  if (link.type == JointType::kRevolute)
+    link.origin.rotation *= Quat<double>(Eigen::AngleAxisd(link.lower, link.axis.normalized()));
+  else if (link.type == JointType::kPrismatic)
+    link.origin.translation += link.origin.rotation * (link.lower * link.axis.normalized());
+}
+
 void read_joint(const urdf::Joint& joint, SourceUrdfLink& link) {
   link.joint_name = joint.name;
   link.type = type_of(joint);
@@ -127,6 +135,7 @@ void read_joint(const urdf::Joint& joint, SourceUrdfLink& link) {
   }
   if (link.type != JointType::kFixed && link.type != JointType::kFree && link.axis.norm() < 1e-9)
     throw std::runtime_error("joint '" + joint.name + "' has an axis of length zero");
+  if (link.has_limits && link.lower == link.upper) place_locked(link);
 }
 
 void read_inertial(const urdf::Inertial& inertial, SourceUrdfLink& link) {

@@ -36,6 +36,8 @@ Anchor read_anchor(const json& entry, const std::string& where, const Scene& sce
   if (in.has("prop")) {
     anchor.kind = AnchorKind::kProp;
     anchor.index = prop_named(scene, in.at("prop"), in.inside("prop"));
+  } else if (in.has("character") && !in.has("joint")) {
+    fail(where, "names a character but no joint of it");
   } else if (in.has("joint")) {
     anchor.kind = AnchorKind::kCharacter;
     anchor.index =

@@ -15,6 +15,7 @@ struct FitInput {
   std::vector<std::vector<Transform<double>>> samples;  ///< [frame][joint] local; at least one frame
   std::vector<int> parents = {};            ///< [joint] before their children, −1 for none; empty: none
   std::vector<Transform<float>> rest = {};  ///< [joint] what joints that keep it need not store; or empty
+  std::vector<double> times = {};  ///< [frame] s, rising from 0, where samples are not even; else empty
 };
 
 struct FitOptions {
@@ -32,6 +33,8 @@ struct FitReport {
   };
   std::vector<Joint> joints;
   double max_mm = 0, rms_mm = 0;
+  int worst_joint = 0;    ///< whose error is `max_mm`, and
+  double worst_time = 0;  ///< s, when
   /// The same motion without rounding and with fifteen knots a second or more: what accelerations and torques
   /// are to be compared with.
   Clip reference;
@@ -39,7 +42,8 @@ struct FitReport {
 
 /// Looks for the curves of fewest bytes that keep a skin point of every joint, its ancestors' errors
 /// included, within `max_error_mm` of the samples, and accelerations within their budgets. One knot per
-/// sample and 16 bits, should nothing less do, come as close as that allows. Each track has a knot spacing
+/// sample (of uneven ones per smallest interval) and 16 bits, should nothing less do, come as close as that
+/// allows. Each track has a knot spacing
 /// and a rounding of its own; what hardly moves is a constant. The report compares the samples with the clip
 /// as it is played, but for the last sample of a loop, which is its first.
 /// Cost: some hundred passes over all samples; seconds for a clip of a minute.

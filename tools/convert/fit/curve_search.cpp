@@ -23,7 +23,7 @@ constexpr int kFewest =
     12;  ///< tracks that are worth weights of their own: those take two thirds of a register
 constexpr int kHalfOctave = 2;  ///< steps of packing_step() that divide it by √2
 
-/// Numbers of spans from coarsest to one per sample, by twos: tracks whose knots agree are sampled together,
+/// Numbers of spans from coarsest to finest, by twos: tracks whose knots agree are sampled together,
 /// and steps of 1.26 saved 3 % of the bytes only.
 std::vector<int> ladder(int finest, double duration) {
   std::vector<int> spans;
@@ -46,16 +46,19 @@ double angle_between(const Quat<double>& a, const Quat<double>& b) {
 }  // namespace
 
 CurveSearch::CurveSearch(const std::vector<std::vector<Transform<double>>>& samples,
-                         const std::vector<int>& parents, const std::vector<Transform<float>>& rest,
-                         double duration, bool loops, const CurveBudget& budget)
+                         std::vector<double> instants, int finest, const std::vector<int>& parents,
+                         const std::vector<Transform<float>>& rest, double duration, bool loops,
+                         const CurveBudget& budget)
     : budget_(budget),
       duration_(duration),
       loops_(loops),
       chain_(samples, parents, budget.skin_distance),
-      spans_(ladder(loops ? chain_.frames() : chain_.frames() - 1, duration)),
+      instants_(std::move(instants)),
+      spans_(ladder(finest, duration)),
       allowed_(spans_.size(), 1),
       channels_of_(samples.front().size()),
       local_(samples.front().size()) {
+  instants_.resize(samples.size());
   for (std::size_t j = 0; j < local_.size(); ++j) {
     const int joint = static_cast<int>(j);
     JointMotion motion;
@@ -108,7 +111,7 @@ void CurveSearch::add_channel(int joint, bool rotation, double lever, const Join
 
 const KnotGrid& CurveSearch::grid(int level) {
   auto& made = grids_[level];
-  if (!made) made = std::make_unique<KnotGrid>(chain_.frames(), spans_[level], budget_.degree, loops_);
+  if (!made) made = std::make_unique<KnotGrid>(instants_, spans_[level], budget_.degree, loops_);
   return *made;
 }
 

@@ -37,11 +37,12 @@ class CurveSearch {
     double acceleration;  ///< of the curve, root mean square, rad/s² or m/s²
   };
 
-  /// `samples`: [frame][joint]; after the last of a loop comes the first again. `parents`, `rest`: see
-  /// FitInput. `duration`: s.
-  CurveSearch(const std::vector<std::vector<Transform<double>>>& samples, const std::vector<int>& parents,
-              const std::vector<Transform<float>>& rest, double duration, bool loops,
-              const CurveBudget& budget);
+  /// `samples`: [frame][joint]; after the last of a loop comes the first again. `instants`: [frame] when, as
+  /// shares of the duration. `finest`: spans of the closest knots. `parents`, `rest`: see FitInput.
+  /// `duration`: s.
+  CurveSearch(const std::vector<std::vector<Transform<double>>>& samples, std::vector<double> instants,
+              int finest, const std::vector<int>& parents, const std::vector<Transform<float>>& rest,
+              double duration, bool loops, const CurveBudget& budget);
 
   void run();
 
@@ -80,6 +81,7 @@ class CurveSearch {
   double duration_ = 0;
   bool loops_ = false;
   ChainError chain_;
+  std::vector<double> instants_;       ///< [frame]
   std::vector<int> spans_;             ///< [level]
   std::vector<std::uint8_t> allowed_;  ///< [level] whether tracks may have it
   std::map<int, std::unique_ptr<KnotGrid>> grids_;

@@ -26,13 +26,13 @@ Eigen::SparseMatrix<double> roughness(int controls, bool loops) {
 
 }  // namespace
 
-KnotGrid::KnotGrid(int frames, int spans, int degree, bool loops)
+KnotGrid::KnotGrid(std::span<const double> instants, int spans, int degree, bool loops)
     : spans_(loops ? std::max(spans, degree + 1) : std::max(1, spans)), degree_(degree) {
-  const int intervals = std::max(1, loops ? frames : frames - 1);
+  const int frames = static_cast<int>(instants.size());
   controls_ = loops ? spans_ : spans_ + degree;
   std::vector<Eigen::Triplet<double>> entries, second;
   for (int f = 0; f < frames; ++f) {
-    const double knots = double(f) / intervals * spans_;
+    const double knots = instants[f] * spans_;
     const int span = std::min(static_cast<int>(knots), spans_ - 1);
     const auto w = BsplineBasis<double>::at(degree, knots - span);
     for (int j = 0; j <= degree; ++j) {

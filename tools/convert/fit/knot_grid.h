@@ -2,14 +2,15 @@
 #pragma once
 
 #include <Eigen/Sparse>
+#include <span>
 
 namespace sinew::convert {
 
 /// The basis of one number of spans at the instants of the samples, factorised once for all curves on it.
 class KnotGrid {
  public:
-  /// `frames`: samples; after the last of a loop comes the first again.
-  KnotGrid(int frames, int spans, int degree, bool loops);
+  /// `instants`: [frame] of the samples, 0 to 1; after the last of a loop comes, at 1, the first again.
+  KnotGrid(std::span<const double> instants, int spans, int degree, bool loops);
 
   /// Controls [control][component] of the curve that lies nearest to the samples [frame][component].
   Eigen::MatrixXd fit(const Eigen::MatrixXd& samples) const;
