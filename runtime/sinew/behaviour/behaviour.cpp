@@ -157,7 +157,9 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
     std::copy(last_.begin(), last_.end(), jets.begin());
     return;
   }
-  if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
+  if (walks_)
+    write_walk(jets, double(h));
+  else if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
     write_stance(jets, double(h));
   fade(jets, h);
   std::copy(jets.begin(), jets.end(), last_.begin());
@@ -190,10 +192,13 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
   const MassMotion clip = body_.mass_of(jets, model_);
   clip_velocity_ = from_above(clip.velocity);
   clip_body_ = from_above(clip.place);
+  clip_root_ = jets[0].rotation.template cast<double>().normalized();
+  clip_spin_ = clip_root_ * jets[0].omega.template cast<double>();
   Vec2 middle = Vec2::Zero();
   ground_ = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
+    clip_foot_motion_[side] = ankle;
     const Quat<TimeJet<T>>& q = ankle.rotation;
     clip_ankle_[side].translation = value_of(ankle.translation).template cast<double>();
     clip_ankle_[side].rotation =
@@ -242,10 +247,10 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
-    // Who walks goes on as the clip does, upright: its next step is the one that catches.
-    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return;
+    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, jets, h);
     begin_plan(is, jets);
   }
+  if (walks_) return walk_on(character, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
              faster = from_above(is.mass.velocity) - plan_.velocity;
@@ -324,13 +329,18 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
-  const Quat<double> wanted = jets[0].rotation.template cast<double>();
+  begin_trunk(is, jets[0]);
+  choose_support(is);
+  fades_ = true;
+}
+
+template <class T>
+void Behaviour<T>::begin_trunk(const MeasuredBody& is, const JointJet<T>& root) {
+  const Quat<double> wanted = root.rotation.template cast<double>();
   turn_ = rotation_log<double>(is.root.rotation * wanted.conjugate());
   turn_rate_ = spin_;
   turn_acceleration_.setZero();
-  height_ = {is.root.translation.z() - double(jets[0].translation.z()), 0.0, 0.0};
-  choose_support(is);
-  fades_ = true;
+  height_ = {is.root.translation.z() - double(root.translation.z()), 0.0, 0.0};
 }
 
 template <class T>
@@ -392,7 +402,7 @@ void Behaviour<T>::move_plan(double h) {
 template <class T>
 void Behaviour<T>::move_trunk(double h) {
   const double time = kTrunk * std::sqrt(unit_);
-  const Vec3<double> off = turn_ - Vec3<double>(0, 0, to_feet().yaw);
+  const Vec3<double> off = turn_ - Vec3<double>(0, 0, walks_ ? 0 : to_feet().yaw);
   Vec3<double> acceleration = -off / (time * time) - 2 / time * turn_rate_;
   if (const double size = acceleration.norm(); size > kMostTrunk / unit_)
     acceleration *= kMostTrunk / unit_ / size;
@@ -442,25 +452,29 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
                         rotation_exp<double>(share.value * rotation_log<double>(lifted_.rotation.conjugate() *
                                                                                 foot_[side].rotation));
   }
-  // As high as the clip, but no higher than straight legs reach.
+  move_height({value_of(stance.ankle[0]), value_of(stance.ankle[1])}, plan_.place - clip_body_, h);
+  stance.height = height_;
+  take_stance<T>(body_, stance, jets, model_);
+}
+
+/// As high as the clip, but no higher than straight legs reach. `shift`: of the root, from the clip's.
+template <class T>
+void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double h) {
   double lower = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     const FootLeg<T>& leg = body_.legs[side];
     const Vec3<double> hip =
         value_of(model_[static_cast<std::size_t>(leg.upper)].translation).template cast<double>();
-    const Vec2 across =
-        from_above(value_of(stance.ankle[side])) - (from_above(hip) + plan_.place - clip_body_);
+    const Vec2 across = from_above(ankle[side]) - (from_above(hip) + shift);
     const double length = kStraight * body_.leg_length[side];
     const double up = std::sqrt(std::max(length * length - across.squaredNorm(), 0.04 * length * length));
-    lower = std::min(lower, stance.ankle[side][2].value + up - hip.z());
+    lower = std::min(lower, ankle[side].z() + up - hip.z());
   }
   const double time = kHeight * std::sqrt(unit_);
   height_.acceleration =
       std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -kDrop, kRise);
   height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
   height_.rate += h * height_.acceleration;
-  stance.height = height_;
-  take_stance<T>(body_, stance, jets, model_);
 }
 
 template <class T>
@@ -524,6 +538,7 @@ void Behaviour<T>::finish(Character<T>& character) {
 /// The animation again, where it is.
 template <class T>
 void Behaviour<T>::give_up(Character<T>& character) {
+  walks_ = false;
   (void)character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;
 }
@@ -536,7 +551,7 @@ void Behaviour<T>::tell(BehaviourEventKind kind, BehaviourReason reason, double 
 template <class T>
 void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double number) {
   report_.state = BehaviourState::kFall;
-  risen_ = false;
+  risen_ = walks_ = false;
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
@@ -680,7 +695,8 @@ void Behaviour<T>::visit(StateBytes& bytes) {
   BehaviourReport& r = report_;
   bytes(r.state, r.steps, r.capture_depth, r.time, r.fell_beyond, r.tries);
   bytes(plan_.place, plan_.velocity, plan_.acceleration, frequency_, foot_, swing_, home_, swing_time_,
-        lifted_, turn_, turn_rate_, turn_acceleration_, spin_, height_, root_before_, level_);
+        walks_, stance_, error_.place, error_.velocity, error_.acceleration, foot_offset_, lifted_, turn_,
+        turn_rate_, turn_acceleration_, spin_, height_, root_before_, level_);
   bytes(measured_, strength_, rest_, allowed_, knocked_, risen_, last_, asked_, fades_, fade_, fade_numbers_);
   BearingGround& ground = last_step_.ground;
   bytes(last_step_.momentum, last_step_.root_unknown, ground.force, ground.place, ground.velocity,

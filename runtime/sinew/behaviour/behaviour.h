@@ -32,7 +32,7 @@ enum class BehaviourState : std::uint8_t {
   kClip,     ///< the animation, and nothing else
   kPassive,  ///< pushed, and not reacting yet
   kBalance,  ///< feet stand, the body is brought back over them
-  kStep,     ///< one foot is on its way
+  kStep,     ///< one foot is on its way, or the feet of a walk land where they catch it
   kFall,     ///< nothing is done any more
   kDown,     ///< lies still: it may get up, or the host decides how
   kGather,   ///< lies, and comes into the pose from which it rises
@@ -182,6 +182,14 @@ class Behaviour {
   void move_trunk(double h);
   void move_swing(double h);
   void write_stance(std::span<JointJet<T>> jets, double h);
+  void move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double h);
+  void begin_trunk(const MeasuredBody& is, const JointJet<T>& root);
+  void begin_walk(Character<T>& character, std::span<const JointJet<T>> jets, double h);
+  void walk_on(Character<T>& character, double h);
+  void change_feet(Character<T>& character, double h);
+  void move_offset(double h);
+  Vec2 clip_ankle_now(std::size_t side, double h) const;
+  void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
   static void displace(Character<T>& character, const Displacement& further);
   void finish(Character<T>& character);
@@ -210,7 +218,14 @@ class Behaviour {
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
   LastStep last_step_;
-  bool restored_ = false;                           ///< that is the restored world\'s
+  bool restored_ = false;  ///< that is the restored world\'s
+  Quat<double> clip_root_ = Quat<double>::Identity();
+  Vec3<double> clip_spin_ = Vec3<double>::Zero();    ///< rad/s, world axes
+  bool walks_ = false;                               ///< it was pushed while it walked, and walks on
+  int stance_ = 0;                                   ///< the foot that stands, of a walker
+  Pendulum error_;                                   ///< what a walker is off its animation
+  std::array<MovingVector<double>, 2> foot_offset_;  ///< m, and of its feet
+  std::array<MovingTransform<T>, 2> clip_foot_motion_;
   double ground_ = 0;                               ///< m, height of what the clip's feet stand on
   double level_ = 0;                                ///< m, that of what the body stands or lies on
   Vec3<double> clip_slide_ = Vec3<double>::Zero();  ///< m/s, of the clip's lower foot

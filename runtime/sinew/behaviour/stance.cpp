@@ -50,15 +50,35 @@ std::vector<Vec3<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
   return sole;
 }
 
-/// Turns the foot to where it stands, whatever the leg above it does.
+/// Turns the foot to where it is wanted, whatever the leg above it does.
 template <class T>
-void set_foot(const StandingBody<T>& body, const FootLeg<T>& leg, const Quat<double>& foot,
+void set_foot(const StandingBody<T>& body, const FootLeg<T>& leg, const Quat<TimeJet<T>>& foot,
               std::span<JointJet<T>> jets) {
   const auto joint = static_cast<std::size_t>(leg.foot);
   const MovingTransform<T> above = model_motion<T>(jets, body.parents, body.parents[joint]);
-  const Quat<T>& q = foot.cast<T>();
-  const Quat<TimeJet<T>> standing(TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z()));
-  set_rotation<T>(above.rotation.conjugate() * standing, jets[joint]);
+  set_rotation<T>(above.rotation.conjugate() * foot, jets[joint]);
+}
+
+/// Brings an ankle to its place by the joints above it, and the foot as it is wanted.
+template <class T>
+void reach_foot(const StandingBody<T>& body, std::size_t side, const MovingVector<T>& ankle,
+                const Quat<TimeJet<T>>& foot, std::span<JointJet<T>> jets) {
+  const FootLeg<T>& leg = body.legs[side];
+  TwoBoneJob<T> reach{body.parents, jets, leg.upper, leg.middle, leg.foot, ankle};
+  reach.pole = model_motion<T>(jets, body.parents, leg.upper).rotation * still<T>(leg.bend);
+  reach.hinge = leg.hinge;
+  reach.keep_end = false;
+  (void)reach.Run();
+  set_foot<T>(body, leg, foot, jets);
+}
+
+/// The root's motion, turned a little about world axes.
+template <class T>
+JointJet<T> turned(const JointJet<T>& root, const MovingVector<double>& turn) {
+  MovingTransform<T> out = moving_transform<T>(root);
+  const MovingVector<T> half = cast<T>(turn) * TimeJet<T>(T(0.5));
+  out.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z()) * out.rotation;
+  return joint_jet<T>(out);
 }
 
 }  // namespace
@@ -131,10 +151,7 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
   };
   for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t n = 0; n < 3; ++n) legs[side][n] = leg_joint(side, n);
-  MovingTransform<T> turned = moving_transform<T>(root);
-  const MovingVector<T> half = cast<T>(stance.turn) * TimeJet<T>(T(0.5));
-  turned.rotation = Quat<TimeJet<T>>(TimeJet<T>(T(1)), half.x(), half.y(), half.z()) * turned.rotation;
-  JointJet<T> stands = joint_jet<T>(turned);
+  JointJet<T> stands = turned<T>(root, stance.turn);
   stands.translation.z() += static_cast<T>(stance.height.value);
   stands.velocity.z() += static_cast<T>(stance.height.rate);
   stands.acceleration.z() += static_cast<T>(stance.height.acceleration);
@@ -147,21 +164,34 @@ void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<Jo
     jets[0] = stands;
     for (std::size_t side = 0; side < 2; ++side) {
       for (std::size_t n = 0; n < 3; ++n) leg_joint(side, n) = legs[side][n];
-      const FootLeg<T>& leg = body.legs[side];
-      TwoBoneJob<T> reach{body.parents, jets, leg.upper, leg.middle, leg.foot, cast<T>(stance.ankle[side])};
-      reach.pole = model_motion<T>(jets, body.parents, leg.upper).rotation * still<T>(leg.bend);
-      reach.hinge = leg.hinge;
-      reach.keep_end = false;
-      (void)reach.Run();
-      set_foot<T>(body, leg, stance.foot[side], jets);
+      const Quat<T>& q = stance.foot[side].template cast<T>();
+      reach_foot<T>(body, side, cast<T>(stance.ankle[side]),
+                    {TimeJet<T>(q.w()), TimeJet<T>(q.x()), TimeJet<T>(q.y()), TimeJet<T>(q.z())}, jets);
     }
   }
+}
+
+template <class T>
+void take_feet(const StandingBody<T>& body, const MovingVector<double>& shift,
+               const MovingVector<double>& turn, const std::array<MovingTransform<T>, 2>& feet,
+               std::span<JointJet<T>> jets) {
+  MovingTransform<T> root = moving_transform<T>(turned<T>(jets[0], turn));
+  root.translation = root.translation + cast<T>(shift);
+  jets[0] = joint_jet<T>(root);
+  for (std::size_t side = 0; side < 2; ++side)
+    reach_foot<T>(body, side, feet[side].translation, feet[side].rotation, jets);
 }
 
 template struct StandingBody<float>;
 template struct StandingBody<double>;
 template void take_stance<float>(const StandingBody<float>&, const Stance&, std::span<JointJet<float>>,
                                  std::span<MovingTransform<float>>);
+template void take_feet<float>(const StandingBody<float>&, const MovingVector<double>&,
+                               const MovingVector<double>&, const std::array<MovingTransform<float>, 2>&,
+                               std::span<JointJet<float>>);
+template void take_feet<double>(const StandingBody<double>&, const MovingVector<double>&,
+                                const MovingVector<double>&, const std::array<MovingTransform<double>, 2>&,
+                                std::span<JointJet<double>>);
 template void take_stance<double>(const StandingBody<double>&, const Stance&, std::span<JointJet<double>>,
                                   std::span<MovingTransform<double>>);
 

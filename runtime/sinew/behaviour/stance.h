@@ -57,6 +57,13 @@ template <class T>
 void take_stance(const StandingBody<T>& body, const Stance& stance, std::span<JointJet<T>> jets,
                  std::span<MovingTransform<T>> model);
 
+/// Bends the clip's motion to feet that go elsewhere: the root moves by `shift` (m) and turns by `turn` (rad,
+/// world axes) from the clip's, legs reach for their feet. O(joints).
+template <class T>
+void take_feet(const StandingBody<T>& body, const MovingVector<double>& shift,
+               const MovingVector<double>& turn, const std::array<MovingTransform<T>, 2>& feet,
+               std::span<JointJet<T>> jets);
+
 extern template struct StandingBody<float>;
 extern template struct StandingBody<double>;
 /// @cond
@@ -64,6 +71,14 @@ extern template void take_stance<float>(const StandingBody<float>&, const Stance
                                         std::span<MovingTransform<float>>);
 extern template void take_stance<double>(const StandingBody<double>&, const Stance&,
                                          std::span<JointJet<double>>, std::span<MovingTransform<double>>);
+extern template void take_feet<float>(const StandingBody<float>&, const MovingVector<double>&,
+                                      const MovingVector<double>&,
+                                      const std::array<MovingTransform<float>, 2>&,
+                                      std::span<JointJet<float>>);
+extern template void take_feet<double>(const StandingBody<double>&, const MovingVector<double>&,
+                                       const MovingVector<double>&,
+                                       const std::array<MovingTransform<double>, 2>&,
+                                       std::span<JointJet<double>>);
 /// @endcond
 
 }  // namespace sinew

@@ -51,6 +51,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("gather must be 0.01 to 10 s", c.gather, s.gather, 0.01, 10);
   f("rise_force must be 0 to 1e9 N", c.rise_force, s.rise_force, 0, 1e9);
   f("rise_torque must be 0 to 1e9 N m", c.rise_torque, s.rise_torque, 0, 1e9);
+  f("walk_torque must be 0 to 1e9 N m", c.walk_torque, s.walk_torque, 0, 1e9);
 };
 
 /// act(OwnedBehaviour&, character) of a character that has one. `breaks`: as of in_world.

@@ -54,6 +54,7 @@ typedef struct sinew_behaviour_settings {
   double gather;               ///< s, from where it lies into the pose from which it rises
   double rise_force;           ///< N of a human, of help while it rises
   double rise_torque;          ///< N m of a human, likewise
+  double walk_torque;          ///< N m of a human, of help while steps of a walk catch it
 } sinew_behaviour_settings;
 
 /// How a character keeps its balance now.

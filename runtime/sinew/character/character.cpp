@@ -239,6 +239,13 @@ Status Character<T>::displace(const Displacement& further) {
 }
 
 template <class T>
+Status Character<T>::come_back() {
+  if (!state_) return nobody();
+  state_->grounding.comes_back = true;
+  return {};
+}
+
+template <class T>
 Status Character<T>::set_help(double force, double torque) {
   if (!state_) return nobody();
   if (std::isnan(force) || std::isnan(torque)) return Status::error(Code::kNotFinite, "help is not a number");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/skeleton/portable_math.h"
@@ -20,6 +21,9 @@ constexpr double kRest = 0.2;       ///< s that it has to stand so
 constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
 constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
 constexpr double kHome = 0.1;                                 ///< s
+// Of who is asked to come back: what it may be off.
+constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
+constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
 
 /// The displacement that takes the animation's root under the body's: the turn about the vertical that leaves
 /// the least tilt.
@@ -58,6 +62,22 @@ bool joints_rest(const CharacterState<T>& s) {
     if (d.released || !within(d.offset, 0, 6, T(kTurn)) || !within(d.rate, 0, 6, T(kTurnSpeed) / time))
       return false;
   }
+  return true;
+}
+
+/// Whether it is so near that it may be led back while it moves; it is, then.
+template <class T>
+bool is_led_back(CharacterState<T>& s) {
+  const T time = s.tree.scale.time, unit = s.tree.scale.length;
+  Deviation<T>& root = s.deviation[0];
+  if (!within(root.offset, 0, 3, T(kNear) * unit) || !within(root.offset, 3, 6, T(kNearTurn)) ||
+      !within(root.rate, 0, 3, T(kNearSpeed) * unit / time) ||
+      !within(root.rate, 3, 6, T(kNearTurnSpeed) / time))
+    return false;
+  for (int i = 0; i < s.tree.bodies; ++i) s.deviation[i].released = false;
+  s.grounding.returns = true;
+  s.grounding.rest = T(0);
+  s.clear_deviations();
   return true;
 }
 
@@ -108,6 +128,7 @@ void hand_back(CharacterState<T>& s, T h) {
   g.returns = false;
   if (!s.grounded()) return lead_home(s, h);
   if (!s.floats) return;
+  if (std::exchange(g.comes_back, false) && is_led_back(s)) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
   const Displacement further = towards<T>(wanted, s.local[0]);

@@ -73,6 +73,7 @@ struct Grounding {
   Displacement by;                           ///< of the targets that the host gives
   T rest = T(0);                             ///< s that it has stood as its animation wants it
   double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
+  bool comes_back = false;                   ///< Character::come_back() in this step
   bool returns = false;  ///< next to its animation, where it may be played if ground and muscles can do it
 };
 

@@ -1,0 +1,166 @@
+// A body that was pushed while it walked, and walks on: its feet land where they catch it.
+//
+// What it is off its animation, e = x − x̂, is an inverted pendulum as the body itself is, e'' = ω²(e − p), p
+// what its feet press elsewhere than the animation's. The foot in the air lands by the capture point of e at
+// that moment elsewhere, and the animation is displaced under the foot that stands: of e is left what
+// e + e'/ω = 0 takes away by itself (Raibert, "Legged robots that balance", 1986; Pratt et al. 2006).
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/behaviour/behaviour.h"
+#include "sinew/skeleton/portable_math.h"
+#include "sinew/skeleton/rotation.h"
+
+namespace sinew {
+namespace {
+
+// Of a human.
+constexpr double kChanges = 0.7;   ///< of the standing foot's speed, at which the other one stands
+constexpr double kStepTime = 0.5;  ///< s
+constexpr double kSoonest = 0.05;  ///< s, in which a foot can land
+constexpr double kShares = 3, kQuickest = 0.04;  ///< of that time, s: in which it goes elsewhere
+constexpr double kObserved = 0.4;                ///< s, in which what it plans comes to what it does
+constexpr double kPresses = 0.1;                 ///< m, that its feet press elsewhere than its animation's
+// What it may be off when it is led back, and more by this share for every step after the second.
+constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/s
+
+/// m/s, level.
+template <class T>
+double speed_of(const MovingTransform<T>& foot) {
+  return from_above(rate_of(foot.translation).template cast<double>()).norm();
+}
+
+}  // namespace
+
+/// Of the clip, where the last step has ended.
+template <class T>
+Vec2 Behaviour<T>::clip_ankle_now(std::size_t side, double h) const {
+  const MovingVector<T>& ankle = clip_foot_motion_[side].translation;
+  return from_above(Vec3<double>((value_of(ankle) - T(h) * rate_of(ankle)).template cast<double>()));
+}
+
+/// The clip's standing foot is brought to where that foot stands: what the body is off from there is what its
+/// next steps have to catch.
+template <class T>
+void Behaviour<T>::change_feet(Character<T>& character, double h) {
+  const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
+  const Vec2 way = from_above(measure(character).foot[stands].translation) - clip_ankle_now(stands, h);
+  displace(character, {way.x(), way.y(), 0, 0});
+  error_.place -= way;
+  foot_offset_[stands] = still<double>(Vec3<double>::Zero());
+  for (int a = 0; a < 2; ++a) foot_offset_[swings][a].value -= way[a];
+}
+
+template <class T>
+void Behaviour<T>::begin_walk(Character<T>& character, std::span<const JointJet<T>> jets, double h) {
+  report_.state = BehaviourState::kStep;
+  walks_ = true;
+  (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
+  stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
+  foot_offset_ = {still<double>(Vec3<double>::Zero()), still<double>(Vec3<double>::Zero())};
+  change_feet(character, h);
+  const MeasuredBody is = measure(character);
+  const auto swings = static_cast<std::size_t>(1 - stance_);
+  const Vec2 off = from_above(is.foot[swings].translation) - clip_ankle_now(swings, h);
+  foot_offset_[swings] = still<double>(Vec3<double>(off.x(), off.y(), 0));
+  error_ = {from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
+            from_above(is.mass.velocity) - clip_velocity_};
+  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
+  begin_trunk(is, jets[0]);
+  fades_ = true;
+  walk_on(character, h);
+}
+
+template <class T>
+void Behaviour<T>::walk_on(Character<T>& character, double h) {
+  if (!last_step_.root_unknown) return give_up(character);
+  const auto stands = static_cast<std::size_t>(stance_);
+  if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands])) {
+    stance_ = 1 - stance_;
+    ++report_.steps;
+    change_feet(character, h);
+  }
+  const MeasuredBody is = measure(character);
+  const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_) - error_.place,
+             faster = from_above(is.mass.velocity) - clip_velocity_ - error_.velocity;
+  const double share = std::min(1.0, h / (kObserved * std::sqrt(unit_)));
+  error_.place += share * off;
+  error_.velocity += share * faster;
+  const Vec3<double> tilt = rotation_log<double>(is.root.rotation * clip_root_.conjugate()) - turn_;
+  turn_ += share * tilt;
+  turn_rate_ += share * (spin_ - clip_spin_ - turn_rate_);
+  const double late = 1 + kLater * std::max(report_.steps - 2, 0);
+  if (report_.steps > 0 && error_.place.norm() < late * kNearly * unit_ &&
+      error_.velocity.norm() < late * kNearlySpeed * std::sqrt(unit_))
+    (void)character.come_back();
+  const Vec2 capture = error_.capture_point(frequency_);
+  Vec2 pressed = 2 * capture;
+  if (const double far = pressed.norm(); far > kPresses * unit_) pressed *= kPresses * unit_ / far;
+  move_offset(h);
+  error_.advance(pressed, frequency_, h);
+  move_trunk(h);
+}
+
+/// The foot in the air lands by as much elsewhere as the body will be off when it is down, if it can reach
+/// there.
+template <class T>
+void Behaviour<T>::move_offset(double h) {
+  const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
+  const MovingVector<T>&stance = clip_foot_motion_[stands].translation,
+        &swing = clip_foot_motion_[swings].translation;
+  const double walks = std::max(clip_velocity_.norm(), 1e-3), step_time = kStepTime * std::sqrt(unit_);
+  const Vec2 ahead = clip_velocity_ / walks;
+  const Vec2 way = from_above(Vec3<double>((value_of(swing) - value_of(stance)).template cast<double>())),
+             rate = from_above(Vec3<double>((rate_of(swing) - rate_of(stance)).template cast<double>()));
+  const double forward = way.dot(ahead), speed = rate.dot(ahead);
+  MovingVector<double>& offset = foot_offset_[swings];
+  if (!(speed > walks)) {  // it still stands, or again
+    for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
+    return;
+  }
+  const double left = std::clamp((walks * step_time - forward) / speed, kSoonest, step_time);
+  const Vec2 off = portable::exp(frequency_ * left) * error_.capture_point(frequency_);
+  const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * step_time - forward) * ahead;
+  Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
+  feet.place[stands] = clip_ankle_now(stands, 0);
+  const Vec2 to = within_reach(feet, static_cast<int>(swings), lands + off, law_) - lands;
+  const double time = std::max(left / kShares, kQuickest * std::sqrt(unit_));
+  for (int a = 0; a < 2; ++a) {
+    TimeJet<double>& x = offset[a];
+    x.acceleration = (to[a] - x.value) / (time * time) - 2 / time * x.rate;
+    x.value += h * x.rate + h * h / 2 * x.acceleration;
+    x.rate += h * x.acceleration;
+  }
+}
+
+template <class T>
+void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
+  std::array<MovingTransform<T>, 2> feet = clip_foot_motion_;
+  std::array<Vec3<double>, 2> ankle;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (int a = 0; a < 3; ++a) {
+      const TimeJet<double>& off = foot_offset_[side][a];
+      feet[side].translation[a] =
+          feet[side].translation[a] + TimeJet<T>(T(off.value), T(off.rate), T(off.acceleration));
+    }
+    ankle[side] = value_of(feet[side].translation).template cast<double>();
+  }
+  move_height(ankle, error_.place, h);
+  MovingVector<double> shift, turn;
+  for (int a = 0; a < 2; ++a) shift[a] = {error_.place[a], error_.velocity[a], error_.acceleration[a]};
+  shift[2] = height_;
+  for (int a = 0; a < 3; ++a) turn[a] = {turn_[a], turn_rate_[a], turn_acceleration_[a]};
+  take_feet<T>(body_, shift, turn, feet, jets);
+}
+
+#define SINEW_WALK_INSTANCES(T)                                                                \
+  template Vec2 Behaviour<T>::clip_ankle_now(std::size_t, double) const;                       \
+  template void Behaviour<T>::change_feet(Character<T>&, double);                              \
+  template void Behaviour<T>::begin_walk(Character<T>&, std::span<const JointJet<T>>, double); \
+  template void Behaviour<T>::walk_on(Character<T>&, double);                                  \
+  template void Behaviour<T>::move_offset(double);                                             \
+  template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);
+SINEW_WALK_INSTANCES(float)
+SINEW_WALK_INSTANCES(double)
+
+}  // namespace sinew
