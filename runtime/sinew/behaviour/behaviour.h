@@ -98,8 +98,8 @@ struct MeasuredBody {
 /// What a behaviour asks of its character after a step.
 struct LastStep {
   Vec3<double> momentum = Vec3<double>::Zero();  ///< kg·m/s
-  BearingGround ground;
-  bool root_unknown = false;
+  BearingGround ground;                          ///< that bears it
+  bool root_unknown = false;                     ///< its root was solved for
 };
 
 /// Keeps one character on its feet: each character needs its own.

@@ -45,8 +45,9 @@ class GetUpClips {
   bool empty() const { return entries_.empty(); }
   /// In the order of the clips, each followed by its mirror image.
   std::span<const GetUpVariant> variants() const { return variants_; }
-  /// As choose() names it; must exist.
+  /// Poses to choose from.
   int entries() const { return static_cast<int>(entries_.size()); }
+  /// As choose() names it; must exist.
   const GetUpEntry& entry(int index) const { return entries_[static_cast<std::size_t>(index)]; }
   /// By which poses are compared.
   const PosePoints<T>& points() const { return points_; }

@@ -238,9 +238,9 @@ class Character {
   /// world. For who stands there already, within millimetres, as after a step, or is taken along by what it
   /// stands on; the rest returns over time.
   Status displace(const Displacement& further);
-  /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s and 0.6 rad/s of a human)
-  /// is led back onto it from the end of the next step on, from where it is and as fast as it is: who walks
-  /// does not come to rest. What the ground can't give then is help that nobody meters.
+  /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s and 0.6 rad/s of a
+  /// human) is led back onto it from the end of the next step on, from where it is and as fast as it is: who
+  /// walks does not come to rest. What the ground can't give then is help that nobody meters.
   Status come_back();
   /// What may hold a grounded root besides the ground from now on, N and N·m; negative: as in its settings.
   Status set_help(double force, double torque);

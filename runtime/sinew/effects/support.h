@@ -90,7 +90,7 @@ struct GroundUnder {
 /// Answers what static surroundings are under points, m from the common origin, in a check.
 template <class T>
 struct GroundProbe {
-  const void* surroundings = nullptr;
+  const void* surroundings = nullptr;  ///< that the two are called with
   /// Whether something may be within `reach` of a point.
   bool (*near)(const void* surroundings, const Vec3<T>& point, T reach) = nullptr;
   /// Of all that can be stood on, what is nearest to a point of a body.
@@ -103,17 +103,20 @@ template <class T>
 struct ProbedGround {
   std::span<const GroundUnder<T>> under;  ///< [point]
 
+  /// Whether a body has a point within the reach.
   bool near(const SupportPoints<T>& points, int body, const Vec3<T>&, T reach) const {
     for (int k = points.first[body]; k < points.first[body + 1]; ++k)
       if (under[k].gap < reach) return true;
     return false;
   }
+  /// The same.
   bool may_stand(const SupportPoints<T>& points, int body, const Vec3<T>& origin, T reach) const {
     return near(points, body, origin, reach);
   }
+  /// Where a point with its centre `at` would touch, m.
   Vec3<T> lowest(int k, const Vec3<T>& at, T radius) const { return at - radius * under[k].normal; }
-  T gap(int k, const Vec3<T>&) const { return under[k].gap; }
-  T height_at(int k, const Vec3<T>& at) const { return at.z() - under[k].gap; }
+  T gap(int k, const Vec3<T>&) const { return under[k].gap; }                    ///< m, of it
+  T height_at(int k, const Vec3<T>& at) const { return at.z() - under[k].gap; }  ///< m, of the ground
 };
 
 /// Shares the support out: put(body, point in `room`, force) for every point that may stand. `rotation`,
