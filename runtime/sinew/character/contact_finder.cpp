@@ -626,6 +626,7 @@ bool goes_into(const ColliderPaths<T>& paths, const Vec3<double>& origin, const 
 
 template <class T>
 bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleScratch<T>& scratch) {
+  scratch.any = false;
   if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
   const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
   const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
@@ -649,6 +650,7 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
       const SignedDistance<double> d =
           signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
       if (meets || d.distance > double(reach)) return;
+      scratch.any = true;
       Transform<double> pose = obstacle.local;
       pose.translation -= origin;
       scratch.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
@@ -657,6 +659,7 @@ bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, Obsta
     });
   return meets || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
            if (!(o.shape->distance(center).distance < double(reach))) return false;
+           scratch.any = true;
            const T thin = T(o.shape->half_thickness());
            return goes_into(paths(), origin, *o.shape, std::min(pressed, thin / 2), thin);
          });

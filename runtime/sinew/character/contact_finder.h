@@ -235,6 +235,7 @@ class ContactFinder final : public ContactSearch<T> {
 template <class T>
 struct ObstacleScratch {
   std::vector<PlacedCollider<T>> from, to, obstacle;
+  bool any = false;  ///< something was within reach
 
   void reserve(int colliders) {
     for (auto* v : {&from, &to}) v->reserve(colliders);

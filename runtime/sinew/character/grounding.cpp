@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/skeleton/portable_math.h"
@@ -128,7 +127,7 @@ void hand_back(CharacterState<T>& s, T h) {
   g.returns = false;
   if (!s.grounded()) return lead_home(s, h);
   if (!s.floats) return;
-  if (std::exchange(g.comes_back, false) && is_led_back(s)) return;
+  if (g.comes_back && is_led_back(s)) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
   const Displacement further = towards<T>(wanted, s.local[0]);

@@ -150,7 +150,10 @@ struct World<T>::Impl {
   bool may_play(CharacterState<T>& state, Worker& worker) const;
   bool checks(const CharacterState<T>& state) const;
   const GroundProbe<T>* ground_near(const CharacterState<T>& state, Worker& worker) const;
-  CheckContext<T> context_of_check(const CharacterState<T>& state, Worker& worker) const;
+  const GroundProbe<T>* ground_met(const CharacterState<T>& state, Worker& worker) const;
+  CheckContext<T> context_of_check(const CharacterState<T>& state, Worker& worker,
+                                   const GroundProbe<T>* ground) const;
+  void begin_tones(CharacterState<T>& state, Worker& worker);
   bool checks_in_batches(const CharacterState<T>& state, Worker& worker) const;
   void check_later(int island, Worker& worker, double spent);
   void check_alike(Worker& worker, const Unchecked& one);

@@ -49,8 +49,8 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
   const auto may_be_solved = [](const CharacterState<T>* s) { return s->levels.allowed >= Level::kPartial; };
   if (std::any_of(members.begin(), members.end(), may_be_solved)) return false;
   for (CharacterState<T>* s : members) {
-    const bool checked =
-        s->levels.allowed == Level::kChecked && s->undisturbed() && play(*s, h, context_of_check(*s, worker));
+    const bool checked = s->levels.allowed == Level::kChecked && s->undisturbed() &&
+                         play(*s, h, context_of_check(*s, worker, ground_near(*s, worker)));
     if (!checked) follow(*s, settings, h);
     s->levels.did = checked ? Level::kChecked : Level::kPlayback;
   }
@@ -78,9 +78,16 @@ const GroundProbe<T>* World<T>::Impl::ground_near(const CharacterState<T>& s, Wo
   return plan.contacts->find_ground(s, settings, surroundings(), worker.near_ground);
 }
 
+/// The same of whom may_play() has just looked around for.
 template <class T>
-CheckContext<T> World<T>::Impl::context_of_check(const CharacterState<T>& s, Worker& worker) const {
-  return {settings, plan, ground_near(s, worker),
+const GroundProbe<T>* World<T>::Impl::ground_met(const CharacterState<T>& s, Worker& worker) const {
+  return worker.obstacle_scratch.any ? ground_near(s, worker) : nullptr;
+}
+
+template <class T>
+CheckContext<T> World<T>::Impl::context_of_check(const CharacterState<T>& s, Worker& worker,
+                                                 const GroundProbe<T>* ground) const {
+  return {settings, plan, ground,
           CheckScratch<T>{worker.check_scratch.data(), s.tree.bodies, s.tree.bodies,
                           static_cast<int>(s.rig->support.points.size())}};
 }
@@ -89,7 +96,7 @@ CheckContext<T> World<T>::Impl::context_of_check(const CharacterState<T>& s, Wor
 template <class T>
 bool World<T>::Impl::play_alone(CharacterState<T>& s, Worker& worker) {
   const bool checked = checks(s);
-  if (checked && !play(s, h, context_of_check(s, worker))) return false;
+  if (checked && !play(s, h, context_of_check(s, worker, ground_met(s, worker)))) return false;
   if (!checked) follow(s, settings, h);
   s.levels.did = checked ? Level::kChecked : Level::kPlayback;
   return true;
@@ -107,7 +114,7 @@ template <class T>
 bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
     return settings.batches && worker.checks && has_plain_check(s) && !s.grounded() && checks(s) &&
-           !ground_near(s, worker);
+           !ground_met(s, worker);
   return false;
 }
 
@@ -147,8 +154,8 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
     const double again = now(settings.detail.budget);
     const Unchecked& u = batch[n];
     CharacterState<T>* state = u.state;
-    const bool played =
-        checked ? play_checked(*state, settings, h) : play(*state, h, context_of_check(*state, worker));
+    const bool played = checked ? play_checked(*state, settings, h)
+                                : play(*state, h, context_of_check(*state, worker, nullptr));
     const double spent = u.spent + share + now(settings.detail.budget) - again;
     worker.members.assign(1, state);
     worker.ties.clear();
@@ -161,13 +168,19 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
   }
 }
 
+template <class T>
+void World<T>::Impl::begin_tones(CharacterState<T>& s, Worker& worker) {
+  const bool any = s.problem.law.present.tone && !s.passive();
+  if (any) begin_tone(s, h, context_of_check(s, worker, ground_near(s, worker)));
+}
+
 /// Solves the island of worker.members[0].
 template <class T>
 void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   synchronise(s, worker.jets);
-  begin_tone(s, h, context_of_check(s, worker));
+  begin_tones(s, worker);
   log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
@@ -185,7 +198,7 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
   if (play_set(members, worker)) return 0;
   for (CharacterState<T>* s : members) {
     synchronise(*s, worker.jets);
-    begin_tone(*s, h, context_of_check(*s, worker));
+    begin_tones(*s, worker);
   }
   const int count =
       worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);
@@ -250,6 +263,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->impulses.clear();
     s->forces.clear();
     s->target_stands = true;
+    s->grounding.comes_back = false;
     s->report.carried = s->carried;
   }
 }
