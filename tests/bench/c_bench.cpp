@@ -98,7 +98,7 @@ void measure_c(const char* path, int repetitions) {
 
 void measure_calls(const char* path, int repetitions) {
   const CWorld scene(path);
-  double where[4];
+  double where[3];
   measure("C, a call (displacement of a character)", repetitions, kCalls, [&](int) {
     for (int k = 0; k < kCalls; ++k)
       (void)sinew_character_get_displacement(scene.plays[std::size_t(k % kCharacters)].character, where);

@@ -89,7 +89,7 @@ class FuzzInputs {
   std::vector<char> balanced_;  ///< what a behaviour saved
 
  private:
-  std::array<std::array<double, 4>, 4> triples_{};  ///< one more: for a displacement
+  std::array<std::array<double, 3>, 4> triples_{};
   std::size_t next_ = 0;
 };
 

@@ -310,7 +310,7 @@ class Sequence : FuzzMotion {
   }
   sinew_status set() {
     const std::uint64_t someone = handle(people_);
-    switch (below(9)) {
+    switch (below(10)) {
       case 0:
         return sinew_character_set_strength(someone, real(0, 2));
       case 1:
@@ -327,6 +327,11 @@ class Sequence : FuzzMotion {
         return sinew_character_set_detail(someone, number(0, 2), index(6), index(4), below(2));
       case 7:
         return sinew_character_displace(someone, triple(1));
+      case 8: {
+        double rise = 0;
+        const sinew_status status = sinew_character_get_rise(someone, or_null(&rise));
+        return rise > 0 ? status : sinew_character_raise(someone, real(-1, 1));
+      }
       default:
         return sinew_character_take_displacement(someone);
     }
@@ -344,7 +349,7 @@ class Sequence : FuzzMotion {
     report.size = rarely() ? std::uint32_t(below(1000)) : sizeof report;
     sinew_view view{};
     sinew_transform pose{};
-    double numbers[4];
+    double numbers[3];
     float force[3];
     switch (below(6)) {
       case 0:

@@ -103,6 +103,7 @@ TEST(CInterface, NumbersThatAreNoneAreRefusedAndLeaveThePose) {
   expect_refused(sinew_character_set_strength(scene.hero, NAN), SINEW_INVALID_ARGUMENT, "strength");
   const double by[3] = {0, NAN, 0};
   expect_refused(sinew_character_displace(scene.hero, by), SINEW_NOT_FINITE, "not finite");
+  expect_refused(sinew_character_raise(scene.hero, NAN), SINEW_NOT_FINITE, "not finite");
   const double far_away[] = {1e300, 0, 0};
   expect_refused(sinew_character_displace(scene.hero, far_away), SINEW_OUT_OF_RANGE, "1e6 m");
   const sinew_play play{scene.hero, scene.asset, 0, 0, NAN, 1, 0};

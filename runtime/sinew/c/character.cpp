@@ -248,9 +248,20 @@ sinew_status sinew_character_get_displacement(sinew_character character, double*
     out[0] = by.x;
     out[1] = by.y;
     out[2] = by.yaw;
-    out[3] = by.z;
     return sinew_status(SINEW_OK);
   });
+}
+
+sinew_status sinew_character_get_rise(sinew_character character, double* out) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    *out = c.displacement().z;
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_character_raise(sinew_character character, double further) {
+  return change(character, [&](Character<float> c) { return c.displace({0, 0, 0, further}); });
 }
 
 sinew_status sinew_character_take_displacement(sinew_character character) {
@@ -260,7 +271,7 @@ sinew_status sinew_character_take_displacement(sinew_character character) {
 sinew_status sinew_character_displace(sinew_character character, const double* further) {
   if (!further) return fail(SINEW_INVALID_ARGUMENT, kNull);
   return change(character, [&](Character<float> c) {
-    return c.displace({further[0], further[1], further[2], further[3]});
+    return c.displace({further[0], further[1], further[2]});
   });
 }
 

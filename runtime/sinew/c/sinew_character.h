@@ -177,12 +177,16 @@ SINEW_API sinew_status sinew_character_set_help(sinew_character character, doubl
 /// significance, most, check_every and bake of its settings.
 SINEW_API sinew_status sinew_character_set_detail(sinew_character character, double significance,
                                                   sinew_level most, int32_t check_every, int32_t bake);
-/// Where a grounded character follows its animation since something moved it: [4] x, y (m), yaw (rad), z (m).
-SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[4]);
+/// Where a grounded character follows its animation since something moved it: [3] x, y (m), yaw (rad).
+SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[3]);
+/// m, by which that is higher.
+SINEW_API sinew_status sinew_character_get_rise(sinew_character character, double* out);
 /// The host has moved the character's place itself: targets are given there from now on.
 SINEW_API sinew_status sinew_character_take_displacement(sinew_character character);
-/// Puts its animation elsewhere: by [4] x, y (m), yaw (rad), z (m), in the world.
-SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[4]);
+/// Puts its animation elsewhere: by [3] x, y (m), yaw (rad), in the world.
+SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[3]);
+/// Puts its animation higher, by m.
+SINEW_API sinew_status sinew_character_raise(sinew_character character, double further);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
                                                      const double point[3], const double impulse[3]);

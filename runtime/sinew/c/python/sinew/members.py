@@ -98,16 +98,26 @@ class Character(_Affected):
 
     @property
     def displacement(self):
-        """x, y (m), yaw (rad), z (m)."""
-        out = (ctypes.c_double * 4)()
+        """x, y (m), yaw (rad)."""
+        out = (ctypes.c_double * 3)()
         self._call(lib.sinew_character_get_displacement, byref(out))
         return tuple(out)
 
     def take_displacement(self):
         self._call(lib.sinew_character_take_displacement)
 
-    def displace(self, x, y, yaw, z=0.0):
-        self._call(lib.sinew_character_displace, (ctypes.c_double * 4)(x, y, yaw, z))
+    @property
+    def rise(self):
+        """m, by which its animation is displaced upwards."""
+        out = ctypes.c_double()
+        self._call(lib.sinew_character_get_rise, byref(out))
+        return out.value
+
+    def displace(self, x, y, yaw):
+        self._call(lib.sinew_character_displace, three((x, y, yaw)))
+
+    def raise_by(self, further):
+        self._call(lib.sinew_character_raise, further)
 
     def apply_impulse(self, joint, point, impulse):
         self._call(lib.sinew_character_apply_impulse, joint, three(point), three(impulse))
