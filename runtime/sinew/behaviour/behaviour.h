@@ -218,7 +218,7 @@ class Behaviour {
   std::array<Vec2, 2> clip_foot_;          ///< m, the clip's ankles from its centre of mass
   Vec2 clip_body_ = Vec2::Zero(), clip_velocity_ = Vec2::Zero();
   LastStep last_step_;
-  bool restored_ = false;  ///< that is the restored world\'s
+  bool restored_ = false;  ///< that is the restored world's
   Quat<double> clip_root_ = Quat<double>::Identity();
   Vec3<double> clip_spin_ = Vec3<double>::Zero();    ///< rad/s, world axes
   bool walks_ = false;                               ///< it was pushed while it walked, and walks on

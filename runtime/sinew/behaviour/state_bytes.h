@@ -28,8 +28,6 @@ class StateBytes {
 
   std::size_t size() const { return size_; }  ///< bytes that were visited
   bool reads() const { return from_ != nullptr; }
-  /// There was room, or were bytes, for all.
-  bool fits() const { return reads() || to_ ? size_ <= room_ : true; }
 
   template <class... V>
   void operator()(V&... values) {

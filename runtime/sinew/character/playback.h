@@ -26,8 +26,8 @@ bool stands(const CharacterState<T>& state, const WorldSettings& world, const St
             const GroundProbe<T>* ground);
 
 /// Plays the clip and asks the residual pass whether the muscles can do it. False, with nothing moved, where
-/// they can't. Leaves the history behind, and the totals to whoever asks for them. `room` must be one of the
-/// rig's size.
+/// they can't. Leaves the history behind, and the totals to whoever asks for them. The scratch must
+/// be one of the rig's size.
 template <class T>
 bool play(CharacterState<T>& state, T h, const CheckContext<T>& context);
 
