@@ -61,10 +61,6 @@ struct Rig {
   std::span<const Mesh> skin() const { return body_meshes.empty() ? meshes : body_meshes; }
 };
 
-/// [node] transforms to the scene, at rest or (with a clip) t seconds into it; scale and shear included.
-std::vector<Eigen::Matrix4d> node_transforms(const import::SourceScene& scene, const import::SourceClip* clip,
-                                             double t);
-
 /// Builds the rig from the scene that carries the character; more scenes add clips (joints matched by name,
 /// prefixes up to ':' or '|' ignored). `report` gains "unit", "up", "height" and "notes".
 Error build_rig(const std::vector<import::SourceScene>& scenes, const Options& options, Rig& out,

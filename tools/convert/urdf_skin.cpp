@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "convert/rig.h"
+#include "convert/clip_sampling.h"
 #include "convert/skin.h"
 
 namespace sinew::convert {
