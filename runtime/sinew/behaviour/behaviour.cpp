@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
-#include "sinew/skeleton/digest.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -62,18 +60,14 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
 }
 
 template <class T>
-MeasuredBody Behaviour<T>::measure(const Character<T>& character) {
-  const Displacement back = character.displacement().inverse();
-  const Transform<double> home{back.turn(), {back.x, back.y, back.z}};
+MeasuredBody Behaviour<T>::measure(const Character<T>& character) const {
   MeasuredBody is;
   const std::span<const Transform<T>> model = character.model();
   const auto place = [&](int joint) {
-    return home * model[static_cast<std::size_t>(joint)].template cast<double>();
+    return model[static_cast<std::size_t>(joint)].template cast<double>();
   };
   is.mass = body_.mass_of(model);
-  const Vec3<double> velocity = last_step_.momentum / body_.total_mass - carried_.at(is.mass.place);
-  is.mass.velocity = home.rotation * velocity;
-  is.mass.place = home * is.mass.place;
+  is.mass.velocity = last_step_.momentum / body_.total_mass - carried_.at(is.mass.place);
   is.root = place(0);
   for (std::size_t side = 0; side < 2; ++side) is.foot[side] = place(body_.legs[side].foot);
   return is;
@@ -227,7 +221,7 @@ bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) const {
 template <class T>
 void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> jets, T step) {
   const auto h = static_cast<double>(step);
-  const MeasuredBody is = measure(character);
+  const MeasuredBody world = measure(character), is = world.without(character.displacement());
   const bool known = std::exchange(measured_, true);
   spin_ = known ? Vec3<double>(rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h)
                 : Vec3<double>::Zero();
@@ -247,10 +241,10 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
-    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, jets, h);
+    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, world, jets, h);
     begin_plan(is, jets);
   }
-  if (walks_) return walk_on(character, h);
+  if (walks_) return walk_on(character, world, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
              faster = from_above(is.mass.velocity) - plan_.velocity;
@@ -562,7 +556,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
 /// Whether it has lain still for a while.
 template <class T>
 bool Behaviour<T>::lies(const Character<T>& character, double h) {
-  const MeasuredBody is = measure(character);
+  const MeasuredBody is = measure(character).without(character.displacement());
   if (std::exchange(measured_, true))
     spin_ = rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h;
   root_before_ = is.root.rotation;
@@ -642,9 +636,10 @@ void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jet
   get_up_.forget();
   tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
   swing_ = -1;
-  choose_support(measure(character));
+  const MeasuredBody world = measure(character);
+  choose_support(world.without(character.displacement()));
   displace(character, to_feet());  // the animation faces as the body does
-  const MeasuredBody is = measure(character);
+  const MeasuredBody is = world.without(character.displacement());
   spin_.setZero();
   root_before_ = is.root.rotation;
   measured_ = true;
@@ -688,67 +683,6 @@ void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_help(-1, -1);
   report_ = {};
   allowed_ = false;
-}
-
-template <class T>
-void Behaviour<T>::visit(StateBytes& bytes) {
-  BehaviourReport& r = report_;
-  bytes(r.state, r.steps, r.capture_depth, r.time, r.fell_beyond, r.tries);
-  bytes(plan_.place, plan_.velocity, plan_.acceleration, frequency_, foot_, swing_, home_, swing_time_,
-        walks_, stance_, error_.place, error_.velocity, error_.acceleration, foot_offset_, lifted_, turn_,
-        turn_rate_, turn_acceleration_, spin_, height_, root_before_, level_);
-  bytes(measured_, strength_, rest_, allowed_, knocked_, risen_, last_, asked_, fades_, fade_, fade_numbers_);
-  BearingGround& ground = last_step_.ground;
-  bytes(last_step_.momentum, last_step_.root_unknown, ground.force, ground.place, ground.velocity,
-        ground.turn_rate);
-  get_up_.visit(bytes);
-}
-
-/// Of saved bytes, and of what they were saved by.
-template <class T>
-std::uint64_t Behaviour<T>::check_of(std::span<const std::byte> bytes) const {
-  const std::array<int, 2> clips{static_cast<int>(get_up_.clips().variants().size()),
-                                 get_up_.clips().entries()};
-  return digest(bytes, digest(std::as_bytes(std::span(clips))));
-}
-
-template <class T>
-std::size_t Behaviour<T>::saved_bytes() {
-  StateBytes counts;
-  visit(counts);
-  return sizeof(std::uint64_t) + counts.size();
-}
-
-template <class T>
-std::size_t Behaviour<T>::save(const Character<T>& character, std::span<std::byte> out) {
-  const std::size_t size = saved_bytes();
-  if (out.size() < size || !character.valid()) return 0;
-  if (!restored_) look_back(character);
-  const std::span<std::byte> body = out.subspan(sizeof(std::uint64_t), size - sizeof(std::uint64_t));
-  StateBytes writes(body);
-  visit(writes);
-  const std::uint64_t check = check_of(body);
-  std::memcpy(out.data(), &check, sizeof check);
-  return size;
-}
-
-template <class T>
-Status Behaviour<T>::restore(std::span<const std::byte> saved) {
-  if (saved.size() != saved_bytes())
-    return Status::error(Code::kInvalidArgument, "not what such a behaviour saved: another size");
-  const std::span<const std::byte> body = saved.subspan(sizeof(std::uint64_t));
-  std::uint64_t check = 0;
-  std::memcpy(&check, saved.data(), sizeof check);
-  if (check != check_of(body))
-    return Status::error(Code::kBadFile,
-                         "what was saved is damaged, or a behaviour with other clips saved it");
-  StateBytes reads(body);
-  visit(reads);
-  find_support();
-  if (home_ >= 0) find_only();
-  restored_ = true;
-  events_count_ = 0;
-  return {};
 }
 
 template class Behaviour<float>;

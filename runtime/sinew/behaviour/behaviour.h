@@ -88,11 +88,19 @@ struct CarriedFrame {
   }
 };
 
-/// What the last step left of a body, in the frame in which targets are given.
+/// What the last step left of a body, world.
 struct MeasuredBody {
-  MassMotion mass;                        ///< of the whole body
+  MassMotion mass;                        ///< of the whole body; its velocity over ground that moves
   Transform<double> root;                 ///< of the root joint
   std::array<Transform<double>, 2> foot;  ///< of the foot joints: left, right
+
+  /// The same without what its animation is displaced by: in the frame in which targets are given.
+  MeasuredBody without(const Displacement& displacement) const {
+    const Displacement back = displacement.inverse();
+    const Transform<double> home{back.turn(), {back.x, back.y, back.z}};
+    return {
+        {home * mass.place, home.rotation * mass.velocity}, home * root, {home * foot[0], home * foot[1]}};
+  }
 };
 
 /// What a behaviour asks of its character after a step.
@@ -157,12 +165,12 @@ class Behaviour {
   const Pendulum& plan() const { return plan_; }
 
  private:
-  MeasuredBody measure(const Character<T>& character);
+  MeasuredBody measure(const Character<T>& character) const;
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(std::span<const JointJet<T>> jets);
   void look_back(const Character<T>& character);
   void see_ground(const Character<T>& character);
-  void visit(StateBytes& bytes);
+  void visit(ByteStream& stream);
   std::uint64_t check_of(std::span<const std::byte> bytes) const;
   void find_support();
   void find_only();
@@ -184,9 +192,10 @@ class Behaviour {
   void write_stance(std::span<JointJet<T>> jets, double h);
   void move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double h);
   void begin_trunk(const MeasuredBody& is, const JointJet<T>& root);
-  void begin_walk(Character<T>& character, std::span<const JointJet<T>> jets, double h);
-  void walk_on(Character<T>& character, double h);
-  void change_feet(Character<T>& character, double h);
+  void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
+                  double h);
+  void walk_on(Character<T>& character, const MeasuredBody& world, double h);
+  void change_feet(Character<T>& character, const MeasuredBody& world, double h);
   void move_offset(double h);
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);

@@ -42,9 +42,10 @@ Vec2 Behaviour<T>::clip_ankle_now(std::size_t side, double h) const {
 /// The clip's standing foot is brought to where that foot stands: what the body is off from there is what its
 /// next steps have to catch.
 template <class T>
-void Behaviour<T>::change_feet(Character<T>& character, double h) {
+void Behaviour<T>::change_feet(Character<T>& character, const MeasuredBody& world, double h) {
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
-  const Vec2 way = from_above(measure(character).foot[stands].translation) - clip_ankle_now(stands, h);
+  const MeasuredBody is = world.without(character.displacement());
+  const Vec2 way = from_above(is.foot[stands].translation) - clip_ankle_now(stands, h);
   displace(character, {way.x(), way.y(), 0, 0});
   error_.place -= way;
   foot_offset_[stands] = still<double>(Vec3<double>::Zero());
@@ -52,14 +53,15 @@ void Behaviour<T>::change_feet(Character<T>& character, double h) {
 }
 
 template <class T>
-void Behaviour<T>::begin_walk(Character<T>& character, std::span<const JointJet<T>> jets, double h) {
+void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world,
+                              std::span<const JointJet<T>> jets, double h) {
   report_.state = BehaviourState::kStep;
   walks_ = true;
   (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
   foot_offset_ = {still<double>(Vec3<double>::Zero()), still<double>(Vec3<double>::Zero())};
-  change_feet(character, h);
-  const MeasuredBody is = measure(character);
+  change_feet(character, world, h);
+  const MeasuredBody is = world.without(character.displacement());
   const auto swings = static_cast<std::size_t>(1 - stance_);
   const Vec2 off = from_above(is.foot[swings].translation) - clip_ankle_now(swings, h);
   foot_offset_[swings] = still<double>(Vec3<double>(off.x(), off.y(), 0));
@@ -68,19 +70,19 @@ void Behaviour<T>::begin_walk(Character<T>& character, std::span<const JointJet<
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
   begin_trunk(is, jets[0]);
   fades_ = true;
-  walk_on(character, h);
+  walk_on(character, world, h);
 }
 
 template <class T>
-void Behaviour<T>::walk_on(Character<T>& character, double h) {
+void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, double h) {
   if (!last_step_.root_unknown) return give_up(character);
   const auto stands = static_cast<std::size_t>(stance_);
   if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands])) {
     stance_ = 1 - stance_;
     ++report_.steps;
-    change_feet(character, h);
+    change_feet(character, world, h);
   }
-  const MeasuredBody is = measure(character);
+  const MeasuredBody is = world.without(character.displacement());
   const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_) - error_.place,
              faster = from_above(is.mass.velocity) - clip_velocity_ - error_.velocity;
   const double share = std::min(1.0, h / (kObserved * std::sqrt(unit_)));
@@ -153,12 +155,13 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
   take_feet<T>(body_, shift, turn, feet, jets);
 }
 
-#define SINEW_WALK_INSTANCES(T)                                                                \
-  template Vec2 Behaviour<T>::clip_ankle_now(std::size_t, double) const;                       \
-  template void Behaviour<T>::change_feet(Character<T>&, double);                              \
-  template void Behaviour<T>::begin_walk(Character<T>&, std::span<const JointJet<T>>, double); \
-  template void Behaviour<T>::walk_on(Character<T>&, double);                                  \
-  template void Behaviour<T>::move_offset(double);                                             \
+#define SINEW_WALK_INSTANCES(T)                                                                            \
+  template Vec2 Behaviour<T>::clip_ankle_now(std::size_t, double) const;                                   \
+  template void Behaviour<T>::change_feet(Character<T>&, const MeasuredBody&, double);                     \
+  template void Behaviour<T>::begin_walk(Character<T>&, const MeasuredBody&, std::span<const JointJet<T>>, \
+                                         double);                                                          \
+  template void Behaviour<T>::walk_on(Character<T>&, const MeasuredBody&, double);                         \
+  template void Behaviour<T>::move_offset(double);                                                         \
   template void Behaviour<T>::write_walk(std::span<JointJet<T>>, double);
 SINEW_WALK_INSTANCES(float)
 SINEW_WALK_INSTANCES(double)

@@ -216,13 +216,6 @@ GetUpOutcome GetUp<T>::rise(const Character<T>& character, std::span<JointJet<T>
   return GetUpOutcome::kUp;
 }
 
-template <class T>
-void GetUp<T>::visit(StateBytes& bytes) {
-  bytes(tried_, rises_, entry_, variant_, gathers_, strength_, elapsed_, waits_, off_, strong_from_, caught_,
-        place_, ground_, time_, rate_change_, fade_, fade_numbers_);
-  if (bytes.reads() && variant_ >= 0) clips_.sample(variant_, ClipTime{time_}, pose_);
-}
-
 template class GetUp<float>;
 template class GetUp<double>;
 

@@ -12,10 +12,11 @@
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/behaviour/behaviour_settings.h"
 #include "sinew/behaviour/get_up_clips.h"
-#include "sinew/behaviour/state_bytes.h"
 #include "sinew/character/world.h"
 
 namespace sinew {
+
+class ByteStream;
 
 /// How far an attempt to get up has come in a frame. The three that are failures leave their clip out of the
 /// next choice (GetUp::forget).
@@ -42,8 +43,8 @@ class GetUp {
   bool begin(Character<T>& character, double strength, double ground);
   /// Moves on by h s, and writes what the body is to do.
   GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
-  /// Visits what begin() and update() remember.
-  void visit(StateBytes& bytes);
+  /// Visits what begin() and update() remember. For Behaviour::save() and restore().
+  void visit(ByteStream& stream);
   /// Forgets which clips failed.
   void forget() { tried_ = 0; }
   int variant() const { return variant_; }     ///< chosen, of GetUpClips::variants(); −1 before begin()

@@ -18,7 +18,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "sinew/character/snapshot.h"
+#include "sinew/skeleton/byte_stream.h"
 
 namespace sinew {
 

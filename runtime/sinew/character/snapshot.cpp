@@ -18,20 +18,12 @@ bool same_bits(const Values& a, const Values& b) {
   return std::memcmp(a.data(), b.data(), sizeof(*a.data()) * a.size()) == 0;
 }
 
-/// An enumeration as one byte, kept within what it knows.
-template <class E>
-void visit_enum(const char* name, E& e, E last, ByteStream& stream) {
-  auto byte = static_cast<std::uint8_t>(e);
-  stream.value(name, byte);
-  if (stream.reading()) e = static_cast<E>(std::min(byte, static_cast<std::uint8_t>(last)));
-}
-
 template <class T>
 void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   LevelState& l = s.levels;
-  visit_enum("level", l.level, Level::kSubsteps, stream);
-  visit_enum("cap of the budget", l.cap, Level::kSubsteps, stream);
-  visit_enum("highest level", s.detail.most, Level::kSubsteps, stream);
+  stream.enumeration("level", l.level, Level::kSubsteps);
+  stream.enumeration("cap of the budget", l.cap, Level::kSubsteps);
+  stream.enumeration("highest level", s.detail.most, Level::kSubsteps);
   std::uint8_t flags = static_cast<std::uint8_t>((l.asleep ? 1 : 0) + (s.detail.bake ? 2 : 0) +
                                                  (l.wake ? 4 : 0) + (s.deferred.deviations ? 8 : 0));
   stream.value("asleep, baked, to be woken, only falling", flags);
@@ -54,7 +46,7 @@ void visit_levels(CharacterState<T>& s, ByteStream& stream) {
   }
   if (stream.part("is above what it needs", l.unneeded > 0)) {
     stream.value("time above the level", l.unneeded);
-    visit_enum("level needed since", l.lower, Level::kSubsteps, stream);
+    stream.enumeration("level needed since", l.lower, Level::kSubsteps);
     stream.value("time above that", l.lower_unneeded);
   } else if (stream.reading()) {
     l.unneeded = l.lower_unneeded = 0;
@@ -248,9 +240,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
   stream.value("root drive", root);
   const bool displaced = (root & kDisplaced) != 0;
   root &= static_cast<std::uint8_t>(~kDisplaced);
-  std::uint8_t parked = s.parked ? 1 : 0;
-  stream.value("out of the world", parked);
-  if (stream.reading()) s.parked = parked != 0;
+  stream.flag("out of the world", s.parked);
   if (stream.reading() && root <= static_cast<std::uint8_t>(RootDrive::kGrounded))
     s.settings.root = static_cast<RootDrive>(root);
   stream.value("strength", s.settings.strength);
@@ -264,9 +254,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     stream.value("stands as it should", s.grounding.rest);
     stream.value("help, N", s.grounding.help_force);
     stream.value("help, N·m", s.grounding.help_torque);
-    std::uint8_t returns = s.grounding.returns ? 1 : 0;
-    stream.value("next to its animation", returns);
-    s.grounding.returns = returns != 0;
+    stream.flag("next to its animation", s.grounding.returns);
   }
   const auto visit_strengths = [&](const char* name, std::vector<T>& strengths) {
     const bool some = std::any_of(strengths.begin(), strengths.end(), [](T x) { return x != T(1); });
@@ -439,9 +427,7 @@ void visit_budget(BudgetState& budget, ByteStream& stream) {
 
 template <class T>
 void visit_coupling(Coupling<T>& coupling, ByteStream& stream) {
-  std::uint8_t active = coupling.active ? 1 : 0;
-  stream.value("loop is closed", active);
-  if (stream.reading()) coupling.active = active != 0;
+  stream.flag("loop is closed", coupling.active);
   if (!coupling.closes_slowly) return;
   for (Stencil<T>& e : coupling.stencils) {
     stream.vector("what is left open of a loop", e.offset);

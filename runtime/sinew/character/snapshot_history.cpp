@@ -38,9 +38,7 @@ void visit_places(CharacterState<T>& s, ByteStream& stream) {
 template <class T>
 void visit_motion(CharacterState<T>& s, ByteStream& stream) {
   History<T>& h = s.history;
-  std::uint8_t known = h.accelerates ? 1 : 0;
-  stream.value("accelerations are known", known);
-  if (stream.reading()) h.accelerates = known != 0;
+  stream.flag("accelerations are known", h.accelerates);
   const auto visit = [&](const char* name, bool marks, auto visit_body) {
     ResidualCoder<T> coder(name, stream, marks);
     for (int i = 0; i < s.tree.bodies; ++i) visit_body(coder, i);

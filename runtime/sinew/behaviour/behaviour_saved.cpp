@@ -1,0 +1,181 @@
+// What a behaviour remembers from one step to the next, as bytes: a digest, and a list of fields whose size
+// is set-up.
+#include <cstring>
+
+#include "sinew/behaviour/behaviour.h"
+#include "sinew/skeleton/byte_stream.h"
+#include "sinew/skeleton/digest.h"
+
+namespace sinew {
+namespace {
+
+using Digest = std::uint64_t;
+
+template <class S>
+void visit_jet(const char* name, TimeJet<S>& jet, ByteStream& stream) {
+  for (S* number : {&jet.value, &jet.rate, &jet.acceleration}) stream.value(name, *number);
+}
+
+template <class S>
+void visit_transform(const char* name, Transform<S>& transform, ByteStream& stream) {
+  stream.rotation(name, transform.rotation);
+  stream.vector(name, transform.translation);
+}
+
+template <class T>
+void visit_joint(const char* name, JointJet<T>& jet, ByteStream& stream) {
+  stream.rotation(name, jet.rotation);
+  for (Vec3<T>* v : {&jet.omega, &jet.alpha, &jet.translation, &jet.velocity, &jet.acceleration})
+    stream.vector(name, *v);
+}
+
+void visit_pendulum(const char* name, Pendulum& pendulum, ByteStream& stream) {
+  for (Vec2* v : {&pendulum.place, &pendulum.velocity, &pendulum.acceleration}) stream.vector(name, *v);
+}
+
+/// `offsets`: what `fade` points to.
+template <class T>
+void visit_fade(InertialState<T>& fade, std::vector<T>& offsets, ByteStream& stream) {
+  stream.value("time since a fade began", fade.elapsed);
+  stream.value("duration of a fade", fade.duration);
+  stream.array("offsets of a fade", offsets.data(), offsets.size());
+}
+
+void visit_report(BehaviourReport& report, ByteStream& stream) {
+  auto& [state, steps, capture_depth, time, fell_beyond, tries] =
+      report;  // a new member will not compile here
+  stream.enumeration("what it does", state, BehaviourState::kRise);
+  stream.value("steps since the push", steps);
+  stream.value("depth of the capture point", capture_depth);
+  stream.value("time since the push", time);
+  stream.value("what it fell beyond", fell_beyond);
+  stream.value("tries to get up", tries);
+}
+
+void visit_last_step(LastStep& last, ByteStream& stream) {
+  stream.vector("momentum", last.momentum);
+  stream.flag("root was solved for", last.root_unknown);
+  stream.value("force of the ground", last.ground.force);
+  stream.vector("place of the ground", last.ground.place);
+  stream.vector("velocity of the ground", last.ground.velocity);
+  stream.value("turn rate of the ground", last.ground.turn_rate);
+}
+
+}  // namespace
+
+template <class T>
+void GetUp<T>::visit(ByteStream& stream) {
+  stream.value("clips that failed", tried_);
+  stream.flag("rises", rises_);
+  stream.value("pose to rise from", entry_);
+  stream.value("clip to get up by", variant_);
+  stream.value("times it gathered", gathers_);
+  stream.value("strength when it stands", strength_);
+  stream.value("time of this try", elapsed_);
+  stream.value("time it waits", waits_);
+  stream.value("off its clip", off_);
+  stream.value("share of its strength", strong_from_);
+  stream.value("off its clip as it began to rise", caught_);
+  for (double* number : {&place_.x, &place_.y, &place_.yaw, &place_.z})
+    stream.value("place of the clip", *number);
+  stream.value("ground of the clip", ground_);
+  visit_jet("time in the clip", time_, stream);
+  stream.value("change of the clip's rate", rate_change_);
+  visit_fade(fade_, fade_numbers_, stream);
+  if (stream.reading() && variant_ >= 0) clips_.sample(variant_, ClipTime{time_}, pose_);
+}
+
+template <class T>
+void Behaviour<T>::visit(ByteStream& stream) {
+  visit_report(report_, stream);
+  visit_pendulum("plan", plan_, stream);
+  stream.value("frequency of the plan", frequency_);
+  for (Transform<double>& foot : foot_) visit_transform("foot", foot, stream);
+  stream.value("foot in the air", swing_);
+  stream.value("foot that is put back", home_);
+  stream.value("time of the swing", swing_time_);
+  stream.flag("walks on", walks_);
+  stream.value("standing foot of the walk", stance_);
+  visit_pendulum("off the animation", error_, stream);
+  for (MovingVector<double>& offset : foot_offset_)
+    for (int a = 0; a < 3; ++a) visit_jet("foot off the animation", offset[a], stream);
+  visit_transform("where the foot was lifted", lifted_, stream);
+  stream.vector("turn of the trunk", turn_);
+  stream.vector("angular velocity of the trunk", turn_rate_);
+  stream.vector("angular acceleration of the trunk", turn_acceleration_);
+  stream.vector("angular velocity of the root", spin_);
+  visit_jet("height", height_, stream);
+  stream.rotation("root a step before", root_before_);
+  stream.value("level of the ground", level_);
+  stream.flag("root was measured", measured_);
+  stream.value("strength before it fell", strength_);
+  stream.value("time it has lain still", rest_);
+  stream.flag("may get up", allowed_);
+  stream.flag("knocked down", knocked_);
+  stream.flag("has just got up", risen_);
+  for (JointJet<T>& jet : last_) visit_joint("last target", jet, stream);
+  stream.flag("there was a target", asked_);
+  stream.flag("a fade begins", fades_);
+  visit_fade(fade_, fade_numbers_, stream);
+  visit_last_step(last_step_, stream);
+  get_up_.visit(stream);
+}
+
+/// Of saved bytes, and of what they were saved by.
+template <class T>
+std::uint64_t Behaviour<T>::check_of(std::span<const std::byte> bytes) const {
+  const std::array<int, 2> clips{static_cast<int>(get_up_.clips().variants().size()),
+                                 get_up_.clips().entries()};
+  return digest(bytes, digest(std::as_bytes(std::span(clips))));
+}
+
+template <class T>
+std::size_t Behaviour<T>::saved_bytes() {
+  ByteStream stream = ByteStream::bound();
+  visit(stream);
+  return sizeof(Digest) + stream.position();
+}
+
+template <class T>
+std::size_t Behaviour<T>::save(const Character<T>& character, std::span<std::byte> out) {
+  const std::size_t size = saved_bytes();
+  if (out.size() < size || !character.valid()) return 0;
+  if (!restored_) look_back(character);
+  const std::span<std::byte> body = out.subspan(sizeof(Digest), size - sizeof(Digest));
+  ByteStream stream = ByteStream::writer(body);
+  visit(stream);
+  const Digest check = check_of(body);
+  std::memcpy(out.data(), &check, sizeof check);
+  return size;
+}
+
+template <class T>
+Status Behaviour<T>::restore(std::span<const std::byte> saved) {
+  if (saved.size() != saved_bytes())
+    return Status::error(Code::kInvalidArgument, "not what such a behaviour saved: another size");
+  const std::span<const std::byte> body = saved.subspan(sizeof(Digest));
+  Digest check = 0;
+  std::memcpy(&check, saved.data(), sizeof check);
+  if (check != check_of(body))
+    return Status::error(Code::kBadFile,
+                         "what was saved is damaged, or a behaviour with other clips saved it");
+  ByteStream stream = ByteStream::reader(body);
+  visit(stream);
+  find_support();
+  if (home_ >= 0) find_only();
+  restored_ = true;
+  events_count_ = 0;
+  return {};
+}
+
+#define SINEW_SAVED_INSTANCES(T)                                                      \
+  template void GetUp<T>::visit(ByteStream&);                                         \
+  template void Behaviour<T>::visit(ByteStream&);                                     \
+  template std::uint64_t Behaviour<T>::check_of(std::span<const std::byte>) const;    \
+  template std::size_t Behaviour<T>::saved_bytes();                                   \
+  template std::size_t Behaviour<T>::save(const Character<T>&, std::span<std::byte>); \
+  template Status Behaviour<T>::restore(std::span<const std::byte>);
+SINEW_SAVED_INSTANCES(float)
+SINEW_SAVED_INSTANCES(double)
+
+}  // namespace sinew
