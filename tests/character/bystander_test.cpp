@@ -236,5 +236,66 @@ TEST(Bystander, WhoStandsASpanAwayDoesNotEndPlaybackEither) {
       solved_of_two([](int n, float, JointJet<float>& root) { root.translation.x() += 0.7f * float(n); }), 0);
 }
 
+/// A box that is led upwards, its top 0.3 m above the floor at first.
+struct Lift {
+  World<float>& world;
+  int box = -1;
+
+  explicit Lift(World<float>& in) : world(in) {
+    Skeleton body;
+    Joint joint;
+    joint.name = "box";
+    joint.type = JointType::kFree;
+    joint.mass = 500;
+    joint.inertia = Vec3<double>(700, 700, 1300).asDiagonal();
+    body.joints = {joint};
+    body.body_count = 1;
+    Collider top;
+    top.shape = Shape::kBox;
+    top.size = {6, 6, 0.15};
+    body.colliders = {top};
+    Status status;
+    box = world.add_character(body, {}, status);
+    EXPECT_TRUE(status.ok()) << status.reason;
+    lead(0);
+    (void)world.character(box).reset();
+  }
+  void lead(float time) {
+    JointJet<float> at;
+    at.translation = Vec3<float>(0, 0, 0.15f + 0.5f * time);
+    at.velocity = Vec3<float>(0, 0, 0.5f);
+    EXPECT_TRUE(world.character(box).set_target({&at, 1}).ok());
+  }
+};
+
+/// Poses of a figure that falls onto a lift, and of the lift, with others on it or not.
+Poses falls_on_lift(bool others) {
+  Scene scene;
+  Lift lift(scene.world);
+  const int watched = scene.fall({0, 0, 0.6f}, 1);
+  if (others) {
+    scene.fall({3, 0, 0.6f}, 2);
+    scene.fall({-3, 1, 0.9f}, 3);
+    scene.box({0, 4, 0.8}, {1, 0, 0}, {0, 3, 0});
+  }
+  float time = 0;
+  return record(scene, 90, [&] {
+    lift.lead(time += kStep);
+    const auto model = scene.world.character(watched).model();
+    Poses now(model.begin(), model.end());
+    now.push_back(scene.world.character(lift.box).model()[0]);
+    return now;
+  });
+}
+
+TEST(Bystander, WhatCarriesSeveralMakesThemNoneOfEachOthersConcern) {
+  const Poses alone = falls_on_lift(false), among = falls_on_lift(true);
+  ASSERT_EQ(alone.size(), among.size());
+  for (std::size_t n = 0; n < alone.size(); ++n) {
+    ASSERT_EQ(alone[n].translation, among[n].translation) << n;
+    ASSERT_EQ(alone[n].rotation.coeffs(), among[n].rotation.coeffs()) << n;
+  }
+}
+
 }  // namespace
 }  // namespace sinew

@@ -31,11 +31,20 @@ constexpr double kWalks = 0.25;                        ///< m/s, of an animation
 constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLieStill = 0.1;                      ///< m/s
 constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
+constexpr double kStands = 0.025;                      ///< m, of a sole above the ground
+constexpr double kLed = 5e-3, kLedTime = 0.5;          ///< m and s, that tell who takes an animation along
 constexpr double kLie = 0.5, kNeverStill = 4;          ///< s; s after which it need not lie still
 
 Quat<double> upright(const Quat<double>& turned) {
   const double size = portable::hypot(turned.w(), turned.z());
   return size > 0 ? Quat<double>(turned.w() / size, 0, 0, turned.z() / size) : Quat<double>::Identity();
+}
+
+/// Of what goes along for h seconds, from one motion of a frame to the next.
+Displacement way_of(const CarriedFrame& now, const CarriedFrame& next, double h) {
+  const Displacement turn{0, 0, h * (now.turn_rate + next.turn_rate) / 2};
+  const Vec3<double> way = now.place - turn.turn() * now.place + h * (now.velocity + next.velocity) / 2;
+  return {way.x(), way.y(), turn.yaw, way.z()};
 }
 
 }  // namespace
@@ -82,56 +91,83 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   if (std::exchange(knocked_, false)) tell(BehaviourEventKind::kFallen, BehaviourReason::kAsked);
   const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   const bool restored = std::exchange(restored_, false);
-  if (!restored) last_step_.root_unknown = character.unknown()[0] != 0;
+  if (!restored) look_back(character);
   if (!acts && !last_step_.root_unknown) {
     measured_ = asked_ = false;
-    return {};
+    if (!last_step_.ground.moves()) {
+      ground_before_ = {};
+      return {};
+    }
+  } else if (!restored) {
+    last_step_.momentum = character.report().momentum;
   }
-  if (!restored) look_back(character);
   report_.time += double(h);
   see_clip(jets);
-  see_ground(character);
-  act(character, jets, h);
+  see_ground(character, double(h));
+  if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
   return {};
 }
 
-/// At what its character's last step has done.
+/// At what its character's last step has done, but for its momentum: who was played is not asked for it.
 template <class T>
 void Behaviour<T>::look_back(const Character<T>& character) {
-  const CharacterReport& report = character.report();
-  last_step_ = {report.momentum, report.ground, character.unknown()[0] != 0};
+  last_step_.ground = character.ground();
+  last_step_.root_unknown = character.unknown()[0] != 0;
 }
 
-/// What bears the body, and how much of its way the animation does not go by itself.
+/// m/s of the clip's feet over ground of that velocity: of the point that slips least.
 template <class T>
-void Behaviour<T>::see_ground(const Character<T>& character) {
+double Behaviour<T>::slip_over(const Vec3<double>& velocity) const {
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t side = 0; side < 2; ++side)
+    for (const Vec3<T>& touches : body_.soles[side]) {
+      const auto foot = static_cast<std::size_t>(body_.legs[side].foot);
+      const Vec3<T> rate = rate_of<T>(model_[foot] * still<T>(touches));
+      least = std::min(least, (rate.template cast<double>() - velocity).norm());
+    }
+  return least;
+}
+
+/// What bears the body, if the animation does not go along with it by itself. It gathers speed in the step to
+/// come as it did in the last; who is in the air flies on.
+template <class T>
+void Behaviour<T>::see_ground(Character<T>& character, double h) {
   const BearingGround& ground = last_step_.ground;
-  carried_ = {};
-  if (!(ground.force > 0)) return;
-  level_ = ground.place.z() - character.displacement().z;
-  const double speed = ground.velocity.squaredNorm();
-  if (speed == 0 && ground.turn_rate == 0) return;
-  const Vec3<double> own = character.displacement().turn() * clip_slide_;
-  const double share = speed > 0 ? 1 - std::clamp(own.dot(ground.velocity) / speed, 0.0, 1.0) : 1;
-  carried_ = {ground.place, share * ground.velocity, share * ground.turn_rate};
+  const CarriedFrame now{ground.place, ground.velocity, ground.turn_rate};
+  const CarriedFrame before = ground.force > 0 ? std::exchange(ground_before_, now) : ground_before_;
+  if (ground.force > 0) level_ = ground.place.z() - character.displacement().z;
+  carried_ = carried_next_ = ground_before_;
+  const double fades = ground_before_.moves() ? 1 - std::min(h / (kLedTime * std::sqrt(unit_)), 1.0) : 0;
+  const Quat<double> back = character.displacement().turn().conjugate();
+  slip_ridden_ = fades * (slip_ridden_ + h * slip_over(Vec3<double>::Zero()));
+  slip_led_ = fades * (slip_led_ + h * slip_over(back * ground_before_.velocity));
+  led_ = slip_led_ + (led_ ? -kLed : kLed) * unit_ < slip_ridden_;
+  if (led_) {
+    carried_ = carried_next_ = {};
+  } else if (ground.force > 0 && before.moves()) {
+    carried_next_.velocity += now.velocity - before.at(now.place);
+    carried_next_.turn_rate += now.turn_rate - before.turn_rate;
+  } else if (!before.moves() && carried_.moves() && last_step_.root_unknown) {  // as in the last step
+    (void)character.displace(way_of(carried_, carried_, h));
+  }
 }
 
 /// The animation goes along with ground that moves.
 template <class T>
-void Behaviour<T>::ride(Character<T>& character, JointJet<T>& root, double h) {
-  if (!carried_.moves()) return;
-  const Displacement turn{0, 0, h * carried_.turn_rate};
-  const Vec3<double> way = carried_.place - turn.turn() * carried_.place + h * carried_.velocity;
-  (void)character.displace({way.x(), way.y(), turn.yaw, way.z()});
+void Behaviour<T>::ride(Character<T>& character, JointJet<T>& root, double h) const {
+  const CarriedFrame &now = carried_, &next = carried_next_;
+  if (!now.moves()) return;
+  (void)character.ride(way_of(now, next, h));
   const Displacement by = character.displacement();
+  const Quat<double> back = by.turn().conjugate();
   const Vec3<double> is =
       by.turn() * root.translation.template cast<double>() + Vec3<double>(by.x, by.y, by.z);
-  const Vec3<double> velocity = by.turn().conjugate() * carried_.at(is);
-  const Vec3<double> spin =
-      root.rotation.conjugate().template cast<double>() * Vec3<double>(0, 0, carried_.turn_rate);
-  root.velocity += velocity.template cast<T>();
-  root.omega += spin.template cast<T>();
+  root.velocity += (back * next.at(is)).template cast<T>();
+  root.acceleration += (back * ((next.at(is) - now.at(is)) / h)).template cast<T>();
+  const Vec3<double> up = root.rotation.conjugate().template cast<double>() * Vec3<double>::UnitZ();
+  root.omega += (next.turn_rate * up).template cast<T>();
+  root.alpha += ((next.turn_rate - now.turn_rate) / h * up).template cast<T>();
 }
 
 template <class T>
@@ -202,7 +238,6 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
     middle += from_above(clip_ankle_[side].translation) / 2;
     for (const Vec3<T>& touches : body_.soles[side]) {
       const double z = (clip_ankle_[side] * Vec3<double>(touches.template cast<double>())).z();
-      if (z < ground_) clip_slide_ = rate_of(ankle.translation).template cast<double>();
       ground_ = std::min(ground_, z);
     }
   }

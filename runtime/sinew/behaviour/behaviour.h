@@ -169,13 +169,14 @@ class Behaviour {
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(std::span<const JointJet<T>> jets);
   void look_back(const Character<T>& character);
-  void see_ground(const Character<T>& character);
+  double slip_over(const Vec3<double>& velocity) const;
+  void see_ground(Character<T>& character, double h);
   void visit(ByteStream& stream);
   std::uint64_t check_of(std::span<const std::byte> bytes) const;
   void find_support();
   void find_only();
   void act(Character<T>& character, std::span<JointJet<T>> jets, T h);
-  void ride(Character<T>& character, JointJet<T>& root, double h);
+  void ride(Character<T>& character, JointJet<T>& root, double h) const;
   bool is_pushed(const MeasuredBody& is, double h) const;
   void keep_balance(Character<T>& character, const MeasuredBody& is);
   void give_up(Character<T>& character);
@@ -229,16 +230,21 @@ class Behaviour {
   LastStep last_step_;
   bool restored_ = false;  ///< that is the restored world's
   Quat<double> clip_root_ = Quat<double>::Identity();
-  Vec3<double> clip_spin_ = Vec3<double>::Zero();    ///< rad/s, world axes
-  bool walks_ = false;                               ///< it was pushed while it walked, and walks on
-  int stance_ = 0;                                   ///< the foot that stands, of a walker
-  Pendulum error_;                                   ///< what a walker is off its animation
-  std::array<MovingVector<double>, 2> foot_offset_;  ///< m, and of its feet
+  Vec3<double> clip_spin_ = Vec3<double>::Zero();  ///< rad/s, world axes
+  bool walks_ = false;                             ///< it was pushed while it walked, and walks on
+  int stance_ = 0;                                 ///< the foot that stands, of a walker
+  Pendulum error_;                                 ///< what a walker is off its animation
+  /// m, and of its feet.
+  std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),
+                                                   still<double>(Vec3<double>::Zero())};
   std::array<MovingTransform<T>, 2> clip_foot_motion_;
-  double ground_ = 0;                               ///< m, height of what the clip's feet stand on
-  double level_ = 0;                                ///< m, that of what the body stands or lies on
-  Vec3<double> clip_slide_ = Vec3<double>::Zero();  ///< m/s, of the clip's lower foot
-  CarriedFrame carried_;                            ///< by ground that moves
+  double ground_ = 0;                    ///< m, height of what the clip's feet stand on
+  double level_ = 0;                     ///< m, that of what the body stands or lies on
+  CarriedFrame carried_, carried_next_;  ///< by ground that moves: now, and after the next step
+  CarriedFrame ground_before_;           ///< what bore it last moved so
+  /// m, of late, by which the clip's foot slips on ground that moves, were it taken along or not.
+  double slip_ridden_ = 0, slip_led_ = 0;
+  bool led_ = false;  ///< the host's animation goes along by itself
   std::array<Transform<double>, 2> clip_ankle_;
   int swing_ = -1, home_ = -1;  ///< the foot in the air; the one that is put back
   Sole only_;                   ///< of the foot that stands while the other is put back

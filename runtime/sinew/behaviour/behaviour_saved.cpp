@@ -52,6 +52,12 @@ void visit_report(BehaviourReport& report, ByteStream& stream) {
   stream.value("tries to get up", tries);
 }
 
+void visit_frame(const char* name, CarriedFrame& frame, ByteStream& stream) {
+  stream.vector(name, frame.place);
+  stream.vector(name, frame.velocity);
+  stream.value(name, frame.turn_rate);
+}
+
 void visit_last_step(LastStep& last, ByteStream& stream) {
   stream.vector("momentum", last.momentum);
   stream.flag("root was solved for", last.root_unknown);
@@ -118,6 +124,10 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.flag("a fade begins", fades_);
   visit_fade(fade_, fade_numbers_, stream);
   visit_last_step(last_step_, stream);
+  visit_frame("ground a step before", ground_before_, stream);
+  stream.value("slip if taken along", slip_ridden_);
+  stream.value("slip if not", slip_led_);
+  stream.flag("goes along by itself", led_);
   get_up_.visit(stream);
 }
 
@@ -140,7 +150,10 @@ template <class T>
 std::size_t Behaviour<T>::save(const Character<T>& character, std::span<std::byte> out) {
   const std::size_t size = saved_bytes();
   if (out.size() < size || !character.valid()) return 0;
-  if (!restored_) look_back(character);
+  if (!restored_) {
+    look_back(character);
+    last_step_.momentum = character.report().momentum;
+  }
   const std::span<std::byte> body = out.subspan(sizeof(Digest), size - sizeof(Digest));
   ByteStream stream = ByteStream::writer(body);
   visit(stream);

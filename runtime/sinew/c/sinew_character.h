@@ -94,7 +94,7 @@ typedef struct sinew_character_report {
   double help_torque;          ///< N m
   double estimated_error;      ///< m
   double position[3];          ///< m, of the root's origin
-  double ground_force;         ///< N, up: of what bears it; 0: nothing does, and it was not played
+  double ground_force;         ///< N, up: of what bears it; who is only played: where it moves
   double ground_place[3];      ///< m, world: where it presses
   double ground_velocity[3];   ///< m/s, of what is there
   double ground_turn_rate;     ///< rad/s, about the vertical

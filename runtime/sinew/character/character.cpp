@@ -224,17 +224,36 @@ Status Character<T>::take_displacement() {
   return {};
 }
 
-template <class T>
-Status Character<T>::displace(const Displacement& further) {
-  if (!state_) return nobody();
+namespace {
+
+Status check(const Displacement& further, const Displacement& all) {
   if (!std::isfinite(further.x) || !std::isfinite(further.y) || !std::isfinite(further.yaw) ||
       !std::isfinite(further.z))
     return Status::error(Code::kNotFinite, "displacement is not finite");
-  const Displacement all = state_->grounding.by.then(further);
   constexpr double kFarthest = 1e6;  // m, or rad
   if (std::max({std::abs(all.x), std::abs(all.y), std::abs(all.yaw), std::abs(all.z)}) > kFarthest)
     return Status::error(Code::kOutOfRange, "displacement is beyond 1e6 m, or rad");
-  displace_target(*state_, further);
+  return {};
+}
+
+}  // namespace
+
+template <class T>
+Status Character<T>::displace(const Displacement& further) {
+  if (!state_) return nobody();
+  const Status status = check(further, state_->grounding.by.then(further));
+  if (status) displace_target(*state_, further);
+  return status;
+}
+
+template <class T>
+Status Character<T>::ride(const Displacement& further) {
+  if (!state_) return nobody();
+  const Displacement all = state_->grounding.by.then(further);
+  const Status status = check(further, all);
+  if (!status) return status;
+  state_->grounding.by = all;
+  state_->grounding.rides = true;
   return {};
 }
 
@@ -364,6 +383,12 @@ const CharacterReport& Character<T>::report() const {
   if (!state_) return none;
   state_->compute_totals();
   return state_->report;
+}
+
+template <class T>
+const BearingGround& Character<T>::ground() const {
+  static const BearingGround none;
+  return state_ ? state_->report.ground : none;
 }
 
 template class Character<float>;

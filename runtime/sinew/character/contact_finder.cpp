@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sinew/character/contacts.h"
-#include "sinew/character/near_ground.h"
+#include "sinew/character/nearby.h"
 #include "sinew/optimizer/contact_rows.h"
 #include "sinew/skeleton/hooks.h"
 
@@ -523,6 +523,14 @@ void ContactFinder<T>::meet_tree(int n, int m) {
       if (n != m || s.may_touch[c * count + o]) meet_collider(n, c, m, o);
 }
 
+/// kg that forces from outside press down on a tree like.
+template <class T>
+T load_of(const CharacterState<T>& s, const Vec3<double>& gravity) {
+  double pressed = 0;
+  for (const ExternalForce<T>& f : s.forces) pressed += gravity.dot(f.force.template cast<double>());
+  return pressed > 0 ? T(pressed / gravity.squaredNorm()) : T(0);
+}
+
 template <class T>
 std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const Surroundings& surroundings,
                                              std::span<CharacterState<T>* const> states,
@@ -552,7 +560,7 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
       impact_depth_ = T(kImpactDepthDriven);
       continue;
     }
-    heaviest = std::max(heaviest, T(s->total_mass));
+    heaviest = std::max(heaviest, T(s->total_mass) + load_of(*s, world.gravity));
   }
   bears_ = states.size() > 1 ? T(kPiled) * heaviest : heaviest;
   most_ = std::min(most_, capacity_);
@@ -579,90 +587,11 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   return contacts_;
 }
 
-namespace {
-
-/// Half the thickness of an obstacle, m: of a box that stands on the floor, which goes on below it (see
-/// go_on_below), only across.
 double half_thickness_of(const Collider& obstacle, double floor, double unit) {
   if (obstacle.shape != Shape::kBox) return obstacle.size.x();
   const Vec3<double> face = face_on_floor<double>(obstacle.local, obstacle.size, floor, unit);
   const Vec3<double> size = obstacle.size + face.cwiseAbs() * kBelowFloor * unit;
   return size.minCoeff();
-}
-
-/// Whether colliders end deeper than `depth` in a shape of the host's, or pass within reach of it faster than
-/// it is thick (`thin`, m). By their middles, ends and corners.
-template <class T>
-bool goes_into(const ColliderPaths<T>& paths, const Vec3<double>& origin, const StaticShape& shape, T depth,
-               T thin) {
-  for (std::size_t n = 0; n < paths.to.size(); ++n) {
-    const PlacedCollider<T>& to = paths.to[n];
-    const Collider& collider = *to.collider;
-    const auto distance = [&](const Vec3<T>& local) {
-      return T(shape.distance(origin + (to.pose * local).template cast<double>()).distance);
-    };
-    const T middle = distance(Vec3<T>::Zero());
-    if (middle > to.radius) {
-      const T way = (to.pose.translation - paths.from[n].pose.translation).norm();
-      if (way > thin && middle < to.radius + way) return true;
-      continue;
-    }
-    const Vec3<T> size = collider.size.template cast<T>();
-    const T radius = collider.shape == Shape::kBox ? T(0) : size.x();
-    if (middle - radius < -depth) return true;
-    if (collider.shape == Shape::kCapsule)
-      for (const T end : {-size.z(), size.z()})
-        if (distance({T(0), T(0), end}) - radius < -depth) return true;
-    if (collider.shape != Shape::kBox) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3<T> sign(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1), corner & 4 ? T(1) : T(-1));
-      if (distance(size.cwiseProduct(sign)) < -depth) return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
-template <class T>
-bool meets_obstacle(CharacterState<T>& s, const Surroundings& around, T h, ObstacleScratch<T>& scratch) {
-  scratch.any = false;
-  if (!s.settings.ground_contact || (around.obstacles.empty() && around.hosts.empty())) return false;
-  const T reach = s.radius + T(0.1) * s.tree.scale.length + 2 * h * s.history.velocity[0].norm();
-  const Vec3<double> center = s.local[0].translation.template cast<double>(), origin = s.history.place;
-  const T pressed = T(kPressedByClips) * s.tree.scale.length;
-  scratch.from.clear();
-  scratch.to.clear();
-  const auto paths = [&] {
-    if (scratch.from.empty()) {
-      place_colliders<T>(s, s.local, origin, origin, scratch.from);
-      for (int i = 0; i < s.tree.bodies; ++i)
-        s.problem.target[i] = {s.target[i].rotation, s.target[i].translation};
-      place_colliders<T>(s, s.problem.target, s.target[0].translation.template cast<double>(), origin,
-                         scratch.to);
-    }
-    return ColliderPaths<T>{scratch.from, scratch.to};
-  };
-  bool meets = false;
-  if (!around.obstacles.empty())
-    around.grid->overlapping(center, double(reach), [&](int o) {
-      const Collider& obstacle = around.obstacles[o];
-      const SignedDistance<double> d =
-          signed_distance<double>(obstacle.shape, obstacle.size, obstacle.local.inverse() * center);
-      if (meets || d.distance > double(reach)) return;
-      scratch.any = true;
-      Transform<double> pose = obstacle.local;
-      pose.translation -= origin;
-      scratch.obstacle.assign(1, {&obstacle, pose.cast<T>(), T(bounding_radius(obstacle))});
-      const T thin = T(half_thickness_of(obstacle, around.floor, double(s.tree.scale.length)));
-      meets = touch_on_the_way<T>(paths(), {scratch.obstacle, scratch.obstacle}, std::min(pressed, thin / 2));
-    });
-  return meets || std::any_of(around.hosts.begin(), around.hosts.end(), [&](const HostObstacle& o) {
-           if (!(o.shape->distance(center).distance < double(reach))) return false;
-           scratch.any = true;
-           const T thin = T(o.shape->half_thickness());
-           return goes_into(paths(), origin, *o.shape, std::min(pressed, thin / 2), thin);
-         });
 }
 
 namespace {
@@ -673,19 +602,11 @@ std::unique_ptr<ContactSearch<T>> make_finder() {
 }
 
 template <class T>
-constexpr ContactTerm<T> kContacts{make_finder<T>,
-                                   meets_obstacle<T>,
-                                   find_ground<T>,
-                                   append_moving<T>,
-                                   come_close<T>,
-                                   swept_box<T>,
-                                   boxes_come_close<T>,
-                                   place_colliders<T>,
-                                   predict_colliders<T>,
-                                   touch_on_the_way<T>,
-                                   append_contact_points<T>,
-                                   share_stiffness<T>,
-                                   measure<T>};
+constexpr ContactTerm<T> kContacts{
+    make_finder<T>,      look_around<T>,           is_in_the_way<T>,   ground_under<T>,
+    load_props<T>,       ground_that_moves<T>,     append_moving<T>,   come_close<T>,
+    swept_box<T>,        boxes_come_close<T>,      place_colliders<T>, predict_colliders<T>,
+    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
 
 }  // namespace
 

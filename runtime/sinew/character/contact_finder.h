@@ -231,37 +231,29 @@ class ContactFinder final : public ContactSearch<T> {
   std::vector<int> depenetrating_;  ///< [state] contacts through which it is brought out of something
 };
 
-/// Room for meets_obstacle().
-template <class T>
-struct ObstacleScratch {
-  std::vector<PlacedCollider<T>> from, to, obstacle;
-  bool any = false;  ///< something was within reach
-
-  void reserve(int colliders) {
-    for (auto* v : {&from, &to}) v->reserve(colliders);
-    obstacle.reserve(1);
-  }
-};
-
-/// Whether the animation meets an obstacle or a shape of the host's on its way to the target, within h
-/// seconds, deeper than kPressedByClips. O(colliders) for each that is within their reach.
-template <class T>
-bool meets_obstacle(CharacterState<T>& state, const Surroundings& around, T h, ObstacleScratch<T>& scratch);
+/// Half the thickness of an obstacle, m: of a box that stands on a floor (m, its height), on below which it
+/// goes, only across. `unit`: Scale::length.
+double half_thickness_of(const Collider& obstacle, double floor, double unit);
 
 template <class T>
-struct NearGround;
+struct Nearby;
 template <class T>
-struct GroundProbe;
+struct Members;
+struct BearingGround;
+template <class T>
+struct BearingPoint;
 
 /// What a world's step asks of contacts.
 template <class T>
 struct ContactTerm {
   std::unique_ptr<ContactSearch<T>> (*make_finder)();
-  bool (*meets_obstacle)(CharacterState<T>& state, const Surroundings& around, T h,
-                         ObstacleScratch<T>& scratch);
-  /// See near_ground.h.
-  const GroundProbe<T>* (*find_ground)(const CharacterState<T>& state, const WorldSettings& world,
-                                       const Surroundings& around, NearGround<T>& room);
+  // See nearby.h.
+  void (*look_around)(CharacterState<T>& state, const WorldSettings& world, const Surroundings& around,
+                      const Members<T>& members, T h, Nearby<T>& out);
+  bool (*is_in_the_way)(CharacterState<T>& state, Nearby<T>& nearby);
+  const GroundProbe<T>* (*ground_under)(CharacterState<T>& state, Nearby<T>& nearby);
+  void (*load_props)(const Nearby<T>& nearby, std::span<const BearingPoint<T>> bearing);
+  BearingGround (*ground_that_moves)(const Nearby<T>& nearby, std::span<const StandingPoint<T>> standing);
   void (*append_moving)(CharacterState<T>& state, T h, std::vector<MovingCollider<T>>& out);
   bool (*come_close)(std::span<const MovingCollider<T>> a, std::span<const MovingCollider<T>> b, T h,
                      T margin);

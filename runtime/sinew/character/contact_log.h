@@ -70,11 +70,10 @@ class ContactLog {
     strikes_ = pushes_ = next_ = 0;
     known_ = *count_;
   }
-  /// Drops what has been written of these trees (ascending): they are to be stepped again.
-  void forget(std::span<const int> trees) {
-    const auto its = [&](const LoggedContact<T>& c) {
-      const auto is = [&](int tree) { return std::binary_search(trees.begin(), trees.end(), tree); };
-      return is(c.pair.a.tree) || (c.pair.b.tree >= 0 && is(c.pair.b.tree));
+  /// Drops what has been written of a tree: it is to be stepped again.
+  void forget(int tree) {
+    const auto its = [tree](const LoggedContact<T>& c) {
+      return c.pair.a.tree == tree || c.pair.b.tree == tree;
     };
     const auto all = buffer_.first(static_cast<std::size_t>(*count_));
     *count_ = static_cast<int>(std::remove_if(all.begin(), all.end(), its) - all.begin());

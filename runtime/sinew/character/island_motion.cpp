@@ -349,14 +349,16 @@ void IslandStepper<T>::begin_ends() {
   ends_.begin(problems_, loose_);
 }
 
-/// Whether the same contacts and limits as in the steps before are expected at the end of this one.
+/// Whether the same contacts and limits as in the steps before are expected at the end of this one. What a
+/// carrier meets tells those who meet it.
 template <class T>
 void IslandStepper<T>::expect_to_last(T h) {
   lasts_.resize(states_.size());
   for (std::size_t n = 0; n < states_.size(); ++n)
-    lasts_[n] = states_[n]->steps_unchanged >= kUnchangedSteps &&
-                touching_soon<T>(contacts_, static_cast<int>(n), states_, world_->gravity, h) ==
-                    states_[n]->contact_signature;
+    lasts_[n] = states_[n]->is_carrier() ||
+                (states_[n]->steps_unchanged >= kUnchangedSteps &&
+                 touching_soon<T>(contacts_, static_cast<int>(n), states_, world_->gravity, h) ==
+                     states_[n]->contact_signature);
 }
 
 /// A point that has slid from one obstacle on to the next, of the same plane, bears there what it bore.
@@ -378,8 +380,9 @@ void IslandStepper<T>::take_over(Contact<T>& c) const {
 template <class T>
 void IslandStepper<T>::split_contacts(T h) {
   for (std::size_t n = 0; n < states_.size(); ++n)
-    lasts_[n] = lasts_[n] && touching<T>(contacts_, static_cast<int>(n)) == states_[n]->contact_signature &&
-                bearing<T>(*problems_[n]) == states_[n]->limit_signature;
+    lasts_[n] = states_[n]->is_carrier() ||
+                (lasts_[n] && touching<T>(contacts_, static_cast<int>(n)) == states_[n]->contact_signature &&
+                 bearing<T>(*problems_[n]) == states_[n]->limit_signature);
   for (Contact<T>& c : contacts_) {
     take_over(c);
     const T share = lasting_share(problems_[c.tree_a]->prediction.weight, h);

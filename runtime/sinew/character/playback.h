@@ -16,7 +16,7 @@ template <class T>
 struct CheckContext {
   const WorldSettings& world;
   const StepPlan<T>& plan;
-  const GroundProbe<T>* ground = nullptr;  ///< null: nothing but the floor is near (near_ground.h)
+  const GroundProbe<T>* ground = nullptr;  ///< null: nothing but the floor is near (nearby.h)
   CheckScratch<T> scratch;
 };
 

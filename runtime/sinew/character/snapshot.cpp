@@ -308,6 +308,8 @@ void visit_pushes(const CharacterState<T>& s, std::vector<ExternalForce<T>>& pus
 template <class T>
 void visit_inputs(CharacterState<T>& s, ByteStream& stream) {
   s.own_last_target();
+  stream.flag("comes back", s.grounding.comes_back);
+  stream.flag("rides", s.grounding.rides);
   for (JointJet<T>& jet : s.target) {
     stream.rotation("target rotation", jet.rotation);
     stream.vector("target angular velocity", jet.omega);

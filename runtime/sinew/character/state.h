@@ -74,6 +74,7 @@ struct Grounding {
   T rest = T(0);                             ///< s that it has stood as its animation wants it
   double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
   bool comes_back = false;                   ///< Character::come_back() in this step
+  bool rides = false;                        ///< Character::ride() in this step
   bool returns = false;  ///< next to its animation, where it may be played if ground and muscles can do it
 };
 
@@ -298,6 +299,10 @@ struct CharacterState {
   void bound_particles();
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
+  /// Has no joints but a free root.
+  bool is_whole() const { return floats && tree.dofs == tree.dof_count(0); }
+  /// Such a one, driven, as a platform: it carries what is on it, and gives way to nobody.
+  bool is_carrier() const { return is_whole() && root_is_kinematic() && !tied && undisturbed(); }
   /// And has limbs, that it could tear off: what has none, as a platform, presses whatever is in its way.
   bool drives_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }
 };

@@ -3,19 +3,23 @@
 #include <algorithm>
 
 #include "sinew/character/couplings.h"
+#include "sinew/effects/support.h"
 
 namespace sinew {
 namespace {
 
 /// m of a human: whose bodies go so deep into each other if nothing stops them will touch.
 constexpr double kBoundToTouch = 5e-3;
+/// Carriers that a member touches, on the average, where there is room for all; and one for each carrier.
+constexpr std::size_t kTouches = 4;
 
 }  // namespace
 
 template <class T>
 void TouchingSets<T>::reserve(const SolveCapacity& capacity) {
   for (auto* v : {&set_, &spent_, &its_indices_}) v->reserve(capacity.trees);
-  for (auto* v : {&stepped_, &changed_}) v->reserve(capacity.trees);
+  for (auto* v : {&carrier_, &stepped_, &changed_}) v->reserve(capacity.trees);
+  carried_.reserve((kTouches + 1) * capacity.trees);
   for (auto* v : {&from_, &to_, &placed_}) v->reserve(capacity.colliders);
   first_collider_.reserve(capacity.trees + 1);
   lagged_.reserve(capacity.loaded);
@@ -25,7 +29,7 @@ void TouchingSets<T>::reserve(const SolveCapacity& capacity) {
 
 template <class T>
 std::size_t TouchingSets<T>::bytes(const SolveCapacity& capacity) const {
-  return capacity.trees * (4 * sizeof(int) + 2 + sizeof(void*)) +
+  return capacity.trees * (4 * sizeof(int) + 3 + (kTouches + 1) * 2 * sizeof(int) + sizeof(void*)) +
          3 * capacity.colliders * sizeof(PlacedCollider<T>) + capacity.loaded * sizeof(LaggedForce<T>) +
          capacity.nodes * sizeof(void*);
 }
@@ -34,6 +38,28 @@ template <class T>
 void TouchingSets<T>::unite(int a, int b) {
   a = set_of(a), b = set_of(b);
   set_[std::max(a, b)] = std::min(a, b);
+}
+
+/// Whether somebody of a set touches a carrier.
+template <class T>
+bool TouchingSets<T>::carries(int carrier, int set) {
+  return std::any_of(carried_.begin(), carried_.end(),
+                     [&](const auto& c) { return c.first == carrier && set_of(c.second) == set; });
+}
+
+/// Who touch. Where a carrier has more than there is room for, all of them are one set.
+template <class T>
+void TouchingSets<T>::join(int a, int b) {
+  if (carrier_[a] && carrier_[b]) return;
+  if (!carrier_[a] && !carrier_[b]) return unite(a, b);
+  if (carrier_[b]) std::swap(a, b);
+  if (carries(a, set_of(b))) return;
+  const auto known =
+      std::find_if(carried_.begin(), carried_.end(), [a](const auto& c) { return c.first == a; });
+  if (known == carried_.end() || carried_.size() < kTouches * states_.size())
+    carried_.emplace_back(a, b);
+  else
+    unite(b, known->second);
 }
 
 /// −1: none.
@@ -53,7 +79,12 @@ bool TouchingSets<T>::begin(const ContactTerm<T>* contacts, std::span<CharacterS
   ties_ = ties;
   const int count = static_cast<int>(states.size());
   set_.resize(count);
-  for (int n = 0; n < count; ++n) set_[n] = n;
+  carrier_.resize(count);
+  carried_.clear();
+  for (int n = 0; n < count; ++n) {
+    set_[n] = n;
+    carrier_[n] = states[n]->is_carrier();
+  }
   for (const Coupling<T>* tie : ties) {
     const int first = member_of(first_tree(*tie));
     for_each_tree(*tie, [&](int tree) { unite(first, member_of(tree)); });
@@ -63,11 +94,11 @@ bool TouchingSets<T>::begin(const ContactTerm<T>* contacts, std::span<CharacterS
     const std::uint64_t end = first_contact_id(indices[n] + 1);
     auto force = std::lower_bound(lagged.begin(), lagged.end(), first_contact_id(indices[n]), before);
     for (; force != lagged.end() && force->id < end; ++force)
-      if (const int other = member_of(other_tree(force->id)); other >= 0) unite(n, other);
+      if (const int other = member_of(other_tree(force->id)); other >= 0) join(n, other);
   }
   const auto one_set = [&] {
-    for (int n = 1; n < count; ++n)
-      if (set_of(n) != 0) return false;
+    for (int n = 0; n < count; ++n)
+      if (carrier_[n] || set_of(n) != 0) return false;
     return true;
   };
   if (!contacts_ || one_set()) return false;
@@ -92,14 +123,14 @@ void TouchingSets<T>::predict(const Vec3<T>& gravity, T h) {
   join_touching(T(kBoundToTouch));
 }
 
-/// The members of a set, and what ties them.
+/// The members of a set, what carries them, and what ties them.
 template <class T>
 void TouchingSets<T>::gather(int set) {
   its_states_.clear();
   its_indices_.clear();
   its_ties_.clear();
-  for (int n = set; n < static_cast<int>(states_.size()); ++n) {
-    if (set_of(n) != set) continue;
+  for (int n = 0; n < static_cast<int>(states_.size()); ++n) {
+    if (set_of(n) != set && !(carrier_[n] && carries(n, set))) continue;
     its_states_.push_back(states_[n]);
     its_indices_.push_back(indices_[n]);
   }
@@ -115,14 +146,27 @@ void TouchingSets<T>::place(int member) {
   contacts_->place_colliders(s, s.local, s.history.place, origin_, placed_);
 }
 
+/// Who plays its animation with nothing but the ground under it touches props on which it may stand.
 template <class T>
 bool TouchingSets<T>::touch(int a, int b, T depth) const {
+  const auto may_stand = [&](const CharacterState<T>& s, const CharacterState<T>& on) {
+    return s.grounded() && s.undisturbed() && on.is_prop && !on.is_particles;
+  };
+  if (may_stand(*states_[a], *states_[b]) || may_stand(*states_[b], *states_[a]))
+    depth = -T(SupportSettings{}.reach);
   const auto paths = [&](int n) {
     const std::size_t first = first_collider_[n], count = first_collider_[n + 1] - first;
     return ColliderPaths<T>{std::span(from_).subspan(first, count), std::span(to_).subspan(first, count)};
   };
   depth *= std::min(states_[a]->tree.scale.length, states_[b]->tree.scale.length);
   return contacts_->touch_on_the_way(paths(a), paths(b), depth);
+}
+
+/// Or never have to be, as two carriers.
+template <class T>
+bool TouchingSets<T>::are_stepped_together(int a, int b) {
+  if (carrier_[a]) return carrier_[b] || carries(a, set_of(b));
+  return carrier_[b] ? carries(b, set_of(a)) : set_of(a) == set_of(b);
 }
 
 /// Unites the sets that have touched each other, or lay deeper in each other than `depth` (m of a human).
@@ -133,9 +177,9 @@ bool TouchingSets<T>::join_touching(T depth) {
   const int count = static_cast<int>(states_.size());
   for (int a = 0; a < count; ++a)
     for (int b = a + 1; b < count; ++b) {
-      if ((!changed_[a] && !changed_[b]) || set_of(a) == set_of(b) || !touch(a, b, depth)) continue;
+      if ((!changed_[a] && !changed_[b]) || are_stepped_together(a, b) || !touch(a, b, depth)) continue;
       stepped_[set_of(a)] = stepped_[set_of(b)] = 0;
-      unite(a, b);
+      join(a, b);
       any = true;
     }
   return any;
@@ -147,13 +191,11 @@ void TouchingSets<T>::take_back(std::span<KeptStep<T>> kept) {
   const int count = static_cast<int>(states_.size());
   for (int n = 0; n < count; ++n) {
     const int set = set_of(n);
-    if (stepped_[set]) continue;
+    if (carrier_[n] || stepped_[set]) continue;
     stepped_[n] = 0;
     spent_[n] += states_[n]->report.outer_passes;
     kept[indices_[n]].restore(*states_[n]);
-    const auto its = [id = first_contact_id(indices_[n])](const LaggedForce<T>& f) {
-      return f.id >> 48 == id >> 48;
-    };
+    const auto its = [tree = indices_[n]](const LaggedForce<T>& f) { return is_of_tree(f.id, tree); };
     lagged_.erase(std::remove_if(lagged_.begin(), lagged_.end(), its), lagged_.end());
   }
   for (Coupling<T>* tie : ties_)

@@ -19,6 +19,9 @@ constexpr double kGrazing = 1e-5;  ///< m of a human: what so little depth bears
 /// until nobody touches anybody of another set. Sets begin with those who are tied together, and those who
 /// bore on each other at the end of the last step, or are bound to by how their bodies move. So whoever is
 /// only near has the bits that it has alone.
+///
+/// What carries others (CharacterState::is_carrier) gives way to none of them, so it makes no set of two who
+/// touch it: it is stepped with each set that does, and at last by itself, which is what it keeps.
 template <class T>
 class TouchingSets {
  public:
@@ -33,8 +36,8 @@ class TouchingSets {
              std::span<const LaggedForce<T>> lagged, const Vec3<T>& gravity, T h);
 
   /// Steps all. `kept` [world's number]; step(states, indices, ties, spent, lagged_out) steps one set, whose
-  /// steps that were taken back have taken `spent` passes, and returns how many forces it has written.
-  /// Returns all of them, of every set.
+  /// steps that were taken back have taken `spent` passes, and returns how many forces it has written; what
+  /// carries is among several sets' states. Returns all of them, of every set.
   template <class Step>
   std::span<const LaggedForce<T>> step_all(std::span<KeptStep<T>> kept, const Step& step);
 
@@ -44,6 +47,9 @@ class TouchingSets {
     return member;
   }
   void unite(int a, int b);
+  bool carries(int carrier, int set);
+  void join(int a, int b);
+  bool are_stepped_together(int a, int b);
   int member_of(int index) const;
   void gather(int set);
   void place(int member);
@@ -58,6 +64,8 @@ class TouchingSets {
   std::span<Coupling<T>* const> ties_;
   Vec3<double> origin_ = Vec3<double>::Zero();   ///< m, world; of the placed colliders
   std::vector<int> set_;                         ///< [member] union-find; towards the smallest
+  std::vector<std::uint8_t> carrier_;            ///< [member]
+  std::vector<std::pair<int, int>> carried_;     ///< carriers and whom they touch
   std::vector<std::uint8_t> stepped_, changed_;  ///< [member] its set has been stepped; in this round
   std::vector<int> spent_;                       ///< [member] passes of its steps that were taken back
   std::vector<PlacedCollider<T>> from_, to_;     ///< of all members
@@ -81,7 +89,7 @@ std::span<const LaggedForce<T>> TouchingSets<T>::step_all(std::span<KeptStep<T>>
   do {
     changed_.assign(count, 0);
     for (int set = 0; set < count; ++set) {
-      if (set_of(set) != set || stepped_[set]) continue;
+      if (carrier_[set] || set_of(set) != set || stepped_[set]) continue;
       gather(set);
       const std::size_t had = lagged_.size();
       int room = 0, spent = 0;
@@ -89,17 +97,26 @@ std::span<const LaggedForce<T>> TouchingSets<T>::step_all(std::span<KeptStep<T>>
         room += its_states_[k]->problem.capacity.loaded;
         spent = std::max(spent, spent_[member_of(its_indices_[k])]);
       }
-      lagged_.resize(had + room);
+      lagged_.resize(std::min(had + room, lagged_.capacity()));
       lagged_.resize(had +
                      step(its_states_, its_indices_, its_ties_, spent, std::span(lagged_).subspan(had)));
-      for (int n = set; n < count; ++n) {
-        if (set_of(n) != set) continue;
+      for (std::size_t k = 0; k < its_states_.size(); ++k) {
+        const int n = member_of(its_indices_[k]);
+        if (carrier_[n]) {
+          kept[its_indices_[k]].restore(*its_states_[k]);
+          continue;
+        }
         stepped_[n] = changed_[n] = 1;
         place(n);
         std::copy(placed_.begin(), placed_.end(), to_.begin() + first_collider_[n]);
       }
     }
   } while (join_touching(T(kGrazing)) && (take_back(kept), true));
+  for (int n = 0; n < count; ++n) {
+    if (!carrier_[n]) continue;
+    gather(n);
+    step(its_states_, its_indices_, its_ties_, 0, std::span(lagged_).subspan(lagged_.size()));
+  }
   return lagged_;
 }
 

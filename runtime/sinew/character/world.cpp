@@ -102,7 +102,7 @@ WorldMemory World<T>::Impl::memory() const {
     bytes.solving +=
         workers[n]->stepper.bytes(n == 0 ? most : small) + workers[n]->sets.bytes(n == 0 ? most : small);
   for (const auto& worker : workers) {
-    bytes.solving += worker->check_scratch.capacity();
+    bytes.solving += worker->check_scratch.capacity() + worker->nearby.bytes();
     if (worker->checks) bytes.solving += worker->checks->bytes();
   }
   return bytes;
@@ -116,10 +116,12 @@ void World<T>::Impl::reserve() {
   for (std::size_t n = 0; n < workers.size(); ++n) {
     const SolveCapacity& capacity = n == 0 ? most : small_capacity;
     workers[n]->stepper.reserve(capacity, static_cast<int>(obstacles.size()));
-    workers[n]->obstacle_scratch.reserve(rooms.largest.colliders);
-    workers[n]->near_ground.obstacles.reserve(obstacles.size());
+    workers[n]->nearby.reserve(rooms.largest.colliders, checked_rig.points, obstacles.size(),
+                               static_cast<std::size_t>(capacity.colliders));
     workers[n]->sets.reserve(capacity);
-    workers[n]->members.reserve(capacity.trees);
+    for (auto* v : {&workers[n]->members, &workers[n]->solved}) v->reserve(capacity.trees);
+    workers[n]->solved_indices.reserve(capacity.trees);
+    workers[n]->first_load.reserve(capacity.trees);
     workers[n]->ties.reserve(couplings.all().size());
     workers[n]->jets.reserve(rooms.largest.bodies);
     const auto& [bodies, dofs, points] = checked_rig;

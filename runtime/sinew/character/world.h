@@ -71,6 +71,9 @@ struct BearingGround {
   Vec3<double> place = Vec3<double>::Zero();     ///< m, world: where it presses
   Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s, of what is there
   double turn_rate = 0;                          ///< rad/s, about the vertical
+
+  /// Whether it does.
+  bool moves() const { return turn_rate != 0 || !velocity.isZero(0); }
 };
 
 /// What World::add_character() is told of one character. Refused where strength, a limit of the root's or a
@@ -121,7 +124,8 @@ struct CharacterReport {
   double penetration = 0;                                ///< m, deepest contact
   double help_force = 0;                                 ///< N that bore a grounded root besides the ground
   double help_torque = 0;                                ///< N·m, likewise
-  BearingGround ground;  ///< at the end of the step; not told of who was only played, and after restore()
+  BearingGround
+      ground;  ///< at the end of the step; of who was only played, where it moves; not after restore()
   /// m, where Accuracy::estimate_error asks for it: how far this step alone, by its finite length, took the
   /// character from the exact motion (rms of all mass). 0 where the animation was played: that is exact.
   double estimated_error = 0;
@@ -235,9 +239,11 @@ class Character {
   /// The host has moved the character's place itself: targets are given there from now on.
   Status take_displacement();
   /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that, in the
-  /// world. For who stands there already, within millimetres, as after a step, or is taken along by what it
-  /// stands on; the rest returns over time.
+  /// world. For who stands there already, within millimetres, as after a step; the rest returns over time.
   Status displace(const Displacement& further);
+  /// The same before a step, of an animation that goes there in it, as taken along by what it stands on: the
+  /// next target is given with the root's speed of that way, and the body is where it is wanted.
+  Status ride(const Displacement& further);
   /// A grounded root that moves nearly as its animation wants it (6 cm, 6°, 0.12 m/s and 0.6 rad/s of a
   /// human) is led back onto it from the end of the next step on, from where it is and as fast as it is: who
   /// walks does not come to rest. What the ground can't give then is help that nobody meters.
@@ -272,6 +278,8 @@ class Character {
   bool on_animation() const;                      ///< every joint is exactly where the clip wants it
   /// What the last step did with it.
   const CharacterReport& report() const;
+  /// report().ground, for nothing: totals are not worked out for it.
+  const BearingGround& ground() const;
 
  private:
   CharacterState<T>* state_;

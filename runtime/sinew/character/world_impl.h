@@ -9,7 +9,7 @@
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
-#include "sinew/character/near_ground.h"
+#include "sinew/character/nearby.h"
 #include "sinew/character/playback.h"
 #include "sinew/character/snapshot.h"
 #include "sinew/character/touching_sets.h"
@@ -61,12 +61,16 @@ struct World<T>::Impl {
     IslandStepper<T> stepper;
     std::unique_ptr<BatchCheck> checks;  ///< null: not declared
     std::vector<Unchecked> unchecked;
-    std::vector<std::byte> check_scratch;  ///< of a check alone, of the largest rig
-    std::vector<CharacterState<T>*> members;
+    std::vector<std::byte> check_scratch;     ///< of a check alone, of the largest rig
+    std::vector<CharacterState<T>*> members;  ///< of the island, `indices` in the world
+    std::span<const int> indices;
     std::vector<Coupling<T>*> ties;
     std::vector<JointJet<T>> jets;
-    ObstacleScratch<T> obstacle_scratch;
-    NearGround<T> near_ground;
+    std::span<CharacterState<T>* const> touched;  ///< members of the set that is stepped
+    std::vector<CharacterState<T>*> solved;       ///< of that set, `solved_indices` in the world
+    std::vector<int> solved_indices;
+    std::vector<std::size_t> first_load;  ///< [member of the set] of its forces, what it bears in this step
+    Nearby<T> nearby;                     ///< of whom may_play() has asked about last
     TouchingSets<T> sets;
     std::size_t number = 0;
     ContactLog<T>* log = nullptr;  ///< of the island that it steps; null where nobody listens
@@ -147,14 +151,16 @@ struct World<T>::Impl {
   bool play_set(std::span<CharacterState<T>* const> members, Worker& worker);
   bool follow_set(std::span<CharacterState<T>* const> members, Worker& worker);
   bool play_alone(CharacterState<T>& state, Worker& worker);
+  bool play_on_props(CharacterState<T>& state, Worker& worker);
   bool may_play(CharacterState<T>& state, Worker& worker) const;
   bool checks(const CharacterState<T>& state) const;
-  const GroundProbe<T>* ground_near(const CharacterState<T>& state, Worker& worker) const;
-  const GroundProbe<T>* ground_met(const CharacterState<T>& state, Worker& worker) const;
+  void look_around(CharacterState<T>& state, Worker& worker) const;
+  const GroundProbe<T>* ground_met(CharacterState<T>& state, Worker& worker) const;
+  const GroundProbe<T>* ground_near(CharacterState<T>& state, Worker& worker) const;
   CheckContext<T> context_of_check(const CharacterState<T>& state, Worker& worker,
                                    const GroundProbe<T>* ground) const;
   void begin_tones(CharacterState<T>& state, Worker& worker);
-  bool checks_in_batches(const CharacterState<T>& state, Worker& worker) const;
+  bool checks_in_batches(CharacterState<T>& state, Worker& worker) const;
   void check_later(int island, Worker& worker, double spent);
   void check_alike(Worker& worker, const Unchecked& one);
   void solve_alone(int island, Worker& worker, double spent);

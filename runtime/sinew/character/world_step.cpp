@@ -46,7 +46,9 @@ std::size_t take_alike(std::vector<Entry>& from, const Entry first, std::array<E
 /// somebody may be solved.
 template <class T>
 bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Worker& worker) {
-  const auto may_be_solved = [](const CharacterState<T>* s) { return s->levels.allowed >= Level::kPartial; };
+  const auto may_be_solved = [&](const CharacterState<T>* s) {
+    return s->levels.allowed >= Level::kPartial && (members.size() == 1 || !s->is_carrier());
+  };
   if (std::any_of(members.begin(), members.end(), may_be_solved)) return false;
   for (CharacterState<T>* s : members) {
     const bool checked = s->levels.allowed == Level::kChecked && s->undisturbed() &&
@@ -57,11 +59,22 @@ bool World<T>::Impl::follow_set(std::span<CharacterState<T>* const> members, Wor
   return true;
 }
 
+/// For what is around somebody; nothing is of what gives way to nobody.
+template <class T>
+void World<T>::Impl::look_around(CharacterState<T>& s, Worker& worker) const {
+  if (s.is_carrier())
+    worker.nearby.clear();
+  else if (plan.contacts)
+    plan.contacts->look_around(s, settings, surroundings(), {worker.members, worker.indices, worker.touched},
+                               h, worker.nearby);
+}
+
 /// Whether it is on its animation, and nothing is in the way of that.
 template <class T>
 bool World<T>::Impl::may_play(CharacterState<T>& s, Worker& worker) const {
-  return !s.tied && s.driven && (s.undisturbed() || s.grounding.returns) &&
-         !(plan.contacts && plan.contacts->meets_obstacle(s, surroundings(), h, worker.obstacle_scratch));
+  if (s.tied || !s.driven || !(s.undisturbed() || s.grounding.returns)) return false;
+  look_around(s, worker);
+  return !plan.contacts || !plan.contacts->is_in_the_way(s, worker.nearby);
 }
 
 /// Whether its muscles are asked in this step.
@@ -71,17 +84,17 @@ bool World<T>::Impl::checks(const CharacterState<T>& s) const {
   return s.levels.steps % every == 0 || s.pushed() || s.levels.level > Level::kChecked;
 }
 
-/// What it may stand on besides the floor; null: nothing.
+/// What it may stand on besides the floor, of what has been looked around for; null: nothing.
 template <class T>
-const GroundProbe<T>* World<T>::Impl::ground_near(const CharacterState<T>& s, Worker& worker) const {
-  if (!plan.contacts || !plan.support) return nullptr;
-  return plan.contacts->find_ground(s, settings, surroundings(), worker.near_ground);
+const GroundProbe<T>* World<T>::Impl::ground_met(CharacterState<T>& s, Worker& worker) const {
+  return plan.contacts && plan.support ? plan.contacts->ground_under(s, worker.nearby) : nullptr;
 }
 
-/// The same of whom may_play() has just looked around for.
+/// The same of whom nobody has looked around for yet.
 template <class T>
-const GroundProbe<T>* World<T>::Impl::ground_met(const CharacterState<T>& s, Worker& worker) const {
-  return worker.obstacle_scratch.any ? ground_near(s, worker) : nullptr;
+const GroundProbe<T>* World<T>::Impl::ground_near(CharacterState<T>& s, Worker& worker) const {
+  look_around(s, worker);
+  return ground_met(s, worker);
 }
 
 template <class T>
@@ -96,22 +109,50 @@ CheckContext<T> World<T>::Impl::context_of_check(const CharacterState<T>& s, Wor
 template <class T>
 bool World<T>::Impl::play_alone(CharacterState<T>& s, Worker& worker) {
   const bool checked = checks(s);
-  if (checked && !play(s, h, context_of_check(s, worker, ground_met(s, worker)))) return false;
   if (!checked) follow(s, settings, h);
+  if (checked) {
+    const CheckContext<T> context = context_of_check(s, worker, ground_met(s, worker));
+    if (!play(s, h, context)) return false;
+    if (context.ground)
+      s.report.ground = plan.contacts->ground_that_moves(worker.nearby, context.scratch.standing);
+  }
   s.levels.did = checked ? Level::kChecked : Level::kPlayback;
   return true;
 }
 
-/// Plays who is stepped together where that will do. False, with nothing moved, where they have to be solved.
+/// Plays who is stepped together where that will do: one, what carries it aside. False, with nothing moved,
+/// where they have to be solved.
 template <class T>
 bool World<T>::Impl::play_set(std::span<CharacterState<T>* const> members, Worker& worker) {
   if (follow_set(members, worker)) return true;
-  return members.size() == 1 && may_play(*members[0], worker) && play_alone(*members[0], worker);
+  CharacterState<T>* one = members[0];
+  // With the speed that a solve makes of its targets' ways, for those whom it meets in the next.
+  if (members.size() == 1 && one->is_carrier() && worker.members.size() > 1) return false;
+  for (CharacterState<T>* s : members) {
+    if (s == one || s->is_carrier()) continue;
+    if (!one->is_carrier()) return false;
+    one = s;
+  }
+  return may_play(*one, worker) && play_alone(*one, worker);
+}
+
+/// Plays one that only the ground holds, on props of its set that bear it, and loads them with that. False,
+/// with nothing moved, where it has to be solved with them.
+template <class T>
+bool World<T>::Impl::play_on_props(CharacterState<T>& s, Worker& worker) {
+  if (!s.grounded() || !plan.contacts || !plan.impulses || !may_play(s, worker)) return false;
+  const GroundProbe<T>* ground = ground_met(s, worker);
+  const CheckContext<T> context = context_of_check(s, worker, ground);
+  if (!ground || !play(s, h, context)) return false;
+  s.report.ground = plan.contacts->ground_that_moves(worker.nearby, context.scratch.standing);
+  s.levels.did = Level::kChecked;
+  plan.contacts->load_props(worker.nearby, context.scratch.bearing);
+  return true;
 }
 
 /// Whether the check of who may play can be made in a batch.
 template <class T>
-bool World<T>::Impl::checks_in_batches(const CharacterState<T>& s, Worker& worker) const {
+bool World<T>::Impl::checks_in_batches(CharacterState<T>& s, Worker& worker) const {
   if constexpr (std::is_same_v<T, float>)
     return settings.batches && worker.checks && has_plain_check(s) && !s.grounded() && checks(s) &&
            !ground_met(s, worker);
@@ -158,6 +199,8 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
                                 : play(*state, h, context_of_check(*state, worker, nullptr));
     const double spent = u.spent + share + now(settings.detail.budget) - again;
     worker.members.assign(1, state);
+    worker.indices = islands.members(u.island);
+    worker.touched = {};
     worker.ties.clear();
     if (!played) {
       solve_alone(u.island, worker, spent);
@@ -194,15 +237,31 @@ template <class T>
 int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::span<const int> indices,
                              std::span<Coupling<T>* const> ties, int spent, Worker& worker,
                              std::span<LaggedForce<T>> lagged_out) {
-  if (worker.log) worker.log->forget(indices);
+  worker.touched = members;
+  for (std::size_t n = 0; worker.log && n < members.size(); ++n)
+    if (!members[n]->is_carrier()) worker.log->forget(indices[n]);
   if (play_set(members, worker)) return 0;
-  for (CharacterState<T>* s : members) {
+  const auto is_plain_prop = [](const CharacterState<T>* s) { return s->is_prop && !s->is_particles; };
+  const auto are_particles = [](const CharacterState<T>* s) { return s->is_particles; };
+  const bool on_props = std::any_of(members.begin(), members.end(), is_plain_prop) &&
+                        std::none_of(members.begin(), members.end(), are_particles);
+  worker.solved.clear();
+  worker.solved_indices.clear();
+  worker.first_load.clear();
+  for (CharacterState<T>* s : members) worker.first_load.push_back(s->forces.size());
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    if (on_props && play_on_props(*members[n], worker)) continue;
+    worker.solved.push_back(members[n]);
+    worker.solved_indices.push_back(indices[n]);
+  }
+  for (CharacterState<T>* s : worker.solved) {
     synchronise(*s, worker.jets);
     begin_tones(*s, worker);
   }
-  const int count =
-      worker.stepper.step(settings, surroundings(), h, members, indices, ties, lagged, lagged_out, spent);
-  for (CharacterState<T>* s : members) s->levels.did = level_of(*s);
+  const int count = worker.stepper.step(settings, surroundings(), h, worker.solved, worker.solved_indices,
+                                        ties, lagged, lagged_out, spent);
+  for (CharacterState<T>* s : worker.solved) s->levels.did = level_of(*s);
+  for (std::size_t n = 0; n < members.size(); ++n) members[n]->forces.resize(worker.first_load[n]);
   return count;
 }
 
@@ -215,6 +274,8 @@ void World<T>::Impl::step_island(int island, Worker& worker) {
   for (const int n : islands.ties(island)) worker.ties.push_back(&couplings[n]);
   const std::span<const int> indices = islands.members(island);
   for (const int n : indices) worker.members.push_back(states[n].get());
+  worker.indices = indices;
+  worker.touched = {};
   for (CharacterState<T>* s : worker.members) s->levels.allowed = allowed_level(*s);
   log_contacts(island, worker);
   lagged_count[island] = 0;
@@ -263,7 +324,7 @@ void World<T>::Impl::close_island(int island, std::span<CharacterState<T>* const
     s->impulses.clear();
     s->forces.clear();
     s->target_stands = true;
-    s->grounding.comes_back = false;
+    s->grounding.comes_back = s->grounding.rides = false;
     s->report.carried = s->carried;
   }
 }

@@ -19,13 +19,11 @@ struct CheckScratch {
   std::span<Vec3<T>> origin;             ///< [joint] from the root's, world axes
   std::span<StandingPoint<T>> standing;  ///< [point]
   std::span<BearingPoint<T>> bearing;    ///< [point]
-  std::span<GroundUnder<T>> under;       ///< [point]
 
   static constexpr std::size_t bytes(int bodies, int joints, int points) {
     return std::size_t(bodies) * (sizeof(BodyMotion<T>) + sizeof(Mat3<T>) + 2 * sizeof(Vec3<T>)) +
            std::size_t(joints) * sizeof(Vec3<T>) +
-           std::size_t(points) *
-               (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>) + sizeof(GroundUnder<T>));
+           std::size_t(points) * (sizeof(StandingPoint<T>) + sizeof(BearingPoint<T>));
   }
   /// In `memory` of that many bytes, aligned as T is.
   CheckScratch(void* memory, int bodies, int joints, int points) {
@@ -40,7 +38,6 @@ struct CheckScratch {
     take(origin, joints);
     take(standing, points);
     take(bearing, points);
-    take(under, points);
   }
 };
 

@@ -26,6 +26,7 @@ struct BearingPoint {
   T share;         ///< of what it may bear: 1 on the ground, 0 at the reach
   T friction;      ///< μ
   int body;
+  int point = 0;                    ///< its number among all that may stand
   Vec3<T> force = Vec3<T>::Zero();  ///< N, on the body; before: what it would bear by preference
 };
 

@@ -61,9 +61,10 @@ void balance(const SupportPoints<T>& points, const Ground& ground, T weight, con
                         if (!(s.share > T(kBearsNothing))) return;
                         const auto point = &s - r.standing.data();
                         const auto [normal, friction] = bearing_of(point);
-                        r.bearing[count++] = {s.place, normal, s.share, friction, body, push};
+                        r.bearing[count++] = {s.place, normal, s.share, friction, body, int(point), push};
                       });
   const std::span<BearingPoint<T>> bearing = r.bearing.first(count);
+  for (BearingPoint<T>& nothing : r.bearing.subspan(count)) nothing.force.setZero();
   balance_ground<T>(bearing, force, moment, weight, points.unit);
   for (const BearingPoint<T>& p : bearing) {
     r.force[p.body] -= p.force;
@@ -84,19 +85,20 @@ template <class T>
 void stand_on_surroundings(const SupportPoints<T>& points, const GroundProbe<T>& probe, T weight,
                            const CheckScratch<T>& r) {
   const T reach = T(SupportSettings{}.reach) * points.unit;
+  const std::span<GroundUnder<T>> under = probe.room;
   for (std::size_t i = 0; i < r.body.size(); ++i) {
     const bool near = points.first[i] < points.first[i + 1] &&
                       probe.near(probe.surroundings, r.origin[i], points.bound[i] + reach);
     for (int k = points.first[i]; k < points.first[i + 1]; ++k) {
       const auto& point = points.points[k];
-      r.under[k] = near ? probe.under(probe.surroundings, r.origin[i] + r.rotation[i] * point.local, point)
-                        : GroundUnder<T>{};
+      const Vec3<T> center = r.origin[i] + r.rotation[i] * point.local;
+      under[k] = near ? probe.under(probe.surroundings, center, point) : GroundUnder<T>{};
     }
   }
-  const ProbedGround<T> ground{r.under};
+  const ProbedGround<T> ground{under};
   if (!(weight > T(0))) return stand<T>(points, ground, r);
   balance(points, ground, weight, r, [&](std::ptrdiff_t point) {
-    return std::pair{r.under[point].normal, r.under[point].friction};
+    return std::pair{under[point].normal, under[point].friction};
   });
 }
 

@@ -85,12 +85,14 @@ struct GroundUnder {
   T gap = T(1e9);                     ///< m, negative inside
   Vec3<T> normal = Vec3<T>::UnitZ();  ///< outwards, unit
   T friction = T(1);                  ///< μ of the two
+  int moving = -1;                    ///< the surroundings' number of what is there; −1: it stands still
 };
 
-/// Answers what static surroundings are under points, m from the common origin, in a check.
+/// Answers what is under points, m from the common origin, in a check.
 template <class T>
 struct GroundProbe {
   const void* surroundings = nullptr;  ///< that the two are called with
+  std::span<GroundUnder<T>> room;      ///< [point]
   /// Whether something may be within `reach` of a point.
   bool (*near)(const void* surroundings, const Vec3<T>& point, T reach) = nullptr;
   /// Of all that can be stood on, what is nearest to a point of a body.

@@ -487,6 +487,7 @@ void balls_at_heads(const Scene& scene, bool, Findings& found) {
 /// The same scene where nothing but a floor at `height` is beside it.
 Scene on_the_floor(Scene scene) {
   scene.obstacles.clear();
+  scene.props.clear();
   for (scene::SceneCharacter& c : scene.characters) c.position.z() = 0;
   return scene;
 }
@@ -732,6 +733,7 @@ std::vector<Situation> situations() {
       {"hanging_bridge", "who falls on a hanging bridge comes to rest there", hanging_bridge},
       {"moving_ground", "pushed on a walkway, a lift and a turntable they keep standing there",
        moving_ground},
+      {"walk_on_boards", "what holds it is loose boards", run_on_a_platform},
       {"level_below", "who is knocked off a table stands up on the floor", level_below},
       {"walk_on_boxes", "what holds it is the ground alone, which may be boxes", run_on_a_platform},
       {"leash_too_short", "a loop yields to a driven root", leash_too_short},
