@@ -55,6 +55,25 @@ bool ways_meet(const PlacedCollider<T>& a, const PlacedCollider<T>& a_after, con
   return (apart + after).squaredNorm() <= 4 * reach * reach;
 }
 
+/// m: at least so far apart are they, by the ball about the smaller of them.
+template <class T>
+T at_least_apart(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
+  if (a.radius > b.radius) return at_least_apart(b, a);
+  const Vec3<T> place = b.pose.rotation.conjugate() * (a.pose.translation - b.pose.translation);
+  return signed_distance<T>(b.collider->shape, b.collider->size.template cast<T>(), place).distance -
+         a.radius;
+}
+
+/// Whether a ball about the smaller one, all of its way long, stays away from the other: said for less than
+/// their distances.
+template <class T>
+bool keeps_away(const PlacedCollider<T>& a, const PlacedCollider<T>& a_after, const PlacedCollider<T>& b,
+                const PlacedCollider<T>& b_after, T depth) {
+  const T apart = at_least_apart(a, b) + depth, after = at_least_apart(a_after, b_after) + depth;
+  const Vec3<T> common = b_after.pose.translation - b.pose.translation;
+  return apart > T(0) && after > T(0) && way(a, a_after, common) + way(b, b_after, common) < apart + after;
+}
+
 }  // namespace
 
 template <class T>
@@ -100,7 +119,8 @@ bool touch_on_the_way(const ColliderPaths<T>& a, const ColliderPaths<T>& b, T de
   for (std::size_t i = 0; i < a.from.size(); ++i)
     for (std::size_t j = 0; j < b.from.size(); ++j) {
       const PlacedCollider<T>&one = a.from[i], &other = b.from[j];
-      if (!ways_meet(one, a.to[i], other, b.to[j])) continue;
+      if (!ways_meet(one, a.to[i], other, b.to[j]) || keeps_away(one, a.to[i], other, b.to[j], depth))
+        continue;
       if (touch(one, a.to[i], other, b.to[j], distance_between(one, other).distance + depth,
                 distance_between(a.to[i], b.to[j]).distance + depth, depth, kHalvings))
         return true;

@@ -22,6 +22,7 @@ void TouchingSets<T>::reserve(const SolveCapacity& capacity) {
   carried_.reserve((kTouches + 1) * capacity.trees);
   for (auto* v : {&from_, &to_, &placed_}) v->reserve(capacity.colliders);
   first_collider_.reserve(capacity.trees + 1);
+  box_.reserve(capacity.trees);
   lagged_.reserve(capacity.loaded);
   its_states_.reserve(capacity.trees);
   its_ties_.reserve(capacity.nodes);
@@ -29,7 +30,8 @@ void TouchingSets<T>::reserve(const SolveCapacity& capacity) {
 
 template <class T>
 std::size_t TouchingSets<T>::bytes(const SolveCapacity& capacity) const {
-  return capacity.trees * (4 * sizeof(int) + 3 + (kTouches + 1) * 2 * sizeof(int) + sizeof(void*)) +
+  return capacity.trees * (4 * sizeof(int) + 3 + (kTouches + 1) * 2 * sizeof(int) + sizeof(void*) +
+                           sizeof(Eigen::AlignedBox<T, 3>)) +
          3 * capacity.colliders * sizeof(PlacedCollider<T>) + capacity.loaded * sizeof(LaggedForce<T>) +
          capacity.nodes * sizeof(void*);
 }
@@ -119,6 +121,8 @@ void TouchingSets<T>::predict(const Vec3<T>& gravity, T h) {
     contacts_->predict_colliders(*states_[n], placed_, origin_, gravity, h, to_);
     first_collider_.push_back(static_cast<int>(from_.size()));
   }
+  box_.resize(states_.size());
+  for (std::size_t n = 0; n < states_.size(); ++n) enclose(static_cast<int>(n));
   for (auto* v : {&stepped_, &changed_}) v->assign(states_.size(), 1);
   join_touching(T(kBoundToTouch));
 }
@@ -146,6 +150,17 @@ void TouchingSets<T>::place(int member) {
   contacts_->place_colliders(s, s.local, s.history.place, origin_, placed_);
 }
 
+template <class T>
+void TouchingSets<T>::enclose(int member) {
+  Eigen::AlignedBox<T, 3>& box = box_[member];
+  box.setEmpty();
+  for (int c = first_collider_[member]; c < first_collider_[member + 1]; ++c)
+    for (const PlacedCollider<T>* placed : {&from_[c], &to_[c]}) {
+      const Vec3<T> reach = Vec3<T>::Constant(placed->radius);
+      box.extend(placed->pose.translation - reach).extend(placed->pose.translation + reach);
+    }
+}
+
 /// Who plays its animation with nothing but the ground under it touches props on which it may stand.
 template <class T>
 bool TouchingSets<T>::touch(int a, int b, T depth) const {
@@ -159,6 +174,9 @@ bool TouchingSets<T>::touch(int a, int b, T depth) const {
     return ColliderPaths<T>{std::span(from_).subspan(first, count), std::span(to_).subspan(first, count)};
   };
   depth *= std::min(states_[a]->tree.scale.length, states_[b]->tree.scale.length);
+  const Vec3<T> around = Vec3<T>::Constant(std::max(-depth, T(0)));
+  if (!Eigen::AlignedBox<T, 3>(box_[a].min() - around, box_[a].max() + around).intersects(box_[b]))
+    return false;
   return contacts_->touch_on_the_way(paths(a), paths(b), depth);
 }
 

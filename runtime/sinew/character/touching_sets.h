@@ -53,6 +53,7 @@ class TouchingSets {
   int member_of(int index) const;
   void gather(int set);
   void place(int member);
+  void enclose(int member);
   void predict(const Vec3<T>& gravity, T h);
   bool touch(int a, int b, T depth) const;
   bool join_touching(T depth);
@@ -71,6 +72,7 @@ class TouchingSets {
   std::vector<PlacedCollider<T>> from_, to_;     ///< of all members
   std::vector<PlacedCollider<T>> placed_;        ///< of one
   std::vector<int> first_collider_;              ///< [member + 1]
+  std::vector<Eigen::AlignedBox<T, 3>> box_;     ///< [member] about its colliders' ways
   std::vector<LaggedForce<T>> lagged_;           ///< of the sets that have been stepped
   // Of one set
   std::vector<CharacterState<T>*> its_states_;
@@ -109,6 +111,7 @@ std::span<const LaggedForce<T>> TouchingSets<T>::step_all(std::span<KeptStep<T>>
         stepped_[n] = changed_[n] = 1;
         place(n);
         std::copy(placed_.begin(), placed_.end(), to_.begin() + first_collider_[n]);
+        enclose(n);
       }
     }
   } while (join_touching(T(kGrazing)) && (take_back(kept), true));
