@@ -118,6 +118,7 @@ struct Riding : Body {
   double turn_rate = 0;
   bool led_by_host = false;  ///< the host has the animation go along
   double sets_off = 0;       ///< s, in which it gathers its velocity
+  bool tells = true;         ///< how fast it is
 
   Riding(const Vec3<double>& v, double turns, bool host = false, double gathers = 0)
       : velocity(v), turn_rate(turns), led_by_host(host), sets_off(gathers) {
@@ -162,7 +163,7 @@ struct Riding : Body {
     at.rotation = rotation_exp<double>(Vec3<double>(0, 0, at_time * turn_rate)).cast<float>();
     at.omega = Vec3<float>(0, 0, float(turn_rate));
     at.translation = (Vec3<double>(0, 0, 0.5) + way * velocity).cast<float>();
-    at.velocity = share_at(at_time) * velocity.template cast<float>();
+    if (tells) at.velocity = share_at(at_time) * velocity.template cast<float>();
     (void)world.character(platform).set_target({&at, 1});
   }
   /// m, of the root from the box's middle, in its axes.
@@ -232,6 +233,13 @@ TEST(Behaviour, WhoStandsOnGroundThatMovesIsPlayed) {
     EXPECT_EQ(body.solved, 0) << velocity.transpose();
     EXPECT_LT((body.on_platform() - stood - sways).norm(), 1e-3f) << velocity.transpose();
   }
+  // Of what is moved without being told how fast, the way tells.
+  Riding<Balancing> body({0, 0.8, 0}, 0, false, 4);
+  body.tells = false;
+  const Vec3<float> stood = body.on_platform();
+  body.run(6);
+  EXPECT_EQ(body.solved, 0);
+  EXPECT_LT((body.on_platform() - stood - sways).norm(), 1e-2f);  // half a step's way
 }
 
 /// Walks on boards that lie on the floor, each of so many kg.

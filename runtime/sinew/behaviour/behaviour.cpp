@@ -31,7 +31,6 @@ constexpr double kWalks = 0.25;                        ///< m/s, of an animation
 constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLieStill = 0.1;                      ///< m/s
 constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
-constexpr double kStands = 0.025;                      ///< m, of a sole above the ground
 constexpr double kLed = 5e-3, kLedTime = 0.5;          ///< m and s, that tell who takes an animation along
 constexpr double kLie = 0.5, kNeverStill = 4;          ///< s; s after which it need not lie still
 

@@ -103,13 +103,6 @@ T turn_between(const Kinematics<T>& a, const Kinematics<T>& b) {
   return std::sqrt(furthest / 2);
 }
 
-/// rad/s and m/s of a joint's child against its parent, in the child's and the parent's axes.
-template <class T>
-Vec3<T> rate_at_end(const Vec3<T>& moved, const Vec3<T>& leaving, const Vec3<T>& arriving, T h) {
-  const Vec3<T> mean = moved / h;
-  return are_foreign(mean, leaving, arriving) ? mean : arriving;
-}
-
 }  // namespace
 
 /// Forces that are constant over the step, at a pose of a tree, into `constant_` and others of its rows into

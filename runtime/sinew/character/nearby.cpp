@@ -120,13 +120,17 @@ void add_carrier(CharacterState<T>& carrier, Nearby<T>& out) {
   place_now(carrier, out.origin, out.others);
   for (const PlacedCollider<T>& from : out.others) out.moving.push_back({&carrier, from, from});
   place_at(carrier, carrier.target, out.origin, out.others);
-  const JointJet<T>& root = carrier.target[0];
+  const JointJet<T>&root = carrier.target[0], &before = carrier.last_target()[0];
+  const Vec3<T> turned = rotation_log<T>(before.rotation.conjugate() * root.rotation);
+  const Vec3<T> omega = rate_at_end<T>(turned, root.omega - out.h * root.alpha, root.omega, out.h);
+  const Vec3<T> velocity = rate_at_end<T>(root.translation - before.translation,
+                                          root.velocity - out.h * root.acceleration, root.velocity, out.h);
   const Vec3<double> place = root.translation.template cast<double>() - out.origin;
   for (std::size_t c = 0; c < out.others.size(); ++c) {
     MovingShape<T>& shape = out.moving[first + c];
     shape.to = out.others[c];
-    shape.spin = root.rotation * root.omega;
-    shape.velocity = root.velocity + shape.spin.cross(shape.to.pose.translation - place.template cast<T>());
+    shape.spin = root.rotation * omega;
+    shape.velocity = velocity + shape.spin.cross(shape.to.pose.translation - place.template cast<T>());
   }
 }
 

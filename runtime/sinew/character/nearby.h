@@ -61,7 +61,7 @@ struct Nearby {
   }
   std::size_t bytes() const {
     const auto held = [](const auto&... v) { return (std::size_t{0} + ... + bytes_held(v)); };
-    return held(obstacles, moving, under, before, after, now, others);
+    return obstacles.capacity() * sizeof(void*) + held(moving, under, before, after, now, others);
   }
 };
 

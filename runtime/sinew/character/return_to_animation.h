@@ -54,6 +54,14 @@ bool are_foreign(const Vec3<T>& whole, const Vec3<T>& leaving, const Vec3<T>& ar
   return off > std::max(whole.norm() / 2, std::max(leaving.norm(), arriving.norm()) / 3);
 }
 
+/// rad/s or m/s at the end of h seconds in which a joint has `moved`: as its animation arrives, or at the
+/// mean speed of its way where its rates are foreign to that.
+template <class T>
+Vec3<T> rate_at_end(const Vec3<T>& moved, const Vec3<T>& leaving, const Vec3<T>& arriving, T h) {
+  const Vec3<T> mean = moved / h;
+  return are_foreign(mean, leaving, arriving) ? mean : arriving;
+}
+
 /// Where an animation that goes from `before` to `now` within a frame of so many seconds is at a fraction of
 /// it, and how fast: pose, angular velocity and velocity of the jet; on the cubic with the velocities at both
 /// ends.
