@@ -1,4 +1,5 @@
 // A standing body that is pushed: it presses, steps, puts the foot back, or falls.
+#include "fixtures/platform.h"
 #include "pushed.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -122,20 +123,7 @@ struct Riding : Body {
 
   Riding(const Vec3<double>& v, double turns, bool host = false, double gathers = 0)
       : velocity(v), turn_rate(turns), led_by_host(host), sets_off(gathers) {
-    Skeleton box;
-    Joint joint;
-    joint.name = "box";
-    joint.type = JointType::kFree;
-    joint.mass = 500;
-    joint.inertia = Vec3<double>(700, 700, 1300).asDiagonal();
-    box.joints = {joint};
-    box.body_count = 1;
-    Collider top;
-    top.shape = Shape::kBox;
-    top.size = {20, 20, 0.15};
-    box.colliders = {top};
-    CharacterSettings led;
-    platform = world.add_character(box, led, status);
+    platform = world.add_character(fixtures::platform({20, 20, 0.15}), {}, status);
     EXPECT_TRUE(status) << status.reason;
     Body::ground = 0.65f;
     lead(0);

@@ -7,6 +7,7 @@
 
 #include "character/scenes.h"
 #include "fixtures/pile.h"
+#include "fixtures/platform.h"
 #include "sinew/character/prop.h"
 
 namespace sinew {
@@ -242,20 +243,8 @@ struct Lift {
   int box = -1;
 
   explicit Lift(World<float>& in) : world(in) {
-    Skeleton body;
-    Joint joint;
-    joint.name = "box";
-    joint.type = JointType::kFree;
-    joint.mass = 500;
-    joint.inertia = Vec3<double>(700, 700, 1300).asDiagonal();
-    body.joints = {joint};
-    body.body_count = 1;
-    Collider top;
-    top.shape = Shape::kBox;
-    top.size = {6, 6, 0.15};
-    body.colliders = {top};
     Status status;
-    box = world.add_character(body, {}, status);
+    box = world.add_character(fixtures::platform({6, 6, 0.15}), {}, status);
     EXPECT_TRUE(status.ok()) << status.reason;
     lead(0);
     (void)world.character(box).reset();

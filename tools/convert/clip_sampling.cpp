@@ -9,10 +9,12 @@
 
 #include "convert/fit/chain_error.h"
 #include "convert/skin.h"
+#include "import/keys.h"
 
 namespace sinew::convert {
 namespace {
 
+using import::interpolate;
 using import::SourceChannel;
 using import::SourceClip;
 using import::SourceScene;
@@ -21,21 +23,6 @@ using Matrix = Eigen::Matrix4d;
 constexpr double kClosest = 1.0 / 120;  ///< s between samples: no body moves so fast that it takes more
 constexpr double kSameTime = 0.01;      ///< of a sample's time: 1 mm where 30 keys/s change speed by 3 m/s
 constexpr double kMostSamples = 3e7;    ///< joints × frames of a clip: an hour of motion capture, 2 GB
-
-template <class V>
-V interpolate(const std::vector<double>& times, const std::vector<V>& keys, double t, const V& otherwise) {
-  if (keys.empty()) return otherwise;
-  const auto after = std::upper_bound(times.begin(), times.end(), t);
-  if (after == times.begin()) return keys.front();
-  if (after == times.end()) return keys.back();
-  const std::size_t i = static_cast<std::size_t>(after - times.begin());
-  const double span = times[i] - times[i - 1], u = span > 0 ? (t - times[i - 1]) / span : 0;
-  if constexpr (std::is_same_v<V, Eigen::Quaterniond>) {
-    return keys[i - 1].slerp(u, keys[i]);
-  } else {
-    return keys[i - 1] + u * (keys[i] - keys[i - 1]);
-  }
-}
 
 double sampling_rate(const SourceClip& clip) {
   return std::clamp(clip.key_rate > 0 ? clip.key_rate : 30.0, 10.0, 1 / kClosest);

@@ -137,7 +137,12 @@ void Behaviour<T>::see_ground(Character<T>& character, double h) {
   const CarriedFrame before = ground.force > 0 ? std::exchange(ground_before_, now) : ground_before_;
   if (ground.force > 0) level_ = ground.place.z() - character.displacement().z;
   carried_ = carried_next_ = ground_before_;
-  const double fades = ground_before_.moves() ? 1 - std::min(h / (kLedTime * std::sqrt(unit_)), 1.0) : 0;
+  if (!ground_before_.moves()) {
+    slip_ridden_ = slip_led_ = 0;
+    led_ = false;
+    return;
+  }
+  const double fades = 1 - std::min(h / (kLedTime * std::sqrt(unit_)), 1.0);
   const Quat<double> back = character.displacement().turn().conjugate();
   slip_ridden_ = fades * (slip_ridden_ + h * slip_over(Vec3<double>::Zero()));
   slip_led_ = fades * (slip_led_ + h * slip_over(back * ground_before_.velocity));
@@ -147,7 +152,7 @@ void Behaviour<T>::see_ground(Character<T>& character, double h) {
   } else if (ground.force > 0 && before.moves()) {
     carried_next_.velocity += now.velocity - before.at(now.place);
     carried_next_.turn_rate += now.turn_rate - before.turn_rate;
-  } else if (!before.moves() && carried_.moves() && last_step_.root_unknown) {  // as in the last step
+  } else if (!before.moves() && last_step_.root_unknown) {  // as in the last step
     (void)character.displace(way_of(carried_, carried_, h));
   }
 }

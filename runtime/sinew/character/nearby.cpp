@@ -151,9 +151,8 @@ void add_prop(CharacterState<T>& prop, Nearby<T>& out) {
 /// Appends who is solved or played beside it, in whose way it may be.
 template <class T>
 void add_figure(CharacterState<T>& figure, const Vec3<T>& gravity, Nearby<T>& out) {
-  out.now.clear();
+  place_now(figure, out.origin, out.now);
   out.others.clear();
-  place_colliders<T>(figure, figure.local, figure.history.place, out.origin, out.now);
   predict_colliders<T>(figure, out.now, out.origin, gravity, out.h, out.others);
   for (std::size_t c = 0; c < out.now.size(); ++c) out.moving.push_back({&figure, out.now[c], out.others[c]});
 }

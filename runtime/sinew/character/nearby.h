@@ -60,8 +60,8 @@ struct Nearby {
     for (auto* v : {&before, &after, &now, &others}) v->reserve(static_cast<std::size_t>(colliders));
   }
   std::size_t bytes() const {
-    const auto held = [](const auto&... v) { return (std::size_t{0} + ... + bytes_held(v)); };
-    return obstacles.capacity() * sizeof(void*) + held(moving, under, before, after, now, others);
+    const auto sum = [](const auto&... v) { return (std::size_t{0} + ... + bytes_held(v)); };
+    return obstacles.capacity() * sizeof(void*) + sum(moving, under, before, after, now, others);
   }
 };
 

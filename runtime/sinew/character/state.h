@@ -299,10 +299,11 @@ struct CharacterState {
   void bound_particles();
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
-  /// Has no joints but a free root.
-  bool is_whole() const { return floats && tree.dofs == tree.dof_count(0); }
-  /// Such a one, driven, as a platform: it carries what is on it, and gives way to nobody.
-  bool is_carrier() const { return is_whole() && root_is_kinematic() && !tied && undisturbed(); }
+  /// Has no joints but a free root, which is driven, as a platform: it carries what is on it, and gives way
+  /// to nobody.
+  bool is_carrier() const {
+    return floats && tree.dofs == tree.dof_count(0) && root_is_kinematic() && !tied && undisturbed();
+  }
   /// And has limbs, that it could tear off: what has none, as a platform, presses whatever is in its way.
   bool drives_limbs() const { return root_is_kinematic() && tree.dofs > tree.dof_count(0); }
 };

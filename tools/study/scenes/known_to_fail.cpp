@@ -25,7 +25,8 @@ const char* known_to_fail(const std::string& situation) {
        "they are through some are up to 12 mm off their clips, 10 wanted"},
       {"weak_arm", "20 % of the hand's way at 120 Hz, 5 % at 60 and 1 % at 30: a hand of 1 N m is flung"},
       {"walk_on_boards",
-       "at 30 Hz a foot dips between two boards on its straight way from frame to frame and is held by one: "
+       "at 30 Hz a foot dips between two boards on its straight way from frame to frame and is caught by "
+       "one: "
        "0.23 m off at the end"},
       {"trolley",
        "loses 4 % of 2 m/s in four seconds, 2 % wanted: what hinges gain as wheels wobble the energy balance "
