@@ -207,8 +207,7 @@ std::string write_gltf(const GltfContent& content) {
   std::vector<FigureNodes> nodes;
   std::vector<int> prop_nodes;
   for (const GltfFigure& figure : content.figures) nodes.push_back(add_figure(figure, content.surface, file));
-  for (const GltfProp& prop : content.props)
-    prop_nodes.push_back(add_solid(prop.prop.name, prop.prop.shape, prop.prop.size, file));
+  for (const GltfProp& prop : content.props) prop_nodes.push_back(add_solid(prop.prop, file));
   add_animations(content, nodes, prop_nodes, file);
   if (content.figures.size() == 1)
     if (const json extras = asset_extras(*content.figures[0].asset); !extras.is_null())

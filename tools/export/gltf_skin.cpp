@@ -203,7 +203,7 @@ Mesh shapes_of(const Skeleton& skeleton) {
   for (const Collider& c : skeleton.colliders) {
     render::Geometry geometry;
     const Transform<double> at = rest[static_cast<std::size_t>(c.joint)] * c.local;
-    render::append_shape(c.shape, c.size.cast<float>(), at.cast<float>(), render::kClay, geometry);
+    render::append_shape(c.shape, c.size.cast<float>(), c.hull, at.cast<float>(), render::kClay, geometry);
     append_triangles(geometry, c.joint, mesh);
   }
   for (std::size_t j = 0; j < rest.size() && skeleton.colliders.empty(); ++j) {
@@ -264,15 +264,15 @@ FigureNodes add_figure(const GltfFigure& figure, Surface surface, GltfFile& file
   return out;
 }
 
-int add_solid(const std::string& name, Shape shape, const Vec3<float>& size, GltfFile& file) {
+int add_solid(const scene::Prop& prop, GltfFile& file) {
   Mesh mesh;
-  mesh.name = name;
+  mesh.name = prop.name;
   render::Geometry geometry;
-  render::append_shape(shape, size, Transform<float>{}, render::kClay, geometry);
+  render::append_shape(prop.shape, prop.size, prop.hull, Transform<float>{}, render::kClay, geometry);
   append_triangles(geometry, 0, mesh);
   mesh.joints.clear();
   mesh.weights.clear();
-  add_mesh_node(name, add_mesh(mesh, clay(file), false, file), -1, file);
+  add_mesh_node(prop.name, add_mesh(mesh, clay(file), false, file), -1, file);
   return static_cast<int>(file.document["nodes"].size()) - 1;
 }
 

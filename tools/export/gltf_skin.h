@@ -19,6 +19,6 @@ struct FigureNodes {
 FigureNodes add_figure(const GltfFigure& figure, Surface surface, GltfFile& file);
 
 /// A node with a solid on it; returns it.
-int add_solid(const std::string& name, Shape shape, const Vec3<float>& size, GltfFile& file);
+int add_solid(const scene::Prop& prop, GltfFile& file);
 
 }  // namespace sinew::exporting

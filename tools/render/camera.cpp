@@ -26,6 +26,10 @@ void add_character(const Asset& asset, const scene::CharacterFrame& f, Box& box)
     box.add(f.model[i].translation);
   for (const Collider& c : asset.skeleton.colliders) {
     const Transform<float> x = f.model[static_cast<std::size_t>(c.joint)] * c.local.cast<float>();
+    if (c.hull) {
+      for (const Vec3<double>& corner : c.hull->corners()) box.add(x * corner.cast<float>());
+      continue;
+    }
     if (c.shape == Shape::kBox) {
       for (int corner = 0; corner < 8; ++corner)
         box.add(x * Vec3<float>((corner & 1 ? 1.f : -1.f) * float(c.size.x()),

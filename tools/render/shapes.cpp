@@ -92,6 +92,21 @@ void append_box(const Transform<float>& world, const Vec3<float>& half, const Ve
     }
 }
 
+void append_hull(const Transform<float>& world, const ConvexHull& hull, const Vec3<float>& color,
+                 Geometry& out) {
+  for (const ConvexHull::Face& face : hull.faces()) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    const Vec3<float> n = world.rotation * face.normal.cast<float>();
+    for (const int corner : hull.boundary(face)) {
+      const Vec3<float> p = world * hull.corners()[static_cast<std::size_t>(corner)].cast<float>();
+      out.vertices.push_back(
+          {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {0, 0}, {color.x(), color.y(), color.z()}, 0});
+    }
+    for (std::uint32_t k = 2; k < static_cast<std::uint32_t>(face.count); ++k)
+      for (const std::uint32_t at : {0u, k - 1, k}) out.indices.push_back(first + at);
+  }
+}
+
 Transform<float> between(const Vec3<float>& a, const Vec3<float>& b) {
   return {rotation_between<float>(Vec3<float>::UnitZ(), b - a), (a + b) / 2};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/geometry.h"
+#include "sinew/skeleton/convex_hull.h"
 
 namespace sinew::render {
 
@@ -13,6 +14,8 @@ void append_capsule(const Transform<float>& world, float radius, float half, con
                     float glow, Geometry& out);
 void append_box(const Transform<float>& world, const Vec3<float>& half, const Vec3<float>& color,
                 Geometry& out);
+void append_hull(const Transform<float>& world, const ConvexHull& hull, const Vec3<float>& color,
+                 Geometry& out);
 /// Muscle from a to b in world space: a full belly, pale tendons at the ends. Coloured by load.
 void append_spindle(const Vec3<float>& a, const Vec3<float>& b, float radius, float load, Geometry& out);
 

@@ -1,15 +1,86 @@
 #include "scene/figure.h"
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <map>
+#include <mutex>
+#include <numbers>
 #include <span>
+#include <utility>
 
 #include "scene/bodies.h"
 #include "scene/effect_registry.h"
 #include "scene/humanoid.h"
+#include "sinew/skeleton/convex_hull.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew::scene {
+namespace {
+
+Shape shape_of(const Reader& in) {
+  const std::string shape = in.text("shape", "sphere");
+  if (shape == "sphere") return Shape::kSphere;
+  if (shape == "capsule") return Shape::kCapsule;
+  if (shape == "box") return Shape::kBox;
+  if (shape == "convex") return Shape::kConvex;
+  fail(in.inside("shape"), "unknown shape '" + shape + "'");
+}
+
+/// Corners of an upright prism or cone about the origin.
+std::vector<Vec3<double>> prism_of(const Reader& in) {
+  const int sides = in.count("sides", 8, 3, ConvexHull::kMostCorners / 2);
+  const double radius = in.positive("radius", 0.3), half = in.positive("height", 1) / 2,
+               top = in.time("top_radius", radius);
+  std::vector<Vec3<double>> points;
+  for (int n = 0; n < sides; ++n) {
+    const double angle = 2 * std::numbers::pi * n / sides;
+    const Vec3<double> out(std::cos(angle), std::sin(angle), 0);
+    points.push_back(radius * out - half * Vec3<double>::UnitZ());
+    if (top > 0 || n == 0) points.push_back(top * out + half * Vec3<double>::UnitZ());
+  }
+  return points;
+}
+
+std::vector<Vec3<double>> points_of(const Reader& in) {
+  if (in.has("points") == in.has("prism"))
+    fail(in.inside("shape"), "a convex shape has points, or is a prism");
+  if (in.has("prism"))
+    return prism_of(Reader(in.at("prism"), in.inside("prism"), {"sides", "radius", "height", "top_radius"}));
+  std::vector<Vec3<double>> points;
+  const json& list = in.list("points");
+  for (std::size_t n = 0; n < list.size(); ++n)
+    points.push_back(Reader::vector_of(list[n], in.item("points", n)));
+  return points;
+}
+
+const ConvexHull* keep(ConvexHull hull) {
+  static std::mutex mutex;
+  static std::deque<ConvexHull> kept;
+  const std::scoped_lock lock(mutex);
+  return &kept.emplace_back(std::move(hull));
+}
+
+}  // namespace
+
+void read_shape(const Reader& in, Collider& out) {
+  out.shape = shape_of(in);
+  if (out.shape != Shape::kConvex) {
+    for (const char* key : {"points", "prism"})
+      if (in.has(key)) fail(in.inside(key), "only a convex shape has that");
+    out.size = in.has("size") && in.at("size").is_number() ? Vec3<double>::Constant(in.positive("size", 1))
+                                                           : in.vector("size", out.size);
+    return;
+  }
+  if (in.has("size")) fail(in.inside("size"), "a convex shape has its size from its points");
+  ConvexHull hull;
+  if (const Status status = ConvexHull::make(points_of(in), hull); !status)
+    fail(status.index >= 0 ? in.item("points", static_cast<std::size_t>(status.index)) : in.inside("points"),
+         status.reason);
+  out.hull = keep(std::move(hull));
+  out.size.setConstant(out.hull->inner_radius());
+}
+
 namespace {
 
 JointType type_of(const Reader& in, const char* key, JointType otherwise) {
@@ -43,11 +114,10 @@ void read_dofs(const Reader& in, const char* key, std::span<DofLimits> dofs, Rea
 }
 
 Collider read_collider(const json& value, const std::string& where, int joint) {
-  const Reader in(value, where, {"shape", "size", "position", "friction", "restitution"});
+  const Reader in(value, where, {"shape", "size", "points", "prism", "position", "friction", "restitution"});
   Collider c;
   c.joint = joint;
-  c.shape = shape_of(in);
-  c.size = size_of(in, c.size);
+  read_shape(in, c);
   c.local.translation = in.vector("position", Vec3<double>::Zero());
   c.friction = in.time("friction", c.friction);
   c.restitution = in.time("restitution", c.restitution);
@@ -153,19 +223,6 @@ Skeleton kind_of(const json& value, const std::string& where) {
 }
 
 }  // namespace
-
-Shape shape_of(const Reader& in) {
-  const std::string shape = in.text("shape", "sphere");
-  if (shape == "sphere") return Shape::kSphere;
-  if (shape == "capsule") return Shape::kCapsule;
-  if (shape == "box") return Shape::kBox;
-  fail(in.inside("shape"), "unknown shape '" + shape + "'");
-}
-
-Vec3<double> size_of(const Reader& in, const Vec3<double>& otherwise) {
-  if (!in.has("size") || !in.at("size").is_number()) return in.vector("size", otherwise);
-  return Vec3<double>::Constant(in.positive("size", 1));
-}
 
 Skeleton read_figure(const json& value, const std::string& where) {
   Skeleton s = kind_of(value, where);

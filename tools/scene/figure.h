@@ -10,9 +10,9 @@ namespace sinew::scene {
 /// in it. Fails where the result is no valid skeleton.
 Skeleton read_figure(const json& value, const std::string& where);
 
-/// What colliders, props and obstacles say of themselves: `shape` (sphere), and `size` as Collider::size, one
-/// number for all three.
-Shape shape_of(const Reader& in);
-Vec3<double> size_of(const Reader& in, const Vec3<double>& otherwise);
+/// What colliders, props and obstacles say of themselves: `shape` (sphere), and `size` as
+/// Collider::size, one number for all three; of who is convex `points`, or a `prism`. Hulls are kept for as
+/// long as the program runs.
+void read_shape(const Reader& in, Collider& out);
 
 }  // namespace sinew::scene

@@ -46,6 +46,7 @@ struct Prop {
   Shape shape = Shape::kSphere;
   Vec3<float> size = Vec3<float>::Constant(0.1f);
   float mass = 1;
+  const ConvexHull* hull = nullptr;  ///< of who is convex
 };
 
 struct Frame {
@@ -71,7 +72,7 @@ struct Recording {
   std::vector<Frame> frames;
   Camera camera;
   std::optional<float> ground = 0.f;  ///< m, height of the floor; none: drawn below everything
-  std::vector<Collider> obstacles;    ///< static boxes, spheres, capsules in world space (joint unused)
+  std::vector<Collider> obstacles;    ///< static shapes in world space (joint unused)
   int plotted_joint = -1;             ///< torque curve in the overlay; -1: the most loaded over the recording
 };
 

@@ -58,8 +58,9 @@ class Runner {
       recording_.names.push_back(c.name);
     }
     for (const SceneProp& p : s_.props)
-      recording_.props.push_back(
-          {p.name, p.settings.shape, p.settings.size.cast<float>(), static_cast<float>(p.settings.mass)});
+      recording_.props.push_back({p.name, p.settings.hull ? Shape::kConvex : p.settings.shape,
+                                  p.settings.size.cast<float>(), static_cast<float>(p.settings.mass),
+                                  p.settings.hull});
     for (const ParticleBody& body : s_.particles) {
       edges_.push_back(drawn_edges(body));
       for (const auto& [a, b] : edges_.back()) {
@@ -67,7 +68,8 @@ class Runner {
         // Strands as thick as they collide; in a net that would be a wall.
         const bool strand = edges_.back().size() < body.nodes.size();
         const auto radius = static_cast<float>(std::max((strand ? 1 : 0.3) * body.radius, 2e-3));
-        recording_.props.push_back({body.name, Shape::kCapsule, {radius, radius, float(length / 2)}, 0});
+        recording_.props.push_back(
+            {body.name, Shape::kCapsule, {radius, radius, float(length / 2)}, 0, nullptr});
       }
     }
     telemetry_.plotted_joint = recording_.plotted_joint = s_.plotted_joint;

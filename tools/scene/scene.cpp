@@ -289,12 +289,16 @@ int character_of(const Scene& scene, const Reader& in, const char* key) {
 
 SceneProp read_prop(const json& value, const std::string& where, const Scene& scene) {
   const Reader in(value, where,
-                  {"name", "shape", "size", "mass", "friction", "restitution", "position", "rotation",
-                   "velocity", "angular_velocity", "launch_time", "throw_at", "grid"});
+                  {"name", "shape", "size", "points", "prism", "mass", "friction", "restitution", "position",
+                   "rotation", "velocity", "angular_velocity", "launch_time", "throw_at", "grid"});
   SceneProp p;
   p.name = in.text("name", "ball");
-  p.settings.shape = shape_of(in);
-  p.settings.size = size_of(in, p.settings.size);
+  Collider shape;
+  shape.size = p.settings.size;
+  read_shape(in, shape);
+  p.settings.shape = shape.shape;
+  p.settings.size = shape.size;
+  p.settings.hull = shape.hull;
   p.settings.mass = in.positive("mass", 1);
   p.settings.friction = in.time("friction", p.settings.friction);
   p.settings.restitution = in.time("restitution", p.settings.restitution);
@@ -415,10 +419,9 @@ Scene parse(const json& root, const std::filesystem::path& base, std::span<const
   const json& obstacles = in.list("obstacles");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Reader o(obstacles[i], in.item("obstacles", i),
-                   {"shape", "size", "position", "yaw_deg", "rotation", "friction"});
+                   {"shape", "size", "points", "prism", "position", "yaw_deg", "rotation", "friction"});
     Collider c;
-    c.shape = shape_of(o);
-    c.size = size_of(o, c.size);
+    read_shape(o, c);
     c.local.translation = o.vector("position", Vec3<double>::Zero());
     if (o.has("rotation") && o.has("yaw_deg")) fail(o.inside("rotation"), "there is yaw_deg too");
     c.local.rotation = Eigen::AngleAxisd(o.number("yaw_deg", 0) * kRadians, Vec3<double>::UnitZ());

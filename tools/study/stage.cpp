@@ -173,8 +173,8 @@ void Stage<T>::enter(const PropSettings& prop) {
     return std::vector<Transform<double>>{
         {turn * prop.pose.rotation, prop.pose.translation + later * prop.velocity}};
   };
-  books_.add(audit::loose_solid(prop.shape, prop.size, prop.mass), after(-kMoment), after(0), after(kMoment),
-             kMoment);
+  books_.add(audit::loose_solid(prop.shape, prop.size, prop.mass, prop.hull), after(-kMoment), after(0),
+             after(kMoment), kMoment);
   balance();
 }
 

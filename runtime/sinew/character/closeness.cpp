@@ -96,7 +96,7 @@ SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_ax
   const Mat3<T> to_shape = pose.rotation.conjugate().toRotationMatrix();
   const Vec3<T> center = to_shape * (middle - pose.translation), axis = to_shape * half_axis,
                 size = shape.size.template cast<T>();
-  const auto at = [&](T t) { return signed_distance<T>(shape.shape, size, center + t * axis); };
+  const auto at = [&](T t) { return signed_distance<T>(shape.shape, size, center + t * axis, shape.hull); };
   along = T(0);
   if (half_axis.squaredNorm() == T(0)) return at(T(0));
   T low = T(-1), high = T(1), left = high - T(kGolden) * (high - low),
@@ -119,10 +119,11 @@ SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_ax
 
 template <class T>
 SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
-  if (a.collider->shape != Shape::kBox) return distance_to(a, b);
-  if (b.collider->shape == Shape::kBox) {
-    const auto placed = [](const PlacedCollider<T>& box) {
-      return PlacedShape<T>(Shape::kBox, box.collider->size.template cast<T>(), box.pose, T(1));
+  if (!is_polyhedron(a.collider->shape)) return distance_to(a, b);
+  if (is_polyhedron(b.collider->shape)) {
+    const auto placed = [](const PlacedCollider<T>& solid) {
+      const Collider& c = *solid.collider;
+      return PlacedShape<T>(c.shape, c.size.template cast<T>(), solid.pose, T(1), c.hull);
     };
     return separation(placed(a), placed(b));
   }

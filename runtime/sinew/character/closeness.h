@@ -34,7 +34,8 @@ SignedDistance<T> distance_of_axis(const Vec3<T>& middle, const Vec3<T>& half_ax
                                    const Collider& shape, int sections, T& along);
 
 /// Distance of two colliders (m) and the direction in which a leaves b: exact to a thousandth of a capsule's
-/// length; of two boxes that are apart at most their distance, by the best of the axes that separate them.
+/// length; of two polyhedra that are apart at most their distance, by the best of the axes that separate
+/// them.
 template <class T>
 SignedDistance<T> distance_between(const PlacedCollider<T>& a, const PlacedCollider<T>& b);
 

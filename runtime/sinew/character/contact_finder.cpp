@@ -7,6 +7,8 @@
 
 #include "sinew/character/contacts.h"
 #include "sinew/character/nearby.h"
+#include "sinew/effects/hull_distance.h"
+#include "sinew/effects/polyhedron.h"
 #include "sinew/optimizer/contact_rows.h"
 #include "sinew/skeleton/hooks.h"
 
@@ -279,6 +281,25 @@ void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
 }
 
+namespace {
+
+/// See ContactFinder::way_out(); a hull at `pose` in the box's axes.
+template <class T>
+int way_out_of_box(const Collider& convex, const Transform<T>& pose, const Vec3<T>& size) {
+  const Polyhedron hull(
+      PlacedShape<double>(convex.shape, convex.size, pose.template cast<double>(), 1, convex.hull));
+  int best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int face = 0; face < 6; ++face) {
+    const Vec3<double> inwards = (face % 2 ? 1 : -1) * Vec3<double>::Unit(face / 2);
+    const double apart = -hull.support(inwards) - double(size[face / 2]);
+    if (apart > most) most = apart, best = face;
+  }
+  return best;
+}
+
+}  // namespace
+
 /// The face by which the points of a collider that are inside a box leave it (see Contact::face): the one
 /// that parts the two best, as solids. Each by the nearest of its own, what has been pressed through a box
 /// would hang in it for good, and a corner beside an edge leave by the face that the boxes do not touch with.
@@ -297,6 +318,7 @@ int ContactFinder<T>::way_out(int n, int collider, const Vec3<T>& size, const Tr
   else if (own.shape == Shape::kCapsule)
     reach = turned.col(2).cwiseAbs() * own_size.z();
   Eigen::Index axis = 0;
+  if (own.hull) return way_out_of_box<T>(own, in_box, size);
   (in_box.translation.cwiseAbs() - size - reach).maxCoeff(&axis);
   return static_cast<int>(2 * axis) + (in_box.translation[axis] < T(0) ? 1 : 0);
 }
@@ -329,6 +351,33 @@ void ContactFinder<T>::go_on_below(T unit, const Vec3<T>& other, Met& box) const
   if ((pose.inverse() * other).dot(face) > box.size[axis]) return;
   box.local.translation += box.local.rotation * Vec3<T>(T(kBelowFloor) / 2 * unit * face);
   box.size[axis] += T(kBelowFloor) / 2 * unit;
+}
+
+/// The same of a hull; not by a face that it stands on the floor with, but for what lies under that. Where no
+/// point of the collider can be inside, none.
+template <class T>
+int ContactFinder<T>::way_out_of_hull(int n, int collider, const Met& met) const {
+  const Transform<T> pose = pose_of(met);
+  const Bound& bound = bounds_[first_bound_[n] + collider];
+  const Transform<double> to_hull = pose.inverse().template cast<double>();
+  const Vec3<double> middle = to_hull * bound.center.template cast<double>();
+  if (hull_distance(*met.hull, middle).distance >= double(bound.radius)) return -1;
+  const PlacedShape<T> own = placed(n, collider);
+  const Polyhedron solid(own.template cast<double>());
+  const T ground = T(world_->ground_height - common_origin_.z()), on_floor = T(kOnFloor) * own.unit;
+  int best = -1;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < met.hull->faces().size(); ++f) {
+    const ConvexHull::Face& face = met.hull->faces()[f];
+    const Vec3<T> normal = pose.rotation * face.normal.template cast<T>();
+    const Vec3<T> place = pose * Vec3<T>((face.offset * face.normal).template cast<T>());
+    const bool stands = world_->ground && normal.z() < T(-kFacesDown) && place.z() - ground < on_floor;
+    if (stands && !(face.normal.dot(middle) > face.offset)) continue;
+    const Vec3<double> down = -normal.template cast<double>();
+    const double apart = -solid.support(down) + down.dot(place.template cast<double>());
+    if (apart > most) most = apart, best = static_cast<int>(f);
+  }
+  return best;
 }
 
 /// About the common origin.
@@ -373,15 +422,17 @@ void ContactFinder<T>::meet(int n, int collider, Met met, T reach) {
                   met);
       face = way_out(n, collider, met.size, pose_of(met));
     }
+  } else if (met.shape == Shape::kConvex) {
+    face = way_out_of_hull(n, collider, met);
   }
   meet_points(n, collider, met, face, reach);
   const Shape own = states_[n]->colliders[collider].shape;
-  const bool box = met.shape == Shape::kBox, of_box = own == Shape::kBox && met.tree < 0;
-  if (box ? own != Shape::kSphere : of_box && met.shape == Shape::kCapsule)
+  const bool flat = is_polyhedron(met.shape), of_flat = is_polyhedron(own) && met.tree < 0;
+  if (flat ? own != Shape::kSphere : of_flat && met.shape == Shape::kCapsule)
     meet_edges(n, collider, met, reach);
-  if (own != Shape::kSphere && met.shape != Shape::kSphere && (box || own == Shape::kBox))
+  if (own != Shape::kSphere && met.shape != Shape::kSphere && (flat || is_polyhedron(own)))
     meet_solids(n, collider, met, reach);
-  if (met.tree < 0 && (box ? own != Shape::kSphere : of_box)) meet_corners(n, collider, met, reach);
+  if (met.tree < 0 && (flat ? own != Shape::kSphere : of_flat)) meet_corners(n, collider, met, reach);
 }
 
 /// The points of a collider against a shape.
@@ -395,6 +446,7 @@ void ContactFinder<T>::meet_points(int n, int collider, const Met& met, int face
     Contact<T> c = contact_with(met, contact_of(n, point), point.friction);
     c.shape = met.shape;
     c.size = met.size;
+    c.hull = met.hull;
     c.shape_pose = met.local;
     c.face = face;
     c.id = id_of(n, k, met);
@@ -465,10 +517,12 @@ void ContactFinder<T>::meet_static(int n, const Surroundings& surroundings) {
       const Transform<T> pose = pose_of(obstacle);
       const Vec3<T> size = obstacle.size.template cast<T>();
       const Vec3<T> apart = pose.rotation.conjugate() * (b.center - pose.translation);
-      if (signed_distance<T>(obstacle.shape, size, apart).distance > b.radius + b.reach) continue;
+      if (signed_distance<T>(obstacle.shape, size, apart, obstacle.hull).distance > b.radius + b.reach)
+        continue;
       Met met;
       met.shape = obstacle.shape;
       met.size = size;
+      met.hull = obstacle.hull;
       met.local = pose;
       met.friction = T(obstacle.friction);
       met.restitution = T(obstacle.restitution);
@@ -503,6 +557,7 @@ void ContactFinder<T>::meet_collider(int n, int collider, int m, int other) {
   Met met;
   met.shape = shape.shape;
   met.size = shape.size.template cast<T>();
+  met.hull = shape.hull;
   met.local = shape.local.template cast<T>();
   met.friction = T(shape.friction);
   met.restitution = T(shape.restitution);

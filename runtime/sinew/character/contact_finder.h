@@ -171,8 +171,9 @@ class ContactFinder final : public ContactSearch<T> {
   /// What a collider meets: another's collider, or an obstacle.
   struct Met {
     Shape shape = Shape::kSphere;
-    Vec3<T> size = Vec3<T>::Zero();  ///< as Collider::size
-    Transform<T> local;              ///< shape → its body, or → the common origin
+    Vec3<T> size = Vec3<T>::Zero();    ///< as Collider::size
+    const ConvexHull* hull = nullptr;  ///< of who is convex
+    Transform<T> local;                ///< shape → its body, or → the common origin
     T friction = T(0), restitution = T(0);
     int tree = -1, body = -1;  ///< of the solve; −1: static
     int number = 0;            ///< of identities: of the collider or obstacle
@@ -195,6 +196,7 @@ class ContactFinder final : public ContactSearch<T> {
   void add(Contact<T>& contact, T reach);
   bool reserve();
   int way_out(int n, int collider, const Vec3<T>& size, const Transform<T>& pose) const;
+  int way_out_of_hull(int n, int collider, const Met& met) const;
   void go_on_below(T unit, const Vec3<T>& other, Met& box) const;
   void begin_all();
   void remember(Contact<T>& contact) const;

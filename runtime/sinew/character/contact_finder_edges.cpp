@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sinew/character/contact_finder.h"
+#include "sinew/skeleton/convex_hull.h"
 
 namespace sinew {
 namespace {
@@ -17,6 +18,14 @@ constexpr double kBeyond =
 int feature(int own, int others, int collider) {
   return 0x8000 | own << 11 | others << 7 | collider;
 }
+/// The same where one is a hull, which has more than there is room for: scattered over all of it. Two of the
+/// handful that touch share a number once in a thousand times, and then what the last step bore.
+int feature_of_hull(int own, int others, int collider) {
+  constexpr std::uint32_t kOwn = 2654435761u, kOthers = 2246822519u, kCollider = 3266489917u;
+  const std::uint32_t mixed = std::uint32_t(own + 1) * kOwn ^ std::uint32_t(others + 1) * kOthers ^
+                              std::uint32_t(collider) * kCollider;
+  return 0x8000 | static_cast<int>((mixed ^ mixed >> 15) & 0x7fff);
+}
 
 }  // namespace
 
@@ -27,22 +36,24 @@ PlacedShape<T> ContactFinder<T>::placed(int n, int collider) const {
   const Collider& own = s.colliders[collider];
   const Kinematics<T>& k = s.problem.kinematics;
   const Transform<T> body{Quat<T>(k.rotation[own.joint]), k.origin[own.joint]};
-  return {own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), s.tree.scale.length};
+  return {own.shape, own.size.template cast<T>(), body * own.local.template cast<T>(), s.tree.scale.length,
+          own.hull};
 }
 
 /// And what it meets; `unit`: of what it meets.
 template <class T>
 PlacedShape<T> ContactFinder<T>::placed(const Met& met, T unit) const {
-  return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length};
+  return {met.shape, met.size, pose_of(met), met.tree < 0 ? unit : states_[met.tree]->tree.scale.length,
+          met.hull};
 }
 
-/// The edges of a box across those of another or the axis of a capsule that cross now; of others that come to
-/// cross within the step, meet_solids() knows.
+/// The edges of a polyhedron across those of another or the axis of a capsule that cross now; of others that
+/// come to cross within the step, meet_solids() knows.
 template <class T>
 void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) {
   const CharacterState<T>& s = *states_[n];
   const Collider& own = s.colliders[collider];
-  if ((met.second && own.shape == Shape::kBox) || collider > kMostWithEdges) return;
+  if ((met.second && is_polyhedron(own.shape)) || collider > kMostWithEdges) return;
   const Kinematics<T>& k = s.problem.kinematics;
   const T unit = s.tree.scale.length;
   const PlacedShape<T> a = placed(n, collider), b = placed(met, unit);
@@ -62,11 +73,12 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     c.side = pair.side;
     c.radius = pair.radius;
     c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
-    c.id = id_of(n, feature(of_a.number, of_b.number, collider), met) ^
+    const auto number = own.hull || met.hull ? feature_of_hull : feature;
+    c.id = id_of(n, number(of_a.number, of_b.number, collider), met) ^
            std::uint64_t(pair.side < T(0) ? kOtherSide : 0);
     return c;
   };
-  const bool round_first = b.shape != Shape::kBox;
+  const bool round_first = !is_polyhedron(b.shape);
   edges_.find(round_first ? b : a, round_first ? a : b);
   for (int p = 0; p < edges_.count; ++p) {
     EdgePair<T>& pair = edges_.pairs[p];
@@ -114,6 +126,7 @@ void ContactFinder<T>::meet_solids(int n, int collider, const Met& met, T reach)
   c.solid_a = &own;
   c.shape = met.shape;
   c.size = met.size;
+  c.hull = met.hull;
   c.shape_pose = met.local;
   const auto thinnest = [](Shape shape, const auto& size) {
     return shape == Shape::kBox ? T(size.minCoeff()) : T(size.x());
@@ -136,14 +149,15 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   c.shape = own.shape;
   c.shape_pose = own.local.template cast<T>();
   c.size = own.size.template cast<T>();
+  c.hull = own.hull;
   const auto meet_point = [&](int number, const Vec3<T>& in_shape) {
     Contact<T> at_point = c;
     at_point.local_b = met.local * in_shape;
     if ((at_point.local_b - bound.center).norm() > bound.radius + c.radius + reach) return;
-    at_point.id = id_of(n, feature(kCornerNumber, number, collider), met);
+    at_point.id = id_of(n, (met.hull ? feature_of_hull : feature)(kCornerNumber, number, collider), met);
     add(at_point, reach);
   };
-  if (met.shape != Shape::kBox) {
+  if (!is_polyhedron(met.shape)) {
     c.radius = met.size.x();
     const T half = met.shape == Shape::kCapsule ? met.size.z() : T(0);
     // The nearest of the axis, and its ends: where they lie on a face, two bear.
@@ -157,6 +171,11 @@ void ContactFinder<T>::meet_corners(int n, int collider, const Met& met, T reach
   if (own.shape == Shape::kBox) {  // as rounded as its own corners
     c.radius = T(box_rounding(own.size, double(states_[n]->tree.scale.length)));
     c.size.array() -= c.radius;
+  }
+  if (met.hull) {
+    int number = 0;
+    for (const Vec3<double>& corner : met.hull->corners()) meet_point(number++, corner.template cast<T>());
+    return;
   }
   for (int corner = 0; corner < 8; ++corner)
     meet_point(corner, met.size.cwiseProduct(Vec3<T>(corner & 1 ? T(1) : T(-1), corner & 2 ? T(1) : T(-1),

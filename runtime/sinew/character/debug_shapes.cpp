@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "sinew/skeleton/convex_hull.h"
+
 namespace sinew {
 namespace {
 
@@ -34,6 +36,13 @@ void draw_box(const Vec3<double>& size, const Transform<double>& pose, DebugColo
       if (!(n & side)) renderer.line(corner(n), corner(n | side), color);
 }
 
+void draw_edges(const ConvexHull& hull, const Transform<double>& pose, DebugColor color,
+                DebugRenderer& renderer) {
+  for (const ConvexHull::Edge& e : hull.edges())
+    renderer.line(pose * hull.corners()[static_cast<std::size_t>(e.from)],
+                  pose * hull.corners()[static_cast<std::size_t>(e.to)], color);
+}
+
 /// Left of the way from a to b, seen from above.
 bool is_left(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) > 0;
@@ -44,6 +53,7 @@ bool is_left(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c
 void draw_shape(const Collider& shape, const Transform<double>& pose, DebugColor color,
                 DebugRenderer& renderer) {
   if (shape.shape == Shape::kBox) return draw_box(shape.size, pose, color, renderer);
+  if (shape.shape == Shape::kConvex) return draw_edges(*shape.hull, pose, color, renderer);
   const double radius = shape.size.x(), half = shape.shape == Shape::kCapsule ? shape.size.z() : 0;
   const Mat3<double> axes = radius * pose.rotation.toRotationMatrix();
   const Vec3<double> x = axes.col(0), y = axes.col(1), z = axes.col(2);

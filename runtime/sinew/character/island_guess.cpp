@@ -32,7 +32,7 @@ bool IslandStepper<T>::goes_by_turning(std::size_t n) const {
   const CharacterState<T>& s = *states_[n];
   if (s.tied) return true;
   const bool round = std::all_of(s.colliders.begin(), s.colliders.end(),
-                                 [](const Collider& c) { return c.shape != Shape::kBox; });
+                                 [](const Collider& c) { return !is_polyhedron(c.shape); });
   return round && std::any_of(lagged_.begin(), lagged_.end(),
                               [&](const LaggedForce<T>& f) { return is_of_tree(f.id, indices_[n]); });
 }

@@ -15,7 +15,8 @@ constexpr double kBears = 1e-3;   ///< of all that points may bear
 
 SignedDistance<double> distance_to(const Collider& collider, const Transform<double>& pose,
                                    const Vec3<double>& point) {
-  SignedDistance<double> d = signed_distance<double>(collider.shape, collider.size, pose.inverse() * point);
+  SignedDistance<double> d =
+      signed_distance<double>(collider.shape, collider.size, pose.inverse() * point, collider.hull);
   d.normal = pose.rotation * d.normal;
   return d;
 }

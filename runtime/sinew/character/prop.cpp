@@ -1,9 +1,11 @@
 #include "sinew/character/prop.h"
 
+#include "sinew/skeleton/convex_hull.h"
+
 namespace sinew {
 namespace {
 
-/// Solid inertia of a shape about its centre, kg·m².
+/// Solid inertia of a sphere, capsule or box about its centre, kg·m².
 Mat3<double> solid_inertia(Shape shape, const Vec3<double>& size, double mass) {
   Vec3<double> diagonal = Vec3<double>::Zero();
   switch (shape) {
@@ -19,6 +21,8 @@ Mat3<double> solid_inertia(Shape shape, const Vec3<double>& size, double mass) {
       diagonal = {across, across, along};
       break;
     }
+    case Shape::kConvex:
+      break;
     case Shape::kBox: {
       const Vec3<double> square = size.cwiseProduct(size) * (mass / 3);
       diagonal = {square.y() + square.z(), square.x() + square.z(), square.x() + square.y()};
@@ -43,6 +47,11 @@ Skeleton skeleton_of(const PropSettings& prop) {
   Collider collider;
   collider.shape = prop.shape;
   collider.size = prop.size;
+  if (prop.hull) {
+    collider = convex_collider(*prop.hull);
+    joint.center_of_mass = prop.hull->center_of_mass();
+    joint.inertia = prop.mass * prop.hull->inertia_by_mass();
+  }
   collider.friction = prop.friction;
   collider.restitution = prop.restitution;
   body.colliders.push_back(collider);

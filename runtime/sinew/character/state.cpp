@@ -173,6 +173,7 @@ void Rig<T>::choose_self_pairs(const Kinematics<T>& rest, const ContactTerm<T>& 
         c.body_b = colliders[b].joint;
         c.shape = colliders[b].shape;
         c.size = colliders[b].size.template cast<T>();
+        c.hull = colliders[b].hull;
         c.shape_pose = colliders[b].local.template cast<T>();
         contacts.measure(rest, &rest, c);
         apart = c.gap > T(clearance);

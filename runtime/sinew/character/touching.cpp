@@ -60,8 +60,8 @@ template <class T>
 T at_least_apart(const PlacedCollider<T>& a, const PlacedCollider<T>& b) {
   if (a.radius > b.radius) return at_least_apart(b, a);
   const Vec3<T> place = b.pose.rotation.conjugate() * (a.pose.translation - b.pose.translation);
-  return signed_distance<T>(b.collider->shape, b.collider->size.template cast<T>(), place).distance -
-         a.radius;
+  const Collider& of_b = *b.collider;
+  return signed_distance<T>(of_b.shape, of_b.size.template cast<T>(), place, of_b.hull).distance - a.radius;
 }
 
 /// Whether a ball about the smaller one, all of its way long, stays away from the other: said for less than

@@ -233,6 +233,10 @@ int World<T>::add_character(const Skeleton& skeleton, const CharacterSettings& s
 
 template <class T>
 int World<T>::add_prop(const PropSettings& prop, Status& status) {
+  status = prop.hull || prop.shape != Shape::kConvex
+               ? Status()
+               : Status::error(Code::kInvalidArgument, "convex prop has no hull");
+  if (!status) return -1;
   const Skeleton body = skeleton_of(prop);
   status = prop.mass > 0 ? validate(body) : Status::error(Code::kInvalidArgument, "prop needs a mass");
   if (status && !moves_finitely(prop.pose, prop.velocity, prop.angular_velocity))
@@ -318,9 +322,7 @@ void World<T>::Impl::park(CharacterState<T>& s) {
 
 template <class T>
 Status World<T>::add_obstacle(const Collider& obstacle, std::uint32_t layers) {
-  if (!obstacle.size.allFinite() || obstacle.size.minCoeff() < 0 || !obstacle.local.translation.allFinite() ||
-      !obstacle.local.rotation.coeffs().allFinite())
-    return Status::error(Code::kInvalidArgument, "obstacle has no meaningful size or place");
+  if (Status status = validate(obstacle); !status) return status;
   if (!impl_->plan.contacts) return Status::error(Code::kInvalidArgument, kNoContacts);
   impl_->obstacles.push_back(obstacle);
   impl_->obstacle_layers.push_back(layers);

@@ -131,15 +131,16 @@ struct CharacterReport {
   double estimated_error = 0;
 };
 
-/// One-body tree: a ball, a box.
+/// One-body tree: a ball, a box, a rock.
 struct PropSettings {
-  Shape shape = Shape::kSphere;                          ///< solid, of uniform density
-  Vec3<double> size = Vec3<double>::Constant(0.1);       ///< as Collider::size
-  double mass = 1;                                       ///< kg, > 0
-  double friction = 0.6;                                 ///< as Collider::friction
-  double restitution = 0;                                ///< see Collider::restitution
-  Transform<double> pose;                                ///< shape → world
-  Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s
+  Shape shape = Shape::kSphere;                     ///< solid, of uniform density
+  Vec3<double> size = Vec3<double>::Constant(0.1);  ///< as Collider::size; of a hull nothing
+  const ConvexHull* hull = nullptr;  ///< instead of a shape; not copied: it must outlive the world
+  double mass = 1;                   ///< kg, > 0
+  double friction = 0.6;             ///< as Collider::friction
+  double restitution = 0;            ///< see Collider::restitution
+  Transform<double> pose;            ///< shape → world
+  Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s, of the origin of its shape
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
   std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
 };

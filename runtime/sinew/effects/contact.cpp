@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/effects/hull_distance.h"
 #include "sinew/effects/solid_gap.h"
 #include "sinew/effects/static_shape.h"
 #include "sinew/skeleton/portable_math.h"
@@ -9,8 +10,13 @@
 namespace sinew {
 
 template <class T>
-SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point) {
+SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point,
+                                  const ConvexHull* hull) {
   switch (shape) {
+    case Shape::kConvex: {
+      const SignedDistance<double> d = hull_distance(*hull, point.template cast<double>());
+      return {T(d.distance), d.normal.template cast<T>(), T(d.curvature), d.straight.template cast<T>()};
+    }
     case Shape::kSphere:
     case Shape::kCapsule: {
       const T half = shape == Shape::kCapsule ? size.z() : T(0);
@@ -82,6 +88,10 @@ void append_contact_points(const Collider& collider, std::vector<ContactPoint<T>
             round, 0);
       break;
     }
+    case Shape::kConvex:
+      for (const RoundedCorner& corner : rounded_corners(*collider.hull, box_rounding(s, unit)))
+        add(PointKind::kCorner, corner.center, corner.radius, 0);
+      break;
   }
 }
 
@@ -137,12 +147,17 @@ SignedDistance<T> axis_distance(const Vec3<T>& size, T half, const Vec3<T>& from
 
 namespace {
 
-/// Distance of a point inside a box to one of its faces.
+/// Distance of a point inside a polyhedron to the face that it leaves by.
 template <class T>
-SignedDistance<T> below_face(int face, const Vec3<T>& size, const Vec3<T>& point) {
-  const int axis = face / 2;
-  const T side = face % 2 == 0 ? T(1) : T(-1);
-  return {side * point[axis] - size[axis], side * Vec3<T>::Unit(axis), T(0), Vec3<T>::Zero()};
+SignedDistance<T> below_face(const Contact<T>& c, const Vec3<T>& point) {
+  if (c.hull) {
+    const ConvexHull::Face& face = c.hull->faces()[static_cast<std::size_t>(c.face)];
+    const double beyond = face.normal.dot(point.template cast<double>()) - face.offset;
+    return {T(beyond), face.normal.template cast<T>(), T(0), Vec3<T>::Zero()};
+  }
+  const int axis = c.face / 2;
+  const T side = c.face % 2 == 0 ? T(1) : T(-1);
+  return {side * point[axis] - c.size[axis], side * Vec3<T>::Unit(axis), T(0), Vec3<T>::Zero()};
 }
 
 }  // namespace
@@ -181,10 +196,10 @@ void measure_point(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& c
   const Mat3<T> rotation = rotation_of(b, c.body_b) * c.shape_pose.rotation.toRotationMatrix();
   const Vec3<T> origin = at(b, c.body_b, c.shape_pose.translation);
   SignedDistance<T> d;
-  if (c.half_axis_a.isZero(T(0)) || c.shape == Shape::kBox) {
+  if (c.half_axis_a.isZero(T(0)) || is_polyhedron(c.shape)) {
     const Vec3<T> at = rotation.transpose() * (c.point - origin);
-    d = signed_distance<T>(c.shape, c.size, at);
-    if (c.face >= 0 && d.distance < T(0)) d = below_face(c.face, c.size, at);
+    d = signed_distance<T>(c.shape, c.size, at, c.hull);
+    if (c.face >= 0 && d.distance < T(0)) d = below_face(c, at);
   } else {
     const Vec3<T> axis = a.rotation[c.body_a] * c.half_axis_a;
     T along = T(0);
@@ -203,7 +218,7 @@ void measure_corner(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& 
   const Mat3<T> rotation = a.rotation[c.body_a] * c.shape_pose.rotation.toRotationMatrix();
   const Vec3<T> corner = at(b, c.body_b, c.local_b);
   const SignedDistance<T> d = signed_distance<T>(
-      c.shape, c.size, rotation.transpose() * (corner - at(&a, c.body_a, c.shape_pose.translation)));
+      c.shape, c.size, rotation.transpose() * (corner - at(&a, c.body_a, c.shape_pose.translation)), c.hull);
   c.normal = -(rotation * d.normal);
   c.point = corner + d.distance * c.normal;
   c.gap = d.distance - c.radius + c.slack + c.offset;
@@ -232,8 +247,8 @@ void measure_solids(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& 
   const Transform<T> body_a{Quat<T>(a.rotation[c.body_a]), a.origin[c.body_a]},
       body_b = b ? Transform<T>{Quat<T>(b->rotation[c.body_b]), b->origin[c.body_b]} : Transform<T>();
   const PlacedShape<T> of_a(own.shape, own.size.template cast<T>(), body_a * own.local.template cast<T>(),
-                            T(1)),
-      of_b(c.shape, c.size, body_b * c.shape_pose, T(1));
+                            T(1), own.hull),
+      of_b(c.shape, c.size, body_b * c.shape_pose, T(1), c.hull);
   const SolidGap<T> gap = solid_gap<T>(of_a, of_b, c.before);
   c.normal = gap.normal;
   c.point = gap.point;

@@ -38,16 +38,17 @@ struct SignedDistance {
   Vec3<T> straight = Vec3<T>::Zero();  ///< unit tangent along which the surface is straight, or zero
 };
 
-/// Sphere, capsule or box in its own axes (see Collider::size).
+/// Sphere, capsule, box or the hull that is convex, in its own axes (see Collider::size).
 template <class T>
-SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point);
+SignedDistance<T> signed_distance(Shape shape, const Vec3<T>& size, const Vec3<T>& point,
+                                  const ConvexHull* hull = nullptr);
 
 /// What a contact point stands for, which decides what it can meet.
 enum class PointKind : std::uint8_t {
   kTip,     ///< centre of a sphere, end of a capsule: meets planes and boxes
   kInner,   ///< between the ends of a long capsule: meets boxes, whose edges would slip between the ends
   kAxis,    ///< whole axis of a sphere or capsule: meets spheres and capsules at the nearest point
-  kCorner,  ///< of a box: meets everything
+  kCorner,  ///< of a polyhedron: meets everything
 };
 
 /// A point of a body that may touch something.
@@ -65,7 +66,7 @@ struct ContactPoint {
 
   bool meets_plane() const { return kind == PointKind::kTip || kind == PointKind::kCorner; }
   bool meets(Shape shape) const {
-    return kind == PointKind::kCorner || (shape == Shape::kBox) != (kind == PointKind::kAxis);
+    return kind == PointKind::kCorner || is_polyhedron(shape) != (kind == PointKind::kAxis);
   }
 };
 
@@ -127,8 +128,9 @@ struct Contact {
   T plane_height = T(0);                      ///< from the common origin
   Transform<T> shape_pose;                    ///< shape → body_b (or → common origin when static)
   Vec3<T> size = Vec3<T>::Zero();
-  int face =
-      -1;  ///< of a box, that the point leaves it by: 2 axis + 1 for the side below; −1: by the nearest
+  const ConvexHull* hull = nullptr;  ///< of a convex shape
+  int face = -1;  ///< of a polyhedron, that the point leaves it by (box: 2 axis + 1 for the side below); −1:
+                  ///< by the nearest
   T length_scale = T(1);         ///< of the smaller of the two that touch, by a human's: see Scale
   T speed_scale = T(1);          ///< its root; of times too
   T stiffness = T(1e5);          ///< N/m
@@ -319,13 +321,13 @@ void begin_step(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& cont
 template <class T>
 void roll(const Kinematics<T>& a, const Kinematics<T>* b, const Vec3<T>& turn, Contact<T>& contact);
 
-#define SINEW_CONTACT_INSTANCES(prefix, T)                                                           \
-  prefix struct Contact<T>;                                                                          \
-  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&);                \
-  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int, double); \
-  prefix void share_stiffness<T>(std::vector<ContactPoint<T>>&);                                     \
-  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);                   \
-  prefix void begin_step<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);                \
+#define SINEW_CONTACT_INSTANCES(prefix, T)                                                               \
+  prefix struct Contact<T>;                                                                              \
+  prefix SignedDistance<T> signed_distance<T>(Shape, const Vec3<T>&, const Vec3<T>&, const ConvexHull*); \
+  prefix void append_contact_points<T>(const Collider&, std::vector<ContactPoint<T>>&, int, double);     \
+  prefix void share_stiffness<T>(std::vector<ContactPoint<T>>&);                                         \
+  prefix void measure<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);                       \
+  prefix void begin_step<T>(const Kinematics<T>&, const Kinematics<T>*, Contact<T>&);                    \
   prefix void roll<T>(const Kinematics<T>&, const Kinematics<T>*, const Vec3<T>&, Contact<T>&);
 SINEW_CONTACT_INSTANCES(extern template, float)
 SINEW_CONTACT_INSTANCES(extern template, double)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/effects/polyhedron.h"
+
 namespace sinew {
 namespace {
 
@@ -44,7 +46,7 @@ int supporting(const PlacedShape<T>& s, int direction, const Vec3<T>& outwards, 
 /// Where along an edge its ends begin, of 1: a box's corners stand for them.
 template <class T>
 T inner_part(const PlacedShape<T>& s, const Edge<T>& e) {
-  if (s.shape != Shape::kBox) return T(1);
+  if (!is_polyhedron(s.shape)) return T(1);
   return T(1) - T(box_rounding(s.size.template cast<double>(), double(s.unit))) / e.half_axis.norm();
 }
 
@@ -86,12 +88,50 @@ struct SeparatingAxes {
 
 template <class T>
 SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b) {
+  if (a.hull || b.hull) {
+    const SignedDistance<double> d =
+        separation_of_hulls(a.template cast<double>(), b.template cast<double>());
+    return {T(d.distance), d.normal.template cast<T>(), T(0), Vec3<T>::Zero()};
+  }
   return SeparatingAxes<T>(a, b).best;
+}
+
+/// The same for solids one of which is convex.
+template <class T>
+void CrossingEdges<T>::find_of_hulls(const PlacedShape<T>& a, const PlacedShape<T>& b) {
+  const PlacedShape<double> placed_a = a.template cast<double>(), placed_b = b.template cast<double>();
+  const Polyhedron of_a(placed_a), of_b(placed_b);
+  apart = T(separation_of_hulls(placed_a, placed_b).distance);
+  const double radii = of_a.radius() + of_b.radius();
+  const double least = std::min(double(apart), 0.0) - kAsGood * std::min(of_a.thinnest(), of_b.thinnest());
+  const auto edge = [](const Polyhedron& s, const ConvexHull::Edge& e) {
+    const int number = s.radius() > 0 ? kAxisNumber : static_cast<int>(&e - s.edges().data());
+    return Edge<T>{s.center(e).template cast<T>(), s.half_axis(e).template cast<T>(), number};
+  };
+  for (const ConvexHull::Edge& of_first : of_a.edges())
+    for (const ConvexHull::Edge& of_second : of_b.edges()) {
+      const Vec3<double> along_a = of_a.half_axis(of_first), along_b = of_b.half_axis(of_second),
+                         apart_by = of_b.center(of_second) - of_a.center(of_first);
+      if (are_parallel<double>(along_a, along_b)) continue;
+      Vec3<double> normal = along_a.cross(along_b).normalized();
+      const bool turned = normal.dot(of_b.outwards(of_second) - of_a.outwards(of_first)) < 0;
+      if (turned) normal = -normal;  // from b to a
+      if (of_a.beyond_support(of_first, -normal) > kFlat || of_b.beyond_support(of_second, normal) > kFlat)
+        continue;
+      const Edge<T> p = edge(of_a, of_first), q = edge(of_b, of_second);
+      const std::array<double, 2> at = nearest_along<double>(along_a, along_b, apart_by);
+      if (!(std::abs(at[0]) <= double(inner_part(a, p)) && std::abs(at[1]) <= double(inner_part(b, q))))
+        continue;
+      if (-of_a.support(-normal) - of_b.support(normal) - radii < least) continue;
+      if (count == kMostEdgePairs) return;
+      pairs[count++] = {p, q, turned ? T(-1) : T(1), T(radii)};
+    }
 }
 
 template <class T>
 void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
   count = 0;
+  if (a.hull || b.hull) return find_of_hulls(a, b);
   const SeparatingAxes<T> axes(a, b);
   const Vec3<T> between = a.center - b.center;
   apart = axes.best.distance;

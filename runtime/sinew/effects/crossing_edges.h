@@ -8,26 +8,43 @@
 
 namespace sinew {
 
-/// A capsule or box where it stands, about the common origin.
+/// A capsule, box or convex solid where it stands, about the common origin.
 template <class T>
 struct PlacedShape {
   Shape shape = Shape::kBox;
   Vec3<T> size = Vec3<T>::Zero();  ///< as Collider::size
   Vec3<T> center = Vec3<T>::Zero();
   Mat3<T> rotation = Mat3<T>::Identity();
-  T unit = T(1);  ///< see box_rounding()
+  T unit = T(1);                     ///< see box_rounding()
+  const ConvexHull* hull = nullptr;  ///< of who is convex
 
-  PlacedShape(Shape of, const Vec3<T>& measures, const Transform<T>& pose, T length_unit)
+  PlacedShape(Shape of, const Vec3<T>& measures, const Transform<T>& pose, T length_unit,
+              const ConvexHull* of_hull = nullptr)
       : shape(of),
         size(measures),
         center(pose.translation),
         rotation(pose.rotation.toRotationMatrix()),
-        unit(length_unit) {}
+        unit(length_unit),
+        hull(of_hull) {}
+  /// The same in another precision.
+  template <class U>
+  PlacedShape<U> cast() const {
+    return {shape, size.template cast<U>(), center.template cast<U>(), rotation.template cast<U>(), U(unit),
+            hull};
+  }
+
+ private:
+  template <class U>
+  friend struct PlacedShape;
+  PlacedShape(Shape of, const Vec3<T>& measures, const Vec3<T>& at, const Mat3<T>& turned, T length_unit,
+              const ConvexHull* of_hull)
+      : shape(of), size(measures), center(at), rotation(turned), unit(length_unit), hull(of_hull) {}
 };
 
 /// How far a solid is from another (m, negative: by how much they overlap), and the direction in which a
 /// leaves b, by the best of the axes that separate boxes (Gottschalk, Lin and Manocha, "OBBTree", 1996):
-/// where corners or a capsule's ends are nearest, they are further apart than that. About 200 flops.
+/// where corners or a capsule's ends are nearest, they are further apart than that. About 200 flops; of
+/// convex solids see gap_of_hulls().
 template <class T>
 SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b);
 
@@ -35,7 +52,8 @@ SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b);
 template <class T>
 struct Edge {
   Vec3<T> center = Vec3<T>::Zero(), half_axis = Vec3<T>::Zero();  ///< about the common origin
-  int number = 0;  ///< of a box: 4 · direction + 1, 2 for its sides; of a capsule kAxisNumber
+  int number = 0;  ///< of a box: 4 · direction + 1, 2 for its sides; of a capsule kAxisNumber; where either
+                   ///< solid is convex, that of Polyhedron::edges
 };
 constexpr int kAxisNumber = 12;
 
@@ -67,8 +85,8 @@ bool are_parallel(const Vec3<T>& a, const Vec3<T>& b) {
 /// As many as one direction of each solid has: where a face lies on another two edges of either cross.
 constexpr int kMostEdgePairs = 36;
 
-/// The pairs of supporting edges of two solids, `b` a box, that cross within both and part the solids no
-/// worse than what parts them best, see separation(): along other directions edges may cross that never
+/// The pairs of supporting edges of two solids, `b` a polyhedron, that cross within both and part the solids
+/// no worse than what parts them best, see separation(): along other directions edges may cross that never
 /// touch. About 300 flops where the solids are near each other, one capsule 100.
 template <class T>
 struct CrossingEdges {
@@ -77,6 +95,9 @@ struct CrossingEdges {
   T apart = T(0);  ///< m, see separation()
 
   void find(const PlacedShape<T>& a, const PlacedShape<T>& b);
+
+ private:
+  void find_of_hulls(const PlacedShape<T>& a, const PlacedShape<T>& b);
 };
 
 extern template SignedDistance<float> separation<float>(const PlacedShape<float>&, const PlacedShape<float>&);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/convex_hull.h"
 #include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
@@ -51,6 +52,12 @@ void append_spots(const Collider& c, std::vector<FlowSpot<T>>& out) {
     case Shape::kBox: {
       const Vec3<double> faces(size.y() * size.z(), size.x() * size.z(), size.x() * size.y());
       append_shared<T>(c, size, 4 * kFace * faces, 8 * size.prod(), 0, out);
+      break;
+    }
+    case Shape::kConvex: {
+      Collider middle = c;
+      middle.local.translation = c.local * c.hull->center_of_mass();
+      append_shared<T>(middle, size, kFace * c.hull->shadow(), c.hull->volume(), 0, out);
       break;
     }
   }

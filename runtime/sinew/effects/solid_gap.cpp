@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/effects/polyhedron.h"
+
 namespace sinew {
 namespace {
 
@@ -137,6 +139,11 @@ SolidGap<T> of_capsule(const PlacedShape<T>& capsule, const PlacedShape<T>& box,
 
 template <class T>
 SolidGap<T> solid_gap(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before) {
+  if (a.hull || b.hull) {
+    const SolidGap<double> gap =
+        gap_of_hulls(a.template cast<double>(), b.template cast<double>(), before.template cast<double>());
+    return {T(gap.distance), gap.normal.template cast<T>(), gap.point.template cast<T>()};
+  }
   if (a.shape != Shape::kBox) return of_capsule<T>(a, b, before);
   if (b.shape == Shape::kBox) return Axes<T>(a, b, before).best();
   SolidGap<T> gap = of_capsule<T>(b, a, -before);

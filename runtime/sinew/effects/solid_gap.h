@@ -13,10 +13,11 @@ struct SolidGap {
   Vec3<T> point = Vec3<T>::Zero();    ///< where they are nearest, or deepest; about the common origin
 };
 
-/// Of boxes and capsules, one of them a box. Where they overlap, the way out of the other by the shortest of
-/// the directions that do not lead back through it: `before`, where they were apart when the step began, as
-/// `normal`; zero: any. Boxes that are apart: by the best of the axes that separate them, no more than their
-/// distance. 300 flops for boxes that are near each other, 100 for a capsule.
+/// Of boxes, capsules and convex solids, one of them no capsule. Where they overlap, the way out of the other
+/// by the shortest of the directions that do not lead back through it: `before`, where they were apart when
+/// the step began, as `normal`; zero: any. Boxes that are apart: by the best of the axes that separate them,
+/// no more than their distance. 300 flops for boxes that are near each other, 100 for a capsule; of convex
+/// solids see gap_of_hulls().
 template <class T>
 SolidGap<T> solid_gap(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before);
 

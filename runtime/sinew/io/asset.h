@@ -66,7 +66,7 @@ Status load_asset(const char* path, Asset& out);
 Status validate_names(const Asset& asset);
 
 /// File image of an asset; the same asset always gives the same bytes. Events whose name validate_names()
-/// misses are left out.
+/// misses are left out, and so are convex colliders.
 std::vector<std::uint8_t> write_asset(const Asset& asset);
 
 /// Bytes that a clip takes of such an image, its name and all its tables included.

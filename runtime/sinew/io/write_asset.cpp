@@ -50,8 +50,9 @@ Offset<fb::Skeleton> pack(FlatBufferBuilder& b, const Skeleton& skeleton) {
   for (const Joint& joint : skeleton.joints) joints.push_back(pack(b, joint));
   std::vector<fb::Collider> colliders;
   for (const Collider& c : skeleton.colliders)
-    colliders.emplace_back(c.joint, static_cast<std::uint8_t>(c.shape), c.friction, pack(c.local),
-                           pack(c.size));
+    if (c.shape != Shape::kConvex)
+      colliders.emplace_back(c.joint, static_cast<std::uint8_t>(c.shape), c.friction, pack(c.local),
+                             pack(c.size));
   const auto name = b.CreateString(skeleton.name);
   const auto joints_offset = b.CreateVector(joints);
   const auto colliders_offset = b.CreateVectorOfStructs(colliders);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sinew/skeleton/convex_hull.h"
 #include "sinew/skeleton/principal_axes.h"
 
 namespace sinew {
@@ -124,6 +125,23 @@ Status check_muscle(const Skeleton& skeleton, const Muscle& muscle) {
 
 }  // namespace
 
+double bounding_radius(const Collider& c) {
+  if (c.shape == Shape::kConvex) return c.hull->bounding_radius();
+  if (c.shape == Shape::kBox) return c.size.norm();
+  return c.size.x() + (c.shape == Shape::kCapsule ? c.size.z() : 0);
+}
+
+Status validate(const Collider& c) {
+  if (!is_finite(c.local) || !c.size.allFinite() || c.size.minCoeff() < 0 || !std::isfinite(c.friction) ||
+      c.friction < 0)
+    return Status::error(Code::kInvalidArgument, "collider has no meaningful size, place or friction",
+                         c.joint);
+  if (c.shape == Shape::kConvex &&
+      (!c.hull || c.hull->corners().empty() || c.size != Vec3<double>::Constant(c.hull->inner_radius())))
+    return Status::error(Code::kInvalidArgument, "convex collider has no hull, or not its size", c.joint);
+  return {};
+}
+
 Status validate(const Skeleton& skeleton) {
   const int count = static_cast<int>(skeleton.joints.size());
   if (count == 0) return Status::error(Code::kInvalidArgument, "no joints");
@@ -145,10 +163,7 @@ Status validate(const Skeleton& skeleton) {
   for (const Collider& collider : skeleton.colliders) {
     if (collider.joint < 0 || collider.joint >= count)
       return Status::error(Code::kInvalidArgument, "collider on a joint that does not exist", collider.joint);
-    if (!is_finite(collider.local) || !collider.size.allFinite() || collider.size.minCoeff() < 0 ||
-        !std::isfinite(collider.friction) || collider.friction < 0)
-      return Status::error(Code::kInvalidArgument, "collider has no meaningful size, place or friction",
-                           collider.joint);
+    if (Status status = validate(collider); !status) return status;
   }
   return {};
 }

@@ -35,7 +35,9 @@ struct DofLimits {
 };
 
 /// What a collider is; Collider::size says how large.
-enum class Shape : std::uint8_t { kSphere, kCapsule, kBox };
+enum class Shape : std::uint8_t { kSphere, kCapsule, kBox, kConvex };
+
+class ConvexHull;
 
 /// Collision and display shape in the axes of its joint. A capsule and a box lie along their local z.
 struct Collider {
@@ -43,19 +45,26 @@ struct Collider {
   Shape shape = Shape::kSphere;                      ///< see size
   Transform<double> local;                           ///< shape → joint frame
   Vec3<double> size = Vec3<double>::Constant(0.05);  ///< sphere: x = radius; capsule: x = radius, z = half
-                                                     ///< length of the segment; box: half extents
+                                                     ///< length of the segment; box: half extents;
+                                                     ///< convex: three times the hull's inner radius
   double friction = 0.8;                             ///< ≥ 0, Coulomb's coefficient
   double restitution = 0;  ///< 0 … 1; a contact takes the larger of its two sides'. See Restitution
+  const ConvexHull* hull = nullptr;  ///< convex: not copied, see convex_collider()
 
   /// Every member is the same.
   bool operator==(const Collider&) const = default;
 };
 
-/// m, of the sphere about its middle that holds it.
-inline double bounding_radius(const Collider& c) {
-  if (c.shape == Shape::kBox) return c.size.norm();
-  return c.size.x() + (c.shape == Shape::kCapsule ? c.size.z() : 0);
+/// Whether it has flat faces, edges and corners.
+constexpr bool is_polyhedron(Shape shape) {
+  return shape == Shape::kBox || shape == Shape::kConvex;
 }
+
+/// m, of the sphere about its middle that holds it.
+double bounding_radius(const Collider& collider);
+
+/// Whether its size, place and friction can be meant, and whether who is convex has a hull.
+Status validate(const Collider& collider);
 
 /// What a joint means on a body; found by name at conversion. Effects and scenes may refer to it instead of a
 /// name.

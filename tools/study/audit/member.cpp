@@ -116,11 +116,12 @@ Member member_of(const Skeleton& skeleton) {
   return member;
 }
 
-Member loose_solid(Shape shape, const Vector3d& size, double mass) {
+Member loose_solid(Shape shape, const Vector3d& size, double mass, const ConvexHull* hull) {
   Body body;
   body.mass = mass;
-  body.solids.push_back(solid_of(shape, size, Eigen::Isometry3d::Identity()));
-  body.inertia = inertia_of(body.solids[0], mass);
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  body.solids.push_back(hull ? solid_of(*hull, here) : solid_of(shape, size, here));
+  body.inertia = hull ? inertia_of(*hull, mass, body.center) : inertia_of(body.solids[0], mass);
   Member member;
   member.dofs = dof_count(body.type);
   member.bodies.push_back(std::move(body));

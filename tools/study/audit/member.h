@@ -32,7 +32,7 @@ struct Member {
 
 Member member_of(const Skeleton& skeleton);
 /// A homogeneous solid; `size` as Collider::size.
-Member loose_solid(Shape shape, const Eigen::Vector3d& size, double mass);
+Member loose_solid(Shape shape, const Eigen::Vector3d& size, double mass, const ConvexHull* hull = nullptr);
 
 using Poses = std::span<const Transform<double>>;  ///< [body of a member] body → world
 

@@ -70,6 +70,47 @@ double box_overlap(const Solid& a, const Solid& b) {
   return least;
 }
 
+/// m, how far a solid reaches in a unit direction.
+double reach_along(const Solid& s, const Vector3d& direction) {
+  const Vector3d own = s.pose.linear().transpose() * direction;
+  double most = own.cwiseAbs().dot(s.half) + s.radius;
+  if (!s.corners.empty()) {
+    most = -std::numeric_limits<double>::infinity();
+    for (const Vector3d& c : s.corners) most = std::max(most, own.dot(c));
+  }
+  return s.pose.translation().dot(direction) + most;
+}
+
+/// By the way out along each of many directions about a sphere, the best ones refined.
+double overlap_by_directions(const Solid& a, const Solid& b) {
+  const auto along = [&](const Vector3d& d) { return reach_along(a, d) + reach_along(b, -d); };
+  constexpr int kDirections = 256, kRefined = 8;
+  std::vector<std::pair<double, Vector3d>> tried;
+  for (int n = 0; n < kDirections; ++n) {  // golden spiral
+    const double z = 1 - (2 * n + 1.0) / kDirections, turn = n * 2.399963229728653;
+    const Vector3d d(std::sqrt(1 - z * z) * std::cos(turn), std::sqrt(1 - z * z) * std::sin(turn), z);
+    tried.emplace_back(along(d), d);
+  }
+  std::partial_sort(tried.begin(), tried.begin() + kRefined, tried.end(),
+                    [](const auto& p, const auto& q) { return p.first < q.first; });
+  double least = tried[0].first;
+  for (int n = 0; n < kRefined; ++n) {
+    auto [best, d] = tried[static_cast<std::size_t>(n)];
+    for (double step = 0.1; step > 1e-5;) {
+      const Vector3d one = d.unitOrthogonal(), two = d.cross(one);
+      bool better = false;
+      for (int k = 0; k < 8; ++k) {
+        const Vector3d next =
+            (d + step * (std::cos(k * M_PI / 4) * one + std::sin(k * M_PI / 4) * two)).normalized();
+        if (const double out = along(next); out < best) best = out, d = next, better = true;
+      }
+      if (!better) step /= 2;
+    }
+    least = std::min(least, best);
+  }
+  return least;
+}
+
 }  // namespace
 
 Isometry3d isometry(const Transform<double>& from) {
@@ -91,11 +132,21 @@ Solid solid_of(Shape shape, const Vector3d& size, const Isometry3d& pose) {
   return s;
 }
 
+Solid solid_of(const ConvexHull& hull, const Isometry3d& pose) {
+  Solid s;
+  s.shape = Shape::kConvex;
+  s.pose = pose;
+  s.corners.assign(hull.corners().begin(), hull.corners().end());
+  return s;
+}
+
 Solid solid_of(const Collider& c) {
+  if (c.hull) return solid_of(*c.hull, isometry(c.local));
   return solid_of(c.shape, c.size, isometry(c.local));
 }
 
 double overlap(const Solid& a, const Solid& b) {
+  if (!a.corners.empty() || !b.corners.empty()) return overlap_by_directions(a, b);
   if (a.shape == Shape::kBox && b.shape == Shape::kBox) return box_overlap(a, b);
   if (b.shape == Shape::kBox) return overlap(b, a);
   if (a.shape == Shape::kBox) return b.radius - distance(a, end(b, -1), end(b, 1));
@@ -103,11 +154,13 @@ double overlap(const Solid& a, const Solid& b) {
 }
 
 double below(const Solid& s, double height) {
-  const Eigen::RowVector3d up = s.pose.linear().row(2);
-  return height - (s.pose.translation().z() - up.cwiseAbs().dot(s.half) - s.radius);
+  return height + reach_along(s, -Vector3d::UnitZ());
 }
 
 double reach(const Solid& s) {
+  double furthest = 0;
+  for (const Vector3d& c : s.corners) furthest = std::max(furthest, c.norm());
+  if (!s.corners.empty()) return furthest;
   return s.half.norm() + s.radius;
 }
 
@@ -125,6 +178,30 @@ Matrix3d inertia_of(const Solid& s, double mass) {
     moments = {across, across, cylinder * r * r / 2 + 0.4 * ball * r * r};
   }
   return moments.asDiagonal();
+}
+
+Matrix3d inertia_of(const ConvexHull& hull, double mass, Vector3d& middle) {
+  // Gauss: volume, first and second moments are fluxes of x/3, x·xᵢ/4 and x·xᵢxⱼ/5. Over a triangle a
+  // polynomial of second order is met by the middles of its sides.
+  double volume = 0;
+  Vector3d first = Vector3d::Zero();
+  Matrix3d second = Matrix3d::Zero();
+  for (const ConvexHull::Face& face : hull.faces()) {
+    const auto rim = hull.boundary(face);
+    const auto corner = [&](std::size_t n) { return hull.corners()[static_cast<std::size_t>(rim[n])]; };
+    for (std::size_t n = 2; n < rim.size(); ++n) {
+      const Vector3d a = corner(0), b = corner(n - 1), c = corner(n);
+      const double flux = (b - a).cross(c - a).dot(a) / 2;  // of x, through the triangle
+      volume += flux / 3;
+      for (const Vector3d& at : {Vector3d((a + b) / 2), Vector3d((b + c) / 2), Vector3d((c + a) / 2)}) {
+        first += flux / 3 / 4 * at;
+        second += flux / 3 / 5 * at * at.transpose();
+      }
+    }
+  }
+  middle = first / volume;
+  second = mass * (second / volume - middle * middle.transpose());
+  return second.trace() * Matrix3d::Identity() - second;
 }
 
 }  // namespace sinew::audit

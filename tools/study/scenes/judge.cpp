@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 Judge::Judge(const scene::Recording& recording) : recording_(recording) {
   for (const auto& asset : recording.characters) members_.push_back(audit::member_of(asset->skeleton));
   for (const scene::Prop& prop : recording.props)
-    members_.push_back(audit::loose_solid(prop.shape, prop.size.cast<double>(), double(prop.mass)));
+    members_.push_back(
+        audit::loose_solid(prop.shape, prop.size.cast<double>(), double(prop.mass), prop.hull));
   for (const Collider& c : recording.obstacles) around_.obstacles.push_back(audit::solid_of(c));
   around_.ground = recording.ground.has_value();
   if (recording.ground) around_.ground_height = double(*recording.ground);
