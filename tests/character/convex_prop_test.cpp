@@ -279,7 +279,7 @@ TYPED_TEST(ConvexProps, AreStruckByRaysAndSavedAndRestored) {
   int count = 0;
   ASSERT_TRUE(cast(world, ray, hit, count).ok());
   ASSERT_EQ(count, 1);
-  EXPECT_NEAR(hull_distance(stone, hit[0].point - V(0, 0, 2)).distance, 0, 1e-6);
+  EXPECT_NEAR(hull_distance(stone, hit[0].position - V(0, 0, 2)).distance, 0, 1e-6);
   run(world, 0.4);
   std::vector<std::byte> bytes(1 << 16);
   bytes.resize(world.save(bytes));
