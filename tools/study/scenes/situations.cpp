@@ -409,6 +409,10 @@ void heap_of_boxes(const Scene& scene, bool, Findings& found) {
   lies_still(scene, 0.01, 0.02, found);
 }
 
+void rubble(const Scene& scene, bool quick, Findings& found) {
+  lies_still(scene, 0.01, 0.1, found, seeds(quick, 6, 2));
+}
+
 void planks(const Scene& scene, bool, Findings& found) {
   lies_still(scene, 0.01, 0.05, found);
 }
@@ -709,6 +713,7 @@ std::vector<Situation> situations() {
       {"long_rest", "limp figures lie still", long_rest},
       {"bouncing_ball", "5/7 of the speed along the floor is left", bouncing_ball},
       {"heap_of_boxes", "boxes that fall in a heap come to rest", heap_of_boxes},
+      {"rubble", "who falls among rocks and barrels, and they, come to rest", rubble},
       {"planks", "planks that fall across each other come to rest", planks},
       {"heavy_on_light", "a hundred times the weight lies on crates, and light ones on a figure",
        heavy_on_light},
