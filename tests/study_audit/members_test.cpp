@@ -60,6 +60,35 @@ TEST(Solids, InertiasAreThoseOfTheirVolume) {
   }
 }
 
+ConvexHull cuboid(const Vector3d& half, const Vector3d& at) {
+  std::vector<Vector3d> corners;
+  for (int n = 0; n < 8; ++n)
+    corners.push_back(at + half.cwiseProduct(Vector3d(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
+  ConvexHull hull;
+  EXPECT_TRUE(ConvexHull::make(corners, hull).ok());
+  return hull;
+}
+
+TEST(Solids, HullsOfBoxesAreBoxes) {
+  const Vector3d half(0.3, 0.2, 0.1);
+  const ConvexHull hull = cuboid(half, Vector3d::Zero());
+  for (int n = 0; n < 60; ++n) {
+    Solid other = n % 2 ? box({0.1, 0.3, 0.2}, {0, 0, 0}) : capsule(0.1, 0.3, {0, 0, 0}, {1, 2, 3});
+    other.pose.rotate(Eigen::AngleAxisd(0.7 * n, Vector3d(1, 0.3 * n, -2).normalized()));
+    other.pose.translation() = 0.01 * Vector3d(n % 30, 20 - n % 11, n % 17);
+    const double wanted = overlap(box(half, {0, 0, 0}), other),
+                 found = overlap(solid_of(hull, Eigen::Isometry3d::Identity()), other);
+    if (other.shape == Shape::kBox || wanted < 0.1) {  // where its axis is outside
+      EXPECT_NEAR(found, wanted, 2e-4);
+    }
+  }
+  EXPECT_NEAR(below(solid_of(hull, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.09))), 0), 0.01, 1e-12);
+  Vector3d middle;
+  const Eigen::Matrix3d inertia = inertia_of(cuboid(half, {1, -2, 0.5}), 3, middle);
+  EXPECT_LT((middle - Vector3d(1, -2, 0.5)).norm(), 1e-12);
+  EXPECT_LT((inertia - inertia_of(box(half, {0, 0, 0}), 3)).norm(), 1e-12);
+}
+
 /// A rod on a joint of the given kind at (0, 0, 1) of the world's body.
 Member on_joint(JointType type) {
   Member member = one_body(1, Vector3d::Ones());

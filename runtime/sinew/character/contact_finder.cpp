@@ -370,7 +370,8 @@ int ContactFinder<T>::way_out_of_hull(int n, int collider, const Met& met) const
   for (std::size_t f = 0; f < met.hull->faces().size(); ++f) {
     const ConvexHull::Face& face = met.hull->faces()[f];
     const Vec3<T> normal = pose.rotation * face.normal.template cast<T>();
-    const Vec3<T> place = pose * Vec3<T>((face.offset * face.normal).template cast<T>());
+    const int corner = met.hull->boundary(face)[0];
+    const Vec3<T> place = pose * met.hull->corners()[static_cast<std::size_t>(corner)].template cast<T>();
     const bool stands = world_->ground && normal.z() < T(-kFacesDown) && place.z() - ground < on_floor;
     if (stands && !(face.normal.dot(middle) > face.offset)) continue;
     const Vec3<double> down = -normal.template cast<double>();
