@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "sinew/character/grounding.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
@@ -200,16 +201,19 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
   asked_ = true;
 }
 
-/// From one plan's pose into the next; the root is solved for, and is where it is.
+/// From one plan's pose into the next. The root is solved for, and is where it is, but for that of who stands
+/// again: he may be played, and his feet stand as long as root and legs go together.
 template <class T>
 void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
   if (std::exchange(fades_, false)) {
-    for (std::size_t i = 1; i < last_.size(); ++i) {
-      JointJet<T>& now = last_[i];  // a step later, as it went on
+    for (JointJet<T>& now : last_) {  // a step later, as it went on
       now.rotation = now.rotation * rotation_exp<T>(Vec3<T>(h * now.omega + h * h / 2 * now.alpha));
       now.omega += h * now.alpha;
     }
-    last_[0] = jets[0];
+    JointJet<T>& root = last_[0];
+    root.translation += h * root.velocity + h * h / 2 * root.acceleration;
+    root.velocity += h * root.acceleration;
+    if (!fades_root_) root = jets[0];
     (void)begin_inertial<T>(last_, jets, T(kFade * std::sqrt(unit_)), fade_);
   } else {
     fade_.elapsed += h;
@@ -217,7 +221,7 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
   if (!fade_.running()) return;
   const JointJet<T> root = jets[0];
   (void)InertializeJob<T>{jets, &fade_, {}, jets}.Run();
-  jets[0] = root;
+  if (!fades_root_) jets[0] = root;
 }
 
 /// What the animation does in this frame, and on which ground.
@@ -365,6 +369,7 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   begin_trunk(is, jets[0]);
   choose_support(is);
   fades_ = true;
+  fades_root_ = false;
 }
 
 template <class T>
@@ -559,13 +564,21 @@ void Behaviour<T>::displace(Character<T>& character, const Displacement& further
   (void)character.displace(by.inverse().then(further).then(by));
 }
 
+/// The animation where the feet stand, where the plan is already.
+template <class T>
+void Behaviour<T>::take_to_feet(Character<T>& character) {
+  const Displacement further = to_feet(), by = character.displacement();
+  (void)character.displace_led(by.inverse().then(further).then(by));
+  last_[0] = displaced(further.inverse(), last_[0]);
+}
+
 /// The clip again, from where the feet stand now.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  displace(character, to_feet());
+  take_to_feet(character);
   risen_ = false;
   give_up(character);
-  fades_ = true;
+  fades_ = fades_root_ = true;
 }
 
 /// The animation again, where it is.

@@ -202,6 +202,7 @@ class Behaviour {
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
   static void displace(Character<T>& character, const Displacement& further);
+  void take_to_feet(Character<T>& character);
   void finish(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
   void let_go(Character<T>& character, double h);
@@ -267,6 +268,7 @@ class Behaviour {
   std::vector<JointJet<T>> last_;  ///< [joint] what was asked last
   bool asked_ = false;             ///< in the last frame
   bool fades_ = false;             ///< a fade has to begin in this frame
+  bool fades_root_ = false;        ///< and takes the root along
   InertialState<T> fade_;
   std::vector<T> fade_numbers_;
   std::vector<MovingTransform<T>> model_;

@@ -122,6 +122,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   for (JointJet<T>& jet : last_) visit_joint("last target", jet, stream);
   stream.flag("there was a target", asked_);
   stream.flag("a fade begins", fades_);
+  stream.flag("a fade takes the root along", fades_root_);
   visit_fade(fade_, fade_numbers_, stream);
   visit_last_step(last_step_, stream);
   visit_frame("ground a step before", ground_before_, stream);

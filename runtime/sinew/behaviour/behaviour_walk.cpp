@@ -70,6 +70,7 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
   begin_trunk(is, jets[0]);
   fades_ = true;
+  fades_root_ = false;
   walk_on(character, world, h);
 }
 

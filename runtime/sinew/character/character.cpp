@@ -247,6 +247,15 @@ Status Character<T>::displace(const Displacement& further) {
 }
 
 template <class T>
+Status Character<T>::displace_led(const Displacement& further) {
+  if (!state_) return nobody();
+  const Displacement all = state_->grounding.by.then(further);
+  const Status status = check(further, all);
+  if (status) state_->grounding.by = all;
+  return status;
+}
+
+template <class T>
 Status Character<T>::ride(const Displacement& further) {
   if (!state_) return nobody();
   const Displacement all = state_->grounding.by.then(further);

@@ -242,6 +242,8 @@ class Character {
   /// Puts its animation elsewhere: targets given from now on are turned and moved once more by that, in the
   /// world. For who stands there already, within millimetres, as after a step; the rest returns over time.
   Status displace(const Displacement& further);
+  /// The same where its last target was there already: of who has been led there.
+  Status displace_led(const Displacement& further);
   /// The same before a step, of an animation that goes there in it, as taken along by what it stands on: the
   /// next target is given with the root's speed of that way, and the body is where it is wanted.
   Status ride(const Displacement& further);
