@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/skeleton/convex_hull.h"
+
 namespace sinew::render {
 namespace {
 

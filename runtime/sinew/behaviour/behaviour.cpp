@@ -63,8 +63,8 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   const std::size_t joints = skeleton.joints.size();
   last_.resize(joints);
   model_.resize(joints);
-  fade_numbers_.resize(inertial_numbers(static_cast<int>(joints), 0));
-  fade_ = {fade_numbers_, static_cast<int>(joints), 0};
+  fade_numbers_.resize(inertial_numbers(static_cast<int>(joints), 1));  // the root's
+  fade_ = {fade_numbers_, static_cast<int>(joints), 1};
   fade_.duration = T(0);
 }
 

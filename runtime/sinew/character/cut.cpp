@@ -39,18 +39,43 @@ void turn(const Mat3<T>& by, History<T>& history) {
 }  // namespace
 
 template <class T>
-bool carry_over(CharacterState<T>& s, T h) {
+bool carry_over(CharacterState<T>& s, T h, Leap& leap) {
   if (!s.root_is_kinematic() || !s.floats) return false;
   if (!leaps(s.target[0], s.last_target()[0], h, s.tree.scale.length)) return false;
   const Transform<T> before = a_step_ago(s.target[0], h);
   s.keep_record();
-  turn<T>((before.rotation * s.local[0].rotation.conjugate()).toRotationMatrix(), s.history);
+  const Quat<T> turned = before.rotation * s.local[0].rotation.conjugate();
+  leap = {turned.template cast<double>().normalized(), s.history.place,
+          before.translation.template cast<double>()};
+  turn<T>(turned.toRotationMatrix(), s.history);
   s.history.place = before.translation.template cast<double>();
   s.local[0] = before;
   restart(before, s.target[0], s.own_last_target()[0]);
   s.pose_changed();
   s.forget_energy();
   return true;
+}
+
+template <class T>
+void go_along(CharacterState<T>& s, const Leap& leap) {
+  s.keep_record();
+  const Quat<T> turned = leap.turn.template cast<T>();
+  if (s.floats) {
+    turn<T>(turned.toRotationMatrix(), s.history);
+    s.history.place = leap.of(s.history.place);
+    s.local[0] = {(turned * s.local[0].rotation).normalized(), s.history.place.template cast<T>()};
+    s.pose_changed();
+  } else {  // points about a place that stays
+    const Vec3<T> about = s.local[0].translation;
+    for (int i = 1; i < s.tree.bodies; ++i) {
+      const Vec3<double> place = (about + s.local[i].translation).template cast<double>();
+      s.target[i].translation = leap.of(place).template cast<T>() - about;
+      s.target[i].velocity = turned * s.history.velocity[i];
+    }
+    s.reset_to_target(Vec3<T>::Zero());
+  }
+  s.forget_energy();
+  s.levels.wake = true;
 }
 
 template <class T>

@@ -147,7 +147,7 @@ void IslandStepper<T>::finish_pose(CharacterState<T>& s, int tree, T h) {
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
     // With a tone it has to be next to its animation, which update_deviation() asks.
-    const bool met = s.joint_has_tone(i) ? tone_load<T>(s, i, s.torque) < T(kBearsNothing)
+    const bool met = s.joint_has_tone(i) ? tone_load_in_part<T>(s, i) < T(kBearsNothing)
                                          : missed < T(4) * p.kink_width && load < T(kCertified);
     if (!s.baked[i] || s.joint_is_driven(i)) s.deviation[i].released = free && !met;
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
@@ -273,15 +273,58 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   report_help(s);
 }
 
-/// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
+namespace {
+
+/// How far a pose is from another, m and rad.
+template <class T>
+struct Apart {
+  T moved, turned;
+  Apart(const Transform<T>& a, const Transform<T>& b)
+      : moved((b.translation - a.translation).norm()),
+        turned(rotation_log<T>(a.rotation.conjugate() * b.rotation).norm()) {}
+};
+
+/// What an animation does across a joint's axes (a bone that stretches, a knee's roll) is done to who follows
+/// it. A joint without muscles keeps what it has of that, or a clip that plays on would kick a limp body;
+/// with its strength back it catches up, at a pace.
+template <class T>
+void follow_across(CharacterState<T>& s, int i, T h, Transform<T>& wanted) {
+  if (!s.joint_is_driven(i)) {
+    wanted = rebased<T>(s.tree, i, s.local[i], wanted);
+    return;
+  }
+  if (s.deviation[i].on_animation) return;
+  constexpr T kNothing = T(1e-5), kPace = T(1), kTurns = T(5);  // m or rad; m/s and rad/s of a human
+  const Apart<T> off(rebased<T>(s.tree, i, s.local[i], wanted), wanted);
+  if (off.moved < kNothing * s.tree.scale.length && off.turned < kNothing) return;
+  const JointJet<T>& last = s.last_target()[i];
+  const Apart<T> own(rebased<T>(s.tree, i, {last.rotation, last.translation}, wanted), wanted);
+  const T time = h / s.tree.scale.time, pace = kPace * time * s.tree.scale.length, turns = kTurns * time;
+  const T share = std::min((own.moved + pace) / std::max(off.moved, pace),
+                           (own.turned + turns) / std::max(off.turned, turns));
+  if (!(share < T(1))) return;
+  const Transform<T> held = rebased<T>(s.tree, i, s.local[i], wanted);
+  wanted.translation = held.translation + share * (wanted.translation - held.translation);
+  wanted.rotation = held.rotation.slerp(share, wanted.rotation);
+}
+
+}  // namespace
+
+/// What the animation wants at a fraction of the frame, between the last frame's target and this one's. What
+/// only falls follows none.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
-  const bool falls = s.only_falls();  // then what moves follows no animation, the last frame's neither
+  const bool falls = s.only_falls();
   for (int i = 0; i < s.tree.bodies; ++i) {
+    if (falls && i > 0) {
+      s.wanted[i] = s.local[i];
+      continue;
+    }
     const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
     const bool within = fraction < T(1) && !(falls && s.tree.dof_count(i) > 0);
     const JointJet<T> wanted = within ? animation_within<T>(before, now, frame_, fraction) : now;
     s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
+    if (i > 0) follow_across(s, i, settings_.h, s.wanted[i]);
   }
 }
 
@@ -335,7 +378,8 @@ void IslandStepper<T>::begin_part(T h, T fraction) {
     forward_kinematics<T>(s->tree, s->problem.start, s->problem.common_origin, s->problem.kinematics);
     choose_targets<T>(*s, T(world.accuracy.return_time),
                       height_of_floor<T>(world, settings_.common_origin.z()), h);
-    choose_tone<T>(*s, settings_.gravity, h);
+    choose_tone<T>(*s, settings_.gravity, h,
+                   {frame_, fraction - h / frame_, fraction, settings_.plan->joints.damping});
     choose_baked<T>(*s, world.detail, h);
     choose_unknowns(*s);
     first_guess(*s, h);

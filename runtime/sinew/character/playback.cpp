@@ -79,14 +79,21 @@ void check_animation(CharacterState<T>& s, const CheckContext<T>& c) {
                   s.problem.gradient);
 }
 
+/// What it asks muscles with a tone for, where the frame begins and at its end, which `problem.gradient` is.
+template <class T>
+void ask_for_feed_forward(CharacterState<T>& s, const CheckContext<T>& c) {
+  check_motion<T>(s.tree, s.last_target(), c.world.gravity.template cast<T>(), standing_of(s, c), c.scratch,
+                  s.problem.gradient);
+  keep_feed_forward(s, false);
+  check_animation(s, c);
+  keep_feed_forward(s, true);
+}
+
 /// What it asks for under loads; whether it is more by `most` than the animation asks muscles with a tone for
 /// by itself.
 template <class T>
 bool asks_for_more(CharacterState<T>& s, T h, const CheckContext<T>& context, T most) {
-  if (s.problem.law.present.tone) {
-    check_animation(s, context);
-    keep_feed_forward(s);
-  }
+  if (s.problem.law.present.tone) ask_for_feed_forward(s, context);
   check_under_loads(s, h, context);
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
 }
@@ -147,8 +154,7 @@ void begin_tone(CharacterState<T>& s, T h, const CheckContext<T>& context) {
     s.clear_deviations();
     return;
   }
-  check_animation(s, context);
-  keep_feed_forward(s);
+  ask_for_feed_forward(s, context);
 }
 
 template <class T>

@@ -53,7 +53,7 @@ void choose_stiffness(CharacterState<T>& s, const Vec3<T>& gravity) {
     for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
       if (!p.law.has_tone(dof)) continue;
       ToneOfDof<T>& tone = p.law.tone[dof];
-      const T load = std::min(std::abs(tone.feed_forward), p.law.limit(dof, tone.feed_forward));
+      const T load = std::min(std::abs(tone.asked), p.law.limit(dof, tone.asked));
       const T upright = weight > T(0) ? p.kinematics.w[dof].dot(gravity) : T(0);  // nothing topples about it
       const T level = weight > T(0) ? T(1) - upright * upright / weight : T(1);
       tone.inertia = inertia_of(p, i, dof);
@@ -90,7 +90,7 @@ void choose_slope(ToneOfDof<T>& tone, T chain, T steepest, T start, bool around,
   const T damping = 2 * tone.damping_ratio * std::sqrt(stiffness * chain * std::max(tone.inertia, T(0)));
   const T damps = around ? T(0) : std::max(damping / h - stiffness / 2, T(0));
   tone.slope = std::min(stiffness + damps, steepest);
-  tone.neutral = (tone.feed_forward + damps * start) / tone.slope;
+  tone.neutral = (tone.asked + damps * start) / tone.slope;
 }
 
 /// An ellipsoid's slopes are as the squares of its half axes; as steep on average as was asked for.
@@ -120,15 +120,56 @@ void reserve_for_tone(CharacterState<T>& s) {
 }
 
 template <class T>
-void keep_feed_forward(CharacterState<T>& s) {
-  for (int dof = 0; dof < s.tree.dofs; ++dof) s.problem.law.tone[dof].feed_forward = s.problem.gradient[dof];
+void keep_feed_forward(CharacterState<T>& s, bool at_end) {
+  for (int dof = 0; dof < s.tree.dofs; ++dof) {
+    ToneOfDof<T>& tone = s.problem.law.tone[dof];
+    (at_end ? tone.feed_forward : tone.before) = s.problem.gradient[dof];
+  }
 }
 
+namespace {
+
+/// What the animation asks for in a part, on average, and its joints lose on its own way.
 template <class T>
-void choose_tone(CharacterState<T>& s, const Vec3<T>& gravity, T h) {
+void choose_asked(CharacterState<T>& s, T h, const PartOfFrame<T>& part) {
+  TreeProblem<T>& p = s.problem;
+  const T middle = (part.begin + part.end) / 2;
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    if (!s.joint_has_tone(i)) continue;
+    for (int dof = s.tree.first_dof[i]; dof < s.tree.first_dof[i + 1]; ++dof) {
+      ToneOfDof<T>& tone = p.law.tone[dof];
+      tone.asked = tone.before + middle * (tone.feed_forward - tone.before);
+    }
+    if (!part.losses || !p.law.present.losses) continue;
+    const JointJet<T> begins = animation_within<T>(s.last_target()[i], s.target[i], part.frame, part.begin);
+    const Transform<T> from{begins.rotation, begins.translation};
+    const JointStep<T> joint{.tree = s.tree,
+                             .law = p.law,
+                             .body = i,
+                             .local = s.wanted[i],
+                             .target = s.wanted[i],
+                             .start = from,
+                             .h = h,
+                             .kink_width = p.kink_width};
+    JointOffset<T> way;
+    p.clear_rows();
+    if (!part.losses->look(joint, way, p)) continue;
+    for (int k = 0; k < joint.dofs(); ++k) part.losses->append(joint, way, k, p);
+    for (const JointRow<T>& row : p.rows)
+      for (int a = 0; a < row.count; ++a)
+        p.law.tone[row.dof + a].asked += row.slope(row.value) * row.gradient[a];
+  }
+  p.clear_rows();
+}
+
+}  // namespace
+
+template <class T>
+void choose_tone(CharacterState<T>& s, const Vec3<T>& gravity, T h, const PartOfFrame<T>& part) {
   TreeProblem<T>& p = s.problem;
   JointLaw<T>& law = p.law;
   if (!law.present.tone || s.only_falls()) return;
+  choose_asked(s, h, part);
   sum_subtrees(s);
   weigh(s, gravity);
   choose_stiffness(s, gravity);
@@ -152,6 +193,15 @@ T tone_load(const CharacterState<T>& s, int joint, std::span<const T> torque) {
   T most = T(0);
   for (int dof = s.tree.first_dof[joint]; dof < s.tree.first_dof[joint + 1]; ++dof)
     if (law.has_tone(dof)) most = std::max(most, std::abs(torque[dof] - law.tone[dof].feed_forward));
+  return most / (T(kGivesWay) * s.tree.scale.load);
+}
+
+template <class T>
+T tone_load_in_part(const CharacterState<T>& s, int joint) {
+  const JointLaw<T>& law = s.problem.law;
+  T most = T(0);
+  for (int dof = s.tree.first_dof[joint]; dof < s.tree.first_dof[joint + 1]; ++dof)
+    if (law.has_tone(dof)) most = std::max(most, std::abs(s.torque[dof] - law.tone[dof].asked));
   return most / (T(kGivesWay) * s.tree.scale.load);
 }
 

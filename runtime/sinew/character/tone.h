@@ -9,6 +9,7 @@
 #include <span>
 
 #include "sinew/character/state.h"
+#include "sinew/effects/joint_step.h"
 
 namespace sinew {
 
@@ -16,33 +17,46 @@ namespace sinew {
 template <class T>
 void reserve_for_tone(CharacterState<T>& state);
 
-/// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself.
+/// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself, at
+/// the end of the frame or where it begins.
 template <class T>
-void keep_feed_forward(CharacterState<T>& state);
+void keep_feed_forward(CharacterState<T>& state, bool at_end);
+
+/// A part of a frame, and what joints lose in it.
+template <class T>
+struct PartOfFrame {
+  T frame = T(0), begin = T(0), end = T(1);  ///< s; shares of it
+  const JointTerm<T>* losses = nullptr;      ///< dry friction and damping; null: not declared
+};
 
 /// Slope and neutral place of every toned muscle for a part of h seconds that begins at `problem.start`,
 /// whose kinematics the problem holds. What stands on a joint topples it by more, the further it leans: where
 /// muscles hold it up, their stiffness comes on top of that (Gershgorin's bound of what weights do to a chain
 /// of joints). A spring that pulls as where the step ends takes as much energy as a damper of kh/2 would, so
 /// that much of d is left out, as far as there is any: what is left is the midpoint rule, of second order.
-/// O(bodies · depth).
+/// And a muscle pulls alike all through a part: with what the animation asks for in its middle, and what the
+/// joint loses on the animation's own way, for what is on it to stay there. O(bodies · depth).
 template <class T>
-void choose_tone(CharacterState<T>& state, const Vec3<T>& gravity, T h);
+void choose_tone(CharacterState<T>& state, const Vec3<T>& gravity, T h, const PartOfFrame<T>& part);
 
-/// How much a joint's torques [dof] differ from what its animation asks for by itself, where 1 is what
-/// releases it. 0 of what has no tone.
+/// How much a joint's torques [dof], as a check has them, differ from what its animation asks for by itself,
+/// where 1 is what releases it. 0 of what has no tone.
 template <class T>
 T tone_load(const CharacterState<T>& state, int joint, std::span<const T> torque);
+/// The same of the torques that a part of a step has found.
+template <class T>
+T tone_load_in_part(const CharacterState<T>& state, int joint);
 
 /// Whether any joint's do by more than `most`.
 template <class T>
 bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T most);
 
-#define SINEW_TONE_INSTANCES(prefix, T)                                     \
-  prefix void reserve_for_tone<T>(CharacterState<T>&);                      \
-  prefix void keep_feed_forward<T>(CharacterState<T>&);                     \
-  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T);        \
-  prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>); \
+#define SINEW_TONE_INSTANCES(prefix, T)                                                     \
+  prefix void reserve_for_tone<T>(CharacterState<T>&);                                      \
+  prefix void keep_feed_forward<T>(CharacterState<T>&, bool);                               \
+  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T, const PartOfFrame<T>&); \
+  prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>);                 \
+  prefix T tone_load_in_part<T>(const CharacterState<T>&, int);                             \
   prefix bool overloads_tone<T>(const CharacterState<T>&, std::span<const T>, T);
 SINEW_TONE_INSTANCES(extern template, float)
 SINEW_TONE_INSTANCES(extern template, double)

@@ -426,10 +426,7 @@ template <class T>
 void World<T>::Impl::step_all(T step, const ParallelFor& parallel_for) {
   SINEW_ZONE("step");
   h = step;
-  for (const auto& s : states) {
-    s->keep_deviations(h);
-    s->carried = !s->parked && carry_over(*s, h);
-  }
+  carry_who_leaps();
   couplings.begin_step(states);
   islands.find(states, couplings, h, settings.island_dofs, settings.body_contact ? plan.contacts : nullptr);
   large.clear();

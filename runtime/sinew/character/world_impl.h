@@ -6,6 +6,7 @@
 
 #include "sinew/character/contact_reporter.h"
 #include "sinew/character/couplings.h"
+#include "sinew/character/cut.h"
 #include "sinew/character/island.h"
 #include "sinew/character/islands.h"
 #include "sinew/character/levels.h"
@@ -180,6 +181,9 @@ struct World<T>::Impl {
   static void work(void* context, int index);
   void keep_sleepers();
   void log_step() const;
+  void carry_who_leaps();
+  bool goes_along(int state) const;
+  void take_along(const Leap& leap);
   void step_all(T step, const ParallelFor& parallel_for);
   MovingParts<T> moving() { return {states, lagged, controller.state(), couplings.all(), games}; }
   Surroundings surroundings() const {

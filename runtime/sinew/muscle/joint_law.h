@@ -27,7 +27,9 @@ struct ToneOfDof {
   T stiffness = std::numeric_limits<T>::infinity();  ///< N·m/rad that was asked for; ∞: rigid
   T damping_ratio = T(0);                            ///< ζ ≥ 0
   T feed_forward = T(0);  ///< N·m, what the animation asks for by itself at the end of the frame
+  T before = T(0);        ///< N·m, the same at its beginning
   // Of the present part of a step
+  T asked = T(0);    ///< N·m, what it asks for over the part, with what the joint loses
   T inertia = T(0);  ///< kg·m², of what the joint carries, about its axis
   T slope = T(0);    ///< κ, N·m/rad: k and d in one
   T neutral = T(0);  ///< s*, rad from the animation: where the muscle does nothing
