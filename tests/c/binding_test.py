@@ -22,7 +22,7 @@ NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "s
             ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
             ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
             ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings"),
-            ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
+            ("sinew_asset_get_socket", "offset"), ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
 
 
 class Everything:
@@ -307,6 +307,55 @@ class Classes(unittest.TestCase):
         self.assertEqual(look.state.started, 1)
         with self.assertRaisesRegex(sinew.Error, "0 to 1"):
             look(asset, a, (5, 0, 1), 1 / 60, weight=2)
+
+    def test_clips_are_played_without_a_graph(self):
+        scene = Everything()
+        asset, walk = scene.asset, scene.asset.find_clip("walk")
+        duration = asset.clip(walk).duration
+        steps = [e for k in range(60) for e in asset.passed_events(walk, duration * k / 60, duration * (k + 1) / 60)]
+        self.assertEqual(len(steps), len(asset.passed_events(walk, 0, duration)))
+        self.assertGreater(len(steps), 1)
+        with self.assertRaisesRegex(sinew.Error, "TOO_SMALL"):
+            asset.passed_events(walk, 0, 5 * duration, most=1)
+        ended = asset.ended_events(asset.find_clip("get_up_supine"), 0.5)
+        self.assertEqual([(e.name, e.kind) for e in ended], [(asset.find_event("helpless"), sinew.EventKind.END)])
+        self.assertEqual(len(asset.curves(walk, 0.3)), asset.info.curves)
+        jets = sinew.place_jets(asset.sample(walk, 0.3), (2, 0, 0), (0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+        travel, body = sinew.split_root(jets)
+        self.assertGreater(float(travel["velocity"][0][1]), 0.5)  # m/s, to the left now
+        self.assertAlmostEqual(float(travel["translation"][0][0]), 2, 0)
+        chest = asset.find_role(sinew.Role.CHEST)
+        self.assertGreater(float(asset.socket(jets, chest, (0, 0, 0.1))["velocity"][0][1]), 0.5)
+        speed = sinew.CurveValue(0, 0, 0)
+        for _ in range(60):
+            sinew.smooth(speed, 2, 0.1, 1 / 60)
+        self.assertAlmostEqual(speed.value, 2, 3)
+        with self.assertRaisesRegex(sinew.Error, "half_life"):
+            sinew.smooth(speed, 2, 0, 1 / 60)
+
+    def test_what_was_set_is_read_again(self):
+        scene = Everything()
+        hero = scene.character
+        hero.set_strength(0.5)
+        hero.set_detail(2, sinew.Level.PARTIAL, 3, True)
+        self.assertEqual((hero.strength, hero.detail), (0.5, (2, sinew.Level.PARTIAL, 3, True)))
+        hero.park()
+        self.assertTrue(hero.parked)
+        hero.park(False)
+        self.assertFalse(hero.parked)
+        self.assertEqual(hero.ground[0], hero.report.ground_force)
+        hero.ride(0.01, 0, 0)
+        self.assertAlmostEqual(hero.displacement[0], 0.01)
+        hero.come_back()
+        self.assertEqual([scene.world.count(k) for k in (sinew.BodyKind.CHARACTER, sinew.BodyKind.PROP)], [1, 1])
+        self.assertNotEqual(scene.world.snapshot_field(100)[1], "")
+        scene.world.add_convex_solid([(0, 0, 1, 0.5), (0, 0, -1, 0.5)], 0.5)
+        with self.assertRaisesRegex(sinew.Error, "unit"):
+            scene.world.add_convex_solid([(0, 0, 2, 0.5)], 0.5)
+        scene.street.step(1 / 60)
+        self.assertAlmostEqual(scene.street.track(0).time, 1 / 60)
+        self.assertGreater(scene.street.root_velocity(0)[0], 0.5)
+        scene.street.set_strength(0, 0.5)
 
     def test_feet_stand_on_what_rays_met(self):
         asset = Everything().asset

@@ -131,7 +131,14 @@ class Sequence : FuzzMotion {
     sinew_view view{};
     std::vector<sinew_transform> models(std::size_t(below(400)));
     std::int32_t count = 0;
-    switch (below(9)) {
+    float velocity[3];
+    switch (below(12)) {
+      case 9:
+        return sinew_crowd_set_strength(world, index(12), real(0, 2));
+      case 10:
+        return sinew_crowd_get_track(world, index(12), or_null(&track));
+      case 11:
+        return sinew_crowd_get_root_velocity(world, index(12), or_null(velocity));
       case 0:
         return worlds_.size() < 3 ? make_crowd() : sinew_crowd_create(0, nullptr, nullptr, nullptr, nullptr);
       case 1:
@@ -181,7 +188,13 @@ class Sequence : FuzzMotion {
   sinew_status move() {
     sinew_transform pose{{0, 0, real(-0.1, 0.1), 1}, {real(-2, 2), real(-2, 2), real(0, 3)}};
     const float velocity[3] = {real(-5, 5), real(-5, 5), real(-5, 5)};
-    switch (below(4)) {
+    const double* const way = triple(rarely() ? 1e3 : 0.05);
+    const double ride[4] = {way ? way[0] : 0, way ? way[1] : 0, way ? way[2] : 0, number(-0.05, 0.05)};
+    switch (below(6)) {
+      case 4:
+        return sinew_character_ride(handle(people_), or_null(ride));
+      case 5:
+        return sinew_character_come_back(handle(people_));
       case 0:
         return sinew_prop_set_state(handle(props_), or_null(&pose), or_null(velocity), velocity);
       case 1:
@@ -227,9 +240,15 @@ class Sequence : FuzzMotion {
     depth_ = number(-0.1, 0.5);
     host.context = &depth_;
     host.distance = rarely() ? nullptr : slope;
+    const double faces[3][4] = {{0, 0, 1, number(-0.2, 0.2)}, {0, 1, 0, number(0, 1)}, {1, 0, 0, 1}};
+    sinew_convex_solid solid = settings(sinew_convex_solid_init);
+    solid.faces = or_null(faces[0]);
+    solid.face_count = rarely() ? -1 : below(4);
     if (shapes_ > 4) return SINEW_OK;
     ++shapes_;
-    switch (below(3)) {
+    switch (below(4)) {
+      case 3:
+        return sinew_world_add_convex_solid(handle(worlds_), or_null(&solid));
       case 0:
         return sinew_world_add_obstacle(handle(worlds_), or_null(&box));
       case 1:
@@ -351,7 +370,19 @@ class Sequence : FuzzMotion {
     sinew_transform pose{};
     double numbers[3];
     float force[3];
-    switch (below(6)) {
+    std::int32_t level = 0, flag = 0, every = 0;
+    switch (below(10)) {
+      case 6:
+        return sinew_character_get_strength(handle(people_), or_null(force));
+      case 7:
+        return sinew_character_get_detail(handle(people_), or_null(numbers), or_null(&level), &every, &flag);
+      case 8:
+        return sinew_character_get_parked(handle(people_), or_null(&flag));
+      case 9: {
+        double place[3], velocity[3];
+        return sinew_character_get_ground(handle(people_), or_null(numbers), place, or_null(velocity),
+                                          numbers + 1);
+      }
       case 0:
         return sinew_character_get_report(handle(people_), or_null(&report));
       case 1:
@@ -372,7 +403,12 @@ class Sequence : FuzzMotion {
     std::uint64_t bytes = 0;
     std::vector<sinew_transform> models(std::size_t(below(200)));
     std::int32_t count = 0;
-    switch (below(3)) {
+    sinew_snapshot_field field{};
+    switch (below(5)) {
+      case 3:
+        return sinew_world_get_count(handle(worlds_), index(6), or_null(&count));
+      case 4:
+        return sinew_world_get_snapshot_field(handle(worlds_), random_() % 4000, or_null(&field));
       case 0:
         return sinew_world_get_report(handle(worlds_), or_null(&report));
       case 1:

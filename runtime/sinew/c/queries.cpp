@@ -108,6 +108,18 @@ sinew_status query(sinew_world handle, const sinew_query* from, sinew_hit* out, 
 using namespace sinew;
 using namespace sinew::c;
 
+sinew_status sinew_world_get_count(sinew_world world, sinew_body_kind kind, int32_t* out) {
+  return with_world(world, [&](const OwnedWorld& w) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (kind < SINEW_BODY_CHARACTER || kind > SINEW_BODY_PARTICLES)
+      return fail(SINEW_INVALID_ARGUMENT, "characters, props and particles are counted", kind);
+    *out = kind == SINEW_BODY_CHARACTER ? w.world.character_count()
+           : kind == SINEW_BODY_PROP    ? w.world.prop_count()
+                                        : w.world.particles_count();
+    return sinew_status(SINEW_OK);
+  });
+}
+
 sinew_status sinew_query_init(sinew_query* query) {
   return fill_sized(query, [](sinew_query& all) {
     const Cast defaults;

@@ -15,7 +15,7 @@ typedef int32_t sinew_body_kind;
 enum sinew_body_kind_values {
   SINEW_BODY_GROUND = 0,     ///< the floor
   SINEW_BODY_OBSTACLE = 1,   ///< sinew_world_add_obstacle
-  SINEW_BODY_SHAPE = 2,      ///< a height field or the host's
+  SINEW_BODY_SHAPE = 2,      ///< a height field, a convex solid or the host's
   SINEW_BODY_CHARACTER = 3,  ///< sinew_world_add_character
   SINEW_BODY_PROP = 4,       ///< sinew_world_add_prop
   SINEW_BODY_PARTICLES = 5   ///< a strand, cloth or soft tissue
@@ -27,6 +27,9 @@ typedef struct sinew_body {
   int32_t index;         ///< in the order in which those of its kind were added
   int32_t joint;         ///< that carries it, of a character; else 0
 } sinew_body;
+
+/// How many characters, props or particle bodies a world has, parked ones included: their indices are below.
+SINEW_API sinew_status sinew_world_get_count(sinew_world world, sinew_body_kind kind, int32_t* out);
 
 /// Where a touch is in its life.
 typedef int32_t sinew_contact_phase;

@@ -69,6 +69,11 @@ class Character(_Affected):
         else:
             self._call(lib.sinew_character_set_strength, strength)
 
+    @property
+    def strength(self):
+        """Of all muscles."""
+        return self._get(ctypes.c_float, lib.sinew_character_get_strength).value
+
     def set_tone(self, tone, joint=None, group=None):
         """How stiffly muscles stay with the animation: of all, those below a joint, or a group."""
         if joint is not None:
@@ -97,6 +102,13 @@ class Character(_Affected):
         self._call(lib.sinew_character_set_detail, significance, most, check_every, bake)
 
     @property
+    def detail(self):
+        """significance, most, check_every and bake, as set_detail takes them."""
+        out = (ctypes.c_double(), ctypes.c_int32(), ctypes.c_int32(), ctypes.c_int32())
+        self._call(lib.sinew_character_get_detail, *map(byref, out))
+        return out[0].value, Level(out[1].value), out[2].value, bool(out[3].value)
+
+    @property
     def displacement(self):
         """x, y (m), yaw (rad)."""
         out = (ctypes.c_double * 3)()
@@ -119,6 +131,21 @@ class Character(_Affected):
     def raise_by(self, further):
         self._call(lib.sinew_character_raise, further)
 
+    def ride(self, x, y, yaw, z=0.0):
+        """Before a step, of an animation that what it stands on takes along by so much in it (m, rad)."""
+        self._call(lib.sinew_character_ride, (ctypes.c_double * 4)(x, y, yaw, z))
+
+    def come_back(self):
+        """A grounded root that moves nearly as its animation wants it is led back onto it."""
+        self._call(lib.sinew_character_come_back)
+
+    @property
+    def ground(self):
+        """What bears it: force (N, up), place (m), velocity (m/s) and turn rate (rad/s) of that."""
+        force, place, velocity, turn = ctypes.c_double(), (ctypes.c_double * 3)(), (ctypes.c_double * 3)(), ctypes.c_double()
+        self._call(lib.sinew_character_get_ground, byref(force), place, velocity, byref(turn))
+        return force.value, tuple(place), tuple(velocity), turn.value
+
     def apply_impulse(self, joint, point, impulse):
         self._call(lib.sinew_character_apply_impulse, joint, three(point), three(impulse))
 
@@ -127,6 +154,10 @@ class Character(_Affected):
 
     def park(self, parked=True):
         self._call(lib.sinew_character_park, parked)
+
+    @property
+    def parked(self):
+        return bool(self._get(ctypes.c_int32, lib.sinew_character_get_parked).value)
 
     def add_behaviour(self, **settings):
         self._call(lib.sinew_character_add_behaviour,
