@@ -22,7 +22,7 @@ NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "s
             ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
             ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
             ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings"),
-            ("sinew_asset_get_socket", "offset"), ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
+            ("sinew_asset_get_socket", "offset"), ("sinew_sensor_update", "left_out"), ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
 
 
 class Everything:
@@ -42,11 +42,12 @@ class Everything:
         self.street.play(0)
         self.particles = self.world.add_strand(particles=3, frame={"pose": {"translation": (5, 0, 2)}})
         self.effect = self.prop.add_wind(velocity=(1, 0, 0))
+        self.sensor = self.world.add_sensor((3, 0, 1), 0.2)
         self.world.report_contacts()
         self.handles = {"sinew_asset": self.asset.handle, "sinew_world": self.world.handle,
                         "sinew_character": self.character.handle, "sinew_prop": self.prop.handle, "sinew_loop": self.loop.handle,
                         "sinew_graph": self.graph.handle, "sinew_effect": self.effect.handle,
-                        "sinew_particles": self.particles.handle}
+                        "sinew_particles": self.particles.handle, "sinew_sensor": self.sensor.handle}
 
 
 def meant(parameter, scene, memory):
@@ -227,6 +228,29 @@ class Classes(unittest.TestCase):
         hits = scene.world.cast((3, 0, 3), (0, 0, -4), most=2)
         self.assertEqual([hit.body.kind for hit in hits], [sinew.BodyKind.PROP, sinew.BodyKind.GROUND])
         self.assertEqual(len(scene.world.overlap((3, 0, 1), 0.2)), 1)
+
+    def test_sensors_tell_who_comes_and_goes(self):
+        scene = Everything()
+        self.assertEqual([(e.phase, e.body.kind) for e in scene.sensor.update()],
+                         [(sinew.ContactPhase.BEGIN, sinew.BodyKind.PROP)])
+        self.assertEqual(len(scene.sensor.bodies), 1)
+        scene.sensor.move((3, 0, 5), 0.2)
+        self.assertEqual([e.phase for e in scene.sensor.update()], [sinew.ContactPhase.END])
+        self.assertEqual((scene.sensor.bodies, scene.sensor.left_out), ([], 0))
+        with self.assertRaisesRegex(sinew.Error, "radius"):
+            scene.sensor.move((0, 0, 0), -1)
+
+    def test_who_is_kept_apart_passes_through(self):
+        with sinew.World() as world:
+            for height, layers, meets in ((0.1, 2, 2**32 - 1), (0.5, 4, 2**32 - 1), (0.9, 8, 0)):
+                world.add_prop(pose={"translation": (0, 0, height)}, layers=layers, meets=meets)
+            world.keep_apart((sinew.BodyKind.PROP, 0), (sinew.BodyKind.PROP, 1))
+            for _ in range(90):
+                world.step(1 / 60)
+            for n in range(3):
+                self.assertAlmostEqual(float(world.prop(n).state[1][2]), 0.1, 2)
+            with self.assertRaisesRegex(sinew.Error, "no such"):
+                world.keep_apart((sinew.BodyKind.PROP, 0), (sinew.BodyKind.PROP, 3))
 
     def test_graphs_are_followed(self):
         scene = Everything()

@@ -178,6 +178,7 @@ class Sequence : FuzzMotion {
     for (double& x : s.extent) x = number(0.02, 0.3);
     s.mass = number(0.1, 20);
     s.restitution = number(0, 1);
+    if (below(3) == 0) s.meets = static_cast<std::uint32_t>(random_());
     turn(s.pose);
     for (double& x : s.velocity) x = number(-10, 10);
     std::uint64_t out = 0;
@@ -404,7 +405,10 @@ class Sequence : FuzzMotion {
     std::vector<sinew_transform> models(std::size_t(below(200)));
     std::int32_t count = 0;
     sinew_snapshot_field field{};
-    switch (below(5)) {
+    const sinew_body a{index(6), index(3), 0}, b{index(6), index(3), 0};
+    switch (below(6)) {
+      case 5:
+        return sinew_world_keep_apart(handle(worlds_), or_null(&a), or_null(&b), below(2));
       case 3:
         return sinew_world_get_count(handle(worlds_), index(6), or_null(&count));
       case 4:
@@ -442,9 +446,32 @@ class Sequence : FuzzMotion {
       q.accept = [](void*, const sinew_body* body) -> std::int32_t { return body->index % 2; };
     std::array<sinew_hit, 4> hits;
     std::int32_t count = 0;
+    if (below(3) == 0) return sense(q);
     const auto find = below(2) == 0 ? sinew_world_cast : sinew_world_overlap;
     return find(handle(worlds_), or_null(&q), or_null(hits.data()), rarely() ? index(4) % 5 : 4,
                 or_null(&count));
+  }
+  sinew_status sense(const sinew_query& q) {
+    std::array<sinew_sensor_event, 4> events;
+    std::array<sinew_body, 4> bodies;
+    std::int32_t count = 0;
+    std::uint64_t out = 0;
+    switch (sensors_.size() < 3 ? 0 : below(4)) {
+      case 0: {
+        const sinew_status status =
+            sinew_world_add_sensor(handle(worlds_), or_null(&q), rarely() ? index(4) : 4, or_null(&out));
+        if (status == SINEW_OK) sensors_.push_back(out);
+        return status;
+      }
+      case 1:
+        return sinew_sensor_place(handle(sensors_), or_null(&q));
+      case 2:
+        check(sinew_sensor_update(handle(sensors_), or_null(&count)));
+        return sinew_sensor_get_events(handle(sensors_), or_null(events.data()), rarely() ? -1 : below(5),
+                                       or_null(&count));
+      default:
+        return sinew_sensor_get_bodies(handle(sensors_), or_null(bodies.data()), below(5), or_null(&count));
+    }
   }
   sinew_status draw() {
     sinew_draw_settings s = settings(sinew_draw_settings_init);
@@ -494,7 +521,7 @@ class Sequence : FuzzMotion {
     std::erase(of, one);
     gone_.push_back(one);
     if (world)
-      for (auto* inside : {&people_, &props_, &loops_, &effects_, &bodies_}) {
+      for (auto* inside : {&people_, &props_, &loops_, &effects_, &bodies_, &sensors_}) {
         const auto gone = [&](std::uint64_t h) {
           return (h << 4 >> 24) == (one << 4 >> 24);
         };  // its slot and serial

@@ -1,8 +1,9 @@
-// Characters that are taken along and led back, and clips without a graph, through the C interface: as in
-// C++, to the bit.
+// Characters that are taken along and led back, sensors, and clips without a graph, through the C interface:
+// as in C++, to the bit.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 
@@ -13,6 +14,7 @@
 #include "sinew/animation/root_motion.h"
 #include "sinew/animation/smooth_input.h"
 #include "sinew/animation/socket.h"
+#include "sinew/character/sensor.h"
 #include "sinew/character/world.h"
 #include "sinew/effects/static_shape.h"
 
@@ -221,6 +223,129 @@ TEST(CInterfaceReading, BytesOfASnapshotHaveNames) {
   sinew_snapshot_field beyond{};
   ASSERT_EQ(sinew_world_get_snapshot_field(scene.world, size, &beyond), SINEW_OK);
   EXPECT_STREQ(beyond.name, "");
+}
+
+// ---- Sensors ----
+
+TEST(CInterfaceSensors, TellOfABallThatFallsThroughAsInCpp) {
+  World<float> wanted({});
+  Status status;
+  PropSettings cpp_ball;
+  cpp_ball.pose.translation = {0, 0, 3};
+  ASSERT_EQ(wanted.add_prop(cpp_ball, status), 0) << status.reason;
+  Sensor<float> door(2);
+  door.shape.from = {0, 0, 1.5};
+  door.shape.radius = 0.3;
+
+  sinew_world world = 0;
+  ASSERT_EQ(sinew_world_create(nullptr, &world), SINEW_OK);
+  sinew_prop_settings settings = initialised(sinew_prop_settings_init);
+  settings.pose.translation[2] = 3;
+  sinew_prop ball = 0;
+  ASSERT_EQ(sinew_world_add_prop(world, &settings, &ball), SINEW_OK);
+  sinew_query where = initialised(sinew_query_init);
+  where.origin[2] = 1.5;
+  where.radius = 0.3;
+  where.kinds = 1u << SINEW_BODY_PROP;
+  sinew_sensor sensor = 0;
+  ASSERT_EQ(sinew_world_add_sensor(world, &where, 2, &sensor), SINEW_OK) << sinew_last_reason();
+  int told = 0;
+  for (int frame = 0; frame < 90; ++frame) {
+    ASSERT_TRUE(wanted.step(kStep));
+    ASSERT_TRUE(door.update(wanted));
+    ASSERT_EQ(sinew_world_step(world, kStep), SINEW_OK);
+    std::int32_t left_out = -1, count = -1;
+    ASSERT_EQ(sinew_sensor_update(sensor, &left_out), SINEW_OK) << sinew_last_reason();
+    EXPECT_EQ(left_out, 0);
+    std::array<sinew_sensor_event, 4> events;
+    ASSERT_EQ(sinew_sensor_get_events(sensor, events.data(), 4, &count), SINEW_OK);
+    ASSERT_EQ(count, int(door.events().size()));
+    for (int e = 0; e < count; ++e) {
+      EXPECT_EQ(events[std::size_t(e)].phase, int(door.events()[std::size_t(e)].phase));
+      EXPECT_EQ(events[std::size_t(e)].body.kind, SINEW_BODY_PROP);
+    }
+    told += count;
+    std::array<sinew_body, 2> bodies;
+    ASSERT_EQ(sinew_sensor_get_bodies(sensor, bodies.data(), 2, &count), SINEW_OK);
+    ASSERT_EQ(count, int(door.bodies().size()));
+    if (count > 0) {
+      expect_refused(sinew_sensor_get_bodies(sensor, bodies.data(), 0, &count), SINEW_TOO_SMALL, "fewer");
+    }
+  }
+  EXPECT_EQ(told, 2) << "in, and out";
+
+  where.kinds = ~0u;
+  where.accept = [](void*, const sinew_body* body) -> std::int32_t {
+    return body->kind == SINEW_BODY_GROUND;
+  };
+  where.origin[2] = 0;
+  ASSERT_EQ(sinew_sensor_place(sensor, &where), SINEW_OK) << sinew_last_reason();
+  ASSERT_EQ(sinew_sensor_update(sensor, nullptr), SINEW_OK);
+  sinew_body floor{};
+  std::int32_t count = 0;
+  ASSERT_EQ(sinew_sensor_get_bodies(sensor, &floor, 1, &count), SINEW_OK);
+  EXPECT_EQ(floor.kind, SINEW_BODY_GROUND);
+  EXPECT_EQ(count, 1) << "the ball is passed by";
+
+  where.radius = -1;
+  expect_refused(sinew_sensor_place(sensor, &where), SINEW_INVALID_ARGUMENT, "radius");
+  where.radius = 1;
+  expect_refused(sinew_world_add_sensor(world, &where, 0, &sensor), SINEW_INVALID_ARGUMENT, "bodies");
+  expect_refused(sinew_sensor_update(ball, nullptr), SINEW_BAD_HANDLE, "another kind");
+  EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
+  EXPECT_EQ(sinew_sensor_update(sensor, nullptr), SINEW_BAD_HANDLE);
+}
+
+// ---- Who passes through whom ----
+
+TEST(CInterfaceMeets, BallsPassThroughEachOtherByLayersOrByPair) {
+  for (const bool by_layer : {true, false}) {
+    sinew_world world = 0;
+    ASSERT_EQ(sinew_world_create(nullptr, &world), SINEW_OK);
+    sinew_prop_settings settings = initialised(sinew_prop_settings_init);
+    EXPECT_EQ(settings.meets, ~0u);
+    sinew_prop balls[2];
+    for (int n = 0; n < 2; ++n) {
+      settings.pose.translation[2] = n == 0 ? 0.1 : 0.5;
+      settings.layers = n == 0 ? 2 : 4;
+      if (by_layer && n == 1) settings.meets = ~2u;
+      ASSERT_EQ(sinew_world_add_prop(world, &settings, &balls[n]), SINEW_OK) << sinew_last_reason();
+    }
+    const sinew_body lower{SINEW_BODY_PROP, 0, 0}, upper{SINEW_BODY_PROP, 1, 0}, none{SINEW_BODY_PROP, 2, 0};
+    if (!by_layer) {
+      ASSERT_EQ(sinew_world_keep_apart(world, &lower, &upper, 1), SINEW_OK) << sinew_last_reason();
+    }
+    for (int frame = 0; frame < 60; ++frame) ASSERT_EQ(sinew_world_step(world, kStep), SINEW_OK);
+    sinew_transform at{};
+    ASSERT_EQ(sinew_prop_get_state(balls[1], &at, nullptr), SINEW_OK);
+    EXPECT_NEAR(at.translation[2], 0.1f, 0.002f) << "on the floor, in the other";
+    expect_refused(sinew_world_keep_apart(world, &lower, &none, 1), SINEW_INVALID_ARGUMENT, "no such");
+    const sinew_body odd{7, 0, 0};
+    expect_refused(sinew_world_keep_apart(world, &odd, &upper, 1), SINEW_INVALID_ARGUMENT, "kind");
+    expect_refused(sinew_world_keep_apart(world, nullptr, &upper, 1), SINEW_INVALID_ARGUMENT, "null");
+    EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
+  }
+}
+
+TEST(CInterfaceMeets, CallersWhoDoNotKnowOfItMeetEverybody) {
+  sinew_world world = 0;
+  ASSERT_EQ(sinew_world_create(nullptr, &world), SINEW_OK);
+  for (const double height : {0.1, 0.5}) {
+    sinew_prop_settings old{};
+    old.size = offsetof(sinew_prop_settings, meets);
+    ASSERT_EQ(sinew_prop_settings_init(&old), SINEW_OK) << sinew_last_reason();
+    EXPECT_EQ(old.meets, 0u) << "beyond what the caller knows";
+    old.pose.translation[2] = height;
+    sinew_prop ball = 0;
+    ASSERT_EQ(sinew_world_add_prop(world, &old, &ball), SINEW_OK) << sinew_last_reason();
+  }
+  for (int frame = 0; frame < 60; ++frame) ASSERT_EQ(sinew_world_step(world, kStep), SINEW_OK);
+  sinew_prop upper = 0;
+  sinew_transform at{};
+  ASSERT_EQ(sinew_world_get_prop(world, 1, &upper), SINEW_OK);
+  ASSERT_EQ(sinew_prop_get_state(upper, &at, nullptr), SINEW_OK);
+  EXPECT_NEAR(at.translation[2], 0.3f, 0.01f);
+  EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
 }
 
 // ---- Convex solids ----

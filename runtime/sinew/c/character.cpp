@@ -32,6 +32,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("check_every must be 1 to 1000000", c.check_every, s.detail.check_every, 1, 1e6);
   f("", c.bake, s.detail.bake);
   f("no such tone", c.tone, s.tone);
+  f("", c.meets, s.meets);
 };
 
 constexpr const char* kOutside = "no such character in this world";

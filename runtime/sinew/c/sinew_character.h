@@ -51,13 +51,15 @@ typedef struct sinew_character_settings {
   double strength;         ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   int32_t ground_contact;  ///< flag
   int32_t self_collision;  ///< flag
-  uint32_t layers;         ///< bits that queries choose by
+  uint32_t layers;         ///< bits that queries and `meets` choose by
   sinew_level most;        ///< at most this
   double significance;     ///< the budget takes from the least significant first
   int32_t check_every;     ///< steps from one check of the muscles to the next, at least 1
   int32_t bake;            ///< flag: hands, feet and toes dynamic now and then
   sinew_tone tone;         ///< of all muscles
   int32_t unused;          ///< 0
+  uint32_t meets;          ///< touches who has one of these bits in its layers, and would touch it, too
+  int32_t unused2;         ///< 0
 } sinew_character_settings;
 
 /// What the last step did with a character or prop: CharacterReport.

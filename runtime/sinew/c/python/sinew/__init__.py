@@ -17,7 +17,7 @@ from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReas
 from ._core import Error, check, jets_for, lib
 from .assets import (Asset, Feet, Foot, Graph, Layer, Look, Transition, ease, ground_hit, place_jets, smooth, split_root)
 from .hooks import set_log
-from .members import Character, Effect, Loop, Particles, Prop
+from .members import Character, Effect, Loop, Particles, Prop, Sensor
 from .world import Crowd, Plays, World
 
 __version__ = lib.sinew_version().decode()

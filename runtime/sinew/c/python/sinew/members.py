@@ -3,7 +3,7 @@ import ctypes
 from ctypes import byref
 
 from . import _abi
-from ._abi import Level, Status
+from ._abi import BodyKind, Level, Status
 from ._core import check, Error, floats, InWorld, lib, numpy, pointer, report_of, saved, set_fields, settings_of, three
 
 
@@ -403,3 +403,35 @@ class Particles(InWorld):
     @property
     def report(self):
         return report_of(_abi.CharacterReport, lib.sinew_particles_get_report, self.handle)
+
+
+_BODIES = sum(1 << kind for kind in (BodyKind.CHARACTER, BodyKind.PROP, BodyKind.PARTICLES))
+
+
+class Sensor(InWorld):
+    def __init__(self, world, handle, room):
+        super().__init__(world, handle)
+        self.room, self.left_out = room, 0
+
+    def _query(self, at, radius, settings):
+        return settings_of(_abi.Query, lib.sinew_query_init, {"origin": at, "radius": radius, "kinds": _BODIES, **settings})
+
+    def move(self, at, radius, **settings):
+        """Elsewhere, of another size or for others."""
+        self._call(lib.sinew_sensor_place, byref(self._query(at, radius, settings)))
+
+    def update(self):
+        """Looks who is in it: those who left, then those who came. `left_out` says how many found no room."""
+        left_out, count = ctypes.c_int32(), ctypes.c_int32()
+        self._call(lib.sinew_sensor_update, byref(left_out))
+        self.left_out = left_out.value
+        out = (_abi.SensorEvent * (2 * self.room))()
+        self._call(lib.sinew_sensor_get_events, byref(out), 2 * self.room, byref(count))
+        return out[:count.value]
+
+    @property
+    def bodies(self):
+        """Who is in it since the last update."""
+        out, count = (_abi.Body * self.room)(), ctypes.c_int32()
+        self._call(lib.sinew_sensor_get_bodies, byref(out), self.room, byref(count))
+        return out[:count.value]

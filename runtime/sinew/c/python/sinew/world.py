@@ -5,7 +5,7 @@ from ctypes import byref
 from . import _abi
 from ._abi import SnapshotPart, Status
 from ._core import check, Error, floats, lib, numpy, Owned, report_of, saved, set_fields, settings_of, three
-from .members import Character, Loop, Particles, Prop
+from .members import Character, Loop, Particles, Prop, Sensor
 
 
 class Plays:
@@ -117,6 +117,11 @@ class World(Owned):
         struct.faces, struct.face_count, struct.inner_radius = ctypes.addressof(numbers), len(faces), inner_radius
         check(lib.sinew_world_add_convex_solid(self.handle, byref(struct)))
 
+    def keep_apart(self, a, b, apart=True):
+        """Whether two bodies, (BodyKind, index) each, pass through each other."""
+        bodies = [_abi.Body(kind, index, 0) for kind, index in (a, b)]
+        check(lib.sinew_world_keep_apart(self.handle, byref(bodies[0]), byref(bodies[1]), apart))
+
     def count(self, kind):
         """How many characters, props or particle bodies there are (BodyKind)."""
         out = ctypes.c_int32()
@@ -174,6 +179,15 @@ class World(Owned):
 
     def overlap(self, start, radius, most=16, **settings):
         return self._query(lib.sinew_world_overlap, most, {"origin": start, "radius": radius, **settings})
+
+    def add_sensor(self, at, radius, bodies=64, **settings):
+        """A ball or a capsule (`half_axis`) that tells who comes in and who leaves: characters, props and particles, or `kinds`."""
+        sensor = Sensor(self, 0, bodies)
+        query = sensor._query(at, radius, settings)
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_add_sensor(self.handle, byref(query), bodies, byref(out)))
+        sensor.handle = out.value
+        return sensor
 
     def draw(self, line=None, triangle=None, text=None, **settings):
         """line(from, to, colour), triangle(a, b, c, colour), text(at, words, colour); colours 0xRRGGBBAA."""
