@@ -6,6 +6,7 @@ import gc
 import json
 import math
 import sys
+import threading
 import unittest
 
 import sinew
@@ -151,6 +152,29 @@ class BadInput(unittest.TestCase):
             status = self.call(name, parameters, {parameters[n]["name"]: math.nan})
             self.assertNotEqual(status, sinew.Status.OK, f"{name}({parameters[n]['name']}=NaN)")
         self.assertEqual(self.scene.character.local[0].tolist(), before)
+
+    def test_calls_from_a_second_thread_are_refused_while_one_runs(self):
+        refused = []
+
+        def line(*_):
+            if refused:
+                return
+
+            def step():
+                try:
+                    self.scene.world.step(1 / 60)
+                except sinew.Error as error:
+                    refused.append(error.status)
+
+            other = threading.Thread(target=step)
+            other.start()
+            other.join()
+
+        before = self.scene.character.local[0].tolist()
+        self.scene.world.draw(line=line)
+        self.assertEqual(refused, [sinew.Status.BUSY])
+        self.assertEqual(self.scene.character.local[0].tolist(), before)
+        self.scene.world.step(1 / 60)
 
     def test_double_destroy(self):
         handle = self.scene.world.handle
