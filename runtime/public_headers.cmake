@@ -15,7 +15,7 @@ set(SINEW_PUBLIC_HEADERS
   graph/graph.h graph/graph_file.h graph/graph_pose.h graph/graph_recorder.h graph/graph_state.h graph/graph_step.h
   graph/graph_update.h
   # characters and what surrounds them
-  character/contact_events.h character/debug_draw.h character/queries.h character/recording.h character/world.h
+  character/contact_events.h character/debug_draw.h character/queries.h character/recording.h character/sensor.h character/world.h
   behaviour/behaviour.h behaviour/get_up.h behaviour/get_up_clips.h
   crowd/crowd.h crowd/population.h
   # effects by their type

@@ -6,6 +6,7 @@ import gc
 import json
 import math
 import sys
+import threading
 import unittest
 
 import sinew
@@ -22,7 +23,7 @@ NULLABLE = {("sinew_world_create", "settings"), ("sinew_world_add_character", "s
             ("sinew_character_add_force_field", "settings"), ("sinew_character_add_joint_spring", "settings"),
             ("sinew_prop_add_wind", "settings"), ("sinew_prop_add_buoyancy", "settings"),
             ("sinew_prop_add_force_field", "settings"), ("sinew_world_add_strand", "settings"),
-            ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
+            ("sinew_asset_get_socket", "offset"), ("sinew_sensor_update", "left_out"), ("sinew_crowd_create", "settings"), ("sinew_crowd_create", "world"), ("sinew_crowd_create", "character")}
 
 
 class Everything:
@@ -42,11 +43,12 @@ class Everything:
         self.street.play(0)
         self.particles = self.world.add_strand(particles=3, frame={"pose": {"translation": (5, 0, 2)}})
         self.effect = self.prop.add_wind(velocity=(1, 0, 0))
+        self.sensor = self.world.add_sensor((3, 0, 1), 0.2)
         self.world.report_contacts()
         self.handles = {"sinew_asset": self.asset.handle, "sinew_world": self.world.handle,
                         "sinew_character": self.character.handle, "sinew_prop": self.prop.handle, "sinew_loop": self.loop.handle,
                         "sinew_graph": self.graph.handle, "sinew_effect": self.effect.handle,
-                        "sinew_particles": self.particles.handle}
+                        "sinew_particles": self.particles.handle, "sinew_sensor": self.sensor.handle}
 
 
 def meant(parameter, scene, memory):
@@ -151,6 +153,29 @@ class BadInput(unittest.TestCase):
             self.assertNotEqual(status, sinew.Status.OK, f"{name}({parameters[n]['name']}=NaN)")
         self.assertEqual(self.scene.character.local[0].tolist(), before)
 
+    def test_calls_from_a_second_thread_are_refused_while_one_runs(self):
+        refused = []
+
+        def line(*_):
+            if refused:
+                return
+
+            def step():
+                try:
+                    self.scene.world.step(1 / 60)
+                except sinew.Error as error:
+                    refused.append(error.status)
+
+            other = threading.Thread(target=step)
+            other.start()
+            other.join()
+
+        before = self.scene.character.local[0].tolist()
+        self.scene.world.draw(line=line)
+        self.assertEqual(refused, [sinew.Status.BUSY])
+        self.assertEqual(self.scene.character.local[0].tolist(), before)
+        self.scene.world.step(1 / 60)
+
     def test_double_destroy(self):
         handle = self.scene.world.handle
         self.scene.world.close()
@@ -227,6 +252,29 @@ class Classes(unittest.TestCase):
         hits = scene.world.cast((3, 0, 3), (0, 0, -4), most=2)
         self.assertEqual([hit.body.kind for hit in hits], [sinew.BodyKind.PROP, sinew.BodyKind.GROUND])
         self.assertEqual(len(scene.world.overlap((3, 0, 1), 0.2)), 1)
+
+    def test_sensors_tell_who_comes_and_goes(self):
+        scene = Everything()
+        self.assertEqual([(e.phase, e.body.kind) for e in scene.sensor.update()],
+                         [(sinew.ContactPhase.BEGIN, sinew.BodyKind.PROP)])
+        self.assertEqual(len(scene.sensor.bodies), 1)
+        scene.sensor.move((3, 0, 5), 0.2)
+        self.assertEqual([e.phase for e in scene.sensor.update()], [sinew.ContactPhase.END])
+        self.assertEqual((scene.sensor.bodies, scene.sensor.left_out), ([], 0))
+        with self.assertRaisesRegex(sinew.Error, "radius"):
+            scene.sensor.move((0, 0, 0), -1)
+
+    def test_who_is_kept_apart_passes_through(self):
+        with sinew.World() as world:
+            for height, layers, meets in ((0.1, 2, 2**32 - 1), (0.5, 4, 2**32 - 1), (0.9, 8, 0)):
+                world.add_prop(pose={"translation": (0, 0, height)}, layers=layers, meets=meets)
+            world.keep_apart((sinew.BodyKind.PROP, 0), (sinew.BodyKind.PROP, 1))
+            for _ in range(90):
+                world.step(1 / 60)
+            for n in range(3):
+                self.assertAlmostEqual(float(world.prop(n).state[1][2]), 0.1, 2)
+            with self.assertRaisesRegex(sinew.Error, "no such"):
+                world.keep_apart((sinew.BodyKind.PROP, 0), (sinew.BodyKind.PROP, 3))
 
     def test_graphs_are_followed(self):
         scene = Everything()
@@ -307,6 +355,55 @@ class Classes(unittest.TestCase):
         self.assertEqual(look.state.started, 1)
         with self.assertRaisesRegex(sinew.Error, "0 to 1"):
             look(asset, a, (5, 0, 1), 1 / 60, weight=2)
+
+    def test_clips_are_played_without_a_graph(self):
+        scene = Everything()
+        asset, walk = scene.asset, scene.asset.find_clip("walk")
+        duration = asset.clip(walk).duration
+        steps = [e for k in range(60) for e in asset.passed_events(walk, duration * k / 60, duration * (k + 1) / 60)]
+        self.assertEqual(len(steps), len(asset.passed_events(walk, 0, duration)))
+        self.assertGreater(len(steps), 1)
+        with self.assertRaisesRegex(sinew.Error, "TOO_SMALL"):
+            asset.passed_events(walk, 0, 5 * duration, most=1)
+        ended = asset.ended_events(asset.find_clip("get_up_supine"), 0.5)
+        self.assertEqual([(e.name, e.kind) for e in ended], [(asset.find_event("helpless"), sinew.EventKind.END)])
+        self.assertEqual(len(asset.curves(walk, 0.3)), asset.info.curves)
+        jets = sinew.place_jets(asset.sample(walk, 0.3), (2, 0, 0), (0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+        travel, body = sinew.split_root(jets)
+        self.assertGreater(float(travel["velocity"][0][1]), 0.5)  # m/s, to the left now
+        self.assertAlmostEqual(float(travel["translation"][0][0]), 2, 0)
+        chest = asset.find_role(sinew.Role.CHEST)
+        self.assertGreater(float(asset.socket(jets, chest, (0, 0, 0.1))["velocity"][0][1]), 0.5)
+        speed = sinew.CurveValue(0, 0, 0)
+        for _ in range(60):
+            sinew.smooth(speed, 2, 0.1, 1 / 60)
+        self.assertAlmostEqual(speed.value, 2, 3)
+        with self.assertRaisesRegex(sinew.Error, "half_life"):
+            sinew.smooth(speed, 2, 0, 1 / 60)
+
+    def test_what_was_set_is_read_again(self):
+        scene = Everything()
+        hero = scene.character
+        hero.set_strength(0.5)
+        hero.set_detail(2, sinew.Level.PARTIAL, 3, True)
+        self.assertEqual((hero.strength, hero.detail), (0.5, (2, sinew.Level.PARTIAL, 3, True)))
+        hero.park()
+        self.assertTrue(hero.parked)
+        hero.park(False)
+        self.assertFalse(hero.parked)
+        self.assertEqual(hero.ground[0], hero.report.ground_force)
+        hero.ride(0.01, 0, 0)
+        self.assertAlmostEqual(hero.displacement[0], 0.01)
+        hero.come_back()
+        self.assertEqual([scene.world.count(k) for k in (sinew.BodyKind.CHARACTER, sinew.BodyKind.PROP)], [1, 1])
+        self.assertNotEqual(scene.world.snapshot_field(100)[1], "")
+        scene.world.add_convex_solid([(0, 0, 1, 0.5), (0, 0, -1, 0.5)], 0.5)
+        with self.assertRaisesRegex(sinew.Error, "unit"):
+            scene.world.add_convex_solid([(0, 0, 2, 0.5)], 0.5)
+        scene.street.step(1 / 60)
+        self.assertAlmostEqual(scene.street.track(0).time, 1 / 60)
+        self.assertGreater(scene.street.root_velocity(0)[0], 0.5)
+        scene.street.set_strength(0, 0.5)
 
     def test_feet_stand_on_what_rays_met(self):
         asset = Everything().asset

@@ -85,7 +85,8 @@ class FuzzInputs {
   }
 
   std::mt19937_64 random_;
-  std::vector<std::uint64_t> assets_, graphs_, worlds_, people_, props_, loops_, effects_, bodies_, gone_;
+  std::vector<std::uint64_t> assets_, graphs_, worlds_, people_, props_, loops_, effects_, bodies_, sensors_,
+      gone_;
   std::vector<char> balanced_;  ///< what a behaviour saved
 
  private:

@@ -188,7 +188,11 @@ class FuzzMotion : protected FuzzInputs {
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, jets.data(), count));
     check(sinew_clip_sample(asset, index(2), number(0, 3), 1, 0, other.data(), count));
     if (rarely()) jets[std::size_t(below(20))].rotation[below(4)] = real(-1, 1);
-    switch (below(8)) {
+    switch (below(10)) {
+      case 8:
+        return place(asset, jets, count);
+      case 9:
+        return clip(asset);
       case 4:
         return change_over(asset, jets, other, count);
       case 5:
@@ -206,6 +210,46 @@ class FuzzMotion : protected FuzzInputs {
       default:
         return sinew_asset_subtract(asset, or_null(other.data()), below(2) * count, or_null(jets.data()),
                                     count);
+    }
+  }
+  sinew_status place(std::uint64_t asset, std::vector<sinew_jet>& jets, int count) {
+    sinew_pose to{};
+    turn(to);
+    sinew_jet travel, body, socket;
+    const sinew_transform palm{{0, 0, 0, real(0.99, 1.005)}, {real(-0.1, 0.1), 0, 0}};
+    switch (below(3)) {
+      case 0:
+        return sinew_place_jets(or_null(&to), or_null(jets.data()), count);
+      case 1:
+        return sinew_split_root(or_null(jets.data()), or_null(&travel), or_null(&body));
+      default:
+        return sinew_asset_get_socket(asset, or_null(jets.data()), count, index(22), or_null(&palm),
+                                      or_null(&socket));
+    }
+  }
+  sinew_status clip(std::uint64_t asset) {
+    sinew_clip_passage passage = settings(sinew_clip_passage_init);
+    passage.clip = index(6);
+    passage.before = number(-3, 10);
+    passage.now = passage.before + number(-1, 1);
+    passage.weight = number(0, 1);
+    passage.starts = below(2);
+    std::array<sinew_graph_event, 4> events;
+    std::array<sinew_curve_value, 4> curves;
+    std::int32_t count = 0;
+    const int room = rarely() ? -1 : below(5);
+    switch (below(4)) {
+      case 0:
+        return sinew_asset_get_passed_events(asset, or_null(&passage), or_null(events.data()), room,
+                                             or_null(&count));
+      case 1:
+        return sinew_asset_get_ended_events(asset, index(6), number(-3, 10), below(2), or_null(events.data()),
+                                            room, or_null(&count));
+      case 2:
+        return sinew_asset_sample_curves(asset, index(6), number(-3, 10), number(-1, 2), number(-1, 1),
+                                         or_null(curves.data()), room, or_null(&count));
+      default:
+        return sinew_smooth(or_null(&input_), real(-3, 3), real(0.01, 1), real(0, 0.1));
     }
   }
   /// Within one transition, or its beginning; some of its numbers get lost.
@@ -388,6 +432,7 @@ class FuzzMotion : protected FuzzInputs {
 
  private:
   sinew_look_state look_{};
+  sinew_curve_value input_{};
   sinew_feet_state feet_{};
   std::vector<float> transition_;
   const std::string graph_path_ = fixtures::sample_graph();

@@ -131,7 +131,14 @@ class Sequence : FuzzMotion {
     sinew_view view{};
     std::vector<sinew_transform> models(std::size_t(below(400)));
     std::int32_t count = 0;
-    switch (below(9)) {
+    float velocity[3];
+    switch (below(12)) {
+      case 9:
+        return sinew_crowd_set_strength(world, index(12), real(0, 2));
+      case 10:
+        return sinew_crowd_get_track(world, index(12), or_null(&track));
+      case 11:
+        return sinew_crowd_get_root_velocity(world, index(12), or_null(velocity));
       case 0:
         return worlds_.size() < 3 ? make_crowd() : sinew_crowd_create(0, nullptr, nullptr, nullptr, nullptr);
       case 1:
@@ -171,6 +178,7 @@ class Sequence : FuzzMotion {
     for (double& x : s.extent) x = number(0.02, 0.3);
     s.mass = number(0.1, 20);
     s.restitution = number(0, 1);
+    if (below(3) == 0) s.meets = static_cast<std::uint32_t>(random_());
     turn(s.pose);
     for (double& x : s.velocity) x = number(-10, 10);
     std::uint64_t out = 0;
@@ -181,7 +189,13 @@ class Sequence : FuzzMotion {
   sinew_status move() {
     sinew_transform pose{{0, 0, real(-0.1, 0.1), 1}, {real(-2, 2), real(-2, 2), real(0, 3)}};
     const float velocity[3] = {real(-5, 5), real(-5, 5), real(-5, 5)};
-    switch (below(4)) {
+    const double* const way = triple(rarely() ? 1e3 : 0.05);
+    const double ride[4] = {way ? way[0] : 0, way ? way[1] : 0, way ? way[2] : 0, number(-0.05, 0.05)};
+    switch (below(6)) {
+      case 4:
+        return sinew_character_ride(handle(people_), or_null(ride));
+      case 5:
+        return sinew_character_come_back(handle(people_));
       case 0:
         return sinew_prop_set_state(handle(props_), or_null(&pose), or_null(velocity), velocity);
       case 1:
@@ -227,9 +241,15 @@ class Sequence : FuzzMotion {
     depth_ = number(-0.1, 0.5);
     host.context = &depth_;
     host.distance = rarely() ? nullptr : slope;
+    const double faces[3][4] = {{0, 0, 1, number(-0.2, 0.2)}, {0, 1, 0, number(0, 1)}, {1, 0, 0, 1}};
+    sinew_convex_solid solid = settings(sinew_convex_solid_init);
+    solid.faces = or_null(faces[0]);
+    solid.face_count = rarely() ? -1 : below(4);
     if (shapes_ > 4) return SINEW_OK;
     ++shapes_;
-    switch (below(3)) {
+    switch (below(4)) {
+      case 3:
+        return sinew_world_add_convex_solid(handle(worlds_), or_null(&solid));
       case 0:
         return sinew_world_add_obstacle(handle(worlds_), or_null(&box));
       case 1:
@@ -351,7 +371,19 @@ class Sequence : FuzzMotion {
     sinew_transform pose{};
     double numbers[3];
     float force[3];
-    switch (below(6)) {
+    std::int32_t level = 0, flag = 0, every = 0;
+    switch (below(10)) {
+      case 6:
+        return sinew_character_get_strength(handle(people_), or_null(force));
+      case 7:
+        return sinew_character_get_detail(handle(people_), or_null(numbers), or_null(&level), &every, &flag);
+      case 8:
+        return sinew_character_get_parked(handle(people_), or_null(&flag));
+      case 9: {
+        double place[3], velocity[3];
+        return sinew_character_get_ground(handle(people_), or_null(numbers), place, or_null(velocity),
+                                          numbers + 1);
+      }
       case 0:
         return sinew_character_get_report(handle(people_), or_null(&report));
       case 1:
@@ -372,7 +404,15 @@ class Sequence : FuzzMotion {
     std::uint64_t bytes = 0;
     std::vector<sinew_transform> models(std::size_t(below(200)));
     std::int32_t count = 0;
-    switch (below(3)) {
+    sinew_snapshot_field field{};
+    const sinew_body a{index(6), index(3), 0}, b{index(6), index(3), 0};
+    switch (below(6)) {
+      case 5:
+        return sinew_world_keep_apart(handle(worlds_), or_null(&a), or_null(&b), below(2));
+      case 3:
+        return sinew_world_get_count(handle(worlds_), index(6), or_null(&count));
+      case 4:
+        return sinew_world_get_snapshot_field(handle(worlds_), random_() % 4000, or_null(&field));
       case 0:
         return sinew_world_get_report(handle(worlds_), or_null(&report));
       case 1:
@@ -406,9 +446,32 @@ class Sequence : FuzzMotion {
       q.accept = [](void*, const sinew_body* body) -> std::int32_t { return body->index % 2; };
     std::array<sinew_hit, 4> hits;
     std::int32_t count = 0;
+    if (below(3) == 0) return sense(q);
     const auto find = below(2) == 0 ? sinew_world_cast : sinew_world_overlap;
     return find(handle(worlds_), or_null(&q), or_null(hits.data()), rarely() ? index(4) % 5 : 4,
                 or_null(&count));
+  }
+  sinew_status sense(const sinew_query& q) {
+    std::array<sinew_sensor_event, 4> events;
+    std::array<sinew_body, 4> bodies;
+    std::int32_t count = 0;
+    std::uint64_t out = 0;
+    switch (sensors_.size() < 3 ? 0 : below(4)) {
+      case 0: {
+        const sinew_status status =
+            sinew_world_add_sensor(handle(worlds_), or_null(&q), rarely() ? index(4) : 4, or_null(&out));
+        if (status == SINEW_OK) sensors_.push_back(out);
+        return status;
+      }
+      case 1:
+        return sinew_sensor_place(handle(sensors_), or_null(&q));
+      case 2:
+        check(sinew_sensor_update(handle(sensors_), or_null(&count)));
+        return sinew_sensor_get_events(handle(sensors_), or_null(events.data()), rarely() ? -1 : below(5),
+                                       or_null(&count));
+      default:
+        return sinew_sensor_get_bodies(handle(sensors_), or_null(bodies.data()), below(5), or_null(&count));
+    }
   }
   sinew_status draw() {
     sinew_draw_settings s = settings(sinew_draw_settings_init);
@@ -458,7 +521,7 @@ class Sequence : FuzzMotion {
     std::erase(of, one);
     gone_.push_back(one);
     if (world)
-      for (auto* inside : {&people_, &props_, &loops_, &effects_, &bodies_}) {
+      for (auto* inside : {&people_, &props_, &loops_, &effects_, &bodies_, &sensors_}) {
         const auto gone = [&](std::uint64_t h) {
           return (h << 4 >> 24) == (one << 4 >> 24);
         };  // its slot and serial

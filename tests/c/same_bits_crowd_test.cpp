@@ -133,6 +133,42 @@ TEST(CInterfaceCrowd, GoesTheWayOfTheSameRunInCpp) {
         << n;
 }
 
+TEST(CInterfaceCrowd, TellsWhatIsPlayedAndHowFast) {
+  const Street scene;
+  sinew_crowd_track track{};
+  EXPECT_EQ(sinew_crowd_get_track(scene.street, 3, &track), SINEW_INVALID_ARGUMENT) << "it plays nothing yet";
+  scene.everybody_plays();
+  for (int frame = 0; frame < 10; ++frame) ASSERT_EQ(sinew_world_step(scene.street, 1 / 60.f), SINEW_OK);
+  ASSERT_EQ(sinew_crowd_get_track(scene.street, 3, &track), SINEW_OK) << sinew_last_reason();
+  const sinew_crowd_track begun = Street::track(3);
+  EXPECT_EQ(track.character, 3);
+  EXPECT_EQ(track.clip, begun.clip);
+  EXPECT_NEAR(track.time, begun.time + 10 / 60.0, 1e-6) << "ten steps of a float's 1/60 s";
+  EXPECT_EQ(track.rate, 1);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(track.place.translation[k], begun.place.translation[k], 1e-6);
+  float velocity[3];
+  ASSERT_EQ(sinew_crowd_get_root_velocity(scene.street, 3, velocity), SINEW_OK) << sinew_last_reason();
+  EXPECT_GT(std::hypot(velocity[0], velocity[1]), 0.5f) << "it walks";
+  EXPECT_EQ(sinew_crowd_get_root_velocity(scene.street, kPeople, velocity), SINEW_INVALID_ARGUMENT);
+}
+
+TEST(CInterfaceCrowd, WhoIsWeakEntersTheWorldAsWeak) {
+  const Street scene;
+  scene.everybody_plays();
+  ASSERT_EQ(sinew_crowd_set_strength(scene.street, 5, 0.005f), SINEW_OK) << sinew_last_reason();
+  ASSERT_EQ(sinew_world_step(scene.street, 1 / 60.f), SINEW_OK);
+  const sinew_character weak = scene.member(5).character;
+  ASSERT_NE(weak, 0u) << "what is left does not carry its arms";
+  float strength = 0;
+  ASSERT_EQ(sinew_character_get_strength(weak, &strength), SINEW_OK);
+  EXPECT_EQ(strength, 0.005f);
+  ASSERT_EQ(sinew_crowd_set_strength(scene.street, 5, 0.5f), SINEW_OK);
+  ASSERT_EQ(sinew_character_get_strength(weak, &strength), SINEW_OK);
+  EXPECT_EQ(strength, 0.5f);
+  EXPECT_EQ(sinew_crowd_set_strength(scene.street, 5, -1), SINEW_INVALID_ARGUMENT);
+  EXPECT_EQ(sinew_crowd_set_strength(scene.world, 5, 1), SINEW_INVALID_ARGUMENT) << "no crowd";
+}
+
 TEST(CInterfaceCrowd, OutlivesTheAssetsHandleAndTakesObstaclesAndCharacters) {
   Street scene;
   scene.everybody_plays();

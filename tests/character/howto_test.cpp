@@ -9,6 +9,7 @@
 #include "sinew/character/contact_events.h"
 #include "sinew/character/debug_draw.h"
 #include "sinew/character/queries.h"
+#include "sinew/character/sensor.h"
 #include "sinew/effects/wind.h"
 
 namespace sinew {
@@ -58,6 +59,15 @@ TEST(Readme, LookFindsTheCrateAndThereIsNoRoomBesideIt) {
 #include "queries.inc"
   EXPECT_TRUE(status.ok()) << status.reason;
   EXPECT_EQ(log.lines, (std::vector<std::string>{"a crate in sight", "no room to stand"}));
+}
+
+TEST(Readme, DoorTellsOfWhoStandsThere) {
+  Playing<float> scene;
+  World<float>& world = scene.world;
+  Log log;
+#include "sensors.inc"
+  EXPECT_TRUE(status.ok()) << status.reason;
+  EXPECT_EQ(log.lines, std::vector<std::string>{"somebody is at the door"});
 }
 
 TEST(Readme, ViewShowsBonesAndSaysWhatTheStepDid) {

@@ -89,6 +89,22 @@ TEST(Population, WhoIsTooWeakForTheClipEntersWithItsPoseAndSpeed) {
   EXPECT_LT(most, 0.01f) << "within a step gravity makes 1.4 mm of a free fall, and no start from rest shows";
 }
 
+TEST(Population, WhoIsWeakIsAsWeakInTheWorldAndWhoComesInHisPlaceIsNot) {
+  People people(2, 1);
+  ASSERT_TRUE(people.population->set_strength(1, 0.001f));
+  people.step();
+  ASSERT_TRUE(people.population->in_world(1));
+  EXPECT_EQ(people.population->solved(1).strength(), 0.001f);
+  ASSERT_TRUE(people.population->set_strength(1, 0.5f));
+  EXPECT_EQ(people.population->solved(1).strength(), 0.5f) << "at once";
+  ASSERT_TRUE(people.population->stop(1));
+  ASSERT_TRUE(people.population->push(0, 2, {20, 0, 0}));
+  ASSERT_TRUE(people.population->in_world(0));
+  EXPECT_EQ(people.population->solved(0).strength(), 1);
+  EXPECT_FALSE(people.population->set_strength(2, 1)) << "there is none";
+  EXPECT_FALSE(people.population->set_strength(0, -1));
+}
+
 TEST(Population, NeighboursOfOneWhoFallsAreCalledBeforeTheyAreTouched) {
   People people(3, 1.2f);
   people.step();

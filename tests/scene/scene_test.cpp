@@ -432,6 +432,25 @@ TEST(DemoScene, RunsOnAModelWithoutClipsAndRoles) {
   EXPECT_EQ(recording.frames.back().characters[0].unknown_dofs, 0) << "back in its rest pose";
 }
 
+TEST(Inside, IsKeptWhereItIsAskedForAndChangesNoPose) {
+  const Result plain = run(R"(, "clips": [{"clip": "stand"}], "strength": [[0, 0]], "root": [[0, "free"]])");
+  Recording shown;
+  shown.shows_inside = true;
+  Telemetry telemetry;
+  const convert::Error ran = run_scene(plain.scene, shown, telemetry, {});
+  ASSERT_FALSE(ran) << ran.message;
+  ASSERT_EQ(shown.frames.size(), plain.recording.frames.size());
+  bool touches = false;
+  for (std::size_t f = 0; f < shown.frames.size(); ++f) {
+    EXPECT_TRUE(plain.recording.frames[f].inside.lines.empty());
+    EXPECT_GT(shown.frames[f].inside.lines.size(), 20u) << "a line for each joint at least";
+    for (const auto& line : shown.frames[f].inside.lines) touches |= line.color == debug_colors::kForce;
+    const auto &a = shown.frames[f].characters[0].model, &b = plain.recording.frames[f].characters[0].model;
+    for (std::size_t j = 0; j < a.size(); ++j) ASSERT_EQ(a[j].translation, b[j].translation) << f;
+  }
+  EXPECT_TRUE(touches) << "who is limp comes to lie on the floor";
+}
+
 TEST(DemoScene, OwnCharacterGetsUpAlthoughItIsHeldByLessThanItsWeight) {
   auto asset = std::make_shared<Asset>();
   ASSERT_TRUE(load_asset(kAsset.c_str(), *asset));

@@ -40,6 +40,8 @@ struct RenderCommand {
     if (!size.empty() && std::sscanf(size.c_str(), "%dx%d", &options.width, &options.height) != 2)
       return {"--size is not WIDTHxHEIGHT"};
     options.overlay = !no_overlay;
+    if (options.inside && std::filesystem::path(input).extension() != ".json" && !demo)
+      return {"--inside is for scenes and --demo: an asset alone has no world"};
     if (std::filesystem::path(input).extension() == ".json") {
       sinew::scene::Scene scene;
       if (Error error = cli::load_scene(input, scheme, scene)) return error;
@@ -82,6 +84,7 @@ struct RenderCommand {
   Error render_scene(const sinew::scene::Scene& scene) {
     if (Error error = cli::check_outputs({output, telemetry_file}, {input})) return error;
     sinew::scene::Recording recording;
+    recording.shows_inside = options.inside;
     sinew::scene::Telemetry telemetry;
     if (Error error = sinew::scene::run_scene(scene, recording, telemetry, {}))
       return {input + ": " + error.message};
@@ -173,6 +176,10 @@ int main(int argc, char** argv) try {
   r->add_option("--telemetry", render.telemetry_file, "scenes: also write the telemetry CSV and its plot")
       ->type_name("FILE");
   r->add_flag("--no-overlay", render.no_overlay, "no text and no curves over the picture");
+  r->add_flag(
+      "--inside", render.options.inside,
+      "scenes: what the world has inside: skeletons, colliders, contacts with their forces, loads, what "
+      "is solved for, support, targets");
   r->add_flag("--json", render.json_output, "what was written, on standard output as JSON");
   cli::add_scheme(*r, render.scheme);
   render.source.add(*r);

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "render/camera.h"
+#include "render/inside.h"
 #include "render/overlay.h"
 #include "render/sink.h"
 #include "sinew/animation/curve_job.h"
@@ -51,6 +52,8 @@ std::string fault(const Options& o, const std::filesystem::path& output) {
     return "pass " + o.pass + " is of mode skin or shapes";
   if ((o.transparent || o.pass != "color") && output.extension() != ".png")
     return "passes and transparent pictures are .png";
+  if (o.inside && (o.transparent || o.pass != "color"))
+    return "what is inside is drawn over pictures that are neither transparent nor passes";
   if (!(o.fps >= 1 && o.fps <= 240)) return "fps is not between 1 and 240";
   if (!(o.start >= 0)) return "start is not a time from 0 s on";
   if (o.frames_per_revolution < 1) return "frames per revolution are not positive";
@@ -146,6 +149,8 @@ class Painter {
                        : o.pass == "id"     ? Pass::kId
                                             : Pass::kPicture};
     out->ids_ = stage.pass == Pass::kId;
+    out->inside_ = o.inside;
+    out->dark_ = stage.dark;
     out->aspect_ = float(stage.width) / float(stage.height);
     if (out->looks_.size() == 2 && clear) out->shift_ = 0.5f;
     out->width_ = o.width;
@@ -162,6 +167,7 @@ class Painter {
     if (looks_.size() == 1) {
       append_frame(rec, frame, looks_[0], ids_, geometry_);
       stage_->draw(geometry_, view, ground, out);
+      if (inside_) draw_inside(frame.inside, view, dark_, out);
       return;
     }
     for (std::size_t part = 0; part < looks_.size(); ++part) {
@@ -169,6 +175,7 @@ class Painter {
       View own = view;
       own.shift = part == 0 ? shift_ : -shift_;
       stage_->draw(geometry_, own, ground, part_);
+      if (inside_) draw_inside(frame.inside, own, dark_, part_);
       out.width = width_;
       out.height = part_.height;
       out.channels = part_.channels;
@@ -184,6 +191,7 @@ class Painter {
   Painter() = default;
   std::vector<Look> looks_;
   bool ids_ = false;  ///< colours say who it is
+  bool inside_ = false, dark_ = true;
   std::unique_ptr<Stage> stage_;
   float aspect_ = 1, shift_ = 0;
   int width_ = 0;

@@ -25,6 +25,7 @@ struct Options {
                                ///< 65535: nothing) | normal (in the world's axes, −1 … 1 as 0 … 255) | id (a
                                ///< colour for each thing: id_colors), the last two with alpha
   bool overlay = true;
+  bool inside = false;     ///< scenes: what the world has inside over the picture (Recording::shows_inside)
   double start = 0;        ///< s: scenes begin here; the moment of a single picture
   bool turntable = false;  ///< assets: the camera goes round
   int frames_per_revolution = 120;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/drawing.h"
 #include "sinew/io/asset.h"
 
 namespace sinew::scene {
@@ -54,6 +55,7 @@ struct Frame {
   std::vector<CharacterFrame> characters;
   std::vector<PropFrame> props;
   std::string caption;  ///< "walk · playback", "hit", … lower third; may be empty
+  Drawing inside;       ///< where Recording::shows_inside asks for it
 };
 
 struct Camera {
@@ -73,6 +75,7 @@ struct Recording {
   Camera camera;
   std::optional<float> ground = 0.f;  ///< m, height of the floor; none: drawn below everything
   std::vector<Collider> obstacles;    ///< static shapes in world space (joint unused)
+  bool shows_inside = false;          ///< asked for before the run: frames hold what the world has inside
   int plotted_joint = -1;             ///< torque curve in the overlay; -1: the most loaded over the recording
 };
 

@@ -7,6 +7,8 @@
 
 #include "scene/play.h"
 #include "scene/ties.h"
+#include "sinew/character/contact_events.h"
+#include "sinew/character/debug_draw.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew::scene {
@@ -21,6 +23,8 @@ class Runner {
   convert::Error run(const std::function<void(int, int)>& progress) {
     if (convert::Error error = play_.set_up()) return error;
     list_actors();
+    // Without contacts there is nothing to report, and nothing of them to draw.
+    if (recording_.shows_inside) static_cast<void>(report_contacts(world_, &ring_));
     const int frames = static_cast<int>(std::ceil(s_.duration * s_.frame_rate - 1e-9));
     const T h = T(1 / s_.frame_rate);
     for (int f = 0; f <= frames; ++f) {
@@ -183,6 +187,10 @@ class Runner {
       if (!play_.launched(p)) frame.props.back().world.translation.z() = kHidden;
     }
     record_particles(frame);
+    if (recording_.shows_inside) {
+      ring_.clear();
+      draw(world_, {}, frame.inside);
+    }
     recording_.frames.push_back(std::move(frame));
   }
 
@@ -191,6 +199,8 @@ class Runner {
   Telemetry& telemetry_;
   World<T> world_;
   Play<T> play_;
+  std::vector<ContactEvent> contacts_{1024};
+  ContactRing ring_{contacts_};                         ///< drawn contacts are those that are reported
   std::vector<std::vector<std::array<int, 2>>> edges_;  ///< [particle body] drawn, after the props
 };
 

@@ -15,4 +15,10 @@ inline sinew_body body_of(const BodyRef& body) {
   return {static_cast<sinew_body_kind>(body.kind), body.index, body.joint};
 }
 
+/// False where it is of no kind.
+inline bool read_body(const sinew_body& from, BodyRef& to) {
+  to = {static_cast<BodyKind>(from.kind), from.index, from.joint};
+  return from.kind >= SINEW_BODY_GROUND && from.kind <= SINEW_BODY_PARTICLES;
+}
+
 }  // namespace sinew::c

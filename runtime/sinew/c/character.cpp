@@ -32,6 +32,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("check_every must be 1 to 1000000", c.check_every, s.detail.check_every, 1, 1e6);
   f("", c.bake, s.detail.bake);
   f("no such tone", c.tone, s.tone);
+  f("", c.meets, s.meets);
 };
 
 constexpr const char* kOutside = "no such character in this world";
@@ -166,6 +167,14 @@ sinew_status sinew_character_set_strength(sinew_character character, float stren
   return change(character, [&](Character<float> c) { return c.set_strength(strength); });
 }
 
+sinew_status sinew_character_get_strength(sinew_character character, float* out) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    *out = c.strength();
+    return sinew_status(SINEW_OK);
+  });
+}
+
 sinew_status sinew_character_set_joint_strength(sinew_character character, int32_t joint, float strength) {
   return change(character, [&](Character<float> c) { return c.set_strength(joint, strength); });
 }
@@ -241,6 +250,19 @@ sinew_status sinew_character_set_detail(sinew_character character, double signif
   return change(character, [&](Character<float> c) { return c.set_detail(detail); });
 }
 
+sinew_status sinew_character_get_detail(sinew_character character, double* significance, sinew_level* most,
+                                        int32_t* check_every, int32_t* bake) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!significance || !most || !check_every || !bake) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    const CharacterDetail& detail = c.detail();
+    *significance = detail.significance;
+    *most = static_cast<sinew_level>(detail.most);
+    *check_every = detail.check_every;
+    *bake = detail.bake;
+    return sinew_status(SINEW_OK);
+  });
+}
+
 sinew_status sinew_character_get_displacement(sinew_character character, double* out) {
   return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
@@ -275,6 +297,17 @@ sinew_status sinew_character_displace(sinew_character character, const double* f
   });
 }
 
+sinew_status sinew_character_ride(sinew_character character, const double* further) {
+  if (!further) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  return change(character, [&](Character<float> c) {
+    return c.ride({further[0], further[1], further[2], further[3]});
+  });
+}
+
+sinew_status sinew_character_come_back(sinew_character character) {
+  return change(character, [](Character<float> c) { return c.come_back(); });
+}
+
 sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint, const double* point,
                                            const double* impulse) {
   return push(character, point, impulse,
@@ -294,6 +327,27 @@ sinew_status sinew_character_park(sinew_character character, int32_t parked) {
   return with_character(character, [&](OwnedWorld& w, const Character<float>&) {
     const int index = index_of(character);
     return answer(parked != 0 ? w.world.park_character(index) : w.world.unpark_character(index));
+  });
+}
+
+sinew_status sinew_character_get_parked(sinew_character character, int32_t* out) {
+  return with_character(character, [&](const OwnedWorld& w, const Character<float>&) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    *out = w.world.parked(index_of(character));
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_character_get_ground(sinew_character character, double* force, double* place,
+                                        double* velocity, double* turn_rate) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!force || !place || !velocity || !turn_rate) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    const BearingGround& ground = c.ground();
+    *force = ground.force;
+    std::copy_n(ground.place.data(), 3, place);
+    std::copy_n(ground.velocity.data(), 3, velocity);
+    *turn_rate = ground.turn_rate;
+    return sinew_status(SINEW_OK);
   });
 }
 

@@ -1,4 +1,5 @@
 // Crowds of the C interface: worlds that step one.
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -113,6 +114,32 @@ sinew_status sinew_crowd_push(sinew_world world, int32_t character, int32_t join
     const Vec3<float> of = Eigen::Map<const Vec3<double>>(impulse).cast<float>();
     if (!of.allFinite()) return fail(SINEW_NOT_FINITE, "the impulse is not finite");
     return answer(crowd.push(character, joint, of));
+  });
+}
+
+sinew_status sinew_crowd_set_strength(sinew_world world, int32_t character, float strength) {
+  return with_member(world, character, [&](OwnedWorld&, Population& crowd) {
+    return answer(crowd.set_strength(character, strength));
+  });
+}
+
+sinew_status sinew_crowd_get_track(sinew_world world, int32_t character, sinew_crowd_track* out) {
+  return with_member(world, character, [&](const OwnedWorld& w, Population& crowd) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    const CrowdTrack& track = crowd.crowd().track(character);
+    if (!track.clip) return fail(SINEW_INVALID_ARGUMENT, "it plays nothing", character);
+    const auto clip = static_cast<int32_t>(track.clip - w.crowd_asset->clips.data());
+    *out = {character, clip, track.time.value, track.time.rate, {}};
+    ToC{}("", out->place, track.place.cast<double>());
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_crowd_get_root_velocity(sinew_world world, int32_t character, float* out) {
+  return with_member(world, character, [&](OwnedWorld&, Population& crowd) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    std::copy_n(crowd.crowd().root_velocity(character).data(), 3, out);
+    return sinew_status(SINEW_OK);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "sinew/c/call.h"
+#include "sinew/c/event.h"
 #include "sinew/c/fields.h"
 #include "sinew/c/layout.h"
 #include "sinew/graph/graph_recorder.h"
@@ -13,8 +14,6 @@
 namespace sinew::c {
 namespace {
 
-static_assert(int(EventKind::kInstant) == SINEW_EVENT_INSTANT &&
-              int(EventKind::kBegin) == SINEW_EVENT_BEGIN && int(EventKind::kEnd) == SINEW_EVENT_END);
 constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("events must be 0 to 65536", c.events, s.events, 0, 65536);
   f("place must be within 1e6 m", c.place[0], s.place[0], -1e6, 1e6);
@@ -83,19 +82,6 @@ sinew_status add_player(OwnedWorld& world, int index, const std::shared_ptr<cons
   player->ground = {read.ground, &world.world, read.layers, read.reach, all.below, all.context, {}};
   world.world.keep_with_state(player->block());
   return SINEW_OK;
-}
-
-sinew_graph_event event_of(const EventHit& hit) {
-  sinew_graph_event out{hit.event->name,
-                        static_cast<sinew_event_kind>(hit.kind),
-                        hit.weight,
-                        hit.seconds_ago,
-                        hit.event->begin,
-                        hit.event->end,
-                        {}};
-  static_assert(sizeof out.payload == sizeof hit.event->payload);
-  std::memcpy(out.payload, hit.event->payload.data(), sizeof out.payload);
-  return out;
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ enum class Kind : std::uint8_t {
   kLoop,
   kGraph,
   kEffect,
-  kParticles
+  kParticles,
+  kSensor
 };
 
 constexpr std::size_t kMostInWorld = 1u << 20;  ///< of a kind, that handles can tell apart

@@ -14,8 +14,10 @@
 #include "sinew/behaviour/behaviour.h"
 #include "sinew/c/graph_player.h"
 #include "sinew/c/handle.h"
+#include "sinew/c/sinew.h"
 #include "sinew/character/contact_events.h"
 #include "sinew/character/recording.h"
+#include "sinew/character/sensor.h"
 #include "sinew/character/world.h"
 #include "sinew/crowd/population.h"
 #include "sinew/effects/buoyancy.h"
@@ -60,6 +62,20 @@ struct OwnedEffect {
       effect;  ///< the world's; gone where World::effect() says so
 };
 
+/// The host's question, with the bodies that it knows.
+struct AskedAccept {
+  sinew_accept accept = nullptr;
+  void* context = nullptr;
+};
+
+/// A sensor, and whom the host has it pass by.
+struct OwnedSensor {
+  explicit OwnedSensor(std::size_t bodies) : sensor(bodies) {}
+
+  Sensor<float> sensor;
+  AskedAccept asked;  ///< the sensor's filter refers to it
+};
+
 /// A world, or a crowd's, and what the interface keeps for it.
 struct OwnedWorld {
   explicit OwnedWorld(const WorldSettings& settings) : alone(settings), world(*alone) {}
@@ -80,6 +96,7 @@ struct OwnedWorld {
   std::vector<JointJet<float>> jets;                        ///< of one character, as many as the largest has
   std::vector<std::unique_ptr<OwnedBehaviour>> behaviours;  ///< [character], or null
   std::vector<OwnedEffect> effects;  ///< in the order in which they were added, those that are gone too
+  std::vector<std::unique_ptr<OwnedSensor>> sensors;  ///< in the order in which they were added
   std::vector<ContactEvent> waiting;
   std::optional<ContactRing> ring;
   std::unique_ptr<Recorder<float>> recorder;

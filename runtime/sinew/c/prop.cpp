@@ -8,6 +8,10 @@
 #include "sinew/c/report.h"
 
 namespace sinew::c {
+
+template <>
+inline constexpr std::uint32_t kFirstSize<sinew_prop_settings> = 168;  // up to layers
+
 namespace {
 
 constexpr auto kProp = [](auto& c, auto& s, auto&& f) {
@@ -20,6 +24,7 @@ constexpr auto kProp = [](auto& c, auto& s, auto&& f) {
   f("velocity must be below 1e5 m/s", c.velocity, s.velocity, -1e5, 1e5);
   f("angular_velocity must be below 1e5 rad/s", c.angular_velocity, s.angular_velocity, -1e5, 1e5);
   f("", c.layers, s.layers);
+  f("", c.meets, s.meets);
 };
 
 constexpr auto kLoop = [](auto& c, auto& s, auto&& f) {

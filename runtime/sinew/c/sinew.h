@@ -149,6 +149,7 @@ typedef struct sinew_view {
 #include "sinew/c/sinew_behaviour.h"
 #include "sinew/c/sinew_crowd.h"
 #include "sinew/c/sinew_graph.h"
+#include "sinew/c/sinew_clip.h"
 #include "sinew/c/sinew_prop.h"
 #include "sinew/c/sinew_effect.h"
 #include "sinew/c/sinew_particles.h"

@@ -51,13 +51,15 @@ typedef struct sinew_character_settings {
   double strength;         ///< scales every muscle; 0 = ragdoll, infinity = pure playback
   int32_t ground_contact;  ///< flag
   int32_t self_collision;  ///< flag
-  uint32_t layers;         ///< bits that queries choose by
+  uint32_t layers;         ///< bits that queries and `meets` choose by
   sinew_level most;        ///< at most this
   double significance;     ///< the budget takes from the least significant first
   int32_t check_every;     ///< steps from one check of the muscles to the next, at least 1
   int32_t bake;            ///< flag: hands, feet and toes dynamic now and then
   sinew_tone tone;         ///< of all muscles
   int32_t unused;          ///< 0
+  uint32_t meets;          ///< touches who has one of these bits in its layers, and would touch it, too
+  int32_t unused2;         ///< 0
 } sinew_character_settings;
 
 /// What the last step did with a character or prop: CharacterReport.
@@ -143,6 +145,8 @@ SINEW_API sinew_status sinew_character_set_target(sinew_character character, con
 SINEW_API sinew_status sinew_character_reset(sinew_character character);
 /// Of all muscles, at least 0.
 SINEW_API sinew_status sinew_character_set_strength(sinew_character character, float strength);
+/// As it was set last, of all muscles.
+SINEW_API sinew_status sinew_character_get_strength(sinew_character character, float* out);
 /// Of the subtree below a joint, of one muscle, of all muscles of a group: all multiply.
 SINEW_API sinew_status sinew_character_set_joint_strength(sinew_character character, int32_t joint,
                                                           float strength);
@@ -177,6 +181,9 @@ SINEW_API sinew_status sinew_character_set_help(sinew_character character, doubl
 /// significance, most, check_every and bake of its settings.
 SINEW_API sinew_status sinew_character_set_detail(sinew_character character, double significance,
                                                   sinew_level most, int32_t check_every, int32_t bake);
+/// As they were set last.
+SINEW_API sinew_status sinew_character_get_detail(sinew_character character, double* significance,
+                                                  sinew_level* most, int32_t* check_every, int32_t* bake);
 /// Where a grounded character follows its animation since something moved it: [3] x, y (m), yaw (rad).
 SINEW_API sinew_status sinew_character_get_displacement(sinew_character character, double out[3]);
 /// m, by which that is higher.
@@ -187,6 +194,14 @@ SINEW_API sinew_status sinew_character_take_displacement(sinew_character charact
 SINEW_API sinew_status sinew_character_displace(sinew_character character, const double further[3]);
 /// Puts its animation higher, by m.
 SINEW_API sinew_status sinew_character_raise(sinew_character character, double further);
+/// Before a step, of an animation that is taken along in it by what it stands on: its targets are put
+/// elsewhere as by sinew_character_displace and sinew_character_raise together, by [4] x, y (m), yaw (rad), z
+/// (m), and the next one has the root's speed of that way. The body is where it is wanted then.
+SINEW_API sinew_status sinew_character_ride(sinew_character character, const double further[4]);
+/// A grounded root that moves nearly as its animation wants it (6 cm, 6 degrees, 0.12 m/s and 0.6 rad/s of a
+/// human) is led back onto it from the end of the next step on, as fast as it is. What the ground cannot give
+/// then is help that no report counts.
+SINEW_API sinew_status sinew_character_come_back(sinew_character character);
 /// A hit: impulse [3] (N s, world) at a world point [3] on a joint's body, at the beginning of the next step.
 SINEW_API sinew_status sinew_character_apply_impulse(sinew_character character, int32_t joint,
                                                      const double point[3], const double impulse[3]);
@@ -195,8 +210,15 @@ SINEW_API sinew_status sinew_character_apply_force(sinew_character character, in
                                                    const double point[3], const double force[3]);
 /// Out of the world, where it costs nothing and touches nobody; or back, onto its target, as by reset.
 SINEW_API sinew_status sinew_character_park(sinew_character character, int32_t parked);
-/// What the last step did with it.
+/// Flag: it is out of the world.
+SINEW_API sinew_status sinew_character_get_parked(sinew_character character, int32_t* out);
+/// What the last step did with it. Energies and momenta of who was only played are worked out here:
+/// O(bodies).
 SINEW_API sinew_status sinew_character_get_report(sinew_character character, sinew_character_report* out);
+/// The ground_… of its report alone, for nothing: the force (N, up; 0: nothing bears it), where it presses
+/// [3] (m, world), and how that moves [3] (m/s) and turns about the vertical (rad/s).
+SINEW_API sinew_status sinew_character_get_ground(sinew_character character, double* force, double place[3],
+                                                  double velocity[3], double* turn_rate);
 /// Where to read without a copy. The memory stays while the world lives; what is in it is up to date until
 /// the world's next step, reset or restore: ask again then.
 SINEW_API sinew_status sinew_character_get_view(sinew_character character, sinew_view_kind kind,

@@ -75,6 +75,13 @@ SINEW_API sinew_status sinew_crowd_stop(sinew_world world, int32_t character);
 /// the world has no place left.
 SINEW_API sinew_status sinew_crowd_push(sinew_world world, int32_t character, int32_t joint,
                                         const double* impulse);
+/// Of all its muscles, at least 0, infinity: never overloaded; on its clip and in the world, until it is
+/// stopped.
+SINEW_API sinew_status sinew_crowd_set_strength(sinew_world world, int32_t character, float strength);
+/// What it plays, at the time (s) that it is at; refused of one that plays nothing.
+SINEW_API sinew_status sinew_crowd_get_track(sinew_world world, int32_t character, sinew_crowd_track* out);
+/// [3] m/s, world, of its root, as its clip moves it.
+SINEW_API sinew_status sinew_crowd_get_root_velocity(sinew_world world, int32_t character, float out[3]);
 /// Of one that plays.
 SINEW_API sinew_status sinew_crowd_get_member(sinew_world world, int32_t character, sinew_crowd_member* out);
 /// Of the crowd as a whole.

@@ -250,6 +250,19 @@ SINEW_API sinew_status sinew_asset_place_feet(sinew_asset asset, const sinew_fee
                                               const sinew_foot feet[2], const sinew_jet* grounds,
                                               int32_t ground_count, sinew_feet_state* state, sinew_jet* jets,
                                               int32_t count);
+/// Moves a pose by `place`: of `jets` the root's, the first one, is turned and shifted, with its motion, into
+/// the axes that `place` leads to. What a clip shows at the origin is shown there then.
+SINEW_API sinew_status sinew_place_jets(const sinew_pose* place, sinew_jet* jets, int32_t count);
+/// root = travel * body, both with exact derivatives: heading about Z and position on the ground, which a
+/// game's own controller may move, and sway, bob and lean, which stay. Refused where the root is upside down
+/// and has no heading.
+SINEW_API sinew_status sinew_split_root(const sinew_jet* root, sinew_jet* travel, sinew_jet* body);
+/// Motion in model space of a frame that is fixed to a joint: a palm, a holster. `offset`: frame to joint;
+/// null: the joint's own. From jets of all joints above it, after everything that changes them. What is let
+/// go there begins with that velocity (m/s, model axes); its turn is the angular velocity in the frame's
+/// axes.
+SINEW_API sinew_status sinew_asset_get_socket(sinew_asset asset, const sinew_jet* jets, int32_t jet_count,
+                                              int32_t joint, const sinew_transform* offset, sinew_jet* out);
 /// Where joints are in model space: out[capacity] of the first joints. `count`: of `jets`, also with
 /// SINEW_TOO_SMALL.
 SINEW_API sinew_status sinew_asset_get_model(sinew_asset asset, const sinew_jet* jets, int32_t jet_count,

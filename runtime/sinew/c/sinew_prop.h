@@ -20,8 +20,10 @@ typedef struct sinew_prop_settings {
   sinew_pose pose;             ///< in the world
   double velocity[3];          ///< m/s
   double angular_velocity[3];  ///< rad/s, world
-  uint32_t layers;             ///< bits that queries choose by
+  uint32_t layers;             ///< bits that queries and `meets` choose by
   int32_t unused;              ///< 0
+  uint32_t meets;              ///< touches who has one of these bits in its layers, and would touch it, too
+  int32_t unused2;             ///< 0
 } sinew_prop_settings;
 
 /// The library's defaults.

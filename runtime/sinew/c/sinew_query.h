@@ -15,7 +15,7 @@ typedef int32_t sinew_body_kind;
 enum sinew_body_kind_values {
   SINEW_BODY_GROUND = 0,     ///< the floor
   SINEW_BODY_OBSTACLE = 1,   ///< sinew_world_add_obstacle
-  SINEW_BODY_SHAPE = 2,      ///< a height field or the host's
+  SINEW_BODY_SHAPE = 2,      ///< a height field, a convex solid or the host's
   SINEW_BODY_CHARACTER = 3,  ///< sinew_world_add_character
   SINEW_BODY_PROP = 4,       ///< sinew_world_add_prop
   SINEW_BODY_PARTICLES = 5   ///< a strand, cloth or soft tissue
@@ -27,6 +27,15 @@ typedef struct sinew_body {
   int32_t index;         ///< in the order in which those of its kind were added
   int32_t joint;         ///< that carries it, of a character; else 0
 } sinew_body;
+
+/// How many characters, props or particle bodies a world has, parked ones included: their indices are below.
+SINEW_API sinew_status sinew_world_get_count(sinew_world world, sinew_body_kind kind, int32_t* out);
+
+/// Whether two of the characters, props and particle bodies (flag; `joint` does not count) pass through each
+/// other, whatever their layers say: a rider and his horse, who throws and what he throws. Wakes both. No
+/// part of snapshots. For a few pairs: O(pairs) here and for every two that come close.
+SINEW_API sinew_status sinew_world_keep_apart(sinew_world world, const sinew_body* a, const sinew_body* b,
+                                              int32_t apart);
 
 /// Where a touch is in its life.
 typedef int32_t sinew_contact_phase;
@@ -118,6 +127,34 @@ SINEW_API sinew_status sinew_world_cast(sinew_world world, const sinew_query* qu
 /// What touches it where it is, deepest first.
 SINEW_API sinew_status sinew_world_overlap(sinew_world world, const sinew_query* query, sinew_hit* out,
                                            int32_t capacity, int32_t* count);
+
+// ---- Sensors ----
+
+/// A ball or a capsule of a world that tells who comes in and who leaves. Nothing collides with it, a step
+/// does nothing for it, and snapshots do not hold it. Goes with its world.
+typedef uint64_t sinew_sensor;
+
+/// Who has come in or left.
+typedef struct sinew_sensor_event {
+  sinew_contact_phase phase;  ///< SINEW_CONTACT_BEGIN: is in it now; SINEW_CONTACT_END: is not any more
+  sinew_body body;            ///< `joint` is 0: a character is in it by any of its colliders
+} sinew_sensor_event;
+
+/// Set-up: for so many bodies (1 to 65536) in it at once. `query`: where it is and whom it looks for, as of
+/// sinew_world_overlap; characters, props and particles alone need a `kinds` that says so.
+SINEW_API sinew_status sinew_world_add_sensor(sinew_world world, const sinew_query* query, int32_t bodies,
+                                              sinew_sensor* out);
+/// Elsewhere, of another size or for others, from its next update on.
+SINEW_API sinew_status sinew_sensor_place(sinew_sensor sensor, const sinew_query* query);
+/// Looks who is in it. `left_out`: bodies that found no room; may be null. Allocates nothing.
+SINEW_API sinew_status sinew_sensor_update(sinew_sensor sensor, int32_t* left_out);
+/// Of the last update: those who left, then those who came. `count`: how many, also with SINEW_TOO_SMALL;
+/// twice the bodies that it has room for at most.
+SINEW_API sinew_status sinew_sensor_get_events(sinew_sensor sensor, sinew_sensor_event* out, int32_t capacity,
+                                               int32_t* count);
+/// Who is in it since the last update, by kind and index. `count`: how many, also with SINEW_TOO_SMALL.
+SINEW_API sinew_status sinew_sensor_get_bodies(sinew_sensor sensor, sinew_body* out, int32_t capacity,
+                                               int32_t* count);
 
 // ---- Debug drawing ----
 

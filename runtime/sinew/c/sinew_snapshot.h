@@ -26,6 +26,13 @@ typedef struct sinew_replay_report {
   const char* field;       ///< what it stands for
 } sinew_replay_report;
 
+/// Where a byte of a snapshot belongs.
+typedef struct sinew_snapshot_field {
+  int32_t body;      ///< character or prop, in the order in which they were added; -1: the world
+  int32_t unused;    ///< 0
+  const char* name;  ///< lives for ever; "" where there is no such byte
+} sinew_snapshot_field;
+
 /// Writes flat bytes; of a crowd's world who plays what, too. `size`: how many were written, or, with
 /// SINEW_TOO_SMALL, how many there may be at most: out = NULL and capacity 0 ask for it. Allocates nothing.
 SINEW_API sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part part, void* out,
@@ -34,6 +41,10 @@ SINEW_API sinew_status sinew_world_save(sinew_world world, sinew_snapshot_part p
 /// same inputs it goes on to the bit.
 SINEW_API sinew_status sinew_world_restore(sinew_world world, sinew_snapshot_part part, const void* bytes,
                                            size_t size);
+/// What a byte of the state that sinew_world_save would write now stands for: where two machines differ.
+/// SINEW_UNSUPPORTED of a world with a crowd.
+SINEW_API sinew_status sinew_world_get_snapshot_field(sinew_world world, uint64_t byte,
+                                                      sinew_snapshot_field* out);
 /// From now on (begin: flag) steps are recorded, in the calling thread alone; or no more. Steps allocate
 /// then.
 SINEW_API sinew_status sinew_world_record(sinew_world world, int32_t begin);

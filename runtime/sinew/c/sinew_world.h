@@ -126,6 +126,18 @@ typedef struct sinew_height_field {
   double restitution;     ///< 0 to 1
 } sinew_height_field;
 
+/// A convex solid that does not move, by the half spaces that it is the intersection of: a ramp, a rock.
+typedef struct sinew_convex_solid {
+  uint32_t size;        ///< bytes of this struct, as the caller knows it
+  int32_t face_count;   ///< of `faces`, 1 to 65536
+  const double* faces;  ///< [face][4] unit outward normal, and m from the world's origin along it; copied
+  uint32_t layers;      ///< bits that queries choose by
+  int32_t unused;       ///< 0
+  double inner_radius;  ///< m, of a ball that fits inside
+  double friction;      ///< at least 0
+  double restitution;   ///< 0 to 1
+} sinew_convex_solid;
+
 /// Signed distance (m, negative inside) of a world point from something that does not move, and the outward
 /// unit normal there. Called within steps, often, also from job threads: the same answer to the same point,
 /// no lock, no call of Sinew.
@@ -146,12 +158,17 @@ typedef struct sinew_host_shape {
 SINEW_API sinew_status sinew_obstacle_init(sinew_obstacle* settings);
 /// The library's defaults.
 SINEW_API sinew_status sinew_height_field_init(sinew_height_field* settings);
+/// The library's defaults; faces are none.
+SINEW_API sinew_status sinew_convex_solid_init(sinew_convex_solid* settings);
 /// The library's defaults.
 SINEW_API sinew_status sinew_host_shape_init(sinew_host_shape* settings);
 /// Set-up.
 SINEW_API sinew_status sinew_world_add_obstacle(sinew_world world, const sinew_obstacle* settings);
 /// Set-up. `heights` are copied.
 SINEW_API sinew_status sinew_world_add_height_field(sinew_world world, const sinew_height_field* settings);
+/// Set-up. `faces` are copied. Over edges and corners what is met is as if they were not rounded off.
+/// sinew_last_index(): the face at fault.
+SINEW_API sinew_status sinew_world_add_convex_solid(sinew_world world, const sinew_convex_solid* settings);
 /// Set-up. `context` must outlive the world.
 SINEW_API sinew_status sinew_world_add_host_shape(sinew_world world, const sinew_host_shape* settings);
 

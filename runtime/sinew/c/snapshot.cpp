@@ -70,6 +70,16 @@ sinew_status sinew_world_restore(sinew_world world, sinew_snapshot_part part, co
   });
 }
 
+sinew_status sinew_world_get_snapshot_field(sinew_world world, uint64_t byte, sinew_snapshot_field* out) {
+  return with_world(world, [&](const OwnedWorld& w) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (w.crowd) return fail(SINEW_UNSUPPORTED, "fields of a crowd's snapshots have no names");
+    const SnapshotField field = w.world.snapshot_field(std::size_t(byte));
+    *out = {field.state, 0, field.name};
+    return sinew_status(SINEW_OK);
+  });
+}
+
 sinew_status sinew_world_record(sinew_world world, int32_t begin) {
   return with_recorded(world, [&](OwnedWorld& w) {
     w.recorder = begin != 0 ? std::make_unique<Recorder<float>>(w.world) : nullptr;

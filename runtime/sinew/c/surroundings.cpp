@@ -1,7 +1,8 @@
-// What stands in a world of the C interface: obstacles, height fields, the host's own shapes.
+// What stands in a world of the C interface: obstacles, height fields, convex solids, the host's own shapes.
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
@@ -62,6 +63,37 @@ constexpr auto kHost = [](auto& c, auto& s, auto&& f) {
   f("half_thickness must be above 1e-6 m", c.half_thickness, s.half_thickness, 1e-6, 1e9);
 };
 
+struct Solid {
+  Surface surface;
+  double inner_radius = 0.1;
+  int faces = 0;
+};
+
+constexpr int kMostFaces = 1 << 16;
+
+constexpr auto kSolid = [](auto& c, auto& s, auto&& f) {
+  list_surface(c, s.surface, f);
+  f("face_count must be 0 to 65536", c.face_count, s.faces, 0, kMostFaces);
+  f("inner_radius must be above 1e-6 m", c.inner_radius, s.inner_radius, 1e-6, 1e6);
+};
+
+/// Normals that are unit, within reach?
+sinew_status read_faces(const sinew_convex_solid& from, std::vector<ConvexSolid::Face>& to) {
+  if (!from.faces) return fail(SINEW_INVALID_ARGUMENT, kNull);
+  if (from.face_count < 1) return fail(SINEW_INVALID_ARGUMENT, "a convex solid has a face at least");
+  for (int k = 0; k < from.face_count; ++k) {
+    const double* const face = from.faces + std::size_t(k) * 4;
+    const Vec3<double> normal(face[0], face[1], face[2]);
+    if (!normal.allFinite() || !std::isfinite(face[3]))
+      return fail(SINEW_NOT_FINITE, "a face is not finite", k);
+    if (!(std::abs(normal.norm() - 1) < 0.01))
+      return fail(SINEW_INVALID_ARGUMENT, "a face's normal must be a unit vector", k);
+    if (std::abs(face[3]) > 1e6) return fail(SINEW_OUT_OF_RANGE, "a face must be within 1e6 m", k);
+    to.push_back({normal.normalized(), face[3]});
+  }
+  return SINEW_OK;
+}
+
 /// Asks the host. An answer that is none is far away: NaN would go through everything.
 class HostShape final : public StaticShape {
  public:
@@ -118,6 +150,10 @@ sinew_status sinew_height_field_init(sinew_height_field* settings) {
   return init<Field>(settings, kField);
 }
 
+sinew_status sinew_convex_solid_init(sinew_convex_solid* settings) {
+  return init<Solid>(settings, kSolid);
+}
+
 sinew_status sinew_host_shape_init(sinew_host_shape* settings) {
   return init<HostSurface>(settings, kHost);
 }
@@ -144,6 +180,17 @@ sinew_status sinew_world_add_height_field(sinew_world world, const sinew_height_
                      std::make_unique<HeightField>(std::span(settings->heights, count),
                                                    std::size_t(field.columns), field.corner, field.spacing),
                      field.surface);
+  });
+}
+
+sinew_status sinew_world_add_convex_solid(sinew_world world, const sinew_convex_solid* settings) {
+  return set_up(world, [&](OwnedWorld& w) {
+    if (!settings) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    Solid solid;
+    if (const sinew_status status = read_settings(settings, solid, kSolid); status != SINEW_OK) return status;
+    std::vector<ConvexSolid::Face> faces;
+    if (const sinew_status status = read_faces(*settings, faces); status != SINEW_OK) return status;
+    return add_shape(w, std::make_unique<ConvexSolid>(faces, solid.inner_radius), solid.surface);
   });
 }
 

@@ -637,7 +637,8 @@ std::span<Contact<T>> ContactFinder<T>::find(const WorldSettings& world, const S
   for (int n = 0; n < static_cast<int>(states.size()); ++n) {
     if (states[n]->settings.ground_contact) meet_static(n, surroundings);
     for (int m = 0; m < static_cast<int>(states.size()); ++m)
-      if (m != n ? world.body_contact : states[n]->settings.self_collision) meet_tree(n, m);
+      if (m != n ? world.body_contact && states[n]->may_meet(*states[m]) : states[n]->settings.self_collision)
+        meet_tree(n, m);
   }
   begin_all();
   return contacts_;

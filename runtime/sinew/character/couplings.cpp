@@ -13,6 +13,24 @@ int Couplings<T>::add(Coupling<T> coupling) {
 }
 
 template <class T>
+bool Couplings<T>::are_apart(int a, int b) const {
+  return std::any_of(apart_.begin(), apart_.end(), [&](const BodyPair& p) {
+    return p.body_a < 0 && p.body_b < 0 &&
+           ((p.state_a == a && p.state_b == b) || (p.state_a == b && p.state_b == a));
+  });
+}
+
+template <class T>
+void Couplings<T>::set_apart(int a, int b, bool apart) {
+  if (apart == are_apart(a, b)) return;
+  if (apart) return keep_apart({a, -1, b, -1});
+  std::erase_if(apart_, [&](const BodyPair& p) {
+    return p.body_a < 0 && p.body_b < 0 &&
+           ((p.state_a == a && p.state_b == b) || (p.state_a == b && p.state_b == a));
+  });
+}
+
+template <class T>
 void Couplings<T>::drop_last() {
   all_.pop_back();
 }

@@ -23,6 +23,10 @@ class Couplings {
   void drop_last();
   /// Set-up: two bodies never touch each other.
   void keep_apart(const BodyPair& pair) { apart_.push_back(pair); }
+  /// Of whole states.
+  void set_apart(int a, int b, bool apart);
+  /// Whether no body of one ever touches one of the other.
+  bool are_apart(int a, int b) const;
   /// Adds what all of them bring to solves, after all states; what they may tie together is solved as one.
   void count_in(States states, SolveCapacities& rooms);
   /// What one of them brings to a solve, as counted.

@@ -133,6 +133,7 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
   const auto meet = [&](int n, int other) {
+    if (!states[n]->may_meet(*states[other]) || couplings.are_apart(n, other)) return false;
     const T margin = (states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin)) *
                      std::max(states[n]->tree.scale.length, states[other]->tree.scale.length);
     return contacts->boxes_come_close(box(*states[n], n, *contacts, h),

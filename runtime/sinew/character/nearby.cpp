@@ -169,7 +169,7 @@ void find_moving(const CharacterState<T>& s, const Surroundings& around, const M
   const auto self = std::find(members.states.begin(), members.states.end(), &s) - members.states.begin();
   for (std::size_t n = 0; n < members.states.size(); ++n) {
     CharacterState<T>& other = *members.states[n];
-    if (&other == &s ||
+    if (&other == &s || !s.may_meet(other) ||
         kept_apart(around.apart, members.indices[static_cast<std::size_t>(self)], members.indices[n]))
       continue;
     if (other.is_carrier())

@@ -297,6 +297,10 @@ struct CharacterState {
   int body_of(int joint) const;
   void update_model();
   void bound_particles();
+  /// Whether the two touch each other as far as their layers are concerned.
+  bool may_meet(const CharacterState& other) const {
+    return (settings.meets & other.settings.layers) != 0 && (other.settings.meets & settings.layers) != 0;
+  }
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
   /// Has no joints but a free root, which is driven, as a platform: it carries what is on it, and gives way

@@ -164,6 +164,7 @@ void TouchingSets<T>::enclose(int member) {
 /// Who plays its animation with nothing but the ground under it touches props on which it may stand.
 template <class T>
 bool TouchingSets<T>::touch(int a, int b, T depth) const {
+  if (!states_[a]->may_meet(*states_[b])) return false;
   const auto may_stand = [&](const CharacterState<T>& s, const CharacterState<T>& on) {
     return s.grounded() && s.undisturbed() && on.is_prop && !on.is_particles;
   };

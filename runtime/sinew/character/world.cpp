@@ -245,6 +245,7 @@ int World<T>::add_prop(const PropSettings& prop, Status& status) {
   CharacterSettings limp;
   limp.root = RootDrive::kFree;
   limp.layers = prop.layers;
+  limp.meets = prop.meets;
   status = impl_->add(body, limp);
   if (!status) return -1;
   impl_->states.back()->is_prop = true;
@@ -271,6 +272,18 @@ Status World<T>::set_prop(int index, const Transform<T>& pose, const Vec3<T>& ve
   jet.velocity = velocity;
   jet.omega = pose.rotation.conjugate() * angular_velocity;
   s->reset_to_target(Vec3<T>::Zero());
+  return {};
+}
+
+template <class T>
+Status World<T>::keep_apart(const BodyRef& a, const BodyRef& b, bool apart) {
+  const int first = impl_->state_named(a), second = impl_->state_named(b);
+  if (first < 0 || second < 0)
+    return Status::error(Code::kInvalidArgument, "no such character, prop or body of particles",
+                         first < 0 ? a.index : b.index);
+  if (first == second) return Status::error(Code::kInvalidArgument, "a body and itself", a.index);
+  impl_->couplings.set_apart(first, second, apart);
+  for (const int n : {first, second}) impl_->states[n]->levels.wake = true;
   return {};
 }
 

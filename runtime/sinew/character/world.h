@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "sinew/animation/clip.h"
+#include "sinew/character/body_ref.h"
 #include "sinew/character/level_of_detail.h"
 #include "sinew/effects/effect.h"
 #include "sinew/effects/island_effect.h"
@@ -91,7 +92,11 @@ struct CharacterSettings {
   bool ground_contact = true;   ///< meets what is static: ground, obstacles, the host's shapes
   bool self_collision = false;  ///< between bodies that neither neighbour nor overlap at rest
   CharacterDetail detail;       ///< see Character::set_detail()
-  std::uint32_t layers = 1;     ///< bits that queries (queries.h) choose by; collisions do not ask
+  std::uint32_t layers = 1;     ///< bits by which queries (queries.h) and `meets` choose
+  /// Of characters, props and particles it touches those with one of these bits in their layers, that would
+  /// touch it, too: either side is enough to pass through each other. What is static does not ask; see
+  /// `ground_contact`. Single pairs: World::keep_apart().
+  std::uint32_t meets = ~0u;
 };
 
 /// What the last step did with one character.
@@ -143,6 +148,7 @@ struct PropSettings {
   Vec3<double> velocity = Vec3<double>::Zero();          ///< m/s, of the origin of its shape
   Vec3<double> angular_velocity = Vec3<double>::Zero();  ///< rad/s, world
   std::uint32_t layers = 1;                              ///< see CharacterSettings::layers
+  std::uint32_t meets = ~0u;                             ///< see CharacterSettings::meets
 };
 
 /// What a world is made with; nothing changes it later.
@@ -330,6 +336,11 @@ class World {
   /// A height field, a convex solid, or the host's collision world. Not copied: it must outlive this world.
   Status add_obstacle(const StaticShape& shape, double friction = 0.8, double restitution = 0,
                       std::uint32_t layers = 1);
+
+  /// Whether two of the characters, props and particle bodies (`joint` does not count) pass through each
+  /// other, whatever their layers say: a rider and his horse, who throws and what he throws. Allocates; wakes
+  /// both. No part of snapshots. O(pairs) here and for every pair that comes close, so for a few.
+  Status keep_apart(const BodyRef& a, const BodyRef& b, bool apart = true);
 
   /// Ties two frames together; returns the loop's index, or -1. What is open closes at a walking pace.
   int add_loop(const LoopSettings& settings, Status& status);

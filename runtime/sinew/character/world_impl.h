@@ -121,6 +121,16 @@ struct World<T>::Impl {
     const bool any = index >= 0 && index < static_cast<int>(list.size());
     return any ? states[list[index]].get() : nullptr;
   }
+  /// Number of a character's, prop's or particle body's state; −1 where a name means none.
+  int state_named(const BodyRef& body) const {
+    const auto of = [&](const std::vector<int>& list) {
+      return body.index >= 0 && body.index < static_cast<int>(list.size()) ? list[body.index] : -1;
+    };
+    if (body.kind == BodyKind::kCharacter) return of(characters);
+    if (body.kind == BodyKind::kProp) return of(props);
+    const ParticleSet* const set = body.kind == BodyKind::kParticles ? particle_set(body.index) : nullptr;
+    return set ? set->state : -1;
+  }
   Coupling<T>* loop(int index) {
     const bool any = index >= 0 && index < static_cast<int>(loops.size());
     return any ? &couplings[loops[index]] : nullptr;

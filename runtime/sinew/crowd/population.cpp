@@ -98,6 +98,9 @@ bool Population::Impl::enter(int character, double h) {
   free.pop_back();
   place_of[character] = place;
   character_of[place] = character;
+  Character<float> entering = world->character(place);
+  if (entering.strength() != crowd->strength(character))
+    (void)entering.set_strength(crowd->strength(character));
   (void)world->unpark_character(place);
   return true;
 }
@@ -154,6 +157,12 @@ Status Population::stop(int character) {
     return Status::error(Code::kInvalidArgument, "no such character", character);
   impl_->stop(character);
   return {};
+}
+
+Status Population::set_strength(int character, float strength) {
+  if (Status status = impl_->crowd->set_strength(character, strength); !status) return status;
+  const int place = impl_->place_of[character];
+  return place >= 0 ? impl_->world->character(place).set_strength(strength) : Status{};
 }
 
 Status Population::push(int character, int joint, const Vec3<float>& impulse) {

@@ -45,6 +45,9 @@ class Population {
   Status play(int character, const CrowdTrack& track);
   /// It is gone: out of the world, in its rest pose, called by nobody, until it plays again.
   Status stop(int character);
+  /// Of all its muscles, ≥ 0, until it is stopped: on its clip infinity is never overloaded, and it enters
+  /// the world as strong. One that is there has it at once.
+  Status set_strength(int character, float strength);
   /// Impulse (N·s, world) on the body of a joint, at the joint, in the next step. Refused with kOutOfRange
   /// where the world has no place left.
   Status push(int character, int joint, const Vec3<float>& impulse);

@@ -11,13 +11,13 @@
 Settings are keyword arguments with the names of the C structs' fields. A status that is not OK is raised as Error. Arrays are
 numpy's where numpy is installed, else memoryviews (of poses one for each joint); those that a property gives are views of the world's own memory: they show what
 the last step left when they are asked for again, and keep that memory while they live, also after close()."""
-from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BlendMode, BodyKind, ContactPhase,
+from ._abi import (AnchorKind, BehaviourEventKind, BehaviourOrder, BehaviourReason, BehaviourState, BlendMode, BodyKind, ContactPhase, CurveValue,
                    EventKind, FootHold, GetUpPolicy, GroundKind, JointType, Level, LogLevel, LoopKind, NodeType, ParameterType, Role, RootDrive,
                    Shape, SnapshotPart, Status, Tone)
 from ._core import Error, check, jets_for, lib
-from .assets import Asset, Feet, Foot, Graph, Layer, Look, Transition, ease, ground_hit
+from .assets import (Asset, Feet, Foot, Graph, Layer, Look, Transition, ease, ground_hit, place_jets, smooth, split_root)
 from .hooks import set_log
-from .members import Character, Effect, Loop, Particles, Prop
+from .members import Character, Effect, Loop, Particles, Prop, Sensor
 from .world import Crowd, Plays, World
 
 __version__ = lib.sinew_version().decode()

@@ -31,6 +31,26 @@ def ease(elapsed, duration):
     return tuple(out)
 
 
+def smooth(state, goal, half_life, step):
+    """Moves `state` (CurveValue: value, rate, acceleration) `step` s on towards a goal that steps."""
+    check(lib.sinew_smooth(byref(state), goal, half_life, step))
+    return state
+
+
+def place_jets(jets, translation=(0, 0, 0), rotation=(0, 0, 0, 1)):
+    """Moves a pose: what a clip shows at the origin is shown there."""
+    place = _abi.Pose(tuple(rotation), tuple(translation))
+    check(lib.sinew_place_jets(byref(place), pointer(jets), len(jets)))
+    return jets
+
+
+def split_root(jets):
+    """The root of `jets` as two jets of one each: its way over the ground, and what stays in the body."""
+    travel, body = jets_for(1), jets_for(1)
+    check(lib.sinew_split_root(pointer(jets), pointer(travel), pointer(body)))
+    return travel, body
+
+
 class Look:
     """What a character's look remembers: `state`, a struct that may be copied."""
 
@@ -210,6 +230,33 @@ class Asset(Described):
         out, count = (_abi.Transform * len(jets))(), ctypes.c_int32()
         check(lib.sinew_asset_get_model(self.handle, pointer(jets), len(jets), byref(out), len(jets), byref(count)))
         return floats(out, count.value, 8, 7)
+
+    def socket(self, jets, joint, translation=None, rotation=(0, 0, 0, 1)):
+        """Motion in model space, one jet, of a frame that is fixed to a joint."""
+        out = jets_for(1)
+        offset = None if translation is None else byref(_abi.Transform(tuple(rotation), tuple(translation)))
+        check(lib.sinew_asset_get_socket(self.handle, pointer(jets), len(jets), joint, offset, pointer(out)))
+        return out
+
+    def passed_events(self, clip, before, now, most=64, **settings):
+        """What a clip passed from one time to another (s)."""
+        struct = settings_of(_abi.ClipPassage, lib.sinew_clip_passage_init, {"clip": clip, "before": before, "now": now, **settings})
+        out, count = (_abi.GraphEvent * most)(), ctypes.c_int32()
+        check(lib.sinew_asset_get_passed_events(self.handle, byref(struct), byref(out), most, byref(count)))
+        return out[:count.value]
+
+    def ended_events(self, clip, time, backwards=False, most=64):
+        """What a clip is in the middle of when it stops being played there."""
+        out, count = (_abi.GraphEvent * most)(), ctypes.c_int32()
+        check(lib.sinew_asset_get_ended_events(self.handle, clip, time, backwards, byref(out), most, byref(count)))
+        return out[:count.value]
+
+    def curves(self, clip, time, rate=1.0, rate_change=0.0):
+        """[find_curve] at a time (s) of a clip."""
+        most = self.info.curves
+        out, count = (_abi.CurveValue * most)(), ctypes.c_int32()
+        check(lib.sinew_asset_sample_curves(self.handle, clip, time, rate, rate_change, byref(out), most, byref(count)))
+        return list(out)
 
     def in_contact(self, clip, time, joint):
         """Whether a joint rests on the ground at a time (s) of a clip."""

@@ -3,7 +3,7 @@ import ctypes
 from ctypes import byref
 
 from . import _abi
-from ._abi import Level, Status
+from ._abi import BodyKind, Level, Status
 from ._core import check, Error, floats, InWorld, lib, numpy, pointer, report_of, saved, set_fields, settings_of, three
 
 
@@ -69,6 +69,11 @@ class Character(_Affected):
         else:
             self._call(lib.sinew_character_set_strength, strength)
 
+    @property
+    def strength(self):
+        """Of all muscles."""
+        return self._get(ctypes.c_float, lib.sinew_character_get_strength).value
+
     def set_tone(self, tone, joint=None, group=None):
         """How stiffly muscles stay with the animation: of all, those below a joint, or a group."""
         if joint is not None:
@@ -97,6 +102,13 @@ class Character(_Affected):
         self._call(lib.sinew_character_set_detail, significance, most, check_every, bake)
 
     @property
+    def detail(self):
+        """significance, most, check_every and bake, as set_detail takes them."""
+        out = (ctypes.c_double(), ctypes.c_int32(), ctypes.c_int32(), ctypes.c_int32())
+        self._call(lib.sinew_character_get_detail, *map(byref, out))
+        return out[0].value, Level(out[1].value), out[2].value, bool(out[3].value)
+
+    @property
     def displacement(self):
         """x, y (m), yaw (rad)."""
         out = (ctypes.c_double * 3)()
@@ -119,6 +131,21 @@ class Character(_Affected):
     def raise_by(self, further):
         self._call(lib.sinew_character_raise, further)
 
+    def ride(self, x, y, yaw, z=0.0):
+        """Before a step, of an animation that what it stands on takes along by so much in it (m, rad)."""
+        self._call(lib.sinew_character_ride, (ctypes.c_double * 4)(x, y, yaw, z))
+
+    def come_back(self):
+        """A grounded root that moves nearly as its animation wants it is led back onto it."""
+        self._call(lib.sinew_character_come_back)
+
+    @property
+    def ground(self):
+        """What bears it: force (N, up), place (m), velocity (m/s) and turn rate (rad/s) of that."""
+        force, place, velocity, turn = ctypes.c_double(), (ctypes.c_double * 3)(), (ctypes.c_double * 3)(), ctypes.c_double()
+        self._call(lib.sinew_character_get_ground, byref(force), place, velocity, byref(turn))
+        return force.value, tuple(place), tuple(velocity), turn.value
+
     def apply_impulse(self, joint, point, impulse):
         self._call(lib.sinew_character_apply_impulse, joint, three(point), three(impulse))
 
@@ -127,6 +154,10 @@ class Character(_Affected):
 
     def park(self, parked=True):
         self._call(lib.sinew_character_park, parked)
+
+    @property
+    def parked(self):
+        return bool(self._get(ctypes.c_int32, lib.sinew_character_get_parked).value)
 
     def add_behaviour(self, **settings):
         self._call(lib.sinew_character_add_behaviour,
@@ -372,3 +403,35 @@ class Particles(InWorld):
     @property
     def report(self):
         return report_of(_abi.CharacterReport, lib.sinew_particles_get_report, self.handle)
+
+
+_BODIES = sum(1 << kind for kind in (BodyKind.CHARACTER, BodyKind.PROP, BodyKind.PARTICLES))
+
+
+class Sensor(InWorld):
+    def __init__(self, world, handle, room):
+        super().__init__(world, handle)
+        self.room, self.left_out = room, 0
+
+    def _query(self, at, radius, settings):
+        return settings_of(_abi.Query, lib.sinew_query_init, {"origin": at, "radius": radius, "kinds": _BODIES, **settings})
+
+    def move(self, at, radius, **settings):
+        """Elsewhere, of another size or for others."""
+        self._call(lib.sinew_sensor_place, byref(self._query(at, radius, settings)))
+
+    def update(self):
+        """Looks who is in it: those who left, then those who came. `left_out` says how many found no room."""
+        left_out, count = ctypes.c_int32(), ctypes.c_int32()
+        self._call(lib.sinew_sensor_update, byref(left_out))
+        self.left_out = left_out.value
+        out = (_abi.SensorEvent * (2 * self.room))()
+        self._call(lib.sinew_sensor_get_events, byref(out), 2 * self.room, byref(count))
+        return out[:count.value]
+
+    @property
+    def bodies(self):
+        """Who is in it since the last update."""
+        out, count = (_abi.Body * self.room)(), ctypes.c_int32()
+        self._call(lib.sinew_sensor_get_bodies, byref(out), self.room, byref(count))
+        return out[:count.value]

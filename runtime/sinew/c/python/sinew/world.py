@@ -5,7 +5,7 @@ from ctypes import byref
 from . import _abi
 from ._abi import SnapshotPart, Status
 from ._core import check, Error, floats, lib, numpy, Owned, report_of, saved, set_fields, settings_of, three
-from .members import Character, Loop, Particles, Prop
+from .members import Character, Loop, Particles, Prop, Sensor
 
 
 class Plays:
@@ -109,6 +109,31 @@ class World(Owned):
         struct.heights = ctypes.addressof(numbers)
         check(lib.sinew_world_add_height_field(self.handle, byref(struct)))
 
+    def add_convex_solid(self, faces, inner_radius, **settings):
+        """`faces`: unit outward normal and m from the world's origin along it, four numbers each; `inner_radius`: m, of a ball
+        that fits inside."""
+        struct = settings_of(_abi.ConvexSolid, lib.sinew_convex_solid_init, settings)
+        numbers = (ctypes.c_double * (4 * len(faces)))(*(float(x) for face in faces for x in face))
+        struct.faces, struct.face_count, struct.inner_radius = ctypes.addressof(numbers), len(faces), inner_radius
+        check(lib.sinew_world_add_convex_solid(self.handle, byref(struct)))
+
+    def keep_apart(self, a, b, apart=True):
+        """Whether two bodies, (BodyKind, index) each, pass through each other."""
+        bodies = [_abi.Body(kind, index, 0) for kind, index in (a, b)]
+        check(lib.sinew_world_keep_apart(self.handle, byref(bodies[0]), byref(bodies[1]), apart))
+
+    def count(self, kind):
+        """How many characters, props or particle bodies there are (BodyKind)."""
+        out = ctypes.c_int32()
+        check(lib.sinew_world_get_count(self.handle, kind, byref(out)))
+        return out.value
+
+    def snapshot_field(self, byte):
+        """What a byte of save() stands for: which body (-1: the world), and the field's name."""
+        out = _abi.SnapshotField()
+        check(lib.sinew_world_get_snapshot_field(self.handle, byte, byref(out)))
+        return out.body, out.name.decode()
+
     def character(self, index):
         out = ctypes.c_uint64()
         check(lib.sinew_world_get_character(self.handle, index, byref(out)))
@@ -154,6 +179,15 @@ class World(Owned):
 
     def overlap(self, start, radius, most=16, **settings):
         return self._query(lib.sinew_world_overlap, most, {"origin": start, "radius": radius, **settings})
+
+    def add_sensor(self, at, radius, bodies=64, **settings):
+        """A ball or a capsule (`half_axis`) that tells who comes in and who leaves: characters, props and particles, or `kinds`."""
+        sensor = Sensor(self, 0, bodies)
+        query = sensor._query(at, radius, settings)
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_add_sensor(self.handle, byref(query), bodies, byref(out)))
+        sensor.handle = out.value
+        return sensor
 
     def draw(self, line=None, triangle=None, text=None, **settings):
         """line(from, to, colour), triangle(a, b, c, colour), text(at, words, colour); colours 0xRRGGBBAA."""
@@ -216,6 +250,22 @@ class Crowd(World):
     def push(self, character, joint, impulse):
         """N s, at the joint."""
         check(lib.sinew_crowd_push(self.handle, character, joint, three(impulse)))
+
+    def set_strength(self, character, strength):
+        """Of all its muscles, until it is stopped."""
+        check(lib.sinew_crowd_set_strength(self.handle, character, strength))
+
+    def track(self, character):
+        """What it plays, at the time that it is at."""
+        out = _abi.CrowdTrack()
+        check(lib.sinew_crowd_get_track(self.handle, character, byref(out)))
+        return out
+
+    def root_velocity(self, character):
+        """m/s, world, as its clip moves it."""
+        out = (ctypes.c_float * 3)()
+        check(lib.sinew_crowd_get_root_velocity(self.handle, character, out))
+        return tuple(out)
 
     def member(self, character):
         out = _abi.CrowdMember(size=ctypes.sizeof(_abi.CrowdMember))
