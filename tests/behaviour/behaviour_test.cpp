@@ -350,6 +350,40 @@ TEST(Behaviour, WhoWalkedOnIsOnItsAnimationWhereItWalks) {
   EXPECT_GE(body.root_height(), 0.85);
 }
 
+/// A push after which it stood again elsewhere, and then leapt to where it had stood first in one frame.
+TEST(Behaviour, StandsAgainWithoutALeap) {
+  for (const double hz : {60.0, 120.0})
+    for (const double direction : {2.094, 0.5, -1.2}) {
+      Balancing body;
+      body.h = float(1 / hz);
+      const int foot = body.asset.skeleton.find(Role::kFootL);
+      const auto place = [&](int joint) {
+        return Vec3<float>(body.character().model()[static_cast<std::size_t>(joint)].translation);
+      };
+      for (int n = 0; n < std::lround(hz); ++n) body.step();
+      const int chest = body.asset.skeleton.find(Role::kChest);
+      const Vec3<float> impulse(30 * std::cos(float(direction)), 30 * std::sin(float(direction)), 0);
+      (void)body.character().apply_impulse(chest, place(chest), impulse);
+      Vec3<float> root = place(0), sole = place(foot);
+      float leap = 0, moved = 0;
+      int stands = -1;
+      for (int n = 0; n < std::lround(9 * hz); ++n) {
+        body.step();
+        const bool again = n > 2 * hz && body.behaviour.report().state == BehaviourState::kClip;
+        if (again) stands = stands < 0 ? n : stands;
+        if (n > 2 * hz && body.character().report().unknown_dofs == 0) {
+          leap = std::max(leap, (place(0) - root).norm() * float(hz));
+          if (again) moved = std::max(moved, (place(foot) - sole).norm());
+        }
+        root = place(0);
+        if (stands < 0 || n <= stands) sole = place(foot);
+      }
+      ASSERT_GT(stands, 0) << direction << " at " << hz;
+      EXPECT_LT(leap, 0.15) << "m/s, played; " << direction << " at " << hz;
+      EXPECT_LT(moved, 0.02) << "m, a foot that stands; " << direction << " at " << hz;
+    }
+}
+
 TEST(Behaviour, RepeatsToTheBit) {
   const auto run = [] {
     Balancing body;

@@ -563,6 +563,11 @@ void tap_in_a_run(const Scene& scene, bool, Findings& found) {
     found.at_most("off its clip 1.5 s later (m)", off_its_clip(scene, hz, 1.5, found), 1e-3);
 }
 
+void toned_tap(const Scene& scene, bool, Findings& found) {
+  for (const double hz : kRates)
+    found.at_most("off its clip 4 s later (m)", off_its_clip(scene, hz, 4, found), 1e-3);
+}
+
 void cape_in_a_run(const Scene& scene, bool, Findings& found) {
   for (const double hz : kRates) {
     Scene with = scene, without = scene;
@@ -726,6 +731,7 @@ std::vector<Situation> situations() {
       {"run_on_a_platform", "on a platform it runs as on the floor", run_on_a_platform},
       {"low_boards", "nor do boards of 1 and 2 cm stop who walks", run_on_a_platform},
       {"tap_in_a_run", "who was tapped runs on as its clip does", tap_in_a_run},
+      {"toned_tap", "nor does a tone keep a runner off its clip", toned_tap},
       {"cape_in_a_run", "a cape that legs crumple does not stop a runner", cape_in_a_run},
       {"back_over_the_floor", "no limb goes through the floor on its way back", back_over_the_floor},
       {"elbow_to_its_stop", "a hit into a joint's stop has the effect of fine steps", elbow_to_its_stop},
