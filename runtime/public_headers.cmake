@@ -3,7 +3,7 @@
 set(SINEW_PUBLIC_HEADERS
   c/sinew.h io/asset.h
   # skeleton
-  skeleton/hooks.h skeleton/parallel_for.h skeleton/rotation.h skeleton/skeleton.h skeleton/status.h skeleton/version.h
+  skeleton/convex_hull.h skeleton/hooks.h skeleton/parallel_for.h skeleton/rotation.h skeleton/skeleton.h skeleton/status.h skeleton/version.h
   # animation
   animation/blend_space.h animation/blending_job.h animation/clip.h animation/crossfade.h animation/curve_job.h
   animation/event_job.h animation/foot_lock.h animation/foot_placement_job.h animation/inertialize_job.h

@@ -398,6 +398,13 @@ class Classes(unittest.TestCase):
         self.assertEqual([scene.world.count(k) for k in (sinew.BodyKind.CHARACTER, sinew.BodyKind.PROP)], [1, 1])
         self.assertNotEqual(scene.world.snapshot_field(100)[1], "")
         scene.world.add_convex_solid([(0, 0, 1, 0.5), (0, 0, -1, 0.5)], 0.5)
+        wedge = [(x, y, z) for x, z in ((0, 0), (0.6, 0), (0, 0.3)) for y in (0, 0.5)]
+        scene.world.add_convex_obstacle(wedge, friction=0.5)
+        self.assertEqual(scene.world.count(sinew.BodyKind.PROP), 1)
+        scene.world.add_convex_prop(wedge, mass=3)
+        self.assertEqual(scene.world.count(sinew.BodyKind.PROP), 2)
+        with self.assertRaisesRegex(sinew.Error, "plane"):
+            scene.world.add_convex_prop(wedge[::2] + wedge[:1])
         with self.assertRaisesRegex(sinew.Error, "unit"):
             scene.world.add_convex_solid([(0, 0, 2, 0.5)], 0.5)
         scene.street.step(1 / 60)

@@ -245,9 +245,15 @@ class Sequence : FuzzMotion {
     sinew_convex_solid solid = settings(sinew_convex_solid_init);
     solid.faces = or_null(faces[0]);
     solid.face_count = rarely() ? -1 : below(4);
+    double points[6][3];
+    for (auto& point : points)
+      for (double& x : point) x = number(-0.5, 0.5);
     if (shapes_ > 4) return SINEW_OK;
     ++shapes_;
-    switch (below(4)) {
+    switch (below(5)) {
+      case 4:
+        return sinew_world_add_convex_obstacle(handle(worlds_), or_null(&box), or_null(points[0]),
+                                               rarely() ? -1 : below(7));
       case 3:
         return sinew_world_add_convex_solid(handle(worlds_), or_null(&solid));
       case 0:

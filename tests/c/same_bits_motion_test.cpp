@@ -17,6 +17,7 @@
 #include "sinew/character/sensor.h"
 #include "sinew/character/world.h"
 #include "sinew/effects/static_shape.h"
+#include "sinew/skeleton/convex_hull.h"
 
 namespace sinew {
 namespace {
@@ -384,6 +385,51 @@ TEST(CInterfaceSolids, BallsRollOffARampAsInCpp) {
       ASSERT_EQ(at.translation[k], wanted.prop_pose(wanted_ball).translation[k]) << frame;
   }
   EXPECT_GT(at.translation[0], 0.1f) << "down the ramp";
+  EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
+}
+
+TEST(CInterfaceSolids, HullsAreThoseOfCpp) {
+  const double wedge[6][3] = {{-0.3, -0.2, 0}, {0.3, -0.2, 0}, {0.3, -0.2, 0.3},
+                              {-0.3, 0.2, 0},  {0.3, 0.2, 0},  {0.3, 0.2, 0.3}};
+  std::vector<Vec3<double>> points;
+  for (const auto& p : wedge) points.emplace_back(p[0], p[1], p[2]);
+  ConvexHull hull;
+  ASSERT_TRUE(ConvexHull::make(points, hull));
+  World<float> wanted({});
+  Status status;
+  PropSettings falls;
+  falls.hull = &hull;
+  falls.pose.translation = {0.1, 0, 1.5};
+  const int index = wanted.add_prop(falls, status);
+  ASSERT_TRUE(wanted.add_obstacle(convex_collider(hull)));
+
+  sinew_world world = 0;
+  ASSERT_EQ(sinew_world_create(nullptr, &world), SINEW_OK);
+  sinew_prop_settings settings = initialised(sinew_prop_settings_init);
+  settings.pose.translation[0] = 0.1;
+  settings.pose.translation[2] = 1.5;
+  sinew_prop prop = 0;
+  ASSERT_EQ(sinew_world_add_convex_prop(world, &settings, wedge[0], 6, &prop), SINEW_OK)
+      << sinew_last_reason();
+  const sinew_obstacle stands = initialised(sinew_obstacle_init);
+  ASSERT_EQ(sinew_world_add_convex_obstacle(world, &stands, wedge[0], 6), SINEW_OK) << sinew_last_reason();
+  sinew_transform at{};
+  for (int frame = 0; frame < 60; ++frame) {
+    ASSERT_TRUE(wanted.step(kStep));
+    ASSERT_EQ(sinew_world_step(world, kStep), SINEW_OK);
+    ASSERT_EQ(sinew_prop_get_state(prop, &at, nullptr), SINEW_OK);
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(at.translation[k], wanted.prop_pose(index).translation[k]) << frame;
+  }
+  expect_refused(sinew_world_add_convex_prop(world, &settings, wedge[0], 3, &prop), SINEW_INVALID_ARGUMENT,
+                 "four");
+  expect_refused(sinew_world_add_convex_prop(world, &settings, nullptr, 6, &prop), SINEW_INVALID_ARGUMENT,
+                 "null");
+  expect_refused(sinew_world_add_convex_prop(world, &settings, wedge[0], -1, &prop), SINEW_INVALID_ARGUMENT,
+                 "count");
+  double bad[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, kNan, 0}, {0, 0, 1}};
+  expect_refused(sinew_world_add_convex_obstacle(world, &stands, bad[0], 4), SINEW_INVALID_ARGUMENT,
+                 "finite");
+  EXPECT_EQ(sinew_last_index(), 2);
   EXPECT_EQ(sinew_world_destroy(world), SINEW_OK);
 }
 

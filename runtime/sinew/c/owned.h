@@ -26,6 +26,7 @@
 #include "sinew/effects/static_shape.h"
 #include "sinew/effects/wind.h"
 #include "sinew/io/asset.h"
+#include "sinew/skeleton/convex_hull.h"
 
 namespace sinew::c {
 
@@ -84,6 +85,7 @@ struct OwnedWorld {
   std::atomic<bool> busy{false};                     ///< a call runs
   bool broken = false;                               ///< an exception left something half added
   std::vector<std::unique_ptr<StaticShape>> shapes;  ///< the world refers to them: they go after it
+  std::vector<std::unique_ptr<ConvexHull>> hulls;    ///< likewise
   std::vector<std::unique_ptr<GraphPlayer>>
       graphs;                                ///< [character], or null; likewise: it saves their blocks
   std::shared_ptr<const Asset> crowd_asset;  ///< whose clips the crowd plays

@@ -5,6 +5,7 @@
 #include "sinew/c/anchor.h"
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
+#include "sinew/c/hull.h"
 #include "sinew/c/report.h"
 
 namespace sinew::c {
@@ -91,6 +92,20 @@ sinew_status sinew_world_add_prop(sinew_world world, const sinew_prop_settings* 
     if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
     PropSettings read;
     if (const sinew_status s = read_settings(settings, read, kProp); s != SINEW_OK) return s;
+    Status status;
+    const int index = w.world.add_prop(read, status);
+    if (index >= 0) *out = handle_in(world, Kind::kProp, index);
+    return answer(status);
+  });
+}
+
+sinew_status sinew_world_add_convex_prop(sinew_world world, const sinew_prop_settings* settings,
+                                         const double* points, int32_t count, sinew_prop* out) {
+  return set_up(world, [&](OwnedWorld& w) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    PropSettings read;
+    if (const sinew_status s = read_settings(settings, read, kProp); s != SINEW_OK) return s;
+    if (const sinew_status s = add_hull(w, points, count, read.hull); s != SINEW_OK) return s;
     Status status;
     const int index = w.world.add_prop(read, status);
     if (index >= 0) *out = handle_in(world, Kind::kProp, index);

@@ -31,6 +31,11 @@ SINEW_API sinew_status sinew_prop_settings_init(sinew_prop_settings* settings);
 /// Set-up. `settings` may be null.
 SINEW_API sinew_status sinew_world_add_prop(sinew_world world, const sinew_prop_settings* settings,
                                             sinew_prop* out);
+/// Set-up: a prop of uniform density that is the convex hull of `count` points, three numbers each (m, in the
+/// axes of its pose), of at most 32 corners. `settings` may be null; their `shape` and `extent` do not count.
+/// sinew_last_index(): the point at fault.
+SINEW_API sinew_status sinew_world_add_convex_prop(sinew_world world, const sinew_prop_settings* settings,
+                                                   const double* points, int32_t count, sinew_prop* out);
 /// The handle of an index, as contacts and queries tell it.
 SINEW_API sinew_status sinew_world_get_prop(sinew_world world, int32_t index, sinew_prop* out);
 /// Where it is, and how fast [3] (m/s); either may be null.

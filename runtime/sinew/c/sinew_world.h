@@ -164,6 +164,11 @@ SINEW_API sinew_status sinew_convex_solid_init(sinew_convex_solid* settings);
 SINEW_API sinew_status sinew_host_shape_init(sinew_host_shape* settings);
 /// Set-up.
 SINEW_API sinew_status sinew_world_add_obstacle(sinew_world world, const sinew_obstacle* settings);
+/// Set-up: a convex hull of `count` points, three numbers each (m, in the axes of the obstacle's pose), of at
+/// most 32 corners; `shape` and `extent` of the settings do not count. sinew_last_index(): the point at
+/// fault.
+SINEW_API sinew_status sinew_world_add_convex_obstacle(sinew_world world, const sinew_obstacle* settings,
+                                                       const double* points, int32_t count);
 /// Set-up. `heights` are copied.
 SINEW_API sinew_status sinew_world_add_height_field(sinew_world world, const sinew_height_field* settings);
 /// Set-up. `faces` are copied. Over edges and corners what is met is as if they were not rounded off.

@@ -6,6 +6,7 @@
 
 #include "sinew/c/call.h"
 #include "sinew/c/fields.h"
+#include "sinew/c/hull.h"
 
 namespace sinew::c {
 namespace {
@@ -165,6 +166,23 @@ sinew_status sinew_world_add_obstacle(sinew_world world, const sinew_obstacle* s
     if (const sinew_status status = read_settings(settings, obstacle, kObstacle); status != SINEW_OK)
       return status;
     return answer(w.world.add_obstacle(obstacle.collider, obstacle.layers));
+  });
+}
+
+sinew_status sinew_world_add_convex_obstacle(sinew_world world, const sinew_obstacle* settings,
+                                             const double* points, int32_t count) {
+  return set_up(world, [&](OwnedWorld& w) {
+    if (!settings) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    Obstacle obstacle;
+    if (const sinew_status status = read_settings(settings, obstacle, kObstacle); status != SINEW_OK)
+      return status;
+    const ConvexHull* hull = nullptr;
+    if (const sinew_status status = add_hull(w, points, count, hull); status != SINEW_OK) return status;
+    Collider convex = convex_collider(*hull);
+    convex.local = obstacle.collider.local;
+    convex.friction = obstacle.collider.friction;
+    convex.restitution = obstacle.collider.restitution;
+    return answer(w.world.add_obstacle(convex, obstacle.layers));
   });
 }
 

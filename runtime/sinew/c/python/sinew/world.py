@@ -66,6 +66,14 @@ class World(Owned):
     def add_prop(self, **settings):
         return Prop(self, self._add(_abi.PropSettings, lib.sinew_prop_settings_init, lib.sinew_world_add_prop, settings))
 
+    def add_convex_prop(self, points, **settings):
+        """`points`: three numbers each, m, in the axes of the prop's pose."""
+        struct = settings_of(_abi.PropSettings, lib.sinew_prop_settings_init, settings)
+        numbers = (ctypes.c_double * (3 * len(points)))(*(float(x) for point in points for x in point))
+        out = ctypes.c_uint64()
+        check(lib.sinew_world_add_convex_prop(self.handle, byref(struct), numbers, len(points), byref(out)))
+        return Prop(self, out.value)
+
     def add_loop(self, **settings):
         return Loop(self, self._add(_abi.LoopSettings, lib.sinew_loop_settings_init, lib.sinew_world_add_loop, settings))
 
@@ -96,6 +104,12 @@ class World(Owned):
 
     def add_obstacle(self, **settings):
         check(lib.sinew_world_add_obstacle(self.handle, byref(settings_of(_abi.Obstacle, lib.sinew_obstacle_init, settings))))
+
+    def add_convex_obstacle(self, points, **settings):
+        """`points`: three numbers each, m, in the axes of the obstacle's pose."""
+        struct = settings_of(_abi.Obstacle, lib.sinew_obstacle_init, settings)
+        numbers = (ctypes.c_double * (3 * len(points)))(*(float(x) for point in points for x in point))
+        check(lib.sinew_world_add_convex_obstacle(self.handle, byref(struct), numbers, len(points)))
 
     def add_height_field(self, heights, **settings):
         """`heights`: rows of columns, m."""
