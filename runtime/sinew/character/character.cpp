@@ -48,7 +48,7 @@ Status Character<T>::reset() {
   Grounding<T>& grounding = state_->grounding;
   if (grounding.by.any()) state_->target[0] = displaced(grounding.by.inverse(), state_->target[0]);
   grounding.by = {};
-  grounding.rest = T(0);
+  grounding.rest = grounding.alone = T(0);
   grounding.returns = false;
   state_->reset_to_target(Vec3<T>::Zero());
   return {};

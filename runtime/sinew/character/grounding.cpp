@@ -20,6 +20,7 @@ constexpr double kRest = 0.2;       ///< s that it has to stand so
 constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
 constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
 constexpr double kHome = 0.1;                                 ///< s
+constexpr double kAlone = 1;  ///< s after which who is so near is led home however fast it swings
 // Of who is asked to come back: what it may be off.
 constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
 constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
@@ -42,6 +43,15 @@ Displacement towards(const Transform<T>& wanted, const Transform<T>& is) {
 template <class T>
 bool within(const std::array<T, 6>& x, int first, int last, T most) {
   return std::all_of(x.begin() + first, x.begin() + last, [&](T v) { return std::abs(v) < most; });
+}
+
+/// Whether no toned joint is further off than what bears settles, and all others are where the animation
+/// wants them.
+template <class T>
+bool joints_swing_near(const CharacterState<T>& s) {
+  for (int i = 1; i < s.tree.bodies; ++i)
+    if (!within(s.deviation[i].offset, 0, 6, T(s.joint_has_tone(i) ? kSettled : kTurn))) return false;
+  return true;
 }
 
 /// Whether all joints but the root are where the animation wants them.
@@ -81,12 +91,16 @@ bool is_led_back(CharacterState<T>& s) {
 }
 
 /// Muscles with a tone let go of what is left of a character that nothing acts on: it returns to its
-/// animation without unknowns.
+/// animation without unknowns. What keeps it swinging is only that a solve shares weights among feet
+/// otherwise than the check, and steps are coarse: after a second it does not wait for that to end.
 template <class T>
-void lead_home(CharacterState<T>& s, T h) {
+void lead_home(CharacterState<T>& s, bool touched, T h) {
   Grounding<T>& g = s.grounding;
+  const T time = s.tree.scale.time;
   g.rest = !s.acted_on && joints_rest(s) ? g.rest + h : T(0);
-  if (g.rest < T(kHome) * s.tree.scale.time) return;
+  g.alone = s.acted_on || touched ? T(0) : g.alone + h;
+  if (g.rest < T(kHome) * time && !(g.alone > T(kAlone) * time && joints_swing_near(s))) return;
+  g.alone = T(0);
   for (int i = 0; i < s.tree.bodies; ++i)
     if (s.joint_has_tone(i)) s.deviation[i].released = false;
   g.returns = true;
@@ -122,10 +136,10 @@ void displace_target(CharacterState<T>& s, const Displacement& further) {
 }
 
 template <class T>
-void hand_back(CharacterState<T>& s, T h) {
+void hand_back(CharacterState<T>& s, bool touched, T h) {
   Grounding<T>& g = s.grounding;
   g.returns = false;
-  if (!s.grounded()) return lead_home(s, h);
+  if (!s.grounded()) return lead_home(s, touched, h);
   if (!s.floats) return;
   if (g.comes_back && is_led_back(s)) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;

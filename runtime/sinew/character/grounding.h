@@ -23,12 +23,12 @@ void displace_target(CharacterState<T>& state, const Displacement& further);
 /// has been as its animation wants it for long enough. If so, a grounded one is displaced, and the ordinary
 /// return takes it onto its animation.
 template <class T>
-void hand_back(CharacterState<T>& state, T h);
+void hand_back(CharacterState<T>& state, bool touched, T h);
 
 #define SINEW_GROUNDING_INSTANCES(prefix, T)                                       \
   prefix JointJet<T> displaced<T>(const Displacement& by, const JointJet<T>& jet); \
   prefix void displace_target<T>(CharacterState<T>&, const Displacement&);         \
-  prefix void hand_back<T>(CharacterState<T>&, T);
+  prefix void hand_back<T>(CharacterState<T>&, bool, T);
 SINEW_GROUNDING_INSTANCES(extern template, float)
 SINEW_GROUNDING_INSTANCES(extern template, double)
 

@@ -452,6 +452,17 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
+/// Whether anything but what a body stands on touches a tree, or is tied to it.
+template <class T>
+bool IslandStepper<T>::touches_more_than_ground(int tree) const {
+  const std::vector<int>& first = states_[tree]->rig->support.first;
+  const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
+  return states_[tree]->tied || std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+           return c.acts() &&
+                  (c.tree_b == tree || (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))));
+         });
+}
+
 /// Which joints of a tree nothing but its animation and the ground moves: its root is driven, no joint above
 /// is an unknown, and what they carry touches nothing but the floor, with what may stand there.
 template <class T>
@@ -551,8 +562,9 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (std::size_t n = 0; n < states_.size(); ++n) finish_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
   stop_lost();
-  for (CharacterState<T>* s : states_)
-    if (s->grounded() || s->problem.law.present.tone) hand_back<T>(*s, h);
+  for (std::size_t n = 0; n < states_.size(); ++n)
+    if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone)
+      hand_back<T>(s, touches_more_than_ground(static_cast<int>(n)), h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {

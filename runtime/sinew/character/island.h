@@ -90,6 +90,7 @@ class IslandStepper {
   T return_time() const { return T(world_->accuracy.return_time); }
   bool is_finite(const CharacterState<T>& state) const;
   void choose_wanted(CharacterState<T>& state, T fraction);
+  bool touches_more_than_ground(int tree) const;
   void find_sets();
   void predict_all(T h);
   void predict_euler_all(T h);

@@ -252,6 +252,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     stream.value("displaced about z", s.grounding.by.yaw);
     stream.value("displaced along z", s.grounding.by.z);
     stream.value("stands as it should", s.grounding.rest);
+    stream.value("nothing has acted", s.grounding.alone);
     stream.value("help, N", s.grounding.help_force);
     stream.value("help, N·m", s.grounding.help_torque);
     stream.flag("next to its animation", s.grounding.returns);

@@ -72,6 +72,7 @@ template <class T>
 struct Grounding {
   Displacement by;                           ///< of the targets that the host gives
   T rest = T(0);                             ///< s that it has stood as its animation wants it
+  T alone = T(0);                            ///< s that nothing but the ground has acted on a toned body
   double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
   bool comes_back = false;                   ///< Character::come_back() in this step
   bool rides = false;                        ///< Character::ride() in this step
