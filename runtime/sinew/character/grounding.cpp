@@ -20,7 +20,9 @@ constexpr double kRest = 0.2;       ///< s that it has to stand so
 constexpr double kGivenWay = 0.05, kSettled = 0.2;            ///< rad
 constexpr double kGivenWaySpeed = 0.3, kSettledSpeed = 0.05;  ///< rad/s
 constexpr double kHome = 0.1;                                 ///< s
-constexpr double kAlone = 1;  ///< s after which who is so near is led home however fast it swings
+/// s after which who is so near is led home however fast it swings: of what a blow has set swinging a tenth
+/// is left by then.
+constexpr double kAlone = 3;
 // Of who is asked to come back: what it may be off.
 constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
 constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
@@ -92,7 +94,7 @@ bool is_led_back(CharacterState<T>& s) {
 
 /// Muscles with a tone let go of what is left of a character that nothing acts on: it returns to its
 /// animation without unknowns. What keeps it swinging is only that a solve shares weights among feet
-/// otherwise than the check, and steps are coarse: after a second it does not wait for that to end.
+/// otherwise than the check, and steps are coarse: after some seconds it does not wait for that to end.
 template <class T>
 void lead_home(CharacterState<T>& s, bool touched, T h) {
   Grounding<T>& g = s.grounding;

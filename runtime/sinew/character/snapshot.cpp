@@ -197,13 +197,21 @@ void visit_last_speeds(CharacterState<T>& s, ByteStream& stream) {
     const Mat3<T>& r = h.rotation[body];
     return Vec3<T>(s.tree.inverse_inertia[body] * (r.transpose() * h.momentum[body]));  // body axes
   };
-  ResidualCoder<T> coder("last target's velocity", stream, true);
+  {
+    ResidualCoder<T> coder("last target's velocity", stream, true);
+    for (int i = 0; i < s.tree.bodies; ++i) {
+      const int parent = s.tree.parent[i];
+      const Quat<T> inward = s.local[i].rotation.conjugate();
+      const Vec3<T> carried = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(inward * spin(parent));
+      coder.values(s.own_last_target()[i].omega, Vec3<T>(spin(i) - carried));
+      coder.values(s.own_last_target()[i].velocity, Vec3<T>(Vec3<T>::Zero()));
+    }
+  }
+  if (!stream.part("muscles with a tone were asked for", s.problem.law.present.tone)) return;
+  ResidualCoder<T> coder("last target's acceleration", stream, true);
   for (int i = 0; i < s.tree.bodies; ++i) {
-    const int parent = s.tree.parent[i];
-    const Quat<T> inward = s.local[i].rotation.conjugate();
-    const Vec3<T> carried = parent < 0 ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(inward * spin(parent));
-    coder.values(s.own_last_target()[i].omega, Vec3<T>(spin(i) - carried));
-    coder.values(s.own_last_target()[i].velocity, Vec3<T>(Vec3<T>::Zero()));
+    coder.values(s.own_last_target()[i].alpha, Vec3<T>(Vec3<T>::Zero()));
+    coder.values(s.own_last_target()[i].acceleration, Vec3<T>(Vec3<T>::Zero()));
   }
 }
 
