@@ -203,7 +203,7 @@ Mesh shapes_of(const Skeleton& skeleton) {
   for (const Collider& c : skeleton.colliders) {
     render::Geometry geometry;
     const Transform<double> at = rest[static_cast<std::size_t>(c.joint)] * c.local;
-    render::append_shape(c.shape, c.size.cast<float>(), c.hull, at.cast<float>(), render::kClay, geometry);
+    render::append_shape(c.shape, c.size.cast<float>(), at.cast<float>(), render::kClay, geometry, c.hull);
     append_triangles(geometry, c.joint, mesh);
   }
   for (std::size_t j = 0; j < rest.size() && skeleton.colliders.empty(); ++j) {
@@ -268,7 +268,7 @@ int add_solid(const scene::Prop& prop, GltfFile& file) {
   Mesh mesh;
   mesh.name = prop.name;
   render::Geometry geometry;
-  render::append_shape(prop.shape, prop.size, prop.hull, Transform<float>{}, render::kClay, geometry);
+  render::append_shape(prop.shape, prop.size, Transform<float>{}, render::kClay, geometry, prop.hull);
   append_triangles(geometry, 0, mesh);
   mesh.joints.clear();
   mesh.weights.clear();

@@ -33,8 +33,8 @@ void append_shapes(const Skeleton& s, const scene::CharacterFrame& frame, Geomet
   for (const Collider& c : s.colliders) {
     const auto joint = static_cast<std::size_t>(c.joint);
     const float load = frame.effort_of(joint), glow = glow_of(load);
-    append_shape(c.shape, c.size.cast<float>(), c.hull, frame.model[joint] * c.local.cast<float>(),
-                 (1 - glow) * kClay + glow * stress_color(load), out);
+    append_shape(c.shape, c.size.cast<float>(), frame.model[joint] * c.local.cast<float>(),
+                 (1 - glow) * kClay + glow * stress_color(load), out, c.hull);
   }
 }
 
@@ -182,8 +182,8 @@ Vec3<float> stress_color(float load) {
          (at - float(i)) * (ramp[static_cast<std::size_t>(i) + 1] - ramp[static_cast<std::size_t>(i)]);
 }
 
-void append_shape(Shape shape, const Vec3<float>& size, const ConvexHull* hull, const Transform<float>& world,
-                  const Vec3<float>& color, Geometry& out) {
+void append_shape(Shape shape, const Vec3<float>& size, const Transform<float>& world,
+                  const Vec3<float>& color, Geometry& out, const ConvexHull* hull) {
   const std::size_t first = out.indices.size();
   if (hull)
     append_hull(world, *hull, color, out);

@@ -46,7 +46,7 @@ enum class Look { kSkin, kXray, kShapes };
 /// Appends a character as it stands in `frame`. Without a mesh: its shapes, or sticks from joint to joint.
 void append_character(const Asset& asset, const scene::CharacterFrame& frame, Look look, Geometry& out);
 /// Appends a sphere, capsule, box or hull placed in the world.
-void append_shape(Shape shape, const Vec3<float>& size, const ConvexHull* hull, const Transform<float>& world,
-                  const Vec3<float>& color, Geometry& out);
+void append_shape(Shape shape, const Vec3<float>& size, const Transform<float>& world,
+                  const Vec3<float>& color, Geometry& out, const ConvexHull* hull = nullptr);
 
 }  // namespace sinew::render

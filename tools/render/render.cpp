@@ -112,11 +112,11 @@ void append_frame(const scene::Recording& rec, const scene::Frame& frame, Look l
   for (std::size_t p = 0; p < rec.props.size(); ++p)
     append([&] {
       if (frame.props[p].world.translation.z() > -100)  // parked below until it is launched
-        append_shape(rec.props[p].shape, rec.props[p].size, rec.props[p].hull, frame.props[p].world, ball,
-                     out);
+        append_shape(rec.props[p].shape, rec.props[p].size, frame.props[p].world, ball, out,
+                     rec.props[p].hull);
     });
   for (const Collider& c : rec.obstacles)
-    append([&] { append_shape(c.shape, c.size.cast<float>(), c.hull, c.local.cast<float>(), wall, out); });
+    append([&] { append_shape(c.shape, c.size.cast<float>(), c.local.cast<float>(), wall, out, c.hull); });
 }
 
 /// A thin dark line between two pictures.
