@@ -275,7 +275,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
 
 namespace {
 
-/// How far a pose is from another, m and rad.
+/// How far two poses are from each other, m and rad.
 template <class T>
 struct Apart {
   T moved, turned;
@@ -284,47 +284,60 @@ struct Apart {
         turned(rotation_log<T>(a.rotation.conjugate() * b.rotation).norm()) {}
 };
 
+/// What the animation wants of the joint's own freedom, and of the rest what there is. Joints that slide, and
+/// a universal joint's axes, are the animation's.
+template <class T>
+Transform<T> on_own_base(const CharacterState<T>& s, int i, const Transform<T>& wanted) {
+  switch (s.tree.type[i]) {
+    case JointType::kFixed:
+      return s.local[i];
+    case JointType::kRevolute:
+      return rebased<T>(s.tree, i, s.local[i], wanted);
+    case JointType::kBall:
+    case JointType::kUniversal:
+      return {wanted.rotation, s.local[i].translation};
+    default:
+      return wanted;
+  }
+}
+
 /// What an animation does across a joint's axes (a bone that stretches, a knee's roll) is done to who follows
 /// it. A joint without muscles keeps what it has of that, or a clip that plays on would kick a limp body;
 /// with its strength back it catches up, at a pace.
 template <class T>
-void follow_across(CharacterState<T>& s, int i, T h, Transform<T>& wanted) {
-  if (!s.joint_is_driven(i)) {
-    wanted = rebased<T>(s.tree, i, s.local[i], wanted);
+void follow_across(CharacterState<T>& s, int i, bool falls, T h, Transform<T>& wanted) {
+  constexpr T kNothing = T(2e-5), kPace = T(1), kTurns = T(5);  // m or rad; m/s and rad/s of a human
+  const bool driven = s.joint_is_driven(i) && !falls;
+  if (driven && s.deviation[i].on_animation) return;
+  const Transform<T> held = on_own_base(s, i, wanted);
+  const Apart<T> off(held, wanted);
+  if (off.moved < kNothing * s.tree.scale.length && off.turned < kNothing) return;
+  if (!driven) {
+    wanted = held;
     return;
   }
-  if (s.deviation[i].on_animation) return;
-  constexpr T kNothing = T(1e-5), kPace = T(1), kTurns = T(5);  // m or rad; m/s and rad/s of a human
-  const Apart<T> off(rebased<T>(s.tree, i, s.local[i], wanted), wanted);
-  if (off.moved < kNothing * s.tree.scale.length && off.turned < kNothing) return;
   const JointJet<T>& last = s.last_target()[i];
   const Apart<T> own(rebased<T>(s.tree, i, {last.rotation, last.translation}, wanted), wanted);
   const T time = h / s.tree.scale.time, pace = kPace * time * s.tree.scale.length, turns = kTurns * time;
   const T share = std::min((own.moved + pace) / std::max(off.moved, pace),
                            (own.turned + turns) / std::max(off.turned, turns));
   if (!(share < T(1))) return;
-  const Transform<T> held = rebased<T>(s.tree, i, s.local[i], wanted);
   wanted.translation = held.translation + share * (wanted.translation - held.translation);
   wanted.rotation = held.rotation.slerp(share, wanted.rotation);
 }
 
 }  // namespace
 
-/// What the animation wants at a fraction of the frame, between the last frame's target and this one's. What
-/// only falls follows none.
+/// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
-  const bool falls = s.only_falls();
+  const bool falls = s.only_falls();  // then what moves follows no animation, the last frame's neither
   for (int i = 0; i < s.tree.bodies; ++i) {
-    if (falls && i > 0) {
-      s.wanted[i] = s.local[i];
-      continue;
-    }
     const JointJet<T>&now = s.target[i], &before = s.last_target()[i];
     const bool within = fraction < T(1) && !(falls && s.tree.dof_count(i) > 0);
     const JointJet<T> wanted = within ? animation_within<T>(before, now, frame_, fraction) : now;
     s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
-    if (i > 0) follow_across(s, i, settings_.h, s.wanted[i]);
+    if (i > 0) follow_across(s, i, falls, settings_.h, s.wanted[i]);
   }
 }
 

@@ -381,9 +381,55 @@ void World<T>::Impl::report_contacts() {
                    [this](const TouchingBody& body) { return name_of(body); });
 }
 
+/// Whether a prop or particles are tied to who has leapt, and to nobody who stays, nor the world.
+template <class T>
+bool World<T>::Impl::goes_along(int state) const {
+  const CharacterState<T>& s = *states[state];
+  if (!s.is_prop || s.carried || s.parked) return false;
+  bool tied = false;
+  for (const auto& coupling : couplings.all()) {
+    const auto is_of = [&](const CouplingNode<T>& node) { return node.state == state; };
+    if (!coupling->active || std::none_of(coupling->nodes.begin(), coupling->nodes.end(), is_of)) continue;
+    for (const CouplingNode<T>& node : coupling->nodes) {
+      const CharacterState<T>* other = node.state < 0 ? nullptr : states[node.state].get();
+      if (!other || (!other->is_prop && !other->carried)) return false;
+      tied = tied || other->carried;
+    }
+  }
+  return tied;
+}
+
+/// Else a cape or a bag would be pulled through its owner at the speed of the leap.
+template <class T>
+void World<T>::Impl::take_along(const Leap& leap) {
+  for (bool more = true; more;) {
+    more = false;
+    for (int n = 0; n < static_cast<int>(states.size()); ++n) {
+      if (!goes_along(n)) continue;
+      go_along(*states[n], leap);
+      states[n]->carried = more = true;
+    }
+  }
+}
+
+template <class T>
+void World<T>::Impl::carry_who_leaps() {
+  for (const auto& s : states) {
+    s->keep_deviations(h);
+    s->carried = false;
+  }
+  for (const auto& s : states) {
+    Leap leap;
+    if (s->is_prop || s->parked || !carry_over(*s, h, leap)) continue;
+    s->carried = true;
+    take_along(leap);
+  }
+}
+
 #define SINEW_STEP_INSTANCES(T)                                        \
   template void World<T>::Impl::step_island(int, Worker&);             \
   template void World<T>::Impl::report_contacts();                     \
+  template void World<T>::Impl::carry_who_leaps();                     \
   template BodyRef World<T>::Impl::name_of(const TouchingBody&) const; \
   template void World<T>::Impl::work(void*, int);
 SINEW_STEP_INSTANCES(float)

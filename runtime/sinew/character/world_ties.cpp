@@ -107,51 +107,6 @@ Status World<T>::set_loop(int index, bool closed) {
   return {};
 }
 
-/// Whether a prop or particles are tied to who has leapt, and to nobody who stays, nor the world.
-template <class T>
-bool World<T>::Impl::goes_along(int state) const {
-  const CharacterState<T>& s = *states[state];
-  if (!s.is_prop || s.carried || s.parked) return false;
-  bool tied = false;
-  for (const auto& coupling : couplings.all()) {
-    const auto is_of = [&](const CouplingNode<T>& node) { return node.state == state; };
-    if (!coupling->active || std::none_of(coupling->nodes.begin(), coupling->nodes.end(), is_of)) continue;
-    for (const CouplingNode<T>& node : coupling->nodes) {
-      const CharacterState<T>* other = node.state < 0 ? nullptr : states[node.state].get();
-      if (!other || (!other->is_prop && !other->carried)) return false;
-      tied = tied || other->carried;
-    }
-  }
-  return tied;
-}
-
-/// Else a cape or a bag would be pulled through its owner at the speed of the leap.
-template <class T>
-void World<T>::Impl::take_along(const Leap& leap) {
-  for (bool more = true; more;) {
-    more = false;
-    for (int n = 0; n < static_cast<int>(states.size()); ++n) {
-      if (!goes_along(n)) continue;
-      go_along(*states[n], leap);
-      states[n]->carried = more = true;
-    }
-  }
-}
-
-template <class T>
-void World<T>::Impl::carry_who_leaps() {
-  for (const auto& s : states) {
-    s->keep_deviations(h);
-    s->carried = false;
-  }
-  for (const auto& s : states) {
-    Leap leap;
-    if (s->is_prop || s->parked || !carry_over(*s, h, leap)) continue;
-    s->carried = true;
-    take_along(leap);
-  }
-}
-
 template <class T>
 double World<T>::loop_gap(int index) const {
   const Coupling<T>* const loop = impl_->loop(index);
@@ -259,7 +214,6 @@ int World<T>::particles_count() const {
   template double World<T>::Impl::weight_of(const Place&) const;           \
   template int World<T>::add_loop(const LoopSettings&, Status&);           \
   template Status World<T>::set_loop(int, bool);                           \
-  template void World<T>::Impl::carry_who_leaps();                         \
   template double World<T>::loop_gap(int) const;                           \
   template Vec3<T> World<T>::loop_force(int) const;                        \
   template int World<T>::add_particles(const ParticleBody&, Status&);      \

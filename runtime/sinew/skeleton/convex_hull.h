@@ -25,12 +25,15 @@ class ConvexHull {
   struct Face {
     Vec3<double> normal = Vec3<double>::UnitZ();  ///< unit, outwards
     double offset = 0;                            ///< m
-    int first = 0, count = 0;                     ///< of boundary(): its corners, anticlockwise from outside
+    int first = 0;                                ///< of its corners in their list, see boundary()
+    int count = 0;                                ///< how many there are
   };
   /// Where two faces meet.
   struct Edge {
-    int from = 0, to = 0;     ///< corners
-    int left = 0, right = 0;  ///< faces: from outside, on the way from one corner to the other
+    int from = 0;   ///< corner
+    int to = 0;     ///< corner
+    int left = 0;   ///< face, from outside, on the way from one corner to the other
+    int right = 0;  ///< face
   };
 
   /// The hull of at least four points (m, in the axes of the shape) that do not lie in a plane. What lies

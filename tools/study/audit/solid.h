@@ -28,7 +28,7 @@ Solid solid_of(const Collider& collider);
 
 /// m, by how much two solids lie in each other; negative: at least so far apart. Exact but for a capsule
 /// whose segment goes through a box (the depth of its deepest point) and boxes that are apart; where one is
-/// convex by directions, to a tenth of a millimetre.
+/// convex by directions, to a few tenths of a millimetre where they lie deep in each other.
 double overlap(const Solid& a, const Solid& b);
 /// m, below a floor at `height`.
 double below(const Solid& solid, double height);
