@@ -630,7 +630,9 @@ TEST(CInterfaceInputs, FollowTheirGoalsAsInCpp) {
   expect_refused(sinew_smooth(&input, 1, 0, kStep), SINEW_OUT_OF_RANGE, "half_life");
   expect_refused(sinew_smooth(&input, 1, 0.2f, -1), SINEW_OUT_OF_RANGE, "step");
   expect_refused(sinew_smooth(nullptr, 1, 0.2f, kStep), SINEW_INVALID_ARGUMENT, "null");
-  EXPECT_EQ(std::memcmp(&before, &input, sizeof input), 0);
+  EXPECT_EQ(input.value, before.value);
+  EXPECT_EQ(input.rate, before.rate);
+  EXPECT_EQ(input.acceleration, before.acceleration);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ ConvexHull hull_of(const std::vector<V>& points) {
 ConvexHull cuboid(const V& half) {
   std::vector<V> points;
   for (int n = 0; n < 8; ++n)
-    points.push_back(half.cwiseProduct(V(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
+    points.emplace_back(half.cwiseProduct(V(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
   return hull_of(points);
 }
 
@@ -34,8 +34,8 @@ ConvexHull barrel(int sides, double radius, double half, double top) {
   std::vector<V> points;
   for (int n = 0; n < sides; ++n) {
     const V out(std::cos(2 * M_PI * n / sides), std::sin(2 * M_PI * n / sides), 0);
-    points.push_back(radius * out - V(0, 0, half));
-    points.push_back(top * out + V(0, 0, half));
+    points.emplace_back(radius * out - V(0, 0, half));
+    points.emplace_back(top * out + V(0, 0, half));
   }
   return hull_of(points);
 }
@@ -45,7 +45,7 @@ ConvexHull rock(unsigned seed, double size) {
   std::normal_distribution<double> normal;
   std::vector<V> points;
   for (int n = 0; n < 14; ++n)
-    points.push_back(
+    points.emplace_back(
         size * V(normal(random), normal(random), normal(random)).normalized().cwiseProduct(V(1, 0.8, 0.6)));
   return hull_of(points);
 }

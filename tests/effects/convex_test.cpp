@@ -28,7 +28,7 @@ ConvexHull hull_of(const Points& points) {
 Points cuboid(const V& half, const V& at = V::Zero()) {
   Points points;
   for (int n = 0; n < 8; ++n)
-    points.push_back(at + half.cwiseProduct(V(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
+    points.emplace_back(at + half.cwiseProduct(V(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
   return points;
 }
 
@@ -49,7 +49,7 @@ Points rock(unsigned seed, int points) {
   Points all;
   for (int n = 0; n < points; ++n) {
     const V way(normal(random), normal(random), normal(random));
-    all.push_back(0.3 * way.normalized().cwiseProduct(V(1, 0.7, 0.5)));
+    all.emplace_back(0.3 * way.normalized().cwiseProduct(V(1, 0.7, 0.5)));
   }
   return all;
 }
@@ -105,7 +105,7 @@ TEST(ConvexHull, OfAWedgeHasItsCentreOfMass) {
   expect_closed(wedge);
   EXPECT_EQ(wedge.faces().size(), 5u);
   EXPECT_LT((wedge.center_of_mass() - V(0.2, 0.5, 0.1)).norm(), 1e-12);
-  const Mat3<double> inertia = wedge.inertia_by_mass();
+  const Mat3<double>& inertia = wedge.inertia_by_mass();
   EXPECT_NEAR(inertia(1, 1), (0.6 * 0.6 + 0.3 * 0.3) / 18, 1e-12);
 }
 
@@ -137,7 +137,7 @@ TEST(ConvexHull, OfPointsWithTheDigitsOfFloatsHasTheFacesThatAreMeant) {
   for (const int sides : {5, 8, 12, 16}) {
     Points points;
     for (const V& p : barrel(sides, 0.3, 0.45, 0.3))
-      points.push_back((turned * p).cast<float>().cast<double>());
+      points.emplace_back((turned * p).cast<float>().cast<double>());
     const ConvexHull hull = hull_of(points);
     expect_closed(hull);
     EXPECT_EQ(hull.faces().size(), std::size_t(sides + 2));
@@ -229,7 +229,7 @@ Points core_of(const Solid& s) {
     return {s.center + s.size.z() * s.rotation.col(2), s.center - s.size.z() * s.rotation.col(2)};
   for (const V& c :
        s.shape == Shape::kBox ? cuboid(s.size) : Points(s.hull->corners().begin(), s.hull->corners().end()))
-    points.push_back(s.center + s.rotation * c);
+    points.emplace_back(s.center + s.rotation * c);
   return points;
 }
 

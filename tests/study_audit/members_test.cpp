@@ -63,7 +63,7 @@ TEST(Solids, InertiasAreThoseOfTheirVolume) {
 ConvexHull cuboid(const Vector3d& half, const Vector3d& at) {
   std::vector<Vector3d> corners;
   for (int n = 0; n < 8; ++n)
-    corners.push_back(at + half.cwiseProduct(Vector3d(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
+    corners.emplace_back(at + half.cwiseProduct(Vector3d(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1)));
   ConvexHull hull;
   EXPECT_TRUE(ConvexHull::make(corners, hull).ok());
   return hull;

@@ -36,8 +36,8 @@ std::vector<Vec3<double>> prism_of(const Reader& in) {
   for (int n = 0; n < sides; ++n) {
     const double angle = 2 * std::numbers::pi * n / sides;
     const Vec3<double> out(std::cos(angle), std::sin(angle), 0);
-    points.push_back(radius * out - half * Vec3<double>::UnitZ());
-    if (top > 0 || n == 0) points.push_back(top * out + half * Vec3<double>::UnitZ());
+    points.emplace_back(radius * out - half * Vec3<double>::UnitZ());
+    if (top > 0 || n == 0) points.emplace_back(top * out + half * Vec3<double>::UnitZ());
   }
   return points;
 }
