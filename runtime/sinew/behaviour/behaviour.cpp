@@ -564,18 +564,12 @@ void Behaviour<T>::displace(Character<T>& character, const Displacement& further
   (void)character.displace(by.inverse().then(further).then(by));
 }
 
-/// The animation where the feet stand, where the plan is already.
+/// The clip again, from where the feet stand now, as the plan does already.
 template <class T>
-void Behaviour<T>::take_to_feet(Character<T>& character) {
+void Behaviour<T>::finish(Character<T>& character) {
   const Displacement further = to_feet(), by = character.displacement();
   (void)character.displace_led(by.inverse().then(further).then(by));
   last_[0] = displaced(further.inverse(), last_[0]);
-}
-
-/// The clip again, from where the feet stand now.
-template <class T>
-void Behaviour<T>::finish(Character<T>& character) {
-  take_to_feet(character);
   risen_ = false;
   give_up(character);
   fades_ = fades_root_ = true;

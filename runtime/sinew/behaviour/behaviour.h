@@ -202,7 +202,6 @@ class Behaviour {
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
   static void displace(Character<T>& character, const Displacement& further);
-  void take_to_feet(Character<T>& character);
   void finish(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
   void let_go(Character<T>& character, double h);

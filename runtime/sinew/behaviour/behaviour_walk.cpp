@@ -76,11 +76,7 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
 
 template <class T>
 void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, double h) {
-  if (!last_step_.root_unknown) {  // led back; the legs are still where the plan had them
-    fades_ = true;
-    fades_root_ = false;
-    return give_up(character);
-  }
+  if (!last_step_.root_unknown) return give_up(character);
   const auto stands = static_cast<std::size_t>(stance_);
   if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands])) {
     stance_ = 1 - stance_;

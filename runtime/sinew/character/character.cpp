@@ -257,13 +257,9 @@ Status Character<T>::displace_led(const Displacement& further) {
 
 template <class T>
 Status Character<T>::ride(const Displacement& further) {
-  if (!state_) return nobody();
-  const Displacement all = state_->grounding.by.then(further);
-  const Status status = check(further, all);
-  if (!status) return status;
-  state_->grounding.by = all;
-  state_->grounding.rides = true;
-  return {};
+  const Status status = displace_led(further);
+  if (status) state_->grounding.rides = true;
+  return status;
 }
 
 template <class T>

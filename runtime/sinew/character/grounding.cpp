@@ -47,8 +47,8 @@ bool within(const std::array<T, 6>& x, int first, int last, T most) {
   return std::all_of(x.begin() + first, x.begin() + last, [&](T v) { return std::abs(v) < most; });
 }
 
-/// Whether no toned joint is further off than what bears settles, and all others are where the animation
-/// wants them.
+/// Whether no joint with a tone is further off than what bears may be at rest, and all others are where the
+/// animation wants them.
 template <class T>
 bool joints_swing_near(const CharacterState<T>& s) {
   for (int i = 1; i < s.tree.bodies; ++i)

@@ -21,7 +21,8 @@ void displace_target(CharacterState<T>& state, const Displacement& further);
 
 /// After a solved part of h seconds of a grounded character, or of one whose muscles have a tone: whether it
 /// has been as its animation wants it for long enough. If so, a grounded one is displaced, and the ordinary
-/// return takes it onto its animation.
+/// return takes it onto its animation. `touched`: by more than what it stands on, of who has muscles with a
+/// tone.
 template <class T>
 void hand_back(CharacterState<T>& state, bool touched, T h);
 

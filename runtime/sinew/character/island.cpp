@@ -147,8 +147,9 @@ void IslandStepper<T>::finish_pose(CharacterState<T>& s, int tree, T h) {
     // Released until it has met its target with strength to spare; the kink's rounding is not a miss.
     const bool free = s.tree.dof_count(i) > 0 && (p.free[first] || s.baked[i]);
     // With a tone it has to be next to its animation, which update_deviation() asks.
-    const bool met = s.joint_has_tone(i) ? tone_load_in_part<T>(s, i) < T(kBearsNothing)
-                                         : missed < T(4) * p.kink_width && load < T(kCertified);
+    const bool met = s.joint_has_tone(i)
+                         ? tone_load<T>(s, i, s.torque, &ToneOfDof<T>::asked) < T(kBearsNothing)
+                         : missed < T(4) * p.kink_width && load < T(kCertified);
     if (!s.baked[i] || s.joint_is_driven(i)) s.deviation[i].released = free && !met;
     s.update_deviation(i, from_animation, h, T(world.accuracy.return_time));
   }
@@ -273,61 +274,6 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   report_help(s);
 }
 
-namespace {
-
-/// How far two poses are from each other, m and rad.
-template <class T>
-struct Apart {
-  T moved, turned;
-  Apart(const Transform<T>& a, const Transform<T>& b)
-      : moved((b.translation - a.translation).norm()),
-        turned(rotation_log<T>(a.rotation.conjugate() * b.rotation).norm()) {}
-};
-
-/// What the animation wants of the joint's own freedom, and of the rest what there is. Joints that slide, and
-/// a universal joint's axes, are the animation's.
-template <class T>
-Transform<T> on_own_base(const CharacterState<T>& s, int i, const Transform<T>& wanted) {
-  switch (s.tree.type[i]) {
-    case JointType::kFixed:
-      return s.local[i];
-    case JointType::kRevolute:
-      return rebased<T>(s.tree, i, s.local[i], wanted);
-    case JointType::kBall:
-    case JointType::kUniversal:
-      return {wanted.rotation, s.local[i].translation};
-    default:
-      return wanted;
-  }
-}
-
-/// What an animation does across a joint's axes (a bone that stretches, a knee's roll) is done to who follows
-/// it. A joint without muscles keeps what it has of that, or a clip that plays on would kick a limp body;
-/// with its strength back it catches up, at a pace.
-template <class T>
-void follow_across(CharacterState<T>& s, int i, bool falls, T h, Transform<T>& wanted) {
-  constexpr T kNothing = T(2e-5), kPace = T(1), kTurns = T(5);  // m or rad; m/s and rad/s of a human
-  const bool driven = s.joint_is_driven(i) && !falls;
-  if (driven && s.deviation[i].on_animation) return;
-  const Transform<T> held = on_own_base(s, i, wanted);
-  const Apart<T> off(held, wanted);
-  if (off.moved < kNothing * s.tree.scale.length && off.turned < kNothing) return;
-  if (!driven) {
-    wanted = held;
-    return;
-  }
-  const JointJet<T>& last = s.last_target()[i];
-  const Apart<T> own(rebased<T>(s.tree, i, {last.rotation, last.translation}, wanted), wanted);
-  const T time = h / s.tree.scale.time, pace = kPace * time * s.tree.scale.length, turns = kTurns * time;
-  const T share = std::min((own.moved + pace) / std::max(off.moved, pace),
-                           (own.turned + turns) / std::max(off.turned, turns));
-  if (!(share < T(1))) return;
-  wanted.translation = held.translation + share * (wanted.translation - held.translation);
-  wanted.rotation = held.rotation.slerp(share, wanted.rotation);
-}
-
-}  // namespace
-
 /// What the animation wants at a fraction of the frame, between the last frame's target and this one's.
 template <class T>
 void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
@@ -337,7 +283,7 @@ void IslandStepper<T>::choose_wanted(CharacterState<T>& s, T fraction) {
     const bool within = fraction < T(1) && !(falls && s.tree.dof_count(i) > 0);
     const JointJet<T> wanted = within ? animation_within<T>(before, now, frame_, fraction) : now;
     s.wanted[i] = s.in_solve(i, {wanted.rotation, wanted.translation}, settings_.common_origin);
-    if (i > 0) follow_across(s, i, falls, settings_.h, s.wanted[i]);
+    if (i > 0) follow_across<T>(s, i, settings_.h, s.wanted[i]);
   }
 }
 
@@ -465,14 +411,25 @@ bool IslandStepper<T>::tighten_loops() {
   return any;
 }
 
-/// Whether anything but what a body stands on touches a tree, or is tied to it.
+namespace {
+
+/// Whether a contact is of a body of a tree's with more than what that stands on.
+template <class T>
+bool is_more_than_ground(const Contact<T>& c, int tree, const SupportPoints<T>& support) {
+  const auto stands = [&](int body) {
+    return !support.first.empty() && support.first[body + 1] > support.first[body];
+  };
+  return c.acts() && (c.tree_b == tree || (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))));
+}
+
+}  // namespace
+
+/// Whether anything but what it stands on touches a tree, or is tied to it.
 template <class T>
 bool IslandStepper<T>::touches_more_than_ground(int tree) const {
-  const std::vector<int>& first = states_[tree]->rig->support.first;
-  const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
-  return states_[tree]->tied || std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
-           return c.acts() &&
-                  (c.tree_b == tree || (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))));
+  const CharacterState<T>& s = *states_[tree];
+  return s.tied || std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact<T>& c) {
+           return is_more_than_ground<T>(c, tree, s.rig->support);
          });
 }
 
@@ -483,11 +440,9 @@ std::span<const std::uint8_t> IslandStepper<T>::find_bearing(int tree) {
   const CharacterState<T>& s = *states_[tree];
   if (!s.problem.law.present.tone) return {};  // nobody asks
   bears_.assign(s.tree.bodies, 1);
-  const std::vector<int>& first = s.rig->support.first;
   for (const Contact<T>& c : contacts_) {
-    if (!c.acts()) continue;
-    const auto stands = [&](int body) { return !first.empty() && first[body + 1] > first[body]; };
-    if (c.tree_a == tree && (c.tree_b >= 0 || !stands(c.body_a))) bears_[c.body_a] = 0;
+    if (!is_more_than_ground<T>(c, tree, s.rig->support)) continue;
+    if (c.tree_a == tree) bears_[c.body_a] = 0;
     if (c.tree_b == tree) bears_[c.body_b] = 0;
   }
   for (int i = s.tree.bodies - 1; i > 0; --i)
@@ -577,7 +532,7 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   stop_lost();
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone)
-      hand_back<T>(s, touches_more_than_ground(static_cast<int>(n)), h);
+      hand_back<T>(s, s.problem.law.present.tone && touches_more_than_ground(static_cast<int>(n)), h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {

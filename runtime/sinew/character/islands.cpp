@@ -133,11 +133,12 @@ void Islands<T>::find(std::span<const std::unique_ptr<CharacterState<T>>> states
   awake_.clear();
   // Nobody is woken, or solved for, because somebody walks by.
   const auto meet = [&](int n, int other) {
-    if (!states[n]->may_meet(*states[other]) || couplings.are_apart(n, other)) return false;
+    if (!states[n]->may_meet(*states[other])) return false;
     const T margin = (states[other]->levels.asleep ? T(kTouching) : T(kCloseMargin)) *
                      std::max(states[n]->tree.scale.length, states[other]->tree.scale.length);
     return contacts->boxes_come_close(box(*states[n], n, *contacts, h),
                                       box(*states[other], other, *contacts, h), h, margin) &&
+           !couplings.are_apart(n, other) &&
            contacts->come_close(moving(*states[n], n, *contacts, h),
                                 moving(*states[other], other, *contacts, h), h, margin);
   };

@@ -74,26 +74,19 @@ void check_under_loads(CharacterState<T>& s, T h, const CheckContext<T>& c) {
 
 /// The same of the animation by itself.
 template <class T>
-void check_animation(CharacterState<T>& s, const CheckContext<T>& c) {
-  check_motion<T>(s.tree, s.target, c.world.gravity.template cast<T>(), standing_of(s, c), c.scratch,
+void check_animation(CharacterState<T>& s, const std::vector<JointJet<T>>& target, const CheckContext<T>& c) {
+  check_motion<T>(s.tree, target, c.world.gravity.template cast<T>(), standing_of(s, c), c.scratch,
                   s.problem.gradient);
-}
-
-/// What it asks muscles with a tone for, where the frame begins and at its end, which `problem.gradient` is.
-template <class T>
-void ask_for_feed_forward(CharacterState<T>& s, const CheckContext<T>& c) {
-  check_motion<T>(s.tree, s.last_target(), c.world.gravity.template cast<T>(), standing_of(s, c), c.scratch,
-                  s.problem.gradient);
-  keep_feed_forward(s, false);
-  check_animation(s, c);
-  keep_feed_forward(s, true);
 }
 
 /// What it asks for under loads; whether it is more by `most` than the animation asks muscles with a tone for
 /// by itself.
 template <class T>
 bool asks_for_more(CharacterState<T>& s, T h, const CheckContext<T>& context, T most) {
-  if (s.problem.law.present.tone) ask_for_feed_forward(s, context);
+  if (s.problem.law.present.tone) {
+    check_animation(s, s.target, context);
+    keep_feed_forward(s, &ToneOfDof<T>::feed_forward);
+  }
   check_under_loads(s, h, context);
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
 }
@@ -135,7 +128,7 @@ template <class T>
 bool play(CharacterState<T>& s, T h, const CheckContext<T>& context) {
   if (s.is_struck(T(context.world.accuracy.return_time))) return false;
   if (has_plain_check(s))
-    check_animation(s, context);
+    check_animation(s, s.target, context);
   else if (asks_for_more(s, h, context, T(1)))
     return false;
   return play_checked(s, context.world, h);
@@ -146,15 +139,19 @@ void begin_tone(CharacterState<T>& s, T h, const CheckContext<T>& context) {
   if (!s.problem.law.present.tone || s.passive()) return;
   constexpr T kLittle = T(0.5);  // of what makes a muscle give way
   s.grounding.returns = false;
+  check_animation(s, s.last_target(), context);
+  keep_feed_forward(s, &ToneOfDof<T>::before);
   s.acted_on = !has_plain_check(s);
   if (s.acted_on) {
     s.acted_on = asks_for_more(s, h, context, kLittle);
     for (int i = 0; i < s.tree.bodies; ++i)
-      if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient) > T(1)) s.deviation[i].released = true;
+      if (feels_pushes(s, i) && tone_load<T>(s, i, s.problem.gradient, &ToneOfDof<T>::feed_forward) > T(1))
+        s.deviation[i].released = true;
     s.clear_deviations();
     return;
   }
-  ask_for_feed_forward(s, context);
+  check_animation(s, s.target, context);
+  keep_feed_forward(s, &ToneOfDof<T>::feed_forward);
 }
 
 template <class T>
@@ -207,7 +204,10 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
   s.keep_loads();
   std::copy_n(s.local.begin(), s.tree.bodies, p.start.begin());
   p.common_origin = s.local[0].translation;
-  for (int i = 0; i < s.tree.bodies; ++i) s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    s.wanted[i] = {s.target[i].rotation, s.target[i].translation};
+    if (i > 0) follow_across<T>(s, i, h, s.wanted[i]);
+  }
   if (s.undisturbed())
     p.target = s.wanted;
   else

@@ -108,7 +108,55 @@ T pressed_by_clip(const CharacterState<T>& s) {
   return T(kPressedByClips) * s.tree.scale.length;
 }
 
+/// How far two poses are from each other, m and rad.
+template <class T>
+struct Apart {
+  T moved, turned;
+  Apart(const Transform<T>& a, const Transform<T>& b)
+      : moved((b.translation - a.translation).norm()),
+        turned(rotation_log<T>(a.rotation.conjugate() * b.rotation).norm()) {}
+};
+
+/// What the animation wants of the joint's own freedom, and of the rest what `base` has. Joints that slide,
+/// and a universal joint's axes, are the animation's.
+template <class T>
+Transform<T> on_base(const Tree<T>& tree, int i, const Transform<T>& base, const Transform<T>& wanted) {
+  switch (tree.type[i]) {
+    case JointType::kFixed:
+      return base;
+    case JointType::kRevolute:
+      return rebased<T>(tree, i, base, wanted);
+    case JointType::kBall:
+    case JointType::kUniversal:
+      return {wanted.rotation, base.translation};
+    default:
+      return wanted;
+  }
+}
+
 }  // namespace
+
+template <class T>
+void follow_across(CharacterState<T>& s, int i, T h, Transform<T>& wanted) {
+  constexpr T kNothing = T(2e-5), kPace = T(1), kTurns = T(5);  // m or rad; m/s and rad/s of a human
+  const bool driven = s.joint_is_driven(i) && !s.only_falls();
+  if (driven && s.deviation[i].on_animation) return;
+  const Transform<T> own_base = on_base(s.tree, i, s.local[i], wanted);
+  const Apart<T> off(own_base, wanted);
+  if (off.moved < kNothing * s.tree.scale.length && off.turned < kNothing) return;
+  if (!driven) {
+    wanted = own_base;
+    return;
+  }
+  const JointJet<T>& last = s.last_target()[i];
+  const Apart<T> own(on_base(s.tree, i, {last.rotation, last.translation}, wanted), wanted);
+  const T time = h / s.tree.scale.time, pace = kPace * time * s.tree.scale.length, turns = kTurns * time;
+  const T share = std::min((own.moved + pace) / std::max(off.moved, pace),
+                           (own.turned + turns) / std::max(off.turned, turns));
+  if (!(share < T(1))) return;
+  wanted.translation = own_base.translation + share * (wanted.translation - own_base.translation);
+  wanted.rotation = own_base.rotation.slerp(share, wanted.rotation);
+}
 
 template <class T>
 void sum_subtrees(CharacterState<T>& s) {
@@ -196,6 +244,8 @@ template JointJet<float> animation_within<float>(const JointJet<float>&, const J
                                                  float);
 template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&, double,
                                                    double);
+template void follow_across<float>(CharacterState<float>&, int, float, Transform<float>&);
+template void follow_across<double>(CharacterState<double>&, int, double, Transform<double>&);
 template bool drives_into_floor<float>(CharacterState<float>&, const WorldSettings&);
 template bool drives_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 template void sum_subtrees<float>(CharacterState<float>&);

@@ -30,6 +30,13 @@ T height_of_floor(const WorldSettings& world, double origin_height) {
 template <class T>
 void choose_targets(CharacterState<T>& state, T return_time, T ground, T h);
 
+/// What an animation does across a joint's axes (a bone that stretches, a knee's roll) is done to who follows
+/// it, played or solved: takes from `wanted`, the animation of a joint at the end of h seconds, what of that
+/// the joint does not follow. One without muscles keeps what it has, or a clip that plays on would kick a
+/// limp body; with its strength back it catches up, at a pace.
+template <class T>
+void follow_across(CharacterState<T>& state, int joint, T h, Transform<T>& wanted);
+
 /// Each body's subtree as one rigid body, about the common origin, into `problem.composite`: with the
 /// kinematics that the problem holds. O(bodies).
 template <class T>
@@ -72,6 +79,8 @@ extern template JointJet<float> animation_within<float>(const JointJet<float>&, 
                                                         float);
 extern template JointJet<double> animation_within<double>(const JointJet<double>&, const JointJet<double>&,
                                                           double, double);
+extern template void follow_across<float>(CharacterState<float>&, int, float, Transform<float>&);
+extern template void follow_across<double>(CharacterState<double>&, int, double, Transform<double>&);
 extern template bool drives_into_floor<float>(CharacterState<float>&, const WorldSettings&);
 extern template bool drives_into_floor<double>(CharacterState<double>&, const WorldSettings&);
 extern template void sum_subtrees<float>(CharacterState<float>&);

@@ -120,11 +120,8 @@ void reserve_for_tone(CharacterState<T>& s) {
 }
 
 template <class T>
-void keep_feed_forward(CharacterState<T>& s, bool at_end) {
-  for (int dof = 0; dof < s.tree.dofs; ++dof) {
-    ToneOfDof<T>& tone = s.problem.law.tone[dof];
-    (at_end ? tone.feed_forward : tone.before) = s.problem.gradient[dof];
-  }
+void keep_feed_forward(CharacterState<T>& s, T ToneOfDof<T>::*into) {
+  for (int dof = 0; dof < s.tree.dofs; ++dof) s.problem.law.tone[dof].*into = s.problem.gradient[dof];
 }
 
 namespace {
@@ -188,27 +185,18 @@ void choose_tone(CharacterState<T>& s, const Vec3<T>& gravity, T h, const PartOf
 }
 
 template <class T>
-T tone_load(const CharacterState<T>& s, int joint, std::span<const T> torque) {
+T tone_load(const CharacterState<T>& s, int joint, std::span<const T> torque, T ToneOfDof<T>::*own) {
   const JointLaw<T>& law = s.problem.law;
   T most = T(0);
   for (int dof = s.tree.first_dof[joint]; dof < s.tree.first_dof[joint + 1]; ++dof)
-    if (law.has_tone(dof)) most = std::max(most, std::abs(torque[dof] - law.tone[dof].feed_forward));
-  return most / (T(kGivesWay) * s.tree.scale.load);
-}
-
-template <class T>
-T tone_load_in_part(const CharacterState<T>& s, int joint) {
-  const JointLaw<T>& law = s.problem.law;
-  T most = T(0);
-  for (int dof = s.tree.first_dof[joint]; dof < s.tree.first_dof[joint + 1]; ++dof)
-    if (law.has_tone(dof)) most = std::max(most, std::abs(s.torque[dof] - law.tone[dof].asked));
+    if (law.has_tone(dof)) most = std::max(most, std::abs(torque[dof] - law.tone[dof].*own));
   return most / (T(kGivesWay) * s.tree.scale.load);
 }
 
 template <class T>
 bool overloads_tone(const CharacterState<T>& s, std::span<const T> torque, T most) {
   for (int i = 0; i < s.tree.bodies; ++i)
-    if (tone_load(s, i, torque) > most) return true;
+    if (tone_load(s, i, torque, &ToneOfDof<T>::feed_forward) > most) return true;
   return false;
 }
 

@@ -17,10 +17,10 @@ namespace sinew {
 template <class T>
 void reserve_for_tone(CharacterState<T>& state);
 
-/// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself, at
-/// the end of the frame or where it begins.
+/// Keeps `problem.gradient`, a check without pushes and effects, as what the animation asks for by itself:
+/// `into` feed_forward, or before.
 template <class T>
-void keep_feed_forward(CharacterState<T>& state, bool at_end);
+void keep_feed_forward(CharacterState<T>& state, T ToneOfDof<T>::*into);
 
 /// A part of a frame, and what joints lose in it.
 template <class T>
@@ -39,24 +39,21 @@ struct PartOfFrame {
 template <class T>
 void choose_tone(CharacterState<T>& state, const Vec3<T>& gravity, T h, const PartOfFrame<T>& part);
 
-/// How much a joint's torques [dof], as a check has them, differ from what its animation asks for by itself,
-/// where 1 is what releases it. 0 of what has no tone.
+/// How much a joint's torques [dof] differ from what its animation asks for by itself (`own`: feed_forward of
+/// those that a check has, asked of those that a part of a step has found), where 1 is what releases it. 0 of
+/// what has no tone.
 template <class T>
-T tone_load(const CharacterState<T>& state, int joint, std::span<const T> torque);
-/// The same of the torques that a part of a step has found.
-template <class T>
-T tone_load_in_part(const CharacterState<T>& state, int joint);
+T tone_load(const CharacterState<T>& state, int joint, std::span<const T> torque, T ToneOfDof<T>::*own);
 
 /// Whether any joint's do by more than `most`.
 template <class T>
 bool overloads_tone(const CharacterState<T>& state, std::span<const T> torque, T most);
 
-#define SINEW_TONE_INSTANCES(prefix, T)                                                     \
-  prefix void reserve_for_tone<T>(CharacterState<T>&);                                      \
-  prefix void keep_feed_forward<T>(CharacterState<T>&, bool);                               \
-  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T, const PartOfFrame<T>&); \
-  prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>);                 \
-  prefix T tone_load_in_part<T>(const CharacterState<T>&, int);                             \
+#define SINEW_TONE_INSTANCES(prefix, T)                                                        \
+  prefix void reserve_for_tone<T>(CharacterState<T>&);                                         \
+  prefix void keep_feed_forward<T>(CharacterState<T>&, T ToneOfDof<T>::*);                     \
+  prefix void choose_tone<T>(CharacterState<T>&, const Vec3<T>&, T, const PartOfFrame<T>&);    \
+  prefix T tone_load<T>(const CharacterState<T>&, int, std::span<const T>, T ToneOfDof<T>::*); \
   prefix bool overloads_tone<T>(const CharacterState<T>&, std::span<const T>, T);
 SINEW_TONE_INSTANCES(extern template, float)
 SINEW_TONE_INSTANCES(extern template, double)

@@ -43,7 +43,8 @@ bool release_overloaded(CharacterState<T>& s, std::span<const std::uint8_t> bear
     T load = T(0);
     for (int dof = first; dof < first + count; ++dof)
       load = std::max(load, s.problem.law.load(s.tree, i, dof, s.torque));
-    const bool gives_way = s.joint_has_tone(i) && !bears[i] && tone_load_in_part<T>(s, i) > T(1);
+    const bool gives_way =
+        s.joint_has_tone(i) && !bears[i] && tone_load<T>(s, i, s.torque, &ToneOfDof<T>::asked) > T(1);
     if (load <= T(1) && !gives_way) continue;
     for (int dof = first; dof < first + count; ++dof) s.problem.free[dof] = 1;
     any = true;

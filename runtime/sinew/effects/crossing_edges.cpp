@@ -90,7 +90,7 @@ template <class T>
 SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b) {
   if (a.hull || b.hull) {
     const SignedDistance<double> d =
-        separation_of_hulls(a.template cast<double>(), b.template cast<double>());
+        separation_of_hulls(Polyhedron(a.template cast<double>()), Polyhedron(b.template cast<double>()));
     return {T(d.distance), d.normal.template cast<T>(), T(0), Vec3<T>::Zero()};
   }
   return SeparatingAxes<T>(a, b).best;
@@ -99,9 +99,8 @@ SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b) {
 /// The same for solids one of which is convex.
 template <class T>
 void CrossingEdges<T>::find_of_hulls(const PlacedShape<T>& a, const PlacedShape<T>& b) {
-  const PlacedShape<double> placed_a = a.template cast<double>(), placed_b = b.template cast<double>();
-  const Polyhedron of_a(placed_a), of_b(placed_b);
-  apart = T(separation_of_hulls(placed_a, placed_b).distance);
+  const Polyhedron of_a(a.template cast<double>()), of_b(b.template cast<double>());
+  apart = T(separation_of_hulls(of_a, of_b).distance);
   const double radii = of_a.radius() + of_b.radius();
   const double least = std::min(double(apart), 0.0) - kAsGood * std::min(of_a.thinnest(), of_b.thinnest());
   const auto edge = [](const Polyhedron& s, const ConvexHull::Edge& e) {

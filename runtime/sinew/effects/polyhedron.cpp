@@ -10,8 +10,6 @@ namespace sinew {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kBack = -0.5;         ///< as in solid_gap.cpp
-constexpr double kLevel = 0.02;        ///< sine: a face or an edge that lies less level is touched at its end
 constexpr double kEdgesBetter = 1e-3;  ///< of both thicknesses: so much better edges must be than faces
 constexpr double kOnEdge = 1e-9;       ///< sine, see beyond_support()
 constexpr int kHalvings = 12;          ///< of a capsule's axis
@@ -219,8 +217,8 @@ SolidGap<double> gap_of_hulls(const PlacedShape<double>& a, const PlacedShape<do
   return gap;
 }
 
-SignedDistance<double> separation_of_hulls(const PlacedShape<double>& a, const PlacedShape<double>& b) {
-  return Axes(Polyhedron(a), Polyhedron(b), Vec3<double>::Zero()).distance();
+SignedDistance<double> separation_of_hulls(const Polyhedron& a, const Polyhedron& b) {
+  return Axes(a, b, Vec3<double>::Zero()).distance();
 }
 
 }  // namespace sinew

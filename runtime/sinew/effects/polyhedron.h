@@ -52,6 +52,6 @@ SolidGap<double> gap_of_hulls(const PlacedShape<double>& a, const PlacedShape<do
                               const Vec3<double>& before);
 
 /// As separation(), where one of two polyhedra is a convex solid.
-SignedDistance<double> separation_of_hulls(const PlacedShape<double>& a, const PlacedShape<double>& b);
+SignedDistance<double> separation_of_hulls(const Polyhedron& a, const Polyhedron& b);
 
 }  // namespace sinew

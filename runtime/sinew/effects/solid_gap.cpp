@@ -9,8 +9,6 @@
 namespace sinew {
 namespace {
 
-constexpr double kBack = -0.5;   ///< cosine to where they were apart: beyond, a direction leads back through
-constexpr double kLevel = 0.02;  ///< sine: a face or an edge that lies less level is touched at its end
 constexpr double kFaceFirst = 1e-3;  ///< of both extents: so much better edges must be than faces
 
 /// What of a solid reaches furthest in a direction, of a capsule's core: a corner, an edge or a face.

@@ -6,6 +6,9 @@
 
 namespace sinew {
 
+constexpr double kBack = -0.5;   ///< cosine to where they were apart: beyond, a direction leads back through
+constexpr double kLevel = 0.02;  ///< sine: a face or an edge that lies less level is touched at its end
+
 template <class T>
 struct SolidGap {
   T distance = T(0);  ///< m; negative: how far the first has to move along the normal to leave the second
