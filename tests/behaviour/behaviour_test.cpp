@@ -350,6 +350,35 @@ TEST(Behaviour, WhoWalkedOnIsOnItsAnimationWhereItWalks) {
   EXPECT_GE(body.root_height(), 0.85);
 }
 
+/// A curb keeps a foot from landing where it should.
+TEST(Behaviour, WhatLegsOfAWalkerAreAskedDoesNotLeap) {
+  for (const double hz : {60.0, 120.0, 240.0})
+    for (const double ahead : {1.2, 1.5, 1.8}) {
+      Walking body(hz);
+      Collider curb;
+      curb.shape = Shape::kBox;
+      curb.size = {0.05, 1, 0.05};
+      curb.local.translation = {ahead, 0, 0.05};
+      ASSERT_TRUE(body.world.add_obstacle(curb));
+      const Skeleton& skeleton = body.asset.skeleton;
+      const auto behave = body.behave;
+      std::vector<JointJet<float>> before = body.jets;
+      double fastest = 0;  // rad/s
+      body.behave = [&](std::span<JointJet<float>> wanted) {
+        behave(wanted);
+        for (const Role role :
+             {Role::kThighL, Role::kShinL, Role::kFootL, Role::kThighR, Role::kShinR, Role::kFootR}) {
+          const auto joint = static_cast<std::size_t>(skeleton.find(role));
+          const double turned = double(before[joint].rotation.angularDistance(wanted[joint].rotation));
+          fastest = std::max(fastest, turned * hz);
+        }
+        std::copy(wanted.begin(), wanted.end(), before.begin());
+      };
+      body.run(4);
+      EXPECT_LT(fastest, 20) << hz << " Hz, a curb at " << ahead;
+    }
+}
+
 /// A push after which it stood again elsewhere, and then leapt to where it had stood first in one frame.
 TEST(Behaviour, StandsAgainWithoutALeap) {
   for (const double hz : {60.0, 120.0})

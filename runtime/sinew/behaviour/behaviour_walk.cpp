@@ -19,6 +19,7 @@ constexpr double kChanges = 0.7;   ///< of the standing foot's speed, at which t
 constexpr double kStepTime = 0.5;  ///< s
 constexpr double kSoonest = 0.05;  ///< s, in which a foot can land
 constexpr double kShares = 3, kQuickest = 0.04;  ///< of that time, s: in which it goes elsewhere
+constexpr double kYields = 0.08;                 ///< s, in which a foot is asked to be where it came to stand
 constexpr double kObserved = 0.4;                ///< s, in which what it plans comes to what it does
 constexpr double kPresses = 0.1;                 ///< m, that its feet press elsewhere than its animation's
 // What it may be off when it is led back, and more by this share for every step after the second.
@@ -28,6 +29,14 @@ constexpr double kNearly = 0.04, kNearlySpeed = 0.12, kLater = 0.25;  ///< m, m/
 template <class T>
 double speed_of(const MovingTransform<T>& foot) {
   return from_above(rate_of(foot.translation).template cast<double>()).norm();
+}
+
+/// Critically damped, h seconds on, exact for any h.
+void approach(TimeJet<double>& x, double to, double time, double h) {
+  const double off = x.value - to, pull = x.rate + off / time, left = portable::exp(-h / time);
+  x.value = to + left * (off + h * pull);
+  x.rate = left * (x.rate - h / time * pull);
+  x.acceleration = (to - x.value) / (time * time) - 2 / time * x.rate;
 }
 
 }  // namespace
@@ -40,16 +49,17 @@ Vec2 Behaviour<T>::clip_ankle_now(std::size_t side, double h) const {
 }
 
 /// The clip's standing foot is brought to where that foot stands: what the body is off from there is what its
-/// next steps have to catch.
+/// next steps have to catch. What is asked of the feet does not leap: one that something kept from landing
+/// where it should is led to where it is.
 template <class T>
 void Behaviour<T>::change_feet(Character<T>& character, const MeasuredBody& world, double h) {
-  const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
+  const auto stands = static_cast<std::size_t>(stance_);
   const MeasuredBody is = world.without(character.displacement());
   const Vec2 way = from_above(is.foot[stands].translation) - clip_ankle_now(stands, h);
   displace(character, {way.x(), way.y(), 0, 0});
   error_.place -= way;
-  foot_offset_[stands] = still<double>(Vec3<double>::Zero());
-  for (int a = 0; a < 2; ++a) foot_offset_[swings][a].value -= way[a];
+  for (MovingVector<double>& offset : foot_offset_)
+    for (int a = 0; a < 2; ++a) offset[a].value -= way[a];
 }
 
 template <class T>
@@ -59,8 +69,8 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
   walks_ = true;
   (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
-  foot_offset_ = {still<double>(Vec3<double>::Zero()), still<double>(Vec3<double>::Zero())};
   change_feet(character, world, h);
+  foot_offset_[static_cast<std::size_t>(stance_)] = still<double>(Vec3<double>::Zero());
   const MeasuredBody is = world.without(character.displacement());
   const auto swings = static_cast<std::size_t>(1 - stance_);
   const Vec2 off = from_above(is.foot[swings].translation) - clip_ankle_now(swings, h);
@@ -105,12 +115,13 @@ void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, d
 }
 
 /// The foot in the air lands by as much elsewhere as the body will be off when it is down, if it can reach
-/// there.
+/// there. The one that stands is asked to be where it is.
 template <class T>
 void Behaviour<T>::move_offset(double h) {
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
   const MovingVector<T>&stance = clip_foot_motion_[stands].translation,
         &swing = clip_foot_motion_[swings].translation;
+  for (int a = 0; a < 2; ++a) approach(foot_offset_[stands][a], 0, kYields * std::sqrt(unit_), h);
   const double walks = std::max(clip_velocity_.norm(), 1e-3), step_time = kStepTime * std::sqrt(unit_);
   const Vec2 ahead = clip_velocity_ / walks;
   const Vec2 way = from_above(Vec3<double>((value_of(swing) - value_of(stance)).template cast<double>())),
@@ -128,12 +139,7 @@ void Behaviour<T>::move_offset(double h) {
   feet.place[stands] = clip_ankle_now(stands, 0);
   const Vec2 to = within_reach(feet, static_cast<int>(swings), lands + off, law_) - lands;
   const double time = std::max(left / kShares, kQuickest * std::sqrt(unit_));
-  for (int a = 0; a < 2; ++a) {
-    TimeJet<double>& x = offset[a];
-    x.acceleration = (to[a] - x.value) / (time * time) - 2 / time * x.rate;
-    x.value += h * x.rate + h * h / 2 * x.acceleration;
-    x.rate += h * x.acceleration;
-  }
+  for (int a = 0; a < 2; ++a) approach(offset[a], to[a], time, h);
 }
 
 template <class T>
