@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sinew/effects/polyhedron.h"
+#include "sinew/effects/separating_axes.h"
 
 namespace sinew {
 namespace {
@@ -15,14 +16,6 @@ constexpr double kAsGood = 0.1;  ///< of the thinnest half extent: a direction p
 template <class T>
 T thinnest(const PlacedShape<T>& s) {
   return s.shape == Shape::kBox ? s.size.minCoeff() : s.size.x();
-}
-
-/// Half of what a solid extends along a unit direction, m.
-template <class T>
-T extent(const PlacedShape<T>& s, const Vec3<T>& direction) {
-  const Vec3<T> in_shape = s.rotation.transpose() * direction;
-  if (s.shape == Shape::kBox) return in_shape.cwiseAbs().dot(s.size);
-  return std::abs(in_shape.z()) * s.size.z() + s.size.x();
 }
 
 /// The edges with a direction that support a solid towards `outwards`. Returns how many.
@@ -50,40 +43,6 @@ T inner_part(const PlacedShape<T>& s, const Edge<T>& e) {
   return T(1) - T(box_rounding(s.size.template cast<double>(), double(s.unit))) / e.half_axis.norm();
 }
 
-/// What parts two solids, along each product of an edge of a and one of b, and along the best axis of all.
-template <class T>
-struct SeparatingAxes {
-  std::array<Vec3<T>, 9> normals;  ///< [3 · edge of a + edge of b]
-  std::array<T, 9> by{};           ///< m; −∞ where the two are parallel
-  SignedDistance<T> best;
-  int first_a = 0;  ///< edges of a: its first
-
-  SeparatingAxes(const PlacedShape<T>& a, const PlacedShape<T>& b) : first_a(a.shape == Shape::kBox ? 0 : 2) {
-    const Vec3<T> between = a.center - b.center;
-    best.distance = -std::numeric_limits<T>::infinity();
-    const auto look_along = [&](const Vec3<T>& axis) {
-      const T along = axis.dot(between), apart = std::abs(along) - extent(a, axis) - extent(b, axis);
-      if (apart > best.distance) {
-        best.distance = apart;
-        best.normal = along < T(0) ? Vec3<T>(-axis) : axis;
-      }
-      return apart;
-    };
-    for (int i = 0; i < 3; ++i) {
-      if (b.shape == Shape::kBox) look_along(b.rotation.col(i));
-      if (a.shape == Shape::kBox) look_along(a.rotation.col(i));
-    }
-    by.fill(-std::numeric_limits<T>::infinity());
-    for (int i = first_a; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        if (are_parallel<T>(a.rotation.col(i), b.rotation.col(j))) continue;
-        Vec3<T>& normal = normals[3 * i + j];
-        normal = a.rotation.col(i).cross(b.rotation.col(j)).normalized();
-        by[3 * i + j] = look_along(normal);
-      }
-  }
-};
-
 }  // namespace
 
 template <class T>
@@ -93,7 +52,8 @@ SignedDistance<T> separation(const PlacedShape<T>& a, const PlacedShape<T>& b) {
         separation_of_hulls(Polyhedron(a.template cast<double>()), Polyhedron(b.template cast<double>()));
     return {T(d.distance), d.normal.template cast<T>(), T(0), Vec3<T>::Zero()};
   }
-  return SeparatingAxes<T>(a, b).best;
+  const SeparatingAxes<T> axes(a, b);
+  return {axes.distance, axes.normal, T(0), Vec3<T>::Zero()};
 }
 
 /// The same for solids one of which is convex.
@@ -133,13 +93,13 @@ void CrossingEdges<T>::find(const PlacedShape<T>& a, const PlacedShape<T>& b) {
   if (a.hull || b.hull) return find_of_hulls(a, b);
   const SeparatingAxes<T> axes(a, b);
   const Vec3<T> between = a.center - b.center;
-  apart = axes.best.distance;
+  apart = axes.distance;
   const T least = std::min(apart, T(0)) - T(kAsGood) * std::min(thinnest(a), thinnest(b));
   for (int i = axes.first_a; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       if (axes.by[3 * i + j] < least) continue;
-      const T side = between.dot(axes.normals[3 * i + j]) < T(0) ? T(-1) : T(1);
-      const Vec3<T> normal = side * axes.normals[3 * i + j];  // from b to a
+      const T side = between.dot(axes.products[3 * i + j]) < T(0) ? T(-1) : T(1);
+      const Vec3<T> normal = side * axes.products[3 * i + j];  // from b to a
       std::array<Edge<T>, 4> of_a, of_b;
       const int edges_a = supporting<T>(a, i, -normal, of_a), edges_b = supporting<T>(b, j, normal, of_b);
       for (int m = 0; m < edges_a; ++m)

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sinew/effects/polyhedron.h"
+#include "sinew/effects/separating_axes.h"
 
 namespace sinew {
 namespace {
-
-constexpr double kFaceFirst = 1e-3;  ///< of both extents: so much better edges must be than faces
 
 /// What of a solid reaches furthest in a direction, of a capsule's core: a corner, an edge or a face.
 template <class T>
@@ -38,58 +36,23 @@ Edge<T> furthest_edge(const PlacedShape<T>& s, int direction, const Vec3<T>& out
                         (s.rotation.col(two).dot(outwards) > T(0) ? 2 : 0));
 }
 
-/// The best of the axes that separate convex polytopes, of a capsule its core's.
+/// Of a box or capsule from a box, by the best of the axes that separate them.
 template <class T>
-class Axes {
- public:
-  Axes(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before)
-      : a_(a), b_(b), before_(before), between_(a.center - b.center) {
-    for (int j = 0; j < 3; ++j) {
-      if (b.shape == Shape::kBox) look_along(b.rotation.col(j), -1, j);
-      if (a.shape == Shape::kBox) look_along(a.rotation.col(j), j, -1);
-    }
-    for (int i = a.shape == Shape::kBox ? 0 : 2; i < 3; ++i)
-      for (int j = b.shape == Shape::kBox ? 0 : 2; j < 3; ++j)
-        if (!are_parallel<T>(a.rotation.col(i), b.rotation.col(j)))
-          look_along(a.rotation.col(i).cross(b.rotation.col(j)).normalized(), i, j);
+SolidGap<T> gap_of_boxes(const PlacedShape<T>& a, const PlacedShape<T>& b, const Vec3<T>& before) {
+  const SeparatingAxes<T> axes(a, b, before);
+  SolidGap<T> gap{axes.distance, axes.normal, Vec3<T>::Zero()};
+  if (axes.of_a < 0) {  // where faces of both lie level, nearer to the smaller one's middle
+    const Furthest<T> of_a = furthest<T>(a, -gap.normal), of_b = furthest<T>(b, gap.normal);
+    const T both = of_a.extent + of_b.extent, share = both > T(0) ? of_a.extent / both : T(0.5);
+    gap.point = of_a.center + share * (of_b.center - of_a.center);
+  } else {
+    const Edge<T> p = furthest_edge<T>(a, axes.of_a, -gap.normal),
+                  q = furthest_edge<T>(b, axes.of_b, gap.normal);
+    const T along = nearest_along<T>(p.half_axis, q.half_axis, q.center - p.center)[0];
+    gap.point = p.center + std::clamp(along, T(-1), T(1)) * p.half_axis;
   }
-  SolidGap<T> best() const {
-    SolidGap<T> gap{distance_, normal_, Vec3<T>::Zero()};
-    if (of_a_ < 0 || of_b_ < 0) {  // where faces of both lie level, nearer to the smaller one's middle
-      const Furthest<T> a = furthest<T>(a_, -normal_), b = furthest<T>(b_, normal_);
-      const T both = a.extent + b.extent, share = both > T(0) ? a.extent / both : of_a_ < 0 ? T(0) : T(1);
-      gap.point = a.center + share * (b.center - a.center);
-    } else {
-      const Edge<T> p = furthest_edge<T>(a_, of_a_, -normal_), q = furthest_edge<T>(b_, of_b_, normal_);
-      const T along = nearest_along<T>(p.half_axis, q.half_axis, q.center - p.center)[0];
-      gap.point = p.center + std::clamp(along, T(-1), T(1)) * p.half_axis;
-    }
-    return gap;
-  }
-
- private:
-  T extent(const PlacedShape<T>& s, const Vec3<T>& axis) const {
-    const Vec3<T> in_shape = (s.rotation.transpose() * axis).cwiseAbs();
-    return s.shape == Shape::kBox ? in_shape.dot(s.size) : in_shape.z() * s.size.z() + s.size.x();
-  }
-  void look_along(const Vec3<T>& axis, int of_a, int of_b) {
-    const T along = axis.dot(between_), back = axis.dot(before_), reach = extent(a_, axis) + extent(b_, axis);
-    const bool forth = along >= T(0) ? back > T(kBack) : -back > T(kBack);
-    const T side = (along >= T(0)) == forth ? T(1) : T(-1), apart = side * along - reach;
-    // Two edges that lie in a face part no better than that.
-    if (!(apart > distance_ + (of_a < 0 || of_b < 0 ? T(0) : T(kFaceFirst) * reach))) return;
-    distance_ = apart;
-    normal_ = side * axis;
-    of_a_ = of_a;
-    of_b_ = of_b;
-  }
-
-  const PlacedShape<T>&a_, &b_;
-  const Vec3<T> before_, between_;
-  T distance_ = -std::numeric_limits<T>::infinity();
-  Vec3<T> normal_ = Vec3<T>::UnitZ();
-  int of_a_ = -1, of_b_ = -1;
-};
+  return gap;
+}
 
 /// How far along a capsule's axis c + t·h, t in [−1, 1], it is nearest to a box about the origin: the zero of
 /// half the squared distance's derivative, which is piecewise linear and grows. Where it lies level with a
@@ -130,7 +93,7 @@ SolidGap<T> of_capsule(const PlacedShape<T>& capsule, const PlacedShape<T>& box,
     if (normal.dot(before) > T(kBack))
       return {distance - capsule.size.x(), normal, box.center + box.rotation * at};
   }
-  return Axes<T>(capsule, box, before).best();
+  return gap_of_boxes<T>(capsule, box, before);
 }
 
 }  // namespace
@@ -143,7 +106,7 @@ SolidGap<T> solid_gap(const PlacedShape<T>& a, const PlacedShape<T>& b, const Ve
     return {T(gap.distance), gap.normal.template cast<T>(), gap.point.template cast<T>()};
   }
   if (a.shape != Shape::kBox) return of_capsule<T>(a, b, before);
-  if (b.shape == Shape::kBox) return Axes<T>(a, b, before).best();
+  if (b.shape == Shape::kBox) return gap_of_boxes<T>(a, b, before);
   SolidGap<T> gap = of_capsule<T>(b, a, -before);
   gap.normal = -gap.normal;
   return gap;
