@@ -94,6 +94,27 @@ TEST(Grounded, SlidesWhereBoxesAreIcy) {
   EXPECT_GT(body.solved, 0);  // what a walk asks for is more than such ground gives
 }
 
+/// What he is going to touch in the step does not pass him by where he would be played: a ball of 20 m/s is
+/// a third of a metre ahead of him when a step of 1/60 s begins, and behind him when it ends.
+TEST(Grounded, IsHitByWhatIsThrownAtHim) {
+  for (const double hz : {15.0, 30.0, 60.0, 120.0})
+    for (const double speed : {4.0, 10.0, 20.0, 40.0}) {
+      Pushed body("stand");
+      body.h = float(1 / hz);
+      PropSettings ball;
+      ball.size = Vec3<double>::Constant(0.11);
+      ball.mass = 0.45;
+      ball.pose.translation = {-2, 0, 1.3};
+      ball.velocity = {speed, 0, speed < 10 ? 1.5 : 0};
+      Status status;
+      const int index = body.world.add_prop(ball, status);
+      ASSERT_GE(index, 0) << status.reason;
+      body.run(2 / speed + 0.5);
+      EXPECT_GT(body.solved, 0) << hz << " Hz, " << speed << " m/s";
+      EXPECT_LT(body.world.prop_pose(index).translation.x(), 0) << hz << " Hz, " << speed << " m/s";
+    }
+}
+
 TEST(Grounded, AWallBesideIsNoGround) {
   Pushed plain("stand");
   Pushed beside("stand");

@@ -245,6 +245,37 @@ TEST(Loop, WhatHangsOnALoopPullsByItsWeight) {
   EXPECT_LT(scene.world.loop_gap(0), 2e-4);
 }
 
+/// Forces that hold a body's axis answer to where it has turned by the end of a step: carried on alone, they
+/// amplify what makes it wobble once it turns by more than a twelfth of a radian in one.
+template <class T>
+void expect_spins_on(double spin, double h) {
+  Scene<T> scene(airborne(V::Zero()));
+  PropSettings wheel;
+  wheel.shape = Shape::kBox;
+  wheel.size = {0.3, 0.3, 0.05};
+  wheel.mass = 20;
+  wheel.angular_velocity = {0.3, 0.2, spin};
+  Status status;
+  const int index = scene.world.add_prop(wheel, status);
+  ASSERT_GE(index, 0) << status.reason;
+  scene.tie(LoopKind::kHinge, world_anchor(V::Zero()), prop_anchor(index));
+  for (int n = 0; n < 4 / h; ++n) {
+    const Quat<T> before = scene.world.prop_pose(index).rotation;
+    scene.run(1, h);
+    const double turned = double(before.angularDistance(scene.world.prop_pose(index).rotation)) / h;
+    ASSERT_NEAR(turned, spin, 0.01 * spin) << spin << " rad/s in steps of " << h << ", step " << n;
+    ASSERT_LT(scene.world.loop_gap(0), 5e-4) << spin;
+  }
+}
+
+TEST(Loop, WhatSpinsOnAHingeIsNotBraked) {
+  for (const double h : {1.0 / 30, 1.0 / 60, 1.0 / 120})
+    for (const double spin : {5.0, 10.0, 20.0, 40.0, 80.0}) {
+      expect_spins_on<float>(spin, h);
+      expect_spins_on<double>(spin, h);
+    }
+}
+
 TEST(Loop, RopePullsAndNeverPushes) {
   Scene<double> scene;
   scene.add_ball({0, 0, 1});

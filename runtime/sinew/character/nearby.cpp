@@ -25,10 +25,10 @@ SignedDistance<double> distance_to(const Collider& obstacle, const Vec3<double>&
   return distance_to(obstacle, obstacle.local, point);
 }
 
-/// `point` (m) from the common origin.
+/// Of where it bears; `point` (m) from the common origin.
 template <class T>
 SignedDistance<double> distance_to(const MovingShape<T>& shape, const Vec3<double>& point) {
-  return distance_to(*shape.to.collider, shape.to.pose.template cast<double>(), point);
+  return distance_to(*shape.to.collider, shape.ground().pose.template cast<double>(), point);
 }
 
 /// m: how far what is at `place` at the end of a step has come in it.
@@ -135,27 +135,28 @@ void add_carrier(CharacterState<T>& carrier, Nearby<T>& out) {
   }
 }
 
-/// Appends a prop, where it is. What has just been loaded is pressed into the floor at a speed that it does
-/// not go on with; so only how it slides counts.
+/// Appends a prop or another figure, that is solved or played beside it and in whose way it may be.
 template <class T>
-void add_prop(CharacterState<T>& prop, Nearby<T>& out) {
-  place_now(prop, out.origin, out.others);
-  const Vec3<T> spin = angular_velocity(prop.history, 0);
-  for (const PlacedCollider<T>& at : out.others) {
-    const Vec3<T> slides =
-        prop.history.velocity[0] + spin.cross(at.pose.translation - prop.guessed.center[0]);
-    MovingShape<T>& shape = out.moving.emplace_back(MovingShape<T>{&prop, at, at});
+void add_other(CharacterState<T>& other, const Vec3<T>& gravity, Nearby<T>& out) {
+  place_now(other, out.origin, out.now);
+  out.others.clear();
+  predict_colliders<T>(other, out.now, out.origin, gravity, out.h, out.others);
+  for (std::size_t c = 0; c < out.now.size(); ++c) {
+    MovingShape<T>& shape = out.moving.emplace_back(MovingShape<T>{&other, out.now[c], out.others[c]});
+    if (!other.is_prop) continue;
+    const Vec3<T> arm = shape.from.pose.translation - other.guessed.center[0];
+    const Vec3<T> slides = other.history.velocity[0] + angular_velocity(other.history, 0).cross(arm);
     shape.slides = slides.template head<2>().norm();
   }
 }
 
-/// Appends who is solved or played beside it, in whose way it may be.
+/// m, from a point to a shape's way.
 template <class T>
-void add_figure(CharacterState<T>& figure, const Vec3<T>& gravity, Nearby<T>& out) {
-  place_now(figure, out.origin, out.now);
-  out.others.clear();
-  predict_colliders<T>(figure, out.now, out.origin, gravity, out.h, out.others);
-  for (std::size_t c = 0; c < out.now.size(); ++c) out.moving.push_back({&figure, out.now[c], out.others[c]});
+T distance_to_way(const MovingShape<T>& shape, const Vec3<T>& point) {
+  const Vec3<T> from = shape.from.pose.translation, way = shape.to.pose.translation - from;
+  const T square = way.squaredNorm();
+  const T along = square > T(0) ? std::clamp((point - from).dot(way) / square, T(0), T(1)) : T(0);
+  return (from + along * way - point).norm();
 }
 
 /// What carries among the members, and who else is touched, within `reach` (m) of `center` (m, from the
@@ -175,22 +176,28 @@ void find_moving(const CharacterState<T>& s, const Surroundings& around, const M
     if (other.is_carrier())
       add_carrier(other, out);
     else if (touched(other) && !other.is_particles)
-      other.is_prop ? add_prop(other, out) : add_figure(other, gravity, out);
+      add_other(other, gravity, out);
   }
-  std::erase_if(out.moving, [&](const MovingShape<T>& o) {
-    return std::min((o.from.pose.translation - center).norm(), (o.to.pose.translation - center).norm()) >
-           reach + o.to.radius;
-  });
+  std::erase_if(out.moving,
+                [&](const MovingShape<T>& o) { return distance_to_way(o, center) > reach + o.to.radius; });
 }
 
-/// Whether colliders on their way push what gives way: a figure, or a prop other than from above.
+/// Whether a collider meets a prop on it: is above it where the two have met, and was not below before.
+template <class T>
+bool meets_from_above(const PlacedCollider<T>& from, const PlacedCollider<T>& to,
+                      const MovingShape<T>& prop) {
+  return distance_between(to, prop.to).normal.z() > T(kLevel) &&
+         distance_between(from, prop.from).normal.z() > -T(kLevel);
+}
+
+/// Whether colliders on their way push what gives way, or it them: a figure, or a prop other than from above.
 template <class T>
 bool push(const ColliderPaths<T>& paths, const MovingShape<T>& shape) {
   if (shape.of->is_carrier()) return false;
   for (std::size_t n = 0; n < paths.to.size(); ++n) {
     const ColliderPaths<T> one{paths.from.subspan(n, 1), paths.to.subspan(n, 1)};
     if (touch_on_the_way<T>(one, {{&shape.from, 1}, {&shape.to, 1}}, T(0)) &&
-        !(shape.of->is_prop && distance_between(paths.to[n], shape.to).normal.z() > T(kLevel)))
+        !(shape.of->is_prop && meets_from_above(paths.from[n], paths.to[n], shape)))
       return true;
   }
   return false;

@@ -16,11 +16,14 @@
 namespace sinew {
 
 /// A collider of what is driven as a whole, of a prop or of another figure, from the common origin, where a
-/// step begins and where it ends; props where they are.
+/// step begins and where it ends.
 template <class T>
 struct MovingShape {
   CharacterState<T>* of = nullptr;
   PlacedCollider<T> from, to;
+  /// Where it bears somebody. What has just been loaded is pressed into the floor at a speed that it does not
+  /// go on with: props where they are.
+  const PlacedCollider<T>& ground() const { return of->is_prop ? from : to; }
   Vec3<T> velocity = Vec3<T>::Zero(), spin = Vec3<T>::Zero();  ///< m/s where `to` is, rad/s; 0 of props
   T slides = T(0);                                             ///< m/s, a prop
   bool bears = false;                                          ///< see ground_under()

@@ -31,9 +31,6 @@ const char* known_to_fail(const std::string& situation) {
       {"toned_tap",
        "at 30 Hz the arms swing 18 mm beside the clip: muscles pull with the mean of what the step's ends "
        "ask for"},
-      {"trolley",
-       "loses 4 % of 2 m/s in four seconds, 2 % wanted: what hinges gain as wheels wobble the energy balance "
-       "takes from all that moves; in steps of 1/240 s 0.3 %"},
   };
   for (const Known& known : kKnown)
     if (situation == known.name) return known.why;

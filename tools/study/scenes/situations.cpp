@@ -488,6 +488,20 @@ void balls_at_heads(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// Nothing flies through whom it is thrown at, nor into him. What lies in front of him at the end did not.
+void thrown_at_who_stands(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, {15.0, 30.0, 60.0, 120.0}, 1, 0.02, found, [&](const Played&, const Judge& judge) {
+    const int end = judge.frames() - 1, people = static_cast<int>(scene.characters.size());
+    if (judge.step() < 0.04) found.at_most("in each other (m)", deepest_between(judge, 1, end), 0.02);
+    for (int n = 0; n < people; ++n) {
+      const PropSettings& thrown = scene.props[static_cast<std::size_t>(n)].settings;
+      const double ahead =
+          (judge.center_of_mass(end, people + n) - judge.center_of_mass(end, n)).dot(thrown.velocity);
+      if (thrown.mass < 100) found.at_most("beyond him (m · m/s)", ahead, 0);
+    }
+  });
+}
+
 /// The same scene where nothing but a floor at `height` is beside it.
 Scene on_the_floor(Scene scene) {
   scene.obstacles.clear();
@@ -728,6 +742,7 @@ std::vector<Situation> situations() {
       {"round_obstacles", "boxes and figures lie on balls and rails", round_obstacles},
       {"past_a_platform", "what slides past a platform stops as it does alone", past_a_platform},
       {"balls_at_heads", "no ball flies through a head", balls_at_heads},
+      {"thrown_at_who_stands", "nor does anything through whom only the ground holds", thrown_at_who_stands},
       {"run_on_a_platform", "on a platform it runs as on the floor", run_on_a_platform},
       {"low_boards", "nor do boards of 1 and 2 cm stop who walks", run_on_a_platform},
       {"tap_in_a_run", "who was tapped runs on as its clip does", tap_in_a_run},

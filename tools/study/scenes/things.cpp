@@ -74,6 +74,26 @@ void trolley(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// Of what spins, the last but the frame: its spin, from poses a quarter of a second apart at most.
+void flywheels(const Scene& scene, bool, Findings& found) {
+  at_rates(scene, kRates, 1, 5e-3, found, [&](const Played& played, const Judge& judge) {
+    const int end = judge.frames() - 1;
+    for (int m = 0; m < judge.members(); ++m) {
+      const double spin = scene.props[static_cast<std::size_t>(m)].settings.angular_velocity.z();
+      if (spin == 0) continue;
+      const auto turned = [&](int frame) {
+        const auto rotation = [&](int f) {
+          return played.recording.frames[static_cast<std::size_t>(f)]
+              .props[static_cast<std::size_t>(m)]
+              .world.rotation.cast<double>();
+        };
+        return rotation(frame - 1).angularDistance(rotation(frame)) / judge.step();
+      };
+      found.at_most("lost of a spin, share", 1 - turned(end) / turned(2), 0.01);
+    }
+  });
+}
+
 /// Newton's: the ball leaves the bat at e times the speed at which it came.
 void bat(const Scene& scene, bool, Findings& found) {
   constexpr double kPace = 5;  // m/s, of the bat
@@ -92,6 +112,7 @@ std::vector<Situation> situations_of_things() {
       {"bowling", "balls that slide and spin roll at last as they must", bowling},
       {"gyroscope", "a top goes round instead of falling", gyroscope},
       {"trolley", "nothing brakes a trolley", trolley},
+      {"flywheels", "wheels on hinges spin on", flywheels},
       {"bat", "a bat gives a ball its own speed, too", bat},
   };
 }
