@@ -148,6 +148,94 @@ TYPED_TEST(Impact, HeadOnBallsPartByHalfTheirSpeedAndKeepMomentum) {
   EXPECT_NEAR(v2 - v1, 1.5, 0.02);
 }
 
+/// Along x, one diameter apart: those that touch hand the blow on, the last flies off.
+TYPED_TEST(Impact, ARowOfBallsHandsABlowOn) {
+  using T = TypeParam;
+  for (const double h : {1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+    Props<T> scene(weightless());
+    for (int n = 0; n < 5; ++n) {
+      PropSettings settings = ball(0.05, 1, {n == 0 ? -0.5 : 0.1 * n, 0, 0}, {n == 0 ? 2.0 : 0, 0, 0});
+      settings.restitution = 1;
+      settings.friction = 0;
+      scene.add(settings);
+    }
+    for (double t = 0; t < 0.6; t += h) ASSERT_TRUE(scene.world.step(T(h)).ok());
+    const double first = double(scene.world.prop_pose(0).translation.x()),
+                 last = double(scene.world.prop_pose(4).translation.x());
+    EXPECT_NEAR(first, 0, 0.01) << h;
+    EXPECT_NEAR(last, 0.4 + 2 * 0.6 - 0.5, 0.06) << h;
+    EXPECT_NEAR(scene.energy(), 2, 0.01) << h;
+  }
+}
+
+/// A rack of ten, struck off its middle: whatever strikes whom in a step, all momentum stays, and no energy
+/// comes.
+TYPED_TEST(Impact, ABilliardBreakKeepsItsMomentum) {
+  using T = TypeParam;
+  constexpr double kRadius = 0.0286, kApart = 2.02 * kRadius;
+  for (const double h : {1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+    Props<T> scene(weightless());
+    const auto add = [&](const V& place, const V& velocity) {
+      PropSettings settings = ball(kRadius, 0.17, place, velocity);
+      settings.restitution = 0.95;
+      settings.friction = 0;
+      scene.add(settings);
+    };
+    add({-0.3, 0.002, 0}, {6, 0, 0});
+    for (int row = 0; row < 4; ++row)
+      for (int n = 0; n <= row; ++n) add({row * kApart * 0.866, (n - row / 2.0) * kApart, 0}, V::Zero());
+    double before = 0.17 * 18;
+    for (double t = 0; t < 0.3; t += h) {
+      std::vector<V> from;
+      for (int n = 0; n < 11; ++n)
+        from.push_back(scene.world.prop_pose(n).translation.template cast<double>());
+      ASSERT_TRUE(scene.world.step(T(h)).ok());
+      V sum = V::Zero();  // of what all move by: those that are struck within the step go on differently
+      for (int n = 0; n < 11; ++n)
+        sum +=
+            0.17 * (scene.world.prop_pose(n).translation.template cast<double>() - from[std::size_t(n)]) / h;
+      EXPECT_NEAR(sum.x(), 0.17 * 6, 0.02) << h << " at " << t;
+      EXPECT_LT(std::abs(sum.y()), 0.02) << h << " at " << t;
+      EXPECT_LE(scene.energy(), before * 1.001) << h << " at " << t;
+      before = scene.energy();
+    }
+    EXPECT_GT(before, 0.7 * 0.17 * 18) << h;
+  }
+}
+
+/// Whether it bounces, and whatever is tied to it or to what it meets.
+TYPED_TEST(Impact, NothingPassesAThinPost) {
+  using T = TypeParam;
+  for (const double restitution : {0.0, 0.6})
+    for (const bool tied : {false, true})
+      for (const double h : {1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+        Props<T> scene(weightless());
+        Collider post;
+        post.shape = Shape::kCapsule;
+        post.size = {0.04, 0.04, 1};
+        ASSERT_TRUE(scene.world.add_obstacle(post).ok());
+        for (int n = 0; n < 12; ++n) {
+          PropSettings settings =
+              ball(0.05, 0.4, {-1 - 0.037 * n, 0.005 * (n - 6), -0.9 + 0.15 * n}, {20, 0, 0});
+          settings.restitution = restitution;
+          const int index = scene.add(settings);
+          if (!tied) continue;
+          LoopSettings rope;
+          rope.kind = LoopKind::kRope;
+          rope.length = 50;
+          rope.b.kind = AnchorKind::kProp;
+          rope.b.index = index;
+          Status status;
+          scene.world.add_loop(rope, status);
+          ASSERT_TRUE(status.ok()) << status.reason;
+        }
+        for (double t = 0; t < 0.3; t += h) ASSERT_TRUE(scene.world.step(T(h)).ok());
+        for (int n = 0; n < 12; ++n)
+          EXPECT_LT(double(scene.world.prop_pose(n).translation.x()), 0.5)
+              << restitution << (tied ? ", on a rope, " : ", ") << h << ", ball " << n;
+      }
+}
+
 TYPED_TEST(Impact, NothingPassesAThinWall) {
   using T = TypeParam;
   for (const double speed : {10.0, 40.0, 200.0, 900.0})

@@ -9,6 +9,8 @@ namespace sinew::scene {
 template <class Value>
 using Timeline = std::vector<std::pair<double, Value>>;  ///< (time, value), times rising
 
+constexpr double kNow = 1e-9;  ///< s: sums of steps are rounded
+
 /// The last value that has come by t, or `otherwise`.
 template <class Value>
 Value value_at(const Timeline<Value>& line, double t, Value otherwise) {
@@ -21,7 +23,6 @@ Value value_at(const Timeline<Value>& line, double t, Value otherwise) {
 /// empty line.
 template <class Value>
 Value ramp_at(const Timeline<Value>& line, double t) {
-  constexpr double kNow = 1e-9;  // s: sums of steps are rounded
   if (t < line.front().first) return line.front().second;
   for (std::size_t i = 1; i < line.size(); ++i)
     if (t < line[i].first - kNow) {
@@ -40,11 +41,11 @@ Value slope_at(const Timeline<Value>& line, double t) {
   return line.front().second - line.front().second;
 }
 
-/// Integral of ramp_at from 0 to t.
+/// Integral of ramp_at from 0 to t; of a jump at t what comes before it.
 inline double integral_at(const Timeline<double>& line, double t) {
   double sum = 0, from = 0;
   for (const auto& [time, value] : line) {
-    if (time >= t) break;
+    if (time - kNow > t) break;
     sum += (time - from) * (ramp_at(line, from) + value) / 2;
     from = time;
   }

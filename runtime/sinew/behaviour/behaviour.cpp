@@ -287,6 +287,11 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, world, jets, h);
     begin_plan(is, jets);
   }
+  if (walks_ && clip_velocity_.norm() < kWalks / 2 * std::sqrt(unit_)) {  // it is to stop meanwhile
+    walks_ = false;
+    report_.steps = 0;
+    begin_plan(is, jets);
+  }
   if (walks_) return walk_on(character, world, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,

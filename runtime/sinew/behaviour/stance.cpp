@@ -6,6 +6,7 @@
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_motion_job.h"
 #include "sinew/effects/contact.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew {
 namespace {
@@ -50,13 +51,24 @@ std::vector<Vec3<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
   return sole;
 }
 
-/// Turns the foot to where it is wanted, whatever the leg above it does.
+/// Turns the foot to where it is wanted, whatever the leg above it does, as far from the clip's as its ankle
+/// can.
 template <class T>
-void set_foot(const StandingBody<T>& body, const FootLeg<T>& leg, const Quat<TimeJet<T>>& foot,
+void set_foot(const StandingBody<T>& body, std::size_t side, const Quat<TimeJet<T>>& foot,
               std::span<JointJet<T>> jets) {
-  const auto joint = static_cast<std::size_t>(leg.foot);
+  const auto joint = static_cast<std::size_t>(body.legs[side].foot);
   const MovingTransform<T> above = model_motion<T>(jets, body.parents, body.parents[joint]);
-  set_rotation<T>(above.rotation.conjugate() * foot, jets[joint]);
+  const JointJet<T> clip = jets[joint];
+  JointJet<T>& now = jets[joint];
+  set_rotation<T>(above.rotation.conjugate() * foot, now);
+  const Ankle<T>& ankle = body.ankles[side];
+  const T wanted = ankle.swing(now.rotation), had = ankle.swing(clip.rotation);
+  if (ankle.most < T(0) || wanted <= ankle.most || wanted <= had) return;
+  const T share = std::max(ankle.most - had, T(0)) / (wanted - had);
+  const Vec3<T> off = rotation_log<T>(clip.rotation.conjugate() * now.rotation);
+  now.rotation = clip.rotation * rotation_exp<T>(share * off);
+  now.omega = clip.omega + share * (now.omega - clip.omega);
+  now.alpha = clip.alpha + share * (now.alpha - clip.alpha);
 }
 
 /// Brings an ankle to its place by the joints above it, and the foot as it is wanted.
@@ -69,7 +81,7 @@ void reach_foot(const StandingBody<T>& body, std::size_t side, const MovingVecto
   reach.hinge = leg.hinge;
   reach.keep_end = false;
   (void)reach.Run();
-  set_foot<T>(body, leg, foot, jets);
+  set_foot<T>(body, side, foot, jets);
 }
 
 /// The root's motion, turned a little about world axes.
@@ -98,6 +110,9 @@ Status StandingBody<T>::find(const Skeleton& skeleton) {
     FootLeg<T>& leg = legs[side];
     if (Status status = find_foot_leg<T>(skeleton, side == 0 ? Role::kFootL : Role::kFootR, leg); !status)
       return status;
+    const Joint& foot = skeleton.joints[static_cast<std::size_t>(leg.foot)];
+    ankles[side] = {foot.rest.rotation.template cast<T>(), foot.swing_axis.template cast<T>(),
+                    static_cast<T>(foot.type == JointType::kBall ? foot.swing_limit : -1)};
     soles[side] = sole_of<T>(skeleton, leg.foot, skeleton.find(side == 0 ? Role::kToesL : Role::kToesR));
     if (soles[side].empty())
       return Status::error(Code::kInvalidArgument, "a foot without colliders", leg.foot);

@@ -8,6 +8,7 @@
 #include "sinew/animation/foot_leg.h"
 #include "sinew/animation/moving_transform.h"
 #include "sinew/behaviour/sole.h"
+#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -17,6 +18,20 @@ struct MassMotion {
   Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s
 };
 
+/// How far a foot may turn about its ankle: a cone, see Joint::swing_limit.
+template <class T>
+struct Ankle {
+  Quat<T> rest = Quat<T>::Identity();
+  Vec3<T> axis = Vec3<T>::UnitZ();  ///< foot axes
+  T most = T(-1);                   ///< rad; negative: as far as anybody likes
+
+  /// rad, from rest.
+  T swing(const Quat<T>& turned) const {
+    const Vec3<T> now = rest.conjugate() * (turned * axis);
+    return portable::atan2(now.cross(axis).norm(), now.dot(axis));
+  }
+};
+
 /// The body that stands: what is asked of a skeleton once.
 template <class T>
 struct StandingBody {
@@ -24,6 +39,7 @@ struct StandingBody {
   std::vector<T> mass;                        ///< [joint] share of the whole
   std::vector<Vec3<T>> center_of_mass;        ///< [joint] m, joint axes
   std::array<FootLeg<T>, 2> legs;             ///< left, right
+  std::array<Ankle<T>, 2> ankles;             ///< how far its feet turn
   std::array<std::vector<Vec3<T>>, 2> soles;  ///< m, foot axes: where they may touch the ground
   std::array<double, 2> leg_length;           ///< m, hip to ankle, straight
   double total_mass = 0;                      ///< kg

@@ -21,7 +21,7 @@ constexpr double kNearLimit = 1.5;  ///< rad; what is further off reaches no lim
 /// Whether all can be struck as they are: their accelerations are known.
 template <class T>
 bool IslandStepper<T>::may_land() const {
-  return !settings_.plan->scheme && couplings_.empty() &&
+  return !settings_.plan->scheme &&
          std::all_of(states_.begin(), states_.end(),
                      [](const CharacterState<T>* s) { return s->history.accelerates; });
 }
@@ -31,7 +31,15 @@ bool IslandStepper<T>::may_land() const {
 template <class T>
 bool IslandStepper<T>::strikes(const Contact<T>& c, T h) const {
   const bool thrown = states_[c.tree_a]->passive() || (c.tree_b >= 0 && states_[c.tree_b]->passive());
-  return thrown && strikes_within(c, h) && c.restitution == T(0);
+  return thrown && strikes_within(c, h);
+}
+
+/// How a contact parts when it strikes.
+template <class T>
+Bounce<T> IslandStepper<T>::bounce_of(const Contact<T>& c, T h) const {
+  for (const auto& effect : effects_)
+    if (const Bounce<T> bounce = effect->bounce_of(c, world_->gravity, h); bounce.share > T(0)) return bounce;
+  return {};
 }
 
 /// Whether a contact that is open at the first guess is so all along the way, as far as anybody looks.
@@ -102,10 +110,11 @@ void IslandStepper<T>::add_limits(CharacterState<T>& s, int tree, T h) {
 /// Impacts change velocities where they happen, as impulses do (strike()): at the end of the step a stretched
 /// limb has folded, and what strikes with it weighs a fraction. They are found along the way to the first
 /// guess, one after the other; until then each body goes on as it did. The solve finds what is left, and what
-/// lasts. Contacts that bounce are left to it.
+/// lasts.
 template <class T>
 void IslandStepper<T>::land(T h) {
   landed_ = false;
+  for (Contact<T>& c : contacts_) c.bounced = false;
   T fastest = T(0);
   for (const Contact<T>& c : contacts_)
     if (strikes(c, h)) fastest = std::max(fastest, c.approach);
@@ -125,9 +134,15 @@ void IslandStepper<T>::land(T h) {
     ends_.project(static_cast<int>(n), driven_rates_, s.rate, {}, s.history);
     add_limits(s, static_cast<int>(n), h);
   }
+  for (const Coupling<T>* c : couplings_)
+    for (const Stencil<T>& e : c->stencils)
+      if (c->closes_slowly) ends_.add_held(*c, e);
   for (const Contact<T>& c : contacts_) {
-    const bool slides_on = c.fresh && c.approach == T(0);  // see ContactFinder::stiffen_for_impact
-    if (c.restitution > T(0) || slides_on || c.start_gap > h * fastest) continue;
+    const Bounce<T> bounce = bounce_of(c, h);
+    // See ContactFinder::stiffen_for_impact; but what lies beside what bounces may be struck next.
+    const bool slides_on = c.fresh && c.approach == T(0) &&
+                           !(bounce.share > T(0) && c.tree_b >= 0 && c.meeting != Meeting::kSolids);
+    if (slides_on || c.start_gap > h * fastest) continue;
     if (!c.fresh) {
       ends_.add_bearing(c);
       continue;
@@ -138,12 +153,23 @@ void IslandStepper<T>::land(T h) {
                                       c.tree_b < 0 ? nullptr : &states_[c.tree_b]->guessed, guessed);
     if (guessed.gap > T(0) && strikes_within(c, h) && passes_by(c)) continue;
     const bool beyond = guessed.normal.dot(c.normal) < T(kSamePlane) || -guessed.gap > half_thickness(c);
-    ends_.add_striking(c, beyond ? T(0) : (guessed.gap - c.start_gap) / h + c.approach);
+    ends_.add_striking(c, beyond ? T(0) : (guessed.gap - c.start_gap) / h + c.approach, bounce);
   }
   landed_ = ends_.strike(h, T(kImpactSpeed));
+  if (landed_) note_bounces(h);
   for (CharacterState<T>* s : states_) first_guess(*s, h);
   if (landed_ && log_) log_strikes();
   if (landed_) take_landing(h);
+}
+
+/// What has bounced does not do so again after the solve.
+template <class T>
+void IslandStepper<T>::note_bounces(T h) {
+  ends_.for_each_pushed([&](std::uint64_t id, T) {
+    const auto c =
+        std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact<T>& of) { return of.id == id; });
+    if (c != contacts_.end() && bounce_of(*c, h).share > T(0)) c->bounced = true;
+  });
 }
 
 /// Velocities of the joints that strikes do not move, where a part begins.
@@ -247,6 +273,8 @@ void IslandStepper<T>::take_back_landing() {
   template bool IslandStepper<T>::may_land() const;                                               \
   template void IslandStepper<T>::land(T);                                                        \
   template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                            \
+  template Bounce<T> IslandStepper<T>::bounce_of(const Contact<T>&, T) const;                     \
+  template void IslandStepper<T>::note_bounces(T);                                                \
   template std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>&, int) const; \
   template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                           \
   template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                         \

@@ -105,6 +105,13 @@ enum class Meeting : std::uint8_t {
   kSolids,  ///< both as wholes: whatever is nearest at each pose (solid_gap.h)
 };
 
+/// How what strikes parts.
+template <class T>
+struct Bounce {
+  T share = T(0);  ///< of the speed at which it closes
+  T from = T(0);   ///< m/s; what closes more slowly does not part
+};
+
 /// One candidate contact. `tree_a` and `tree_b` index the trees of the solve; tree_b < 0 is the static world.
 template <class T>
 struct Contact {
@@ -150,6 +157,7 @@ struct Contact {
   T stretch = T(1);             ///< 1 + τ/h: change of the damped gap by the gap
   T lag = T(0);                 ///< m; the damped gap where the gap is 0, ≥ 0
   T approach = T(0);            ///< closing speed then (fresh ones only), m/s
+  bool bounced = false;         ///< struck and parted before the solve of this part
   // Fixed when the step begins
   Vec3<T> material_a = Vec3<T>::Zero(),
           material_b = Vec3<T>::Zero();  ///< body axes (static: from common origin)

@@ -52,6 +52,10 @@ class IslandEffect {
   /// Whether a contact that is open at both ends of the guessed motion, from where the contacts were measured
   /// to the trees' `guessed`, closes on the way.
   virtual bool meets_on_the_way(Trees /*trees*/, const Contact<T>& /*contact*/) const { return false; }
+  /// How a contact parts that strikes within a step of h seconds.
+  virtual Bounce<T> bounce_of(const Contact<T>& /*contact*/, const Vec3<double>& /*gravity*/, T /*h*/) const {
+    return {};
+  }
   /// After a solve: whether change_speeds() has anything to look at.
   virtual bool may_change_speeds(std::span<const Contact<T>> /*contacts*/) const { return false; }
   /// Then: changes the histories' velocities, never to more energy than `budget` (J, before the step). True

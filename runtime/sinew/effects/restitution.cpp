@@ -23,6 +23,12 @@ double energy(std::span<const IslandTree<T>> trees, const Vec3<double>& gravity)
   return sum;
 }
 
+/// m/s at which a contact closes that bounces.
+template <class T>
+T slowest(const Contact<T>& c, const Vec3<double>& gravity, T h) {
+  return std::max(T(kSlowest) * c.speed_scale, 2 * h * T(gravity.norm()));
+}
+
 /// Where the surfaces meet.
 template <class T>
 Vec3<T> touch(const Contact<T>& c) {
@@ -49,9 +55,15 @@ void Restitution<T>::reserve(const SolveCapacity& capacity) {
 }
 
 template <class T>
+Bounce<T> Restitution<T>::bounce_of(const Contact<T>& c, const Vec3<double>& gravity, T h) const {
+  return c.fresh ? Bounce<T>{c.restitution, slowest(c, gravity, h)} : Bounce<T>{};
+}
+
+template <class T>
 bool Restitution<T>::may_change_speeds(std::span<const Contact<T>> contacts) const {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact<T>& c) {
-    return c.fresh && c.restitution > T(0) && c.gap < T(0) && c.approach > T(kSlowest) * c.speed_scale;
+    return c.fresh && c.restitution > T(0) && c.gap < T(0) && !c.bounced &&
+           c.approach > T(kSlowest) * c.speed_scale;
   });
 }
 
@@ -59,8 +71,8 @@ template <class T>
 void Restitution<T>::collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h) {
   impacts_.clear();
   for (Contact<T>& c : contacts) {
-    const T slowest = std::max(T(kSlowest) * c.speed_scale, 2 * h * T(gravity.norm()));
-    if (!c.fresh || c.gap >= T(0) || c.restitution <= T(0) || c.approach < slowest) continue;
+    const bool strikes = c.fresh && c.gap < T(0) && !c.bounced;
+    if (!strikes || c.restitution <= T(0) || c.approach < slowest(c, gravity, h)) continue;
     if (impacts_.size() == kMost) return;
     // The fall over what was left of the gap belongs to the impact, the rise from the depth to the bounce.
     const T pull = c.tree_b < 0 ? T(-gravity.dot(c.normal.template cast<double>())) : T(0);

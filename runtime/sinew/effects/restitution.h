@@ -1,6 +1,8 @@
-// Restitution: what a solve took out of an impact is given back in part, as velocities.
+// Restitution: what an impact took is given back in part, as velocities.
 //
-// The implicit step is perfectly inelastic. Where a contact closed in it at a speed u, impulses p ≥ 0 along
+// What strikes while it flies, or falls, parts where it strikes, before the solve (Impacts, optimizer's
+// chapter); that is asked how by bounce_of(). For all else the implicit step is perfectly inelastic. Where a
+// contact closed in it at a speed u, impulses p ≥ 0 along
 // the normals are added to the velocities that it left, so that the bodies part at e·u: projected
 // Gauss–Seidel on
 //     J M⁻¹ Jᵀ p ≥ e·u − J v,   p ≥ 0, complementary,
@@ -25,7 +27,7 @@ class Restitution final : public IslandEffect<T> {
  public:
   using typename IslandEffect<T>::Trees;  ///< all that is solved together
 
-  /// For 48 bouncing contacts of one step.
+  /// For 48 contacts that bounce after a solve.
   void reserve(const SolveCapacity& capacity) override;
   /// That reserve() takes.
   std::size_t bytes(const SolveCapacity& capacity) const override {
@@ -35,7 +37,9 @@ class Restitution final : public IslandEffect<T> {
            kMostRows * (kMostRows + 1) * sizeof(T);
   }
 
-  /// Whether any contact both bounces and closed in this step.
+  /// Of what strikes before a solve, one after the other (island_landing.cpp).
+  Bounce<T> bounce_of(const Contact<T>& contact, const Vec3<double>& gravity, T h) const override;
+  /// Whether any contact both bounces and closed in this step, and has not bounced before the solve.
   bool may_change_speeds(std::span<const Contact<T>> contacts) const override;
   /// Costs three tree solves per bouncing contact.
   bool change_speeds(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h,
@@ -44,7 +48,7 @@ class Restitution final : public IslandEffect<T> {
   T pushed(const Contact<T>& contact) const override;
 
  private:
-  static constexpr int kMost = 48;             ///< bouncing contacts of one step; more stay inelastic
+  static constexpr int kMost = 48;             ///< contacts that bounce after a solve; more stay inelastic
   static constexpr int kMostRows = 3 * kMost;  ///< the normal of each, and two tangents
 
   void collect(Trees trees, std::span<Contact<T>> contacts, const Vec3<double>& gravity, T h);

@@ -490,13 +490,14 @@ void EndVelocities<T>::press() {
 
 /// The unknowns' rates as those of joint offsets: the other way round than read_near().
 template <class T>
-void EndVelocities<T>::add_striking(const Contact<T>& c, T drift) {
+void EndVelocities<T>::add_striking(const Contact<T>& c, T drift, const Bounce<T>& bounce) {
   const std::size_t at = pressed_.size();
   add(c, std::numeric_limits<T>::max(), T(0), Vec3<T>::Zero());
   if (pressed_.size() == at) return;
   pressed_[at].gap = c.start_gap;
   pressed_[at].size = c.length_scale;
   pressed_[at].drift = drift;
+  pressed_[at].bounce = bounce;
 }
 
 template <class T>
@@ -504,6 +505,12 @@ void EndVelocities<T>::add_bearing(const Contact<T>& c) {
   const std::size_t at = pressed_.size();
   add(c, std::numeric_limits<T>::max(), T(0), Vec3<T>::Zero());
   if (pressed_.size() > at) pressed_[at].bears = true;
+}
+
+template <class T>
+void EndVelocities<T>::add_held(const Coupling<T>& coupling, const Stencil<T>& e) {
+  std::size_t at = pressed_.size();
+  for (add(coupling, e); at < pressed_.size(); ++at) pressed_[at].bears = true;
 }
 
 template <class T>
@@ -518,19 +525,37 @@ void EndVelocities<T>::add_limit(int tree, const JointRow<T>& joint, bool bears,
   pressed_[at].slow = slow;
 }
 
+/// Whether a row that opens at such a speed closes faster than what is too slow to strike.
+template <class T>
+bool EndVelocities<T>::closes(const Row& row, T opens, T slow) const {
+  return !row.bears && opens <= -std::max(slow, row.slow) * row.unit;
+}
+
 /// s until the next strike, less than `left`; `left`: none.
 template <class T>
 T EndVelocities<T>::wait_for_strike(T left, T slow) {
   for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) {
     Row& row = pressed_[at];
     const T opens = opening(row), speed = opens + row.drift;
-    if (row.bears || opens > -std::max(slow, row.slow) * row.unit) continue;
+    if (!closes(row, opens, slow)) continue;
     if (!(row.gap > T(0)))
       left = T(0);
     else if (speed < T(0))
       left = std::min(left, row.gap / -speed);
   }
   return left;
+}
+
+/// At a strike when `share` of the step is over: whether a row takes part, and at what speed it is to open.
+/// Its drift is half of what it gains in the step, of which it has that share by then, and goes on with the
+/// rest.
+template <class T>
+void EndVelocities<T>::choose_floor(Row& row, T slow, T share) {
+  row.acts = !(row.gap > T(kTouches) * row.size);
+  if (row.bears || !(row.bounce.share > T(0)) || !row.acts) return;
+  const T opens = opening(row), gained = 2 * share * row.drift, closing = -opens - gained;
+  row.acts = closes(row, opens, slow);
+  row.floor = closing < row.bounce.from ? T(0) : std::max(row.bounce.share * closing - gained, T(0));
 }
 
 template <class T>
@@ -541,7 +566,7 @@ bool EndVelocities<T>::strike(T h, T slow) {
     for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips) act(pressed_[at]);
   };
   for_each([&](Row& row) {
-    if (row.bears) row.floor = std::min(opening(row), T(0));
+    if (row.bears) row.floor = row.least < T(0) ? opening(row) : std::min(opening(row), T(0));
   });
   const int unknowns = parts_.back().first + parts_.back().count;
   T now = T(0);
@@ -551,11 +576,11 @@ bool EndVelocities<T>::strike(T h, T slow) {
     now += wait;
     for_each([&](Row& row) { row.gap += row.bears ? T(0) : wait * (opening(row) + row.drift); });
     for (Row& row : pressed_) row.impulse = T(0);
+    for_each([&](Row& row) { choose_floor(row, slow, now / h); });
     std::copy_n(done_.begin(), unknowns, before_.begin());
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       T most = T(0);
-      for_each(
-          [&](Row& row) { most = row.gap > T(kTouches) * row.size ? most : std::max(most, press_row(row)); });
+      for_each([&](Row& row) { most = row.acts ? std::max(most, press_row(row)) : most; });
       if (most < T(kLeft)) break;
     }
     for (Row& row : pressed_) row.struck += row.impulse;

@@ -81,16 +81,20 @@ class EndVelocities {
     }
   }
 
-  /// A contact that may strike within a step that begins here, after its gap, at its speed and `drift` (m/s).
-  void add_striking(const Contact<T>& contact, T drift);
+  /// A contact that may strike within a step that begins here, after its gap, at its speed and `drift` (m/s),
+  /// and then parts.
+  void add_striking(const Contact<T>& contact, T drift, const Bounce<T>& bounce);
   /// One that bears: what strikes elsewhere lets it close no faster than it does.
   void add_bearing(const Contact<T>& contact);
+  /// An element of a loop: what strikes elsewhere moves both of its sides.
+  void add_held(const Coupling<T>& coupling, const Stencil<T>& element);
   /// A limit of a tree's joint, which at more than `slow` (rad/s, m/s of a human) may strike; or, where it
   /// has been reached and does not close (`bears`), bears.
   void add_limit(int tree, const JointRow<T>& row, bool bears, T slow);
   /// Lets contacts that close faster than `slow` (m/s) strike one after the other within h: each is stopped,
-  /// with what friction its impulse allows, and with it all that lies on by then. False: none does. O(those
-  /// that strike · those that lie on · the depth of their bodies).
+  /// or sent back, with what friction its impulse allows, and with it all that lies on by then; but what
+  /// bounces is struck only when it closes itself, so that a row of balls hands a blow on. False: none does.
+  /// O(those that strike · those that lie on · the depth of their bodies).
   bool strike(T h, T slow);
   /// Whether that has changed a tree's velocities.
   bool struck(int tree) const { return disturbed_[tree] != 0; }
@@ -129,8 +133,10 @@ class EndVelocities {
     T size = T(1);                ///< m or rad, by a human's
     T slow = T(0);                ///< m/s or rad/s of a human: more slowly it does not strike
     T floor = T(0);               ///< m/s or rad/s: that it opens by at least
-    bool bears = false;           ///< see add_bearing()
-    bool reduced = false;         ///< its entries and mobility are known
+    Bounce<T> bounce;
+    bool bears = false;    ///< see add_bearing() and add_held()
+    bool acts = false;     ///< in the present strike
+    bool reduced = false;  ///< its entries and mobility are known
     int sides() const { return tree[1] < 0 ? 1 : 2; }
   };
 
@@ -145,7 +151,9 @@ class EndVelocities {
   T opening(Row& row);
   void begin_pressing();
   T press_row(Row& row);
+  bool closes(const Row& row, T opens, T slow) const;
   T wait_for_strike(T left, T slow);
+  void choose_floor(Row& row, T slow, T share);
   void spread();
   bool reduce(Row& row);
   void push(Row& row, T change);
