@@ -1,5 +1,6 @@
 // RootDrive::kGrounded: the clip is the answer until the root needs more than the ground can give.
 #include "pushed.h"
+#include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/static_shape.h"
 
 namespace sinew {
@@ -100,6 +101,7 @@ TEST(Grounded, IsHitByWhatIsThrownAtHim) {
   for (const double hz : {15.0, 30.0, 60.0, 120.0})
     for (const double speed : {4.0, 10.0, 20.0, 40.0}) {
       Pushed body("stand");
+      ASSERT_TRUE(body.world.declare<ContinuousDetection>());
       body.h = float(1 / hz);
       PropSettings ball;
       ball.size = Vec3<double>::Constant(0.11);
