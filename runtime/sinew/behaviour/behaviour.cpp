@@ -29,6 +29,8 @@ constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
+constexpr double kStops = 0.6;                         ///< of its pace: an animation that walks no longer
+constexpr double kLifted = 0.03;                       ///< m over the other foot: one that is in the air
 constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLieStill = 0.1;                      ///< m/s
 constexpr double kTurnsStill = 0.3;                    ///< rad/s, of the root
@@ -287,11 +289,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, world, jets, h);
     begin_plan(is, jets);
   }
-  if (walks_ && clip_velocity_.norm() < kWalks / 2 * std::sqrt(unit_)) {  // it is to stop meanwhile
-    walks_ = false;
-    report_.steps = 0;
-    begin_plan(is, jets);
-  }
+  if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
   if (walks_) return walk_on(character, world, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
   const Vec2 off = from_above(is.mass.place) - plan_.place,
@@ -395,14 +393,30 @@ Feet Behaviour<T>::feet_now(const Transform<double>& root) const {
 
 template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
+  lift(stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_), is);
+  lifted_ = foot_[static_cast<std::size_t>(swing_)];
+}
+
+/// A step, with a foot that is where it is.
+template <class T>
+void Behaviour<T>::lift(int foot, const MeasuredBody& is) {
   report_.state = BehaviourState::kStep;
   ++report_.steps;
-  const Vec2 capture = plan_.capture_point(frequency_);
-  const Feet feet = feet_now(is.root);
-  swing_ = stepping_foot(feet, capture, support_.middle(), law_);
+  swing_ = foot;
   swing_time_ = 0;
-  lifted_ = foot_[static_cast<std::size_t>(swing_)];
+  lifted_ = is.foot[static_cast<std::size_t>(foot)];
   choose_support(is);
+}
+
+/// Its animation stops while it catches itself: it balances from here on, over the foot that stands.
+template <class T>
+void Behaviour<T>::stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
+  walks_ = false;
+  report_.steps = 0;
+  begin_plan(is, jets);
+  const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
+  if (is.foot[swings].translation.z() > is.foot[stands].translation.z() + kLifted * unit_)
+    lift(static_cast<int>(swings), is);
 }
 
 /// The foot goes where the clip has it beside the other.

@@ -183,6 +183,8 @@ class Behaviour {
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void choose_support(const MeasuredBody& is);
   void begin_step(const MeasuredBody& is);
+  void lift(int foot, const MeasuredBody& is);
+  void stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void put_back(const MeasuredBody& is);
   int misplaced() const;
   Displacement to_feet() const;
@@ -233,6 +235,7 @@ class Behaviour {
   Vec3<double> clip_spin_ = Vec3<double>::Zero();  ///< rad/s, world axes
   bool walks_ = false;                             ///< it was pushed while it walked, and walks on
   int stance_ = 0;                                 ///< the foot that stands, of a walker
+  double pace_ = 0;                                ///< m/s, of its animation when it was pushed
   Pendulum error_;                                 ///< what a walker is off its animation
   /// m, and of its feet.
   std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),

@@ -102,6 +102,7 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.value("time of the swing", swing_time_);
   stream.flag("walks on", walks_);
   stream.value("standing foot of the walk", stance_);
+  stream.value("pace of the walk", pace_);
   visit_pendulum("off the animation", error_, stream);
   for (MovingVector<double>& offset : foot_offset_)
     for (int a = 0; a < 3; ++a) visit_jet("foot off the animation", offset[a], stream);
