@@ -24,7 +24,8 @@ constexpr std::initializer_list<KnownFailure> kKnownFailures = {
      "the "
      "step has it"},
     {"n_four_bar",
-     "N = 40: closures of 0.62 mm in double and 4.7 in float at 1/60 s, 0.5 wanted: sweeps along 81 bars do not "
+     "N = 40: closures of 0.62 mm in double and 4.7 in float at 1/60 s, 0.5 wanted: sweeps along 81 bars do "
+     "not "
      "find the velocities that all loops allow"},
     {"tumbling_box",
      "one of 40 throws at 1/30 s rises by 1.08 mJ in float (0.96 in double), 1 wanted: what contacts have "
