@@ -104,9 +104,11 @@ class IslandStepper {
   Strike<T> strike_of(std::size_t tree) const;
   void strike(CharacterState<T>& state, std::span<Vec3<T>> velocity, std::span<Vec3<T>> momentum);
   bool may_land() const;
+  bool are_tied(int a, int b) const;
   bool strikes(const Contact<T>& contact, T h) const;
   Bounce<T> bounce_of(const Contact<T>& contact, T h) const;
   void note_bounces(T h);
+  bool ties_passive(const Coupling<T>& coupling) const;
   bool passes_by(const Contact<T>& contact) const;
   bool strikes_limit(CharacterState<T>& state, T h);
   std::array<T, 6> rate_at_start(const CharacterState<T>& state, int joint) const;

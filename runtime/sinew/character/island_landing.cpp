@@ -26,12 +26,24 @@ bool IslandStepper<T>::may_land() const {
                      [](const CharacterState<T>* s) { return s->history.accelerates; });
 }
 
-/// Whether a contact strikes within h, and what it strikes with, or at, no muscles move: where an animation
-/// sets a foot down, the clip knows how.
+/// Whether something ties two trees to each other.
+template <class T>
+bool IslandStepper<T>::are_tied(int a, int b) const {
+  return std::any_of(couplings_.begin(), couplings_.end(), [&](const Coupling<T>* c) {
+    const auto has = [&](int tree) {
+      return std::any_of(c->nodes.begin(), c->nodes.end(),
+                         [&](const CouplingNode<T>& node) { return node.tree == tree; });
+    };
+    return has(a) && has(b);
+  });
+}
+
+/// Whether a contact strikes within h, and what it strikes with, or at, no muscles move, nor carry: where an
+/// animation sets a foot down, the clip knows how.
 template <class T>
 bool IslandStepper<T>::strikes(const Contact<T>& c, T h) const {
   const bool thrown = states_[c.tree_a]->passive() || (c.tree_b >= 0 && states_[c.tree_b]->passive());
-  return thrown && strikes_within(c, h);
+  return thrown && strikes_within(c, h) && !(c.tree_b >= 0 && are_tied(c.tree_a, c.tree_b));
 }
 
 /// How a contact parts when it strikes.
@@ -273,6 +285,7 @@ void IslandStepper<T>::take_back_landing() {
   template bool IslandStepper<T>::may_land() const;                                               \
   template void IslandStepper<T>::land(T);                                                        \
   template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                            \
+  template bool IslandStepper<T>::are_tied(int, int) const;                                       \
   template Bounce<T> IslandStepper<T>::bounce_of(const Contact<T>&, T) const;                     \
   template void IslandStepper<T>::note_bounces(T);                                                \
   template std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>&, int) const; \

@@ -458,6 +458,14 @@ void IslandStepper<T>::advance_one_step(T h) {
   for (auto* v : {&struck_velocity_, &struck_momentum_}) v->clear();  // in the parts to come nothing strikes
 }
 
+/// Whether nothing leads what a coupling ties: joints that muscles hold may not move as it does.
+template <class T>
+bool IslandStepper<T>::ties_passive(const Coupling<T>& c) const {
+  return std::all_of(c.nodes.begin(), c.nodes.end(), [&](const CouplingNode<T>& node) {
+    return node.tree < 0 || states_[node.tree]->passive();
+  });
+}
+
 /// What bears at the end of the step, where something has just begun or ceased to, goes no deeper.
 template <class T>
 void IslandStepper<T>::press(T h) {
@@ -478,7 +486,7 @@ void IslandStepper<T>::press(T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils)
-      if (c->driven || (c->closes_slowly && !c->strained)) ends_.add(*c, e);
+      if (c->driven || (c->closes_slowly && ties_passive(*c))) ends_.add(*c, e);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     if (!struck_[set_[n]]) continue;
     for (const JointRow<T>& row : problems_[n]->rows)
@@ -514,6 +522,7 @@ void IslandStepper<T>::press(T h) {
   template void IslandStepper<T>::advance_one_step(T);                                                \
   template void IslandStepper<T>::emphasise_friction(T);                                              \
   template void IslandStepper<T>::relax_friction(T);                                                  \
+  template bool IslandStepper<T>::ties_passive(const Coupling<T>&) const;                             \
   template void IslandStepper<T>::press(T);
 SINEW_MOTION_INSTANCES(float)
 SINEW_MOTION_INSTANCES(double)
