@@ -379,6 +379,29 @@ TEST(Behaviour, WhatLegsOfAWalkerAreAskedDoesNotLeap) {
     }
 }
 
+/// A body that tilts may ask its soles to lie level further than ankles go: they are not asked to.
+TEST(Behaviour, FeetTurnNoFurtherThanAnklesDo) {
+  for (const double hz : {30.0, 60.0, 120.0})
+    for (const double impulse : {80.0, 100.0}) {
+      Walking body(hz);
+      const auto behave = body.behave;
+      double furthest = -1;  // rad, beyond the cone
+      body.behave = [&](std::span<JointJet<float>> wanted) {
+        behave(wanted);
+        for (const Role role : {Role::kFootL, Role::kFootR}) {
+          const auto joint = static_cast<std::size_t>(body.asset.skeleton.find(role));
+          const Joint& foot = body.asset.skeleton.joints[joint];
+          const Vec3<double> axis =
+              foot.rest.rotation.conjugate() * (wanted[joint].rotation.cast<double>() * foot.swing_axis);
+          furthest = std::max(furthest,
+                              std::acos(std::clamp(axis.dot(foot.swing_axis), -1.0, 1.0)) - foot.swing_limit);
+        }
+      };
+      (void)body.walks_on(impulse, kBack, 0);
+      EXPECT_LT(furthest, 0.02) << hz << " Hz, " << impulse << " N s";
+    }
+}
+
 /// A push after which it stood again elsewhere, and then leapt to where it had stood first in one frame.
 TEST(Behaviour, StandsAgainWithoutALeap) {
   for (const double hz : {60.0, 120.0})

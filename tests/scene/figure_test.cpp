@@ -184,6 +184,10 @@ TEST(Timelines, AreJoinedByStraightLinesThatMayJump) {
   EXPECT_DOUBLE_EQ(integral_at(line, 0.5), 0.25);
   EXPECT_DOUBLE_EQ(integral_at(line, 3), 5);
   EXPECT_DOUBLE_EQ(integral_at(line, 4), 5);
+  // Of a jump at the time itself what comes before it, whatever rounding makes of that time.
+  const Timeline<double> jump = {{1, 0}, {1, -1.5}};
+  for (const double t : {1 - 1e-12, 1.0, 1 + 1e-12}) EXPECT_NEAR(integral_at(jump, t), 0, 1e-9);
+  EXPECT_DOUBLE_EQ(integral_at(jump, 2), -1.5);
 }
 
 }  // namespace
