@@ -393,18 +393,18 @@ Feet Behaviour<T>::feet_now(const Transform<double>& root) const {
 
 template <class T>
 void Behaviour<T>::begin_step(const MeasuredBody& is) {
-  lift(stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_), is);
-  lifted_ = foot_[static_cast<std::size_t>(swing_)];
+  const int foot = stepping_foot(feet_now(is.root), plan_.capture_point(frequency_), support_.middle(), law_);
+  ++report_.steps;
+  lift(foot, foot_[static_cast<std::size_t>(foot)], is);
 }
 
-/// A step, with a foot that is where it is.
+/// A step with a foot, from where it is.
 template <class T>
-void Behaviour<T>::lift(int foot, const MeasuredBody& is) {
+void Behaviour<T>::lift(int foot, const Transform<double>& from, const MeasuredBody& is) {
   report_.state = BehaviourState::kStep;
-  ++report_.steps;
   swing_ = foot;
   swing_time_ = 0;
-  lifted_ = is.foot[static_cast<std::size_t>(foot)];
+  lifted_ = from;
   choose_support(is);
 }
 
@@ -412,22 +412,18 @@ void Behaviour<T>::lift(int foot, const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   walks_ = false;
-  report_.steps = 0;
   begin_plan(is, jets);
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
-  if (is.foot[swings].translation.z() > is.foot[stands].translation.z() + kLifted * unit_)
-    lift(static_cast<int>(swings), is);
+  const bool lifted = is.foot[swings].translation.z() > is.foot[stands].translation.z() + kLifted * unit_;
+  report_.steps = lifted ? 1 : 0;
+  if (lifted) lift(static_cast<int>(swings), is.foot[swings], is);
 }
 
 /// The foot goes where the clip has it beside the other.
 template <class T>
 void Behaviour<T>::put_back(const MeasuredBody& is) {
-  report_.state = BehaviourState::kStep;
-  swing_ = home_;
-  swing_time_ = 0;
-  const auto side = static_cast<std::size_t>(swing_), stance = 1 - side;
-  lifted_ = foot_[side];
-  choose_support(is);
+  const auto side = static_cast<std::size_t>(home_), stance = 1 - side;
+  lift(home_, foot_[side], is);
   const Quat<double> turn = foot_[stance].rotation * clip_ankle_[stance].rotation.conjugate();
   foot_[side].translation =
       foot_[stance].translation + turn * (clip_ankle_[side].translation - clip_ankle_[stance].translation);

@@ -183,7 +183,7 @@ class Behaviour {
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void choose_support(const MeasuredBody& is);
   void begin_step(const MeasuredBody& is);
-  void lift(int foot, const MeasuredBody& is);
+  void lift(int foot, const Transform<double>& from, const MeasuredBody& is);
   void stop_walking(const MeasuredBody& is, std::span<const JointJet<T>> jets);
   void put_back(const MeasuredBody& is);
   int misplaced() const;

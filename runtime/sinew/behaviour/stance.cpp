@@ -6,6 +6,7 @@
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_motion_job.h"
 #include "sinew/effects/contact.h"
+#include "sinew/effects/joint_limit.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew {
@@ -62,8 +63,11 @@ void set_foot(const StandingBody<T>& body, std::size_t side, const Quat<TimeJet<
   JointJet<T>& now = jets[joint];
   set_rotation<T>(above.rotation.conjugate() * foot, now);
   const Ankle<T>& ankle = body.ankles[side];
-  const T wanted = ankle.swing(now.rotation), had = ankle.swing(clip.rotation);
-  if (ankle.most < T(0) || wanted <= ankle.most || wanted <= had) return;
+  if (ankle.most < T(0)) return;
+  const Quat<T> unrest = ankle.rest.conjugate();
+  const T wanted = swing_angle<T>(unrest * now.rotation, ankle.axis),
+          had = swing_angle<T>(unrest * clip.rotation, ankle.axis);
+  if (wanted <= ankle.most || wanted <= had) return;
   const T share = std::max(ankle.most - had, T(0)) / (wanted - had);
   const Vec3<T> off = rotation_log<T>(clip.rotation.conjugate() * now.rotation);
   now.rotation = clip.rotation * rotation_exp<T>(share * off);

@@ -8,7 +8,6 @@
 #include "sinew/animation/foot_leg.h"
 #include "sinew/animation/moving_transform.h"
 #include "sinew/behaviour/sole.h"
-#include "sinew/skeleton/portable_math.h"
 
 namespace sinew {
 
@@ -24,12 +23,6 @@ struct Ankle {
   Quat<T> rest = Quat<T>::Identity();
   Vec3<T> axis = Vec3<T>::UnitZ();  ///< foot axes
   T most = T(-1);                   ///< rad; negative: as far as anybody likes
-
-  /// rad, from rest.
-  T swing(const Quat<T>& turned) const {
-    const Vec3<T> now = rest.conjugate() * (turned * axis);
-    return portable::atan2(now.cross(axis).norm(), now.dot(axis));
-  }
 };
 
 /// The body that stands: what is asked of a skeleton once.

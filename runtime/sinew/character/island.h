@@ -107,7 +107,8 @@ class IslandStepper {
   bool are_tied(int a, int b) const;
   bool strikes(const Contact<T>& contact, T h) const;
   Bounce<T> bounce_of(const Contact<T>& contact, T h) const;
-  void note_bounces(T h);
+  void note_bounces();
+  Contact<T>* find_contact(std::uint64_t id);
   bool ties_passive(const Coupling<T>& coupling) const;
   bool passes_by(const Contact<T>& contact) const;
   bool strikes_limit(CharacterState<T>& state, T h);

@@ -60,13 +60,19 @@ T IslandStepper<T>::impulse_of(const Contact<T>& c, T h) const {
   return h * ((1 - gamma) * c.smooth_before + gamma * c.smooth_force) + acted * (force - c.smooth_force);
 }
 
+template <class T>
+Contact<T>* IslandStepper<T>::find_contact(std::uint64_t id) {
+  const auto c =
+      std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact<T>& of) { return of.id == id; });
+  return c == contacts_.end() ? nullptr : &*c;
+}
+
 /// What has struck before the solve of the present part.
 template <class T>
 void IslandStepper<T>::log_strikes() {
   ends_.for_each_pushed([&](std::uint64_t id, T impulse) {
-    const auto c =
-        std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact<T>& of) { return of.id == id; });
-    if (c == contacts_.end()) return;
+    const Contact<T>* const c = find_contact(id);
+    if (!c) return;
     LoggedContact<T> struck = logged<T>(*c, indices_, settings_.common_origin);
     struck.impulse = impulse;
     log_->strike(struck);
@@ -116,6 +122,7 @@ void IslandStepper<T>::log_bounces(const IslandEffect<T>& effect) {
 #define SINEW_CONTACTS_INSTANCES(T)                                                   \
   template T IslandStepper<T>::impulse_of(const Contact<T>&, T) const;                \
   template void IslandStepper<T>::log_strikes();                                      \
+  template Contact<T>* IslandStepper<T>::find_contact(std::uint64_t);                 \
   template LoggedContact<T> IslandStepper<T>::logged_at_end(const Contact<T>&) const; \
   template void IslandStepper<T>::log_bounces(const IslandEffect<T>&);                \
   template void IslandStepper<T>::log_contacts(T);

@@ -148,7 +148,7 @@ void IslandStepper<T>::land(T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils)
-      if (c->closes_slowly) ends_.add_held(*c, e);
+      if (c->closes_slowly) ends_.add_tied(*c, e);
   for (const Contact<T>& c : contacts_) {
     const Bounce<T> bounce = bounce_of(c, h);
     // See ContactFinder::stiffen_for_impact; but what lies beside what bounces may be struck next.
@@ -168,7 +168,7 @@ void IslandStepper<T>::land(T h) {
     ends_.add_striking(c, beyond ? T(0) : (guessed.gap - c.start_gap) / h + c.approach, bounce);
   }
   landed_ = ends_.strike(h, T(kImpactSpeed));
-  if (landed_) note_bounces(h);
+  if (landed_) note_bounces();
   for (CharacterState<T>* s : states_) first_guess(*s, h);
   if (landed_ && log_) log_strikes();
   if (landed_) take_landing(h);
@@ -176,11 +176,10 @@ void IslandStepper<T>::land(T h) {
 
 /// What has bounced does not do so again after the solve.
 template <class T>
-void IslandStepper<T>::note_bounces(T h) {
+void IslandStepper<T>::note_bounces() {
+  if (effects_.empty()) return;
   ends_.for_each_pushed([&](std::uint64_t id, T) {
-    const auto c =
-        std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact<T>& of) { return of.id == id; });
-    if (c != contacts_.end() && bounce_of(*c, h).share > T(0)) c->bounced = true;
+    if (Contact<T>* c = find_contact(id)) c->bounced = c->restitution > T(0);
   });
 }
 
@@ -287,7 +286,7 @@ void IslandStepper<T>::take_back_landing() {
   template bool IslandStepper<T>::strikes(const Contact<T>&, T) const;                            \
   template bool IslandStepper<T>::are_tied(int, int) const;                                       \
   template Bounce<T> IslandStepper<T>::bounce_of(const Contact<T>&, T) const;                     \
-  template void IslandStepper<T>::note_bounces(T);                                                \
+  template void IslandStepper<T>::note_bounces();                                                 \
   template std::array<T, 6> IslandStepper<T>::rate_at_start(const CharacterState<T>&, int) const; \
   template bool IslandStepper<T>::strikes_limit(CharacterState<T>&, T);                           \
   template void IslandStepper<T>::add_limits(CharacterState<T>&, int, T);                         \

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "sinew/effects/joint_limit.h"
 #include "sinew/muscle/joint_coordinates.h"
 #include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
@@ -41,8 +42,8 @@ T beyond_limits(const CharacterState<T>& s, int i, const Transform<T>& local) {
   T most = T(0);
   if (law.swing_limit[i] >= T(0)) {
     const Quat<T> relative = rest.rotation.conjugate() * local.rotation;
-    const Vec3<T> a = law.swing_axis[i].template cast<T>(), b = relative * a;
-    most = std::max(most, portable::atan2(T(a.cross(b).norm()), T(a.dot(b))) - T(law.swing_limit[i]));
+    const Vec3<T> a = law.swing_axis[i].template cast<T>();
+    most = std::max(most, swing_angle<T>(relative, a) - T(law.swing_limit[i]));
     const T twist = twist_angle<T>(relative, a);
     return std::max({most, twist - T(law.twist_upper[i]), T(law.twist_lower[i]) - twist});
   }

@@ -67,6 +67,13 @@ struct JointLimitRows {
   static Transform<T> rest_of(const Step& joint) { return joint.tree.rest[joint.body].template cast<T>(); }
 };
 
+/// rad, by which a rotation from rest swings the bone direction there: what a cone limits.
+template <class T>
+T swing_angle(const Quat<T>& relative, const Vec3<T>& bone) {
+  const Vec3<T> now = relative * bone;
+  return portable::atan2(T(bone.cross(now).norm()), T(bone.dot(now)));
+}
+
 /// Swing cone and twist range about the bone direction a at rest. With b the direction now, the swing angle
 /// changes by n·w, n = (a × b)/|a × b|, the twist by (a + b)·w/(1 + a·b); w in rest axes.
 template <class T, class Law, class Rows>

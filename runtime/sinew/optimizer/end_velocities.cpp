@@ -508,7 +508,7 @@ void EndVelocities<T>::add_bearing(const Contact<T>& c) {
 }
 
 template <class T>
-void EndVelocities<T>::add_held(const Coupling<T>& coupling, const Stencil<T>& e) {
+void EndVelocities<T>::add_tied(const Coupling<T>& coupling, const Stencil<T>& e) {
   std::size_t at = pressed_.size();
   for (add(coupling, e); at < pressed_.size(); ++at) pressed_[at].bears = true;
 }

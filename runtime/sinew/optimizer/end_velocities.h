@@ -87,7 +87,7 @@ class EndVelocities {
   /// One that bears: what strikes elsewhere lets it close no faster than it does.
   void add_bearing(const Contact<T>& contact);
   /// An element of a loop: what strikes elsewhere moves both of its sides.
-  void add_held(const Coupling<T>& coupling, const Stencil<T>& element);
+  void add_tied(const Coupling<T>& coupling, const Stencil<T>& element);
   /// A limit of a tree's joint, which at more than `slow` (rad/s, m/s of a human) may strike; or, where it
   /// has been reached and does not close (`bears`), bears.
   void add_limit(int tree, const JointRow<T>& row, bool bears, T slow);
@@ -134,7 +134,7 @@ class EndVelocities {
     T slow = T(0);                ///< m/s or rad/s of a human: more slowly it does not strike
     T floor = T(0);               ///< m/s or rad/s: that it opens by at least
     Bounce<T> bounce;
-    bool bears = false;    ///< see add_bearing() and add_held()
+    bool bears = false;    ///< see add_bearing() and add_tied()
     bool acts = false;     ///< in the present strike
     bool reduced = false;  ///< its entries and mobility are known
     int sides() const { return tree[1] < 0 ? 1 : 2; }
