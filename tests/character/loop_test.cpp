@@ -77,8 +77,9 @@ struct Scene {
     EXPECT_GE(index, 0) << status.reason;
     return index;
   }
-  int tie(LoopKind kind, const Anchor& a, const Anchor& b, double length = 0) {
+  int tie(LoopKind kind, const Anchor& a, const Anchor& b, double length = 0, double stiffness = 0) {
     LoopSettings loop;
+    loop.stiffness = stiffness;
     loop.kind = kind;
     loop.a = a;
     loop.b = b;
@@ -291,6 +292,46 @@ TEST(Loop, RopePullsAndNeverPushes) {
   }
   EXPECT_GT(lowest, -1.55) << "caught at the rope's length";
   EXPECT_LT(lowest, -1.45);
+}
+
+/// What is struck or pulled on a spring goes on by its energy alone, at any rate of steps.
+TEST(Loop, ASpringStretchesAsFarAsItsEnergyTakesIt) {
+  for (const double h : {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240}) {
+    Scene<double> scene(airborne(V::Zero()));
+    scene.add_ball({0, 0, 0}, V::Zero(), 1);
+    scene.add_ball({1, 0, 0}, {0.5, 0, 0}, 1);
+    scene.tie(LoopKind::kDistance, prop_anchor(0), prop_anchor(1), 1, 50);
+    double most = 0, later = 0;
+    for (int n = 0; n < 3 / h; ++n) {
+      scene.run(1, h);
+      const double length =
+          double((scene.world.prop_pose(1).translation - scene.world.prop_pose(0).translation).norm());
+      double& so_far = n * h < 1 ? most : later;
+      so_far = std::max(so_far, length - 1);
+    }
+    const double stretch = 0.5 / std::sqrt(50 / 0.5);  // the speed by the frequency of the reduced mass
+    EXPECT_NEAR(most, stretch, 0.05 * stretch) << h;
+    EXPECT_NEAR(later, stretch, 0.1 * stretch) << h << ": and swings on";
+  }
+}
+
+TEST(Loop, WhoFallsOnAnElasticRopeComesUpAgain) {
+  for (const double h : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+    Scene<double> scene;
+    scene.add_ball({0, 0, 0}, V::Zero(), 80);
+    scene.tie(LoopKind::kRope, world_anchor({0, 0, 0}), prop_anchor(0), 10, 100);
+    double lowest = 0, back = 0;
+    for (int n = 0; n < 8 / h; ++n) {
+      scene.run(1, h);
+      const double z = double(scene.world.prop_pose(0).translation.z());
+      back = z < lowest ? z : std::max(back, z);
+      lowest = std::min(lowest, z);
+    }
+    // ½ k (s − 10 m)² = m g s
+    const double sag = 80 * 9.81 / 100, wanted = 10 + sag + std::sqrt(sag * (sag + 20));
+    EXPECT_NEAR(-lowest, wanted, 0.01 * wanted) << h;
+    EXPECT_NEAR(back, 0, 0.03 * wanted) << h;
+  }
 }
 
 TEST(Loop, WhatBeginsOpenClosesAtAWalkingPace) {

@@ -148,7 +148,7 @@ void IslandStepper<T>::land(T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils)
-      if (c->closes_slowly && e.tight > T(0)) ends_.add_tied(*c, e);
+      if (e.tight > T(0)) ends_.add_tied(*c, e);
   for (const Contact<T>& c : contacts_) {
     const Bounce<T> bounce = bounce_of(c, h);
     // See ContactFinder::stiffen_for_impact; but what lies beside what bounces may be struck next.

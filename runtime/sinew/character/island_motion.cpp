@@ -486,7 +486,7 @@ void IslandStepper<T>::press(T h) {
   }
   for (const Coupling<T>* c : couplings_)
     for (const Stencil<T>& e : c->stencils)
-      if (c->driven || (c->closes_slowly && e.tight > T(0) && ties_passive(*c))) ends_.add(*c, e);
+      if (c->driven || (e.tight > T(0) && ties_passive(*c))) ends_.add(*c, e);
   for (std::size_t n = 0; n < states_.size(); ++n) {
     if (!struck_[set_[n]]) continue;
     for (const JointRow<T>& row : problems_[n]->rows)
