@@ -118,11 +118,12 @@ struct Riding : Body {
   Vec3<double> velocity = Vec3<double>::Zero();
   double turn_rate = 0;
   bool led_by_host = false;  ///< the host has the animation go along
-  double sets_off = 0;       ///< s, in which it gathers its velocity
+  double sets_off = 0;       ///< s, in which it gathers its velocity and turn rate
   bool tells = true;         ///< how fast it is
+  Vec3<double> middle;       ///< m, of the box, where it begins
 
-  Riding(const Vec3<double>& v, double turns, bool host = false, double gathers = 0)
-      : velocity(v), turn_rate(turns), led_by_host(host), sets_off(gathers) {
+  Riding(const Vec3<double>& v, double turns, bool host = false, double gathers = 0, double back = 0)
+      : velocity(v), turn_rate(turns), led_by_host(host), sets_off(gathers), middle(-back, 0, 0.5) {
     platform = world.add_character(fixtures::platform({20, 20, 0.15}), {}, status);
     EXPECT_TRUE(status) << status.reason;
     Body::ground = 0.65f;
@@ -148,9 +149,9 @@ struct Riding : Body {
   void lead(double at_time) {
     JointJet<float> at;
     const double way = at_time < sets_off ? at_time * at_time / (2 * sets_off) : at_time - sets_off / 2;
-    at.rotation = rotation_exp<double>(Vec3<double>(0, 0, at_time * turn_rate)).cast<float>();
-    at.omega = Vec3<float>(0, 0, float(turn_rate));
-    at.translation = (Vec3<double>(0, 0, 0.5) + way * velocity).cast<float>();
+    at.rotation = rotation_exp<double>(Vec3<double>(0, 0, way * turn_rate)).cast<float>();
+    at.omega = Vec3<float>(0, 0, share_at(at_time) * float(turn_rate));
+    at.translation = (middle + way * velocity).cast<float>();
     if (tells) at.velocity = share_at(at_time) * velocity.template cast<float>();
     (void)world.character(platform).set_target({&at, 1});
   }
@@ -180,6 +181,18 @@ TEST(Behaviour, StandsOnGroundThatMoves) {
     const Vec3<float> now = body.on_platform() - stood;
     EXPECT_LT(now.norm(), 0.5f) << ride.velocity.transpose() << ", host " << ride.host;
     EXPECT_LT(std::abs(now.z()), 0.03f) << ride.velocity.transpose() << ", host " << ride.host;
+  }
+}
+
+TEST(Behaviour, WhoStandsOnATurntableStaysWhereHeStands) {
+  for (const float hz : {15.f, 30.f, 60.f, 120.f}) {
+    Riding<Balancing> body(Vec3<double>::Zero(), 0.5, false, 2, 1.5);
+    body.h = 1 / hz;
+    body.run(3);
+    const float before = body.on_platform().head<2>().norm();
+    body.run(9);
+    // Along the tangent it were r ω² h/2 each second: 112 mm at 15 Hz, 14 at 120.
+    EXPECT_NEAR(body.on_platform().head<2>().norm(), before, 2e-3f) << hz << " Hz";
   }
 }
 

@@ -44,8 +44,9 @@ Quat<double> upright(const Quat<double>& turned) {
 
 /// Of what goes along for h seconds, from one motion of a frame to the next.
 Displacement way_of(const CarriedFrame& now, const CarriedFrame& next, double h) {
-  const Displacement turn{0, 0, h * (now.turn_rate + next.turn_rate) / 2};
-  const Vec3<double> way = now.place - turn.turn() * now.place + h * (now.velocity + next.velocity) / 2;
+  const Displacement turn{0, 0, h * (now.turn_rate + next.turn_rate) / 2}, halfway{0, 0, turn.yaw / 2};
+  const Vec3<double> chord = halfway.turn() * Vec3<double>(h * (now.velocity + next.velocity) / 2);
+  const Vec3<double> way = now.place - turn.turn() * now.place + chord;
   return {way.x(), way.y(), turn.yaw, way.z()};
 }
 
