@@ -91,6 +91,35 @@ TYPED_TEST(GroundBalance, IceHoldsNoPush) {
   EXPECT_GT(left_of<T>(points, force, moment).first.norm(), 0.2 * kWeight);
 }
 
+/// Toes just before they leave the ground, of a runner whose motion asks more of them than they can give.
+TYPED_TEST(GroundBalance, IsNoWorseThanNothingWhereLittleStands) {
+  using T = TypeParam;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0.01, 1), level(-0.15, 0.15), up(0, 0.3), tilt(-0.2, 0.2);
+  for (int n = 0; n < 1000; ++n) {
+    std::vector<BearingPoint<T>> points(2);
+    points[0] = {Vec3<T>(T(-0.419), T(-0.069), T(-0.931)), Vec3<T>::UnitZ(), T(1), T(0.8), 0};
+    points[1] = {Vec3<T>(T(-0.426), T(0.022), T(-0.921)), Vec3<T>::UnitZ(), T(share(random)), T(0.8), 0};
+    const V force = kWeight * V(level(random), level(random), up(random));
+    points[1].force = (0.9 * force).cast<T>();  // of which it gives what its friction lets it
+    V middle = V::Zero();
+    double total = 0;
+    for (const auto& p : points) {
+      middle += double(p.share) * p.place.template cast<double>();
+      total += double(p.share);
+    }
+    middle /= total;
+    const V about = kWeight * V(tilt(random), tilt(random), tilt(random)),
+            moment = about + middle.cross(force);
+    balance_ground<T>(points, force.cast<T>(), moment.cast<T>(), T(kWeight), T(1));
+    const auto [f, m] = left_of<T>(points, force, moment);
+    const double left = std::hypot(f.norm(), V(m - middle.cross(f)).norm()),
+                 asked = std::hypot(force.norm(), about.norm());
+    EXPECT_LT(left, 1.01 * asked + 1) << n;
+    expect_within_friction<T>(points);
+  }
+}
+
 TYPED_TEST(GroundBalance, NothingStandsNothingBears) {
   std::vector<BearingPoint<TypeParam>> none;
   EXPECT_EQ(balance_ground<TypeParam>(none, Vec3<TypeParam>(0, 0, 700), Vec3<TypeParam>::Zero(),

@@ -15,7 +15,7 @@ using Mat6 = Eigen::Matrix<T, 6, 6>;
 
 constexpr double kYield = 1e-5;   ///< ε, in units of the weight: a thousandth of what helps is left at most
 constexpr double kEnough = 2e-4;  ///< of the weight (times the unit), that a balance may miss
-constexpr int kShortenings = 8;   ///< halvings of a Newton step
+constexpr int kShortenings = 16;  ///< halvings of a Newton step
 constexpr double kDecrease = 1e-4;  ///< Armijo's
 
 /// The point of a friction cone (normal `n`, coefficient `mu`) that is closest to a force, and the

@@ -37,7 +37,8 @@ template <class T>
 int balance_ground(std::span<BearingPoint<T>> points, const Vec3<T>& force, const Vec3<T>& moment, T weight,
                    T unit);
 
-constexpr int kBalanceSteps = 24;
+/// Where little stands and much is asked it takes up to 42. Fewer leave what is worse than nothing.
+constexpr int kBalanceSteps = 64;
 
 extern template int balance_ground<float>(std::span<BearingPoint<float>>, const Vec3<float>&,
                                           const Vec3<float>&, float, float);
