@@ -213,12 +213,12 @@ TEST(Behaviour, WalksOnGroundThatMovesAsOnTheFloor) {
   }
 }
 
-TEST(Behaviour, WhoWalksOnGroundThatGathersSpeedForwardsStumblesAndIsCaught) {
-  // In one phase of its stride the ground can't give what that asks of it: not even 0.08 m/s².
+TEST(Behaviour, WhoWalksOnGroundThatGathersSpeedForwardsIsPlayed) {
+  // In one phase of its stride no ground can give what that asks of it: not even 0.08 m/s².
   Riding<Walking> body({0.8, 0, 0}, 0, false, 8);
   body.run(10);
   EXPECT_FALSE(body.fell);
-  EXPECT_GT(body.solved, 0);
+  EXPECT_EQ(body.solved, 0);
 }
 
 TEST(Behaviour, WhoStandsOnGroundThatMovesIsPlayed) {

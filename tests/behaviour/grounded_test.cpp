@@ -2,6 +2,7 @@
 #include "pushed.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/static_shape.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew {
 namespace {
@@ -115,6 +116,34 @@ TEST(Grounded, IsHitByWhatIsThrownAtHim) {
       EXPECT_GT(body.solved, 0) << hz << " Hz, " << speed << " m/s";
       EXPECT_LT(body.world.prop_pose(index).translation.x(), 0) << hz << " Hz, " << speed << " m/s";
     }
+}
+
+/// What an animation's accelerations ask of no floor is its own; what bears it when it is still is the
+/// ground's.
+TEST(Grounded, LeansNoFurtherThanItsFeetBearAndStandsOnNoAir) {
+  const auto falls = [](const std::function<void(JointJet<float>&, float)>& change) {
+    Pushed body("stand");
+    body.behave = [&](std::span<JointJet<float>> jets) { change(jets[0], float(body.time())); };
+    body.run(5);
+    return body.root_height() < 0.6 * double(body.jets[0].translation.z());
+  };
+  const auto lean = [](float to) {
+    return [=](JointJet<float>& root, float time) {  // about the ankles
+      const Quat<float> turn = rotation_exp<float>(Vec3<float>(0, std::min(0.1f * time, to), 0));
+      const Vec3<float> ankles(0, 0, 0.08f);
+      root.rotation = turn * root.rotation;
+      root.translation = ankles + turn * Vec3<float>(root.translation - ankles);
+    };
+  };
+  EXPECT_FALSE(falls(lean(0.02f)));
+  EXPECT_TRUE(falls(lean(0.4f)));
+  EXPECT_FALSE(falls([](JointJet<float>&, float) {}));
+  // Where it is half a metre up, it falls to where it stands.
+  Pushed above("stand");
+  above.behave = [](std::span<JointJet<float>> jets) { jets[0].translation.z() += 0.5f; };
+  above.run(1);
+  EXPECT_GT(above.solved, 0);
+  EXPECT_LT(above.root_height(), 1.1);
 }
 
 TEST(Grounded, AWallBesideIsNoGround) {

@@ -49,6 +49,7 @@ Status Character<T>::reset() {
   if (grounding.by.any()) state_->target[0] = displaced(grounding.by.inverse(), state_->target[0]);
   grounding.by = {};
   grounding.rest = grounding.alone = T(0);
+  grounding.level = Grounding<T>().level;
   grounding.returns = false;
   state_->reset_to_target(Vec3<T>::Zero());
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/character/return_to_animation.h"
 #include "sinew/character/tone.h"
@@ -37,7 +38,8 @@ Standing<T> standing_of(const CharacterState<T>& s, const CheckContext<T>& c) {
           T(world.ground_height),
           T(world.ground_friction),
           s.grounded() ? T(s.total_mass * world.gravity.norm()) : T(0),
-          c.ground};
+          c.ground,
+          s.grounding.lent ? &s.grounding.hand : nullptr};
 }
 
 /// What the muscles would have to give, with nothing that acts from outside left out.
@@ -79,6 +81,51 @@ void check_animation(CharacterState<T>& s, const std::vector<JointJet<T>>& targe
                   s.problem.gradient);
 }
 
+constexpr double kGoodGrip = 0.6;   ///< μ of a floor that no animation may blame
+constexpr double kOfTheHand = 0.1;  ///< of the hand, that ground which gives its utmost may miss: it yields
+
+/// What no floor at all could give to what the animation does, N and N·m of the root. Its accelerations alone
+/// ask for that much: who leans further than any feet bear does not hold himself so.
+template <class T>
+RootWrench<T> beyond_any_floor(CharacterState<T>& s, const CheckContext<T>& c) {
+  const CheckScratch<T>& r = c.scratch;
+  const auto move_and_place = [&](const Vec3<T>& gravity) {
+    for (const int i : s.tree.by_depth) {
+      const int p = s.tree.parent[i];
+      move_body<T>(s.tree, i, s.target[i], gravity, p < 0 ? nullptr : &r.body[p], r.body[i]);
+      place_body<T>(s.tree, i, r);
+    }
+  };
+  move_and_place(Vec3<T>::Zero());
+  wrenches_in_world(r);
+  const SupportPoints<T>& points = s.rig->support;
+  Vec3<T> force = Vec3<T>::Zero(), moment = Vec3<T>::Zero();
+  T floor = std::numeric_limits<T>::max();
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    force += r.force[i];
+    moment += r.moment[i];
+    for (int k = points.first[i]; k < points.first[i + 1]; ++k) {
+      const Vec3<T> center = r.origin[i] + r.rotation[i] * points.points[k].local;
+      floor = std::min(floor, center.z() - points.points[k].radius);
+    }
+  }
+  // In the air where its animation has left what it stood on.
+  floor = std::min(floor, T(s.grounding.level + s.grounding.by.z - double(s.target[0].translation.z())));
+  move_and_place(c.world.gravity.template cast<T>());
+  Standing<T> best = standing_of(s, c);
+  best.friction = std::max(best.friction, T(kGoodGrip));
+  best.probe = nullptr;
+  best.bear(-floor, r);
+  RootWrench<T> left;
+  project_bodies<T>(s.tree, r.body, [&](int dof, const T& t) {
+    if (dof < 6) left[dof] = t;
+  });
+  const auto at_most = [](Vec3<T>& x, T most) { x *= x.norm() > most ? most / x.norm() : T(1); };
+  at_most(left.force, force.norm());
+  at_most(left.moment, moment.norm() - floor * force.norm());
+  return left;
+}
+
 /// What it asks for under loads; whether it is more by `most` than the animation asks muscles with a tone for
 /// by itself.
 template <class T>
@@ -89,6 +136,36 @@ bool asks_for_more(CharacterState<T>& s, T h, const CheckContext<T>& context, T 
   }
   check_under_loads(s, h, context);
   return s.problem.law.present.tone && overloads_tone<T>(s, s.problem.gradient, most);
+}
+
+/// Whether the check finds that the root of who has only the ground needs more than he is given.
+template <class T>
+bool is_beyond_its_help(const CharacterState<T>& s) {
+  const Grounding<T>& g = s.grounding;
+  const auto exceeds = [&](int first, T hand) {
+    const T most =
+        T(s.help_at_most(first == 0) * s.settings.strength) + (g.lent ? T(kOfTheHand) * hand : T(0));
+    return std::any_of(s.problem.gradient.begin() + first, s.problem.gradient.begin() + first + 3,
+                       [&](T asked) { return std::abs(asked) > most; });
+  };
+  return exceeds(0, g.hand.force.norm()) || exceeds(3, g.hand.moment.norm());
+}
+
+/// Whether the joints over what stands have all the strength that they were made with. After a check.
+template <class T>
+bool bears_with_all_its_strength(const CharacterState<T>& s, const CheckContext<T>& c) {
+  const SupportPoints<T>& points = s.rig->support;
+  const auto is_weak = [&](int joint) { return s.joint_strength[joint] < T(1); };
+  for (int i = 0; i < s.tree.bodies; ++i) {
+    bool bears = false;
+    for (int k = points.first[i]; k < points.first[i + 1]; ++k)
+      bears = bears || !c.scratch.bearing[k].force.isZero(T(0));
+    for (int j = i; bears && j > 0; j = s.tree.parent[j])
+      if (is_weak(j)) return false;
+  }
+  for (std::size_t m = 0; m < s.muscle_strength.size(); ++m)
+    if (s.muscle_strength[m] < T(1)) return false;
+  return s.settings.strength >= 1;
 }
 
 /// Whether pushes and effects reach a joint. Under a root that is driven, what pushes elsewhere does not,
@@ -111,6 +188,36 @@ Vec3<T> root_velocity(const Tree<T>& tree, const JointJet<T>& jet) {
   return jet.velocity + jet.rotation * Vec3<T>(jet.omega.cross(tree.center_of_mass[0]));
 }
 
+/// At what height the ground is that bears a grounded animation, after a check of it.
+template <class T>
+void note_level(CharacterState<T>& s, const CheckContext<T>& c) {
+  if (!s.grounded() || !stands(s, c.world, c.plan, c.ground)) return;
+  const double root = double(s.target[0].translation.z());
+  double lowest = std::numeric_limits<double>::max();
+  for (const BearingPoint<T>& p : c.scratch.bearing) {
+    if (p.force.isZero(T(0))) continue;
+    const double height =
+        c.ground ? root + double(p.place.z() - c.ground->room[p.point].gap) : c.world.ground_height;
+    lowest = std::min(lowest, height);
+  }
+  if (lowest < std::numeric_limits<double>::max()) s.grounding.level = lowest - s.grounding.by.z;
+}
+
+/// Whether ground and help bear the root of who has only the ground, if need be with a hand. `ask` makes the
+/// check, and tells whether the muscles may.
+template <class T, class Ask>
+bool is_borne(CharacterState<T>& s, const CheckContext<T>& c, const Ask& ask) {
+  Grounding<T>& g = s.grounding;
+  g.lent = false;
+  if (!ask()) return false;
+  if (!s.may_be_lent_a_hand() || !is_beyond_its_help(s)) return true;
+  g.hand = beyond_any_floor(s, c);
+  g.lent = true;
+  if (!ask() || is_beyond_its_help(s)) return false;
+  s.set_leads(true);
+  return true;
+}
+
 }  // namespace
 
 template <class T>
@@ -125,12 +232,34 @@ bool stands(const CharacterState<T>& s, const WorldSettings& world, const StepPl
 }
 
 template <class T>
-bool play(CharacterState<T>& s, T h, const CheckContext<T>& context) {
-  if (s.is_struck(T(context.world.accuracy.return_time))) return false;
-  if (has_plain_check(s))
+bool may_be_led(const CharacterState<T>& s) {
+  return s.may_be_lent_a_hand() && !s.deviation[0].released && has_plain_check(s);
+}
+
+template <class T>
+void lead_root(CharacterState<T>& s, const CheckContext<T>& context) {
+  const auto ask = [&] {
     check_animation(s, s.target, context);
-  else if (asks_for_more(s, h, context, T(1)))
-    return false;
+    return true;
+  };
+  if (is_borne(s, context, ask)) {
+    note_level(s, context);
+    s.set_leads(bears_with_all_its_strength(s, context));
+  }
+  s.grounding.lent = false;  // what it takes, the solve finds
+}
+
+template <class T>
+bool play(CharacterState<T>& s, T h, const CheckContext<T>& context) {
+  s.set_leads(false);
+  if (s.is_struck(T(context.world.accuracy.return_time))) return false;
+  const bool plain = has_plain_check(s);
+  const auto ask = [&] {
+    if (plain) check_animation(s, s.target, context);
+    return plain || !asks_for_more(s, h, context, T(1));
+  };
+  if (!is_borne(s, context, ask)) return false;
+  note_level(s, context);
   return play_checked(s, context.world, h);
 }
 
@@ -190,9 +319,12 @@ bool play_checked(CharacterState<T>& s, const WorldSettings& world, T h) {
 template <class T>
 void report_help(CharacterState<T>& s) {
   if (!s.grounded() || !s.floats) return;
+  const bool apart = s.grounding.lent;  // the check has taken it off before
   const auto size = [&](int first) {
-    return Vec3<double>(double(s.torque[first]), double(s.torque[first + 1]), double(s.torque[first + 2]))
-        .norm();
+    Vec3<double> sum = Vec3<double>::Zero();
+    for (int k = 0; k < 3; ++k)
+      sum[k] = double(s.torque[first + k] + (apart ? s.grounding.hand[first + k] : T(0)));
+    return sum.norm();
   };
   s.report.help_force = size(0);
   s.report.help_torque = size(3);

@@ -35,6 +35,16 @@ bool play(CharacterState<T>& state, T h, const CheckContext<T>& context);
 template <class T>
 bool play_checked(CharacterState<T>& state, const WorldSettings& world, T h);
 
+/// Whether it has only the ground, is on its animation, and nothing pushes it.
+template <class T>
+bool may_be_led(const CharacterState<T>& state);
+
+/// Before a solve, of who may be led and meets nothing but the ground: as long as that and its help bear its
+/// root, and an invisible hand what its animation's accelerations ask of no floor that there could be, the
+/// root is where the animation has it, whatever its joints do. O(points).
+template <class T>
+void lead_root(CharacterState<T>& state, const CheckContext<T>& context);
+
 /// Before a solve of a step of h seconds, of muscles with a tone: what the animation asks of each by itself,
 /// with the ground's share; and which are to give way to pushes and effects. Ends a return. O(bodies).
 template <class T>
@@ -59,6 +69,8 @@ void synchronise(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
                         const GroundProbe<T>*);                                             \
   prefix bool play<T>(CharacterState<T>&, T, const CheckContext<T>&);                       \
   prefix bool play_checked<T>(CharacterState<T>&, const WorldSettings&, T);                 \
+  prefix bool may_be_led<T>(const CharacterState<T>&);                                      \
+  prefix void lead_root<T>(CharacterState<T>&, const CheckContext<T>&);                     \
   prefix void begin_tone<T>(CharacterState<T>&, T, const CheckContext<T>&);                 \
   prefix void report_help<T>(CharacterState<T>&);                                           \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                       \

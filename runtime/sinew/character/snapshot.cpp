@@ -263,6 +263,7 @@ void visit_state(CharacterState<T>& s, ByteStream& stream) {
     stream.value("nothing has acted", s.grounding.alone);
     stream.value("help, N", s.grounding.help_force);
     stream.value("help, N·m", s.grounding.help_torque);
+    stream.value("height of what it stood on", s.grounding.level);
     stream.flag("next to its animation", s.grounding.returns);
   }
   const auto visit_strengths = [&](const char* name, std::vector<T>& strengths) {

@@ -5,9 +5,11 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "sinew/character/world.h"
+#include "sinew/effects/check_pass.h"
 #include "sinew/effects/contact.h"
 #include "sinew/effects/support.h"
 #include "sinew/optimizer/problem.h"
@@ -74,9 +76,14 @@ struct Grounding {
   T rest = T(0);                             ///< s that it has stood as its animation wants it
   T alone = T(0);                            ///< s that nothing but the ground has acted on a toned body
   double help_force = -1, help_torque = -1;  ///< N and N·m instead of the settings', where not negative
-  bool comes_back = false;                   ///< Character::come_back() in this step
-  bool rides = false;                        ///< Character::ride() in this step
-  bool returns = false;  ///< next to its animation, where it may be played if ground and muscles can do it
+  RootWrench<T> hand;  ///< in this step: what no floor could give to what its animation does
+  /// m, of what its animation last stood on, but for `by`.
+  double level = std::numeric_limits<double>::max();
+  bool lent = false;        ///< whether the check has left that to an invisible hand
+  bool leads = false;       ///< its root is borne where the animation has it, in this step
+  bool comes_back = false;  ///< Character::come_back() in this step
+  bool rides = false;       ///< Character::ride() in this step
+  bool returns = false;     ///< next to its animation, where it may be played if ground and muscles can do it
 };
 
 /// What all characters of one skeleton share.
@@ -303,6 +310,14 @@ struct CharacterState {
     return (settings.meets & other.settings.layers) != 0 && (other.settings.meets & settings.layers) != 0;
   }
   bool grounded() const { return settings.root == RootDrive::kGrounded && !is_prop; }
+  /// Whether it has only the ground, and the help that the settings tell.
+  bool may_be_lent_a_hand() const {
+    return grounded() && floats && grounding.help_force < 0 && grounding.help_torque < 0;
+  }
+  /// See Grounding::leads. Limits are made anew where that changes.
+  void set_leads(bool leads) {
+    if (std::exchange(grounding.leads, leads) != leads) refresh_limits();
+  }
   bool root_is_kinematic() const { return settings.root == RootDrive::kKinematic && !is_prop; }
   /// Has no joints but a free root, which is driven, as a platform: it carries what is on it, and gives way
   /// to nobody.

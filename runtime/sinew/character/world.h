@@ -39,7 +39,7 @@ enum class RootDrive : std::uint8_t {
   kAssisted,   ///< follows it up to `root_force` and `root_torque`
   kFree,       ///< unactuated: only contacts hold it
   kGrounded,   ///< follows it as long as the ground can hold it so, with `help_force` and `help_torque` at
-               ///< most
+               ///< most, and with what the animation's accelerations ask of no floor that there could be
 };
 
 /// Where a grounded character follows its animation: turned about the world's vertical, then moved.
@@ -84,7 +84,7 @@ struct CharacterSettings {
   double root_force = 2000;                ///< N, assisted
   double root_torque = 600;                ///< N·m, assisted
   /// N of a human, grounded: what an invisible hand may do where the ground can't. Scaled with the
-  /// character's weight; what it did is in the report.
+  /// character's weight; what it did is in the report, with what blends ask of no floor.
   double help_force = 8;
   double help_torque = 8;       ///< N·m of a human, likewise; scaled with weight and size
   double strength = 1;          ///< scales every muscle; 0 = ragdoll, infinity = pure playback

@@ -170,7 +170,7 @@ struct World<T>::Impl {
   const GroundProbe<T>* ground_near(CharacterState<T>& state, Worker& worker) const;
   CheckContext<T> context_of_check(const CharacterState<T>& state, Worker& worker,
                                    const GroundProbe<T>* ground) const;
-  void begin_tones(CharacterState<T>& state, Worker& worker);
+  void begin_solve(CharacterState<T>& state, Worker& worker);
   bool checks_in_batches(CharacterState<T>& state, Worker& worker) const;
   void check_later(int island, Worker& worker, double spent);
   void check_alike(Worker& worker, const Unchecked& one);

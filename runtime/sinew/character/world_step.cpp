@@ -212,9 +212,16 @@ void World<T>::Impl::check_alike(Worker& worker, const Unchecked& one) {
 }
 
 template <class T>
-void World<T>::Impl::begin_tones(CharacterState<T>& s, Worker& worker) {
-  const bool any = s.problem.law.present.tone && !s.passive();
-  if (any) begin_tone(s, h, context_of_check(s, worker, ground_near(s, worker)));
+void World<T>::Impl::begin_solve(CharacterState<T>& s, Worker& worker) {
+  const bool toned = s.problem.law.present.tone && !s.passive();
+  s.set_leads(false);
+  s.grounding.lent = false;
+  if (!toned && !may_be_led(s)) return;
+  const CheckContext<T> context = context_of_check(s, worker, ground_near(s, worker));
+  if (toned) begin_tone(s, h, context);
+  const bool alone =
+      worker.touched.empty() && !s.tied && !(plan.contacts && plan.contacts->is_in_the_way(s, worker.nearby));
+  if (alone && may_be_led(s)) lead_root(s, context);
 }
 
 /// Solves the island of worker.members[0].
@@ -223,7 +230,7 @@ void World<T>::Impl::solve_alone(int island, Worker& worker, double spent) {
   const double begin = now(settings.detail.budget);
   CharacterState<T>& s = *worker.members[0];
   synchronise(s, worker.jets);
-  begin_tones(s, worker);
+  begin_solve(s, worker);
   log_contacts(island, worker);
   lagged_count[island] = worker.stepper.step(settings, surroundings(), h, worker.members,
                                              islands.members(island), worker.ties, lagged, lagged_of(island));
@@ -256,7 +263,7 @@ int World<T>::Impl::step_set(std::span<CharacterState<T>* const> members, std::s
   }
   for (CharacterState<T>* s : worker.solved) {
     synchronise(*s, worker.jets);
-    begin_tones(*s, worker);
+    begin_solve(*s, worker);
   }
   const int count = worker.stepper.step(settings, surroundings(), h, worker.solved, worker.solved_indices,
                                         ties, lagged, lagged_out, spent);

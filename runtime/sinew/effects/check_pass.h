@@ -99,6 +99,16 @@ template <class T, class Put>
   }
 }
 
+/// On a free root, by its degrees of freedom.
+template <class T>
+struct RootWrench {
+  Vec3<T> force = Vec3<T>::Zero();   ///< N, world axes
+  Vec3<T> moment = Vec3<T>::Zero();  ///< N·m, about its joint, likewise
+
+  T& operator[](int dof) { return dof < 3 ? force[dof] : moment[dof - 3]; }              ///< of six
+  const T& operator[](int dof) const { return dof < 3 ? force[dof] : moment[dof - 3]; }  ///< the same
+};
+
 /// What bears on the ground in a check, if anything does.
 template <class T>
 struct Standing {
@@ -108,9 +118,14 @@ struct Standing {
   T friction = T(1);  ///< the floor's
   T weight = T(0);    ///< N, of a character that has nothing but the ground; 0: its root bears the rest
   const GroundProbe<T>* probe = nullptr;  ///< instead, where there is more than a floor
+  const RootWrench<T>* hand = nullptr;    ///< that bears the root besides, if any does
 
   /// Takes off what the ground bears; `height`: of the root above it, m.
   void bear(T height, const CheckScratch<T>& scratch) const {
+    if (hand) {
+      scratch.body[0].force -= scratch.body[0].turn.transpose() * hand->force;
+      scratch.body[0].moment -= scratch.body[0].turn.transpose() * hand->moment;
+    }
     if (!support) return;
     if (probe)
       support->on_surroundings(points, *probe, weight, scratch);

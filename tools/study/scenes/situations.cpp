@@ -502,6 +502,28 @@ void thrown_at_who_stands(const Scene& scene, bool, Findings& found) {
   });
 }
 
+/// Nobody is pushed: who has only the ground does what he would do if his root were driven.
+void own_blends(const Scene& scene, bool, Findings& found) {
+  Scene driven = scene;
+  for (scene::SceneCharacter& c : driven.characters) c.root = {{0, RootDrive::kKinematic}};
+  constexpr double kAnyDepth = 1e9;  // m: blends take toes into the floor
+  at_rates(scene, kRates, 1, kAnyDepth, found, [&](const Played&, const Judge& judge) {
+    driven.frame_rate = 1 / judge.step();
+    const Played led(driven);
+    const Judge wanted = led.judge();
+    const int end = judge.frames() - 1;
+    int fallen = 0;
+    double off = 0;
+    for (int m = 0; m < judge.members(); ++m) {
+      const auto height = [&](int f) { return judge.center_of_mass(f, m).z(); };
+      fallen += judge.worst(0, end, [&](int f) { return 1 - height(f) / height(0); }) > 0.3;
+      off = std::max(off, (judge.center_of_mass(end, m) - wanted.center_of_mass(end, m)).norm());
+    }
+    found.at_most("fall", fallen, 0);
+    found.at_most("off where a driven root takes them (m)", off, 0.1);
+  });
+}
+
 /// The same scene where nothing but a floor at `height` is beside it.
 Scene on_the_floor(Scene scene) {
   scene.obstacles.clear();
@@ -742,6 +764,7 @@ std::vector<Situation> situations() {
       {"round_obstacles", "boxes and figures lie on balls and rails", round_obstacles},
       {"past_a_platform", "what slides past a platform stops as it does alone", past_a_platform},
       {"balls_at_heads", "no ball flies through a head", balls_at_heads},
+      {"own_blends", "whom only the ground holds blends from clip to clip", own_blends},
       {"thrown_at_who_stands", "nor does anything through whom only the ground holds", thrown_at_who_stands},
       {"run_on_a_platform", "on a platform it runs as on the floor", run_on_a_platform},
       {"low_boards", "nor do boards of 1 and 2 cm stop who walks", run_on_a_platform},
