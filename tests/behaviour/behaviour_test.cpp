@@ -1,4 +1,6 @@
 // A standing body that is pushed: it presses, steps, puts the foot back, or falls.
+#include <array>
+
 #include "fixtures/platform.h"
 #include "pushed.h"
 #include "sinew/skeleton/rotation.h"
@@ -390,6 +392,29 @@ TEST(Behaviour, WhatLegsOfAWalkerAreAskedDoesNotLeap) {
       body.run(4);
       EXPECT_LT(fastest, 20) << hz << " Hz, a curb at " << ahead;
     }
+}
+
+/// The way of a frame is compared with those before and after it: half as much again is no leap.
+TEST(Behaviour, WhoWalksOnComesBackToItsAnimationWithoutALeap) {
+  for (const double hz : {30.0, 60.0, 120.0, 240.0})
+    for (const double impulse : {8.0, 15.0, -15.0})
+      for (const int phase : {0, 3, 6}) {
+        Walking body(hz);
+        body.run(1 + 0.14 * phase);
+        body.push(std::abs(impulse), impulse > 0 ? 0 : kBack);
+        const auto chest = static_cast<std::size_t>(body.asset.skeleton.find(Role::kChest));
+        Vec3<float> before = body.character().model()[chest].translation;
+        std::array<float, 3> way{};  // m, of the last frames
+        float leap = 0;              // m
+        for (int n = 0; n < std::lround(4.5 * hz) && !body.fell; ++n) {
+          body.step();
+          const Vec3<float> now = body.character().model()[chest].translation;
+          way = {way[1], way[2], (now - before).norm()};
+          before = now;
+          if (n > 1) leap = std::max(leap, way[1] - 1.5f * std::max(way[0], way[2]));
+        }
+        EXPECT_LT(leap, 0.02) << hz << " Hz, " << impulse << " N s, phase " << phase;
+      }
 }
 
 /// A body that tilts may ask its soles to lie level further than ankles go: they are not asked to.

@@ -255,11 +255,17 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
   from_clip_ = clip_body_ - middle;
 }
 
-/// Whether something has pushed the body off its animation.
+/// Whether something has pushed the body off its animation, or off what it is asked to do on its way back
+/// there.
 template <class T>
-bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) const {
-  const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_),
-             faster = from_above(is.mass.velocity) - clip_velocity_;
+bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) {
+  Vec2 place = clip_body_ - h * clip_velocity_, velocity = clip_velocity_;
+  if (fade_.running()) {
+    const MassMotion asked = body_.mass_of(last_, model_);
+    place = from_above(asked.place);
+    velocity = from_above(asked.velocity);
+  }
+  const Vec2 off = from_above(is.mass.place) - place, faster = from_above(is.mass.velocity) - velocity;
   return off.norm() > kNoticed * unit_ || faster.norm() > kNoticedSpeed * std::sqrt(unit_);
 }
 
@@ -273,7 +279,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   if (report_.state == BehaviourState::kClip) {
-    if (!is_pushed(is, h)) return;
+    if (!last_step_.root_unknown || !is_pushed(is, h)) return;
     report_ = {.state = BehaviourState::kPassive};
     strength_ = double(character.strength());
     return;
@@ -573,20 +579,32 @@ int Behaviour<T>::misplaced() const {
              : 1;
 }
 
+/// What `further`, in the frame in which targets are given, is in the world's.
+template <class T>
+Displacement Behaviour<T>::in_world(const Character<T>& character, const Displacement& further) {
+  const Displacement by = character.displacement();
+  return by.inverse().then(further).then(by);
+}
+
 /// Moves the animation by what `further` is in the frame in which targets are given.
 template <class T>
 void Behaviour<T>::displace(Character<T>& character, const Displacement& further) {
-  const Displacement by = character.displacement();
-  (void)character.displace(by.inverse().then(further).then(by));
+  (void)character.displace(in_world(character, further));
 }
 
 /// The clip again, from where the feet stand now, as the plan does already.
 template <class T>
 void Behaviour<T>::finish(Character<T>& character) {
-  const Displacement further = to_feet(), by = character.displacement();
-  (void)character.displace_led(by.inverse().then(further).then(by));
+  const Displacement further = to_feet();
+  (void)character.displace_led(in_world(character, further));
   last_[0] = displaced(further.inverse(), last_[0]);
   risen_ = false;
+  return_to_clip(character);
+}
+
+/// The animation again, where it is, from what was asked of the body so far.
+template <class T>
+void Behaviour<T>::return_to_clip(Character<T>& character) {
   give_up(character);
   fades_ = fades_root_ = true;
 }

@@ -177,7 +177,7 @@ class Behaviour {
   void find_only();
   void act(Character<T>& character, std::span<JointJet<T>> jets, T h);
   void ride(Character<T>& character, JointJet<T>& root, double h) const;
-  bool is_pushed(const MeasuredBody& is, double h) const;
+  bool is_pushed(const MeasuredBody& is, double h);
   void keep_balance(Character<T>& character, const MeasuredBody& is);
   void give_up(Character<T>& character);
   void begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets);
@@ -198,13 +198,16 @@ class Behaviour {
   void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
                   double h);
   void walk_on(Character<T>& character, const MeasuredBody& world, double h);
+  Displacement to_standing_foot(const MeasuredBody& is, double h) const;
   void change_feet(Character<T>& character, const MeasuredBody& world, double h);
   void move_offset(double h);
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
+  static Displacement in_world(const Character<T>& character, const Displacement& further);
   static void displace(Character<T>& character, const Displacement& further);
   void finish(Character<T>& character);
+  void return_to_clip(Character<T>& character);
   void fall(Character<T>& character, BehaviourReason reason, double number);
   void let_go(Character<T>& character, double h);
   bool lies(const Character<T>& character, double h);

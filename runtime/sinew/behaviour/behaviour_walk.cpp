@@ -48,15 +48,24 @@ Vec2 Behaviour<T>::clip_ankle_now(std::size_t side, double h) const {
   return from_above(Vec3<double>((value_of(ankle) - T(h) * rate_of(ankle)).template cast<double>()));
 }
 
-/// The clip's standing foot is brought to where that foot stands: what the body is off from there is what its
-/// next steps have to catch. What is asked of the feet does not leap: one that something kept from landing
+/// What brings the clip's standing foot to where that foot stands: what the body is off from there is what
+/// its next steps have to catch.
+template <class T>
+Displacement Behaviour<T>::to_standing_foot(const MeasuredBody& is, double h) const {
+  const auto stands = static_cast<std::size_t>(stance_);
+  const Vec2 way = from_above(is.foot[stands].translation) - clip_ankle_now(stands, h);
+  return {way.x(), way.y(), 0, 0};
+}
+
+/// The other foot stands. What is asked of the body does not leap: a foot that something kept from landing
 /// where it should is led to where it is.
 template <class T>
 void Behaviour<T>::change_feet(Character<T>& character, const MeasuredBody& world, double h) {
-  const auto stands = static_cast<std::size_t>(stance_);
-  const MeasuredBody is = world.without(character.displacement());
-  const Vec2 way = from_above(is.foot[stands].translation) - clip_ankle_now(stands, h);
-  displace(character, {way.x(), way.y(), 0, 0});
+  stance_ = 1 - stance_;
+  ++report_.steps;
+  const Displacement further = to_standing_foot(world.without(character.displacement()), h);
+  (void)character.displace_led(in_world(character, further));
+  const Vec2 way(further.x, further.y);
   error_.place -= way;
   for (MovingVector<double>& offset : foot_offset_)
     for (int a = 0; a < 2; ++a) offset[a].value -= way[a];
@@ -70,7 +79,7 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
   pace_ = clip_velocity_.norm();
   (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;
-  change_feet(character, world, h);
+  displace(character, to_standing_foot(world.without(character.displacement()), h));
   foot_offset_[static_cast<std::size_t>(stance_)] = still<double>(Vec3<double>::Zero());
   const MeasuredBody is = world.without(character.displacement());
   const auto swings = static_cast<std::size_t>(1 - stance_);
@@ -87,13 +96,10 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
 
 template <class T>
 void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, double h) {
-  if (!last_step_.root_unknown) return give_up(character);
+  if (!last_step_.root_unknown) return return_to_clip(character);
   const auto stands = static_cast<std::size_t>(stance_);
-  if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands])) {
-    stance_ = 1 - stance_;
-    ++report_.steps;
+  if (speed_of(clip_foot_motion_[1 - stands]) < kChanges * speed_of(clip_foot_motion_[stands]))
     change_feet(character, world, h);
-  }
   const MeasuredBody is = world.without(character.displacement());
   const Vec2 off = from_above(is.mass.place) - (clip_body_ - h * clip_velocity_) - error_.place,
              faster = from_above(is.mass.velocity) - clip_velocity_ - error_.velocity;
@@ -165,6 +171,7 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
 
 #define SINEW_WALK_INSTANCES(T)                                                                            \
   template Vec2 Behaviour<T>::clip_ankle_now(std::size_t, double) const;                                   \
+  template Displacement Behaviour<T>::to_standing_foot(const MeasuredBody&, double) const;                 \
   template void Behaviour<T>::change_feet(Character<T>&, const MeasuredBody&, double);                     \
   template void Behaviour<T>::begin_walk(Character<T>&, const MeasuredBody&, std::span<const JointJet<T>>, \
                                          double);                                                          \
