@@ -341,6 +341,35 @@ TEST(Behaviour, WhatOneStandsOnFeelsTheWeight) {
   }
 }
 
+/// Somebody who is driven walks into it: his limbs are no ground that would take it along.
+TEST(Behaviour, LimbsOfOthersAreNoGround) {
+  for (const double hz : {30.0, 60.0, 120.0, 240.0}) {
+    Balancing body;
+    body.h = float(1 / hz);
+    const int walker = body.world.add_character(body.asset.skeleton, {}, body.status);
+    const Clip& walk = body.asset.clips[static_cast<std::size_t>(body.asset.find_clip("walk"))];
+    std::vector<JointJet<float>> jets(body.jets.size());
+    const auto walks = [&] {
+      (void)SamplingJob<float>{&walk, body.time(), jets}.Run();
+      jets[0].translation += Vec3<float>(-1.2f, 0.25f, 0);
+      (void)body.world.character(walker).set_target(jets);
+    };
+    walks();
+    (void)body.world.character(walker).reset();
+    double highest = 0, raised = 0;  // m
+    while (body.time() < 2) {
+      walks();
+      body.step();
+      const CharacterReport& report = body.character().report();
+      if (report.ground.force > 0) highest = std::max(highest, report.ground.place.z());
+      raised = std::max(raised, std::abs(body.character().displacement().z));
+    }
+    EXPECT_GT(body.solved, 10) << "touched, at " << hz;
+    EXPECT_LT(highest, 0.05) << "m, at " << hz;
+    EXPECT_LT(raised, 0.005) << "m, at " << hz;
+  }
+}
+
 TEST(Behaviour, WhoWalksCatchesItselfByItsNextSteps) {
   for (const double impulse : {10.0, 20.0, 30.0, 45.0}) {
     int caught = 0;

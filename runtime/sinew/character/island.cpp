@@ -9,6 +9,7 @@
 #include "sinew/character/cut.h"
 #include "sinew/character/grounding.h"
 #include "sinew/character/levels.h"
+#include "sinew/character/nearby.h"
 #include "sinew/character/playback.h"
 #include "sinew/character/return_to_animation.h"
 #include "sinew/character/tone.h"
@@ -222,16 +223,19 @@ void IslandStepper<T>::advance_by(const TimeScheme<T>& scheme, T h) {
 }
 
 /// What a contact bears of a tree, and how what bears it moves, by its force; places from the common origin.
+/// What counts as ground is what does in a check, see nearby.h: nobody else's limbs, and no wall.
 template <class T>
 void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround& ground) const {
   if (c.tree_a == c.tree_b) return;
   const bool is_a = c.tree_a == tree;
-  const double up = double(normal_force(c) * (is_a ? c.normal.z() : -c.normal.z()));
-  if (!(up > 0)) return;
+  const T level = is_a ? c.normal.z() : -c.normal.z();
+  const double up = double(normal_force(c) * level);
+  if (!(up > 0) || level < T(kGroundLevel)) return;
+  const int below = is_a ? c.tree_b : c.tree_a;
+  if (below >= 0 && !states_[below]->is_prop && !states_[below]->is_carrier()) return;
   const Vec3<T> touch = c.point - c.radius * c.normal;
   ground.force += up;
   ground.place += up * touch.template cast<double>();
-  const int below = is_a ? c.tree_b : c.tree_a;
   if (below < 0) return;
   const CharacterState<T>& bears = *states_[below];
   const int body = is_a ? c.body_b : c.body_a;

@@ -7,7 +7,6 @@
 namespace sinew {
 namespace {
 
-constexpr double kLevel = 0.5;    ///< cosine: what is steeper is no ground
 constexpr double kCreeps = 0.02;  ///< m/s of a human: ground that is slower counts as standing
 constexpr double kSlides = 0.3;   ///< m/s of a human: a prop that is faster is no ground
 constexpr double kAround = 0.1;   ///< m of a human, beyond what it reaches and moves by
@@ -80,7 +79,7 @@ GroundUnder<T> under(const void* surroundings, const Vec3<T>& center,
   }
   const auto look = [&](const SignedDistance<double>& d, double friction) {
     const T gap = T(d.distance - lift * d.normal.z() - radius);
-    if (d.normal.z() < kLevel || !(gap < nearest.gap)) return false;
+    if (d.normal.z() < kGroundLevel || !(gap < nearest.gap)) return false;
     nearest = {gap, d.normal.template cast<T>(), std::sqrt(point.friction * T(friction))};
     return true;
   };
@@ -186,8 +185,8 @@ void find_moving(const CharacterState<T>& s, const Surroundings& around, const M
 template <class T>
 bool meets_from_above(const PlacedCollider<T>& from, const PlacedCollider<T>& to,
                       const MovingShape<T>& prop) {
-  return distance_between(to, prop.to).normal.z() > T(kLevel) &&
-         distance_between(from, prop.from).normal.z() > -T(kLevel);
+  return distance_between(to, prop.to).normal.z() > T(kGroundLevel) &&
+         distance_between(from, prop.from).normal.z() > -T(kGroundLevel);
 }
 
 /// Whether colliders on their way push what gives way, or it them: a figure, or a prop other than from above.

@@ -15,6 +15,8 @@
 
 namespace sinew {
 
+constexpr double kGroundLevel = 0.5;  ///< cosine: what is steeper is no ground
+
 /// A collider of what is driven as a whole, of a prop or of another figure, from the common origin, where a
 /// step begins and where it ends.
 template <class T>

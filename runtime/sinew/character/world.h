@@ -66,7 +66,7 @@ struct Displacement {
 };
 
 /// What bears a body from below, of all contacts that bear it by their share, and how it moves: still where
-/// it is static.
+/// it is static. What is steeper than 60° is no ground, nor are limbs of others.
 struct BearingGround {
   double force = 0;                              ///< N, up; 0: nothing bears it, and the rest is 0
   Vec3<double> place = Vec3<double>::Zero();     ///< m, world: where it presses
