@@ -1,0 +1,178 @@
+// A body that nothing keeps on its feet: it falls, lies, and gets up by a clip of its own.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sinew/behaviour/behaviour.h"
+#include "sinew/skeleton/rotation.h"
+
+namespace sinew {
+namespace {
+
+// Of a human.
+constexpr double kLevel = 0.02;                ///< m
+constexpr double kLieStill = 0.1;              ///< m/s
+constexpr double kTurnsStill = 0.3;            ///< rad/s, of the root
+constexpr double kLie = 0.5, kNeverStill = 4;  ///< s; s after which it need not lie still
+
+}  // namespace
+
+template <class T>
+void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double number) {
+  report_.state = BehaviourState::kFall;
+  risen_ = walks_ = false;
+  report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
+  report_.time = 0;
+  rest_ = 0;
+  (void)character.set_root_drive(RootDrive::kFree);
+  if (reason != BehaviourReason::kAsked) tell(BehaviourEventKind::kFallen, reason, number);
+}
+
+/// Whether it has lain still for a while.
+template <class T>
+bool Behaviour<T>::lies(const Character<T>& character, double h) {
+  const MeasuredBody is = measure(character).without(character.displacement());
+  if (std::exchange(measured_, true))
+    spin_ = rotation_log<double>(is.root.rotation * root_before_.conjugate()) / h;
+  root_before_ = is.root.rotation;
+  const double speed = is.mass.velocity.norm(), time = std::sqrt(unit_);
+  const bool still = speed < kLieStill * time && spin_.norm() < kTurnsStill / time;
+  rest_ = still ? rest_ + h : 0;
+  return rest_ > kLie * time || report_.time > kNeverStill * time;
+}
+
+template <class T>
+void Behaviour<T>::let_go(Character<T>& character, double h) {
+  const double share = std::min(report_.time / std::max(settings_.let_go, 1e-9), 1.0);
+  if (report_.time < settings_.let_go + 2 * h)
+    (void)character.set_strength(T(strength_ + share * (settings_.fallen_strength - strength_)));
+}
+
+template <class T>
+bool Behaviour<T>::may_get_up() const {
+  if (!get_up_.possible() || settings_.get_up == GetUpPolicy::kNever) return false;
+  return settings_.get_up == GetUpPolicy::kAuto || allowed_;
+}
+
+/// Falls, or lies and waits.
+template <class T>
+void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
+  let_go(character, h);
+  if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
+  if (report_.state == BehaviourState::kDown && may_get_up()) {
+    if (std::abs(level_ - ground_) > kLevel * unit_) {  // it has fallen, or been thrown, to another level
+      displace(character, {0, 0, 0, level_ - ground_});
+      level_ = ground_;
+    }
+    if (get_up_.begin(character, strength_, ground_)) {
+      report_.state = BehaviourState::kGather;
+      ++report_.tries;
+      tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
+      return rise(character, jets, h);
+    }
+  }
+  std::copy(last_.begin(), last_.end(), jets.begin());
+}
+
+/// Gathers its limbs and gets up, by a clip of its own.
+template <class T>
+void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  const GetUpOutcome outcome = get_up_.update(character, last_, h);
+  switch (outcome) {
+    case GetUpOutcome::kGathers:
+      report_.state = BehaviourState::kGather;
+      break;
+    case GetUpOutcome::kRises:
+      report_.state = BehaviourState::kRise;
+      break;
+    case GetUpOutcome::kUp:
+      return take_over(character, jets, h);
+    case GetUpOutcome::kStuck:
+      fall(character, BehaviourReason::kNotGathered, get_up_.off());
+      break;
+    case GetUpOutcome::kTooFar:
+      fall(character, BehaviourReason::kLeftItsClip, get_up_.off());
+      break;
+    case GetUpOutcome::kTooLong:
+      fall(character, BehaviourReason::kTookTooLong, report_.time);
+      break;
+  }
+  asked_ = true;
+  std::copy(last_.begin(), last_.end(), jets.begin());
+}
+
+/// Stands again: balanced over its feet, and from there on to the host's animation.
+template <class T>
+void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jets, double h) {
+  report_ = {.state = BehaviourState::kBalance};
+  risen_ = true;
+  allowed_ = false;
+  get_up_.forget();
+  tell(BehaviourEventKind::kStanding, BehaviourReason::kNone);
+  swing_ = -1;
+  const MeasuredBody world = measure(character);
+  choose_support(world.without(character.displacement()));
+  displace(character, to_feet());  // the animation faces as the body does
+  const MeasuredBody is = world.without(character.displacement());
+  spin_.setZero();
+  root_before_ = is.root.rotation;
+  measured_ = true;
+  (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
+  begin_plan(is, jets);
+  move_plan(h);
+  write_stance(jets, h);
+  fade(jets, T(h));
+  std::copy(jets.begin(), jets.end(), last_.begin());
+}
+
+template <class T>
+Status Behaviour<T>::use_get_ups(const Skeleton& skeleton, std::span<const Clip> clips) {
+  if (skeleton.joints.size() != last_.size())
+    return Status::error(Code::kInvalidArgument, "not the skeleton of this behaviour");
+  get_up_.prepare(skeleton, clips, settings_, unit_, weight_);
+  return get_up_.possible() ? Status{} : Status::error(Code::kInvalidArgument, "no clip to get up by");
+}
+
+template <class T>
+Status Behaviour<T>::get_up() {
+  if (settings_.get_up == GetUpPolicy::kNever || !get_up_.possible())
+    return Status::error(Code::kInvalidArgument, "it does not get up");
+  allowed_ = true;
+  return {};
+}
+
+template <class T>
+void Behaviour<T>::knock_down(Character<T> character) {
+  if (report_.state == BehaviourState::kClip) strength_ = double(character.strength());
+  if (fallen()) return;
+  report_.tries = 0;
+  knocked_ = true;  // the next update tells
+  fall(character, BehaviourReason::kAsked, 0);
+}
+
+template <class T>
+void Behaviour<T>::stand(Character<T> character) {
+  (void)character.set_strength(T(strength_));
+  (void)character.set_root_drive(RootDrive::kGrounded);
+  (void)character.set_help(-1, -1);
+  report_ = {};
+  allowed_ = false;
+}
+
+#define SINEW_FALL_INSTANCES(T)                                                         \
+  template void Behaviour<T>::fall(Character<T>&, BehaviourReason, double);             \
+  template bool Behaviour<T>::lies(const Character<T>&, double);                        \
+  template void Behaviour<T>::let_go(Character<T>&, double);                            \
+  template bool Behaviour<T>::may_get_up() const;                                       \
+  template void Behaviour<T>::lie(Character<T>&, std::span<JointJet<T>>, double);       \
+  template void Behaviour<T>::rise(Character<T>&, std::span<JointJet<T>>, double);      \
+  template void Behaviour<T>::take_over(Character<T>&, std::span<JointJet<T>>, double); \
+  template Status Behaviour<T>::use_get_ups(const Skeleton&, std::span<const Clip>);    \
+  template Status Behaviour<T>::get_up();                                               \
+  template void Behaviour<T>::knock_down(Character<T>);                                 \
+  template void Behaviour<T>::stand(Character<T>);
+SINEW_FALL_INSTANCES(float)
+SINEW_FALL_INSTANCES(double)
+
+}  // namespace sinew
