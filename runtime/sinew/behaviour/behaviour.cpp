@@ -30,6 +30,7 @@ constexpr double kShifted = 0.15;                      ///< m/s, from which the 
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
 constexpr double kStops = 0.6;                         ///< of its pace: an animation that walks no longer
 constexpr double kLifted = 0.03;                       ///< m over the other foot: one that is in the air
+constexpr double kOffGround = 3e-3;                    ///< m, by which soles of a clip may be off its ground
 constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLed = 5e-3, kLedTime = 0.5;          ///< m and s, that tell who takes an animation along
 
@@ -77,7 +78,10 @@ MeasuredBody Behaviour<T>::measure(const Character<T>& character) const {
   is.mass = body_.mass_of(model);
   is.mass.velocity = last_step_.momentum / body_.total_mass - carried_.at(is.mass.place);
   is.root = place(0);
-  for (std::size_t side = 0; side < 2; ++side) is.foot[side] = place(body_.legs[side].foot);
+  for (std::size_t side = 0; side < 2; ++side) {
+    is.foot[side] = place(body_.legs[side].foot);
+    is.lowest[side] = body_.lowest_of(side, model);
+  }
   return is;
 }
 
@@ -101,7 +105,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
     last_step_.momentum = character.report().momentum;
   }
   report_.time += double(h);
-  see_clip(jets);
+  see_clip(character, jets);
   see_ground(character, double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
@@ -120,9 +124,8 @@ template <class T>
 double Behaviour<T>::slip_over(const Vec3<double>& velocity) const {
   double least = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side)
-    for (const Vec3<T>& touches : body_.soles[side]) {
-      const auto foot = static_cast<std::size_t>(body_.legs[side].foot);
-      const Vec3<T> rate = rate_of<T>(model_[foot] * still<T>(touches));
+    for (const SolePoint<T>& p : body_.soles[side]) {
+      const Vec3<T> rate = rate_of<T>(model_[static_cast<std::size_t>(p.joint)] * still<T>(p.local));
       least = std::min(least, (rate.template cast<double>() - velocity).norm());
     }
   return least;
@@ -135,7 +138,11 @@ void Behaviour<T>::see_ground(Character<T>& character, double h) {
   const BearingGround& ground = last_step_.ground;
   const CarriedFrame now{ground.place, ground.velocity, ground.turn_rate};
   const CarriedFrame before = ground.force > 0 ? std::exchange(ground_before_, now) : ground_before_;
-  if (ground.force > 0) level_ = ground.place.z() - character.displacement().z;
+  if (ground.force > 0 && !ground.normal.isZero(0)) {
+    leveled_ = true;
+    level_ = ground.place.z() - character.displacement().z;
+    normal_ = character.displacement().turn().conjugate() * ground.normal;
+  }
   carried_ = carried_next_ = ground_before_;
   if (!ground_before_.moves()) {
     slip_ridden_ = slip_led_ = 0;
@@ -225,14 +232,14 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
 
 /// What the animation does in this frame, and on which ground.
 template <class T>
-void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
+void Behaviour<T>::see_clip(const Character<T>& character, std::span<const JointJet<T>> jets) {
   const MassMotion clip = body_.mass_of(jets, model_);
   clip_velocity_ = from_above(clip.velocity);
   clip_body_ = from_above(clip.place);
   clip_root_ = jets[0].rotation.template cast<double>().normalized();
   clip_spin_ = clip_root_ * jets[0].omega.template cast<double>();
   Vec2 middle = Vec2::Zero();
-  ground_ = std::numeric_limits<double>::max();
+  double lowest = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
     clip_foot_motion_[side] = ankle;
@@ -243,11 +250,13 @@ void Behaviour<T>::see_clip(std::span<const JointJet<T>> jets) {
             .normalized();
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
-    for (const Vec3<T>& touches : body_.soles[side]) {
-      const double z = (clip_ankle_[side] * Vec3<double>(touches.template cast<double>())).z();
-      ground_ = std::min(ground_, z);
+    for (const SolePoint<T>& p : body_.soles[side]) {
+      const MovingVector<T> point = model_[static_cast<std::size_t>(p.joint)] * still<T>(p.local);
+      lowest = std::min(lowest, double(point.z().value));
     }
   }
+  ground_ = character.animation_ground().value_or(lowest);
+  if (!leveled_) level_ = ground_;
   from_clip_ = clip_body_ - middle;
 }
 
@@ -281,7 +290,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     return;
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
-  const double high = is.root.translation.z() - ground_;
+  const double high = is.root.translation.z() - level_;
   if (high < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
     return fall(character, BehaviourReason::kTilted, high);
   if (report_.state == BehaviourState::kPassive) {
@@ -352,17 +361,33 @@ void Behaviour<T>::find_only() {
   only_.close();
 }
 
-/// Where the feet are now they stand, upright, at the clip's height.
+/// m, by which ground of that slope is higher so far away, seen from above.
+template <class T>
+double Behaviour<T>::rises_along(const Vec2& way) const {
+  return -from_above(normal_).dot(way) / normal_.z();
+}
+
+/// Where the feet are now they stand, as flat as the clip's on ground of that slope. What bears them is as
+/// much higher than what the clip stands on as the foot that is lowest tells, or told when
+/// something last bore it.
 template <class T>
 void Behaviour<T>::choose_support(const MeasuredBody& is) {
+  const Quat<double> slope = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), normal_);
+  double higher = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     if (static_cast<int>(side) == swing_) continue;
     Transform<double>& foot = foot_[side];
+    const Transform<double>& clip = clip_ankle_[side];
     foot = is.foot[side];
-    foot.rotation =
-        upright(foot.rotation * clip_ankle_[side].rotation.conjugate()) * clip_ankle_[side].rotation;
-    foot.translation.z() = clip_ankle_[side].translation.z();
+    foot.rotation = slope * upright(foot.rotation * clip.rotation.conjugate()) * clip.rotation;
+    foot.translation.z() =
+        clip.translation.z() + rises_along(from_above(foot.translation - clip.translation));
+    higher = std::min(higher, is.lowest[side] - body_.lowest_of(side, foot));
   }
+  higher += last_step_.ground.depth;
+  if (last_step_.ground.force > 0) higher_ = std::abs(higher) < kOffGround * unit_ ? 0 : higher;
+  for (std::size_t side = 0; side < 2; ++side)
+    if (static_cast<int>(side) != swing_) foot_[side].translation.z() += higher_;
   find_support();
 }
 
@@ -371,7 +396,7 @@ void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T
   report_.state = BehaviourState::kBalance;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
-  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - ground_, 0.3 * unit_));
+  frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - level_, 0.3 * unit_));
   begin_trunk(is, jets[0]);
   choose_support(is);
   fades_ = true;
@@ -478,6 +503,7 @@ void Behaviour<T>::move_swing(double h) {
   const Vec2 capture = plan_.capture_point(frequency_);
   const Vec2 lands = capture_point_after(capture, frequency_, law_.step_time - swing_time_, support_);
   const Vec2 to = within_reach(feet_now({root_before_, {}}), swing_, lands + clip_foot_[side], law_);
+  foot_[side].translation.z() += rises_along(to - from_above(foot_[side].translation));
   foot_[side].translation.x() = to.x();
   foot_[side].translation.y() = to.y();
 }
@@ -508,15 +534,18 @@ void Behaviour<T>::write_stance(std::span<JointJet<T>> jets, double h) {
                         rotation_exp<double>(share.value * rotation_log<double>(lifted_.rotation.conjugate() *
                                                                                 foot_[side].rotation));
   }
-  move_height({value_of(stance.ankle[0]), value_of(stance.ankle[1])}, plan_.place - clip_body_, h);
+  move_height({value_of(stance.ankle[0]), value_of(stance.ankle[1])}, plan_.place - clip_body_, to_feet().z,
+              h);
   stance.height = height_;
   take_stance<T>(body_, stance, jets, model_);
 }
 
-/// As high as the clip, but no higher than straight legs reach. `shift`: of the root, from the clip's.
+/// As high over its ground as the clip, but no higher than straight legs reach. `shift`: of the root, from
+/// the clip's; `higher` (m): the ground, than the clip's.
 template <class T>
-void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double h) {
-  double lower = 0;
+void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double higher,
+                               double h) {
+  double lower = higher;
   for (std::size_t side = 0; side < 2; ++side) {
     const FootLeg<T>& leg = body_.legs[side];
     const Vec3<double> hip =
@@ -555,6 +584,8 @@ Displacement Behaviour<T>::to_feet() const {
              to = from_above(foot_[0].translation + foot_[1].translation) / 2;
   further.x = to.x() - from.x();
   further.y = to.y() - from.y();
+  for (std::size_t side = 0; side < 2; ++side)
+    further.z += (foot_[side].translation.z() - clip_ankle_[side].translation.z()) / 2;
   return further;
 }
 
@@ -609,6 +640,7 @@ void Behaviour<T>::return_to_clip(Character<T>& character) {
 template <class T>
 void Behaviour<T>::give_up(Character<T>& character) {
   walks_ = false;
+  higher_ = 0;
   (void)character.set_help(-1, -1);
   report_.state = BehaviourState::kClip;
 }

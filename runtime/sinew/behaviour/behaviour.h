@@ -93,13 +93,16 @@ struct MeasuredBody {
   MassMotion mass;                        ///< of the whole body; its velocity over ground that moves
   Transform<double> root;                 ///< of the root joint
   std::array<Transform<double>, 2> foot;  ///< of the foot joints: left, right
+  std::array<double, 2> lowest{};         ///< m, height of their soles' lowest points
 
   /// The same without what its animation is displaced by: in the frame in which targets are given.
   MeasuredBody without(const Displacement& displacement) const {
     const Displacement back = displacement.inverse();
     const Transform<double> home{back.turn(), {back.x, back.y, back.z}};
-    return {
-        {home * mass.place, home.rotation * mass.velocity}, home * root, {home * foot[0], home * foot[1]}};
+    return {{home * mass.place, home.rotation * mass.velocity},
+            home * root,
+            {home * foot[0], home * foot[1]},
+            {lowest[0] + back.z, lowest[1] + back.z}};
   }
 };
 
@@ -167,7 +170,7 @@ class Behaviour {
  private:
   MeasuredBody measure(const Character<T>& character) const;
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
-  void see_clip(std::span<const JointJet<T>> jets);
+  void see_clip(const Character<T>& character, std::span<const JointJet<T>> jets);
   void look_back(const Character<T>& character);
   double slip_over(const Vec3<double>& velocity) const;
   void see_ground(Character<T>& character, double h);
@@ -193,7 +196,8 @@ class Behaviour {
   void move_trunk(double h);
   void move_swing(double h);
   void write_stance(std::span<JointJet<T>> jets, double h);
-  void move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double h);
+  void move_height(const std::array<Vec3<double>, 2>& ankle, const Vec2& shift, double higher, double h);
+  double rises_along(const Vec2& way) const;
   void begin_trunk(const MeasuredBody& is, const JointJet<T>& root);
   void begin_walk(Character<T>& character, const MeasuredBody& world, std::span<const JointJet<T>> jets,
                   double h);
@@ -244,10 +248,13 @@ class Behaviour {
   std::array<MovingVector<double>, 2> foot_offset_{still<double>(Vec3<double>::Zero()),
                                                    still<double>(Vec3<double>::Zero())};
   std::array<MovingTransform<T>, 2> clip_foot_motion_;
-  double ground_ = 0;                    ///< m, height of what the clip's feet stand on
-  double level_ = 0;                     ///< m, that of what the body stands or lies on
-  CarriedFrame carried_, carried_next_;  ///< by ground that moves: now, and after the next step
-  CarriedFrame ground_before_;           ///< what bore it last moved so
+  double ground_ = 0;                            ///< m, height of what the clip stands on
+  double level_ = 0;                             ///< m, that of what the body stands or lies on
+  bool leveled_ = false;                         ///< something has borne the body
+  double higher_ = 0;                            ///< m, that than the clip's, as a plan has found it
+  Vec3<double> normal_ = Vec3<double>::UnitZ();  ///< of that
+  CarriedFrame carried_, carried_next_;          ///< by ground that moves: now, and after the next step
+  CarriedFrame ground_before_;                   ///< what bore it last moved so
   /// m, of late, by which the clip's foot slips on ground that moves, were it taken along or not.
   double slip_ridden_ = 0, slip_led_ = 0;
   bool led_ = false;  ///< the host's animation goes along by itself

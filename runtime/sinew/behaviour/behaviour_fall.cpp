@@ -10,7 +10,6 @@ namespace sinew {
 namespace {
 
 // Of a human.
-constexpr double kLevel = 0.02;                ///< m
 constexpr double kLieStill = 0.1;              ///< m/s
 constexpr double kTurnsStill = 0.3;            ///< rad/s, of the root
 constexpr double kLie = 0.5, kNeverStill = 4;  ///< s; s after which it need not lie still
@@ -61,11 +60,7 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
   let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
   if (report_.state == BehaviourState::kDown && may_get_up()) {
-    if (std::abs(level_ - ground_) > kLevel * unit_) {  // it has fallen, or been thrown, to another level
-      displace(character, {0, 0, 0, level_ - ground_});
-      level_ = ground_;
-    }
-    if (get_up_.begin(character, strength_, ground_)) {
+    if (get_up_.begin(character, strength_, level_)) {
       report_.state = BehaviourState::kGather;
       ++report_.tries;
       tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);

@@ -65,6 +65,8 @@ void visit_last_step(LastStep& last, ByteStream& stream) {
   stream.vector("place of the ground", last.ground.place);
   stream.vector("velocity of the ground", last.ground.velocity);
   stream.value("turn rate of the ground", last.ground.turn_rate);
+  stream.vector("normal of the ground", last.ground.normal);
+  stream.value("depth in the ground", last.ground.depth);
 }
 
 }  // namespace
@@ -114,6 +116,9 @@ void Behaviour<T>::visit(ByteStream& stream) {
   visit_jet("height", height_, stream);
   stream.rotation("root a step before", root_before_);
   stream.value("level of the ground", level_);
+  stream.flag("something has borne it", leveled_);
+  stream.vector("slope of the ground", normal_);
+  stream.value("ground higher than the clip's", higher_);
   stream.flag("root was measured", measured_);
   stream.value("strength before it fell", strength_);
   stream.value("time it has lain still", rest_);

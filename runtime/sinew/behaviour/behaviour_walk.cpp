@@ -161,7 +161,7 @@ void Behaviour<T>::write_walk(std::span<JointJet<T>> jets, double h) {
     }
     ankle[side] = value_of(feet[side].translation).template cast<double>();
   }
-  move_height(ankle, error_.place, h);
+  move_height(ankle, error_.place, 0, h);
   MovingVector<double> shift, turn;
   for (int a = 0; a < 2; ++a) shift[a] = {error_.place[a], error_.velocity[a], error_.acceleration[a]};
   shift[2] = height_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_motion_job.h"
@@ -30,11 +31,11 @@ Transform<double> rest_of(const Skeleton& skeleton, int joint) {
   return rest;
 }
 
-/// Points of a foot and its toes that are lowest at rest, in the foot's axes.
+/// Points of a foot and its toes that are lowest at rest.
 template <class T>
-std::vector<Vec3<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
+std::vector<SolePoint<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
   const Transform<double> at = rest_of(skeleton, foot);
-  std::vector<Vec3<double>> low;
+  std::vector<std::pair<int, Vec3<double>>> low;
   double lowest = std::numeric_limits<double>::infinity();
   for (const Collider& collider : skeleton.colliders) {
     if (collider.joint != foot && collider.joint != toes) continue;
@@ -42,13 +43,15 @@ std::vector<Vec3<T>> sole_of(const Skeleton& skeleton, int foot, int toes) {
     append_contact_points<double>(collider, points);
     for (const ContactPoint<double>& p : points) {
       if (!p.meets_plane()) continue;
-      low.push_back(rest_of(skeleton, p.body) * p.local - Vec3<double>(0, 0, p.radius));
-      lowest = std::min(lowest, low.back().z());
+      low.emplace_back(p.body, rest_of(skeleton, p.body) * p.local - Vec3<double>(0, 0, p.radius));
+      lowest = std::min(lowest, low.back().second.z());
     }
   }
-  std::vector<Vec3<T>> sole;
-  for (const Vec3<double>& p : low)
-    if (p.z() < lowest + kLevel) sole.push_back((at.inverse() * p).template cast<T>());
+  std::vector<SolePoint<T>> sole;
+  for (const auto& [joint, p] : low)
+    if (p.z() < lowest + kLevel)
+      sole.push_back({joint, (rest_of(skeleton, joint).inverse() * p).template cast<T>(),
+                      (at.inverse() * p).template cast<T>()});
   return sole;
 }
 
@@ -124,8 +127,7 @@ Status StandingBody<T>::find(const Skeleton& skeleton) {
                             ankle = rest_of(skeleton, leg.foot);
     leg_length[side] =
         (knee.translation - hip.translation).norm() + (ankle.translation - knee.translation).norm();
-    for (const Vec3<T>& p : soles[side])
-      sole = std::min(sole, (ankle * Vec3<double>(p.template cast<double>())).z());
+    sole = std::min(sole, lowest_of(side, ankle));
   }
   height = skeleton.joints[0].rest.translation.z() - sole;
   return {};
@@ -155,8 +157,24 @@ MassMotion StandingBody<T>::mass_of(std::span<const JointJet<T>> jets,
 
 template <class T>
 void StandingBody<T>::add_sole(int foot, const Transform<double>& place, Sole& sole) const {
-  for (const Vec3<T>& p : soles[static_cast<std::size_t>(foot)])
-    sole.add((place * Vec3<double>(p.template cast<double>())).template head<2>());
+  for (const SolePoint<T>& p : soles[static_cast<std::size_t>(foot)])
+    sole.add((place * Vec3<double>(p.on_foot.template cast<double>())).template head<2>());
+}
+
+template <class T>
+double StandingBody<T>::lowest_of(std::size_t foot, const Transform<double>& place) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SolePoint<T>& p : soles[foot])
+    lowest = std::min(lowest, (place * Vec3<double>(p.on_foot.template cast<double>())).z());
+  return lowest;
+}
+
+template <class T>
+double StandingBody<T>::lowest_of(std::size_t foot, std::span<const Transform<T>> model) const {
+  T lowest = std::numeric_limits<T>::infinity();
+  for (const SolePoint<T>& p : soles[foot])
+    lowest = std::min(lowest, (model[static_cast<std::size_t>(p.joint)] * p.local).z());
+  return double(lowest);
 }
 
 template <class T>

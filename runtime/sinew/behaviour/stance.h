@@ -25,18 +25,26 @@ struct Ankle {
   T most = T(-1);                   ///< rad; negative: as far as anybody likes
 };
 
+/// Where a foot may touch the ground.
+template <class T>
+struct SolePoint {
+  int joint = 0;                      ///< of the foot, or of its toes
+  Vec3<T> local = Vec3<T>::Zero();    ///< m, joint axes
+  Vec3<T> on_foot = Vec3<T>::Zero();  ///< m, foot axes, toes straight as at rest
+};
+
 /// The body that stands: what is asked of a skeleton once.
 template <class T>
 struct StandingBody {
-  std::vector<int> parents;                   ///< [joint]
-  std::vector<T> mass;                        ///< [joint] share of the whole
-  std::vector<Vec3<T>> center_of_mass;        ///< [joint] m, joint axes
-  std::array<FootLeg<T>, 2> legs;             ///< left, right
-  std::array<Ankle<T>, 2> ankles;             ///< how far its feet turn
-  std::array<std::vector<Vec3<T>>, 2> soles;  ///< m, foot axes: where they may touch the ground
-  std::array<double, 2> leg_length;           ///< m, hip to ankle, straight
-  double total_mass = 0;                      ///< kg
-  double height = 0;                          ///< m, of the root's origin at rest over the soles
+  std::vector<int> parents;                        ///< [joint]
+  std::vector<T> mass;                             ///< [joint] share of the whole
+  std::vector<Vec3<T>> center_of_mass;             ///< [joint] m, joint axes
+  std::array<FootLeg<T>, 2> legs;                  ///< left, right
+  std::array<Ankle<T>, 2> ankles;                  ///< how far its feet turn
+  std::array<std::vector<SolePoint<T>>, 2> soles;  ///< those that are lowest at rest
+  std::array<double, 2> leg_length;                ///< m, hip to ankle, straight
+  double total_mass = 0;                           ///< kg
+  double height = 0;                               ///< m, of the root's origin at rest over the soles
 
   /// Set-up, once. Refuses a body without mass or roles of feet, and a foot without colliders.
   Status find(const Skeleton& skeleton);
@@ -46,6 +54,10 @@ struct StandingBody {
   MassMotion mass_of(std::span<const JointJet<T>> jets, std::span<MovingTransform<T>> model) const;
   /// Adds a foot at a place, m, to what may be pressed on.
   void add_sole(int foot, const Transform<double>& place, Sole& sole) const;
+  /// m: height of the lowest point of a foot at a place, its toes straight.
+  double lowest_of(std::size_t foot, const Transform<double>& place) const;
+  /// The same of a pose in model space, its toes bent as they are there.
+  double lowest_of(std::size_t foot, std::span<const Transform<T>> model) const;
 };
 
 /// What a stance asks for at an instant.

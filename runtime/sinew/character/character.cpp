@@ -397,6 +397,12 @@ const BearingGround& Character<T>::ground() const {
   return state_ ? state_->report.ground : none;
 }
 
+template <class T>
+std::optional<double> Character<T>::animation_ground() const {
+  if (!state_ || state_->grounding.level == Grounding<T>().level) return {};
+  return state_->grounding.level;
+}
+
 template class Character<float>;
 template class Character<double>;
 

@@ -10,9 +10,9 @@ namespace sinew {
 namespace {
 
 // Of a human: what counts as standing where the animation wants it.
-constexpr double kHeight = 3e-3;    ///< m
-constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every joint
-constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
+constexpr double kHeight = 3e-3;  ///< m, by which soles of a clip may be off the ground; else that is another
+constexpr double kTurn = 0.0175;  ///< rad, of the root's tilt and of every joint
+constexpr double kSpeed = 0.02;   ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
 // Of joints with a tone: near its animation the return goes on with the speed that there is; what bears may
@@ -27,10 +27,10 @@ constexpr double kAlone = 3;
 constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
 constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
 
-/// The displacement that takes the animation's root under the body's: the turn about the vertical that leaves
-/// the least tilt.
+/// The displacement that takes the animation's root to the body's: the turn about the vertical that leaves
+/// the least tilt, and up or down where it stands on ground of another height.
 template <class T>
-Displacement towards(const Transform<T>& wanted, const Transform<T>& is) {
+Displacement towards(const Transform<T>& wanted, const Transform<T>& is, double unit) {
   const Quat<double> off =
       is.rotation.template cast<double>() * wanted.rotation.template cast<double>().conjugate();
   Displacement d;
@@ -39,6 +39,7 @@ Displacement towards(const Transform<T>& wanted, const Transform<T>& is) {
   const Vec3<double> to = is.translation.template cast<double>(), turned = d.turn() * from;
   d.x = to.x() - turned.x();
   d.y = to.y() - turned.y();
+  if (const double up = to.z() - turned.z(); std::abs(up) > kHeight * unit) d.z = up;
   return d;
 }
 
@@ -146,13 +147,12 @@ void hand_back(CharacterState<T>& s, bool touched, T h) {
   if (g.comes_back && is_led_back(s)) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
-  const Displacement further = towards<T>(wanted, s.local[0]);
+  const Displacement further = towards<T>(wanted, s.local[0], double(unit));
   const JointJet<T> there = displaced(further, s.target[0]);
   const std::array<T, 6> left =
       joint_offset_value<T>(s.tree, 0, {there.rotation, there.translation}, s.local[0]);
   const std::array<T, 6>& rate = s.deviation[0].rate;
-  const bool rests = within(left, 0, 3, T(kHeight) * unit) && within(left, 3, 6, T(kTurn)) &&
-                     within(rate, 0, 3, T(kSpeed) * unit / time) &&
+  const bool rests = within(left, 3, 6, T(kTurn)) && within(rate, 0, 3, T(kSpeed) * unit / time) &&
                      within(rate, 3, 6, T(kTurnSpeed) / time) && joints_rest(s);
   g.rest = rests ? g.rest + h : T(0);
   if (g.rest < T(kRest) * time) return;

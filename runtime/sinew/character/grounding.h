@@ -3,8 +3,9 @@
 //
 // On its animation the check asks whether the ground can do it (ground_balance.h). Where it can't, the root
 // is solved for like a joint whose muscle is too weak. A body that comes to rest again stands where its feet
-// are, not where the animation would have them: it is taken as displaced, level and about the vertical, and
-// follows its animation from there. Only what is left of height and tilt returns in its own time.
+// are, not where the animation would have them: it is taken as displaced, level, to ground of
+// another height and about the vertical, and follows its animation from there. Only what is left of height
+// and tilt returns in its own time.
 #pragma once
 
 #include "sinew/character/state.h"

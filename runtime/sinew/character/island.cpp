@@ -233,9 +233,12 @@ void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround&
   if (!(up > 0) || level < T(kGroundLevel)) return;
   const int below = is_a ? c.tree_b : c.tree_a;
   if (below >= 0 && !states_[below]->is_prop && !states_[below]->is_carrier()) return;
-  const Vec3<T> touch = c.point - c.radius * c.normal;
+  const T gap = c.gap - c.slack - c.offset;
+  const Vec3<T> touch = c.point - (c.radius + (is_a ? gap : T(0))) * c.normal;
   ground.force += up;
+  ground.depth -= up * double(gap);
   ground.place += up * touch.template cast<double>();
+  ground.normal += up * (is_a ? 1 : -1) * c.normal.template cast<double>();
   if (below < 0) return;
   const CharacterState<T>& bears = *states_[below];
   const int body = is_a ? c.body_b : c.body_a;
@@ -265,6 +268,8 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
     r.ground.place = r.ground.place / r.ground.force + settings_.common_origin;
     r.ground.velocity /= r.ground.force;
     r.ground.turn_rate /= r.ground.force;
+    r.ground.depth /= r.ground.force;
+    r.ground.normal.normalize();
   }
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));

@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,9 +70,11 @@ struct Displacement {
 /// it is static. What is steeper than 60° is no ground, nor are limbs of others.
 struct BearingGround {
   double force = 0;                              ///< N, up; 0: nothing bears it, and the rest is 0
-  Vec3<double> place = Vec3<double>::Zero();     ///< m, world: where it presses
+  Vec3<double> place = Vec3<double>::Zero();     ///< m, world: where it is pressed
   Vec3<double> velocity = Vec3<double>::Zero();  ///< m/s, of what is there
   double turn_rate = 0;                          ///< rad/s, about the vertical
+  Vec3<double> normal = Vec3<double>::Zero();    ///< world; of who was solved for, else 0
+  double depth = 0;                              ///< m, that the body lies in it: as clips press; likewise
 
   /// Whether it does.
   bool moves() const { return turn_rate != 0 || !velocity.isZero(0); }
@@ -289,6 +292,9 @@ class Character {
   const CharacterReport& report() const;
   /// report().ground, for nothing: totals are not worked out for it.
   const BearingGround& ground() const;
+  /// m: height of what a grounded character's animation last stood on, its lowest, without what it is
+  /// displaced by. None until it has been played, or led, over ground that bears it.
+  std::optional<double> animation_ground() const;
 
  private:
   CharacterState<T>* state_;
