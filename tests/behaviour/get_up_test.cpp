@@ -22,8 +22,9 @@ struct Fallen : Pushed {
   std::vector<BehaviourEvent> told;
   double decided = -1, stood = -1;  ///< s
 
-  explicit Fallen(const BehaviourSettings& settings = {}, float ground_height = 0)
-      : Pushed("stand", RootDrive::kGrounded, ground_height), behaviour(asset.skeleton, settings, status) {
+  explicit Fallen(const BehaviourSettings& settings = {}, float ground_height = 0,
+                  const char* plays = "stand")
+      : Pushed(plays, RootDrive::kGrounded, ground_height), behaviour(asset.skeleton, settings, status) {
     EXPECT_TRUE(status) << status.reason;
     EXPECT_TRUE(behaviour.use_get_ups(asset.skeleton, asset.clips));
     behave = [this](std::span<JointJet<float>> wanted) {
@@ -201,6 +202,24 @@ TEST(GetUp, WhoStandsAgainIsPlayedAgain) {
     body.run_until_it_stands(25);
     body.run(12);
     EXPECT_EQ(body.character().report().unknown_dofs, 0) << direction;
+  }
+}
+
+/// Its clip walks on while it lies, and while it stands up.
+TEST(GetUp, WhoFellInAWalkWalksOn) {
+  for (const double hz : {60.0, 120.0, 240.0}) {
+    Fallen body({}, 0, "walk");
+    body.h = float(1 / hz);
+    body.falls(80, 0);
+    body.run_until_it_stands(25);
+    ASSERT_GT(body.stood, 0) << hz;
+    body.run(4);
+    const Vec3<double> place = body.character().position();
+    body.run(4);
+    EXPECT_EQ(body.count(BehaviourEventKind::kFallen), 1) << hz;
+    EXPECT_EQ(body.behaviour.state(), BehaviourState::kClip) << hz;
+    EXPECT_GT((body.character().position() - place).norm(), 4) << "m in 4 s, at " << hz;
+    EXPECT_NEAR(body.character().displacement().z, 0, 0.005) << "m, at " << hz;
   }
 }
 

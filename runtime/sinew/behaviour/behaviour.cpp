@@ -92,9 +92,10 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   if (!character.valid()) return Status::error(Code::kInvalidArgument, "a behaviour needs a character");
   events_count_ = 0;
   if (std::exchange(knocked_, false)) tell(BehaviourEventKind::kFallen, BehaviourReason::kAsked);
-  const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   const bool restored = std::exchange(restored_, false);
   if (!restored) look_back(character);
+  if (waits_) wait(character, jets);
+  const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
   if (!acts && !last_step_.root_unknown) {
     measured_ = asked_ = false;
     if (!last_step_.ground.moves()) {
@@ -220,7 +221,8 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
     root.translation += h * root.velocity + h * h / 2 * root.acceleration;
     root.velocity += h * root.acceleration;
     if (!fades_root_) root = jets[0];
-    (void)begin_inertial<T>(last_, jets, T(kFade * std::sqrt(unit_)), fade_);
+    const double time = std::exchange(sets_off_, false) ? kSetsOff : kFade;
+    (void)begin_inertial<T>(last_, jets, T(time * std::sqrt(unit_)), fade_);
   } else {
     fade_.elapsed += h;
   }
@@ -258,6 +260,11 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
   ground_ = character.animation_ground().value_or(lowest);
   if (!leveled_) level_ = ground_;
   from_clip_ = clip_body_ - middle;
+}
+
+template <class T>
+bool Behaviour<T>::clip_walks() const {
+  return clip_velocity_.norm() > kWalks * std::sqrt(unit_);
 }
 
 /// Whether something has pushed the body off its animation, or off what it is asked to do on its way back
@@ -298,7 +305,7 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
-    if (clip_velocity_.norm() > kWalks * std::sqrt(unit_)) return begin_walk(character, world, jets, h);
+    if (clip_walks()) return begin_walk(character, world, jets, h);
     begin_plan(is, jets);
   }
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);

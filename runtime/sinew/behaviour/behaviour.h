@@ -27,6 +27,9 @@
 
 namespace sinew {
 
+/// s of a human, in which who has got up sets off with an animation that walks.
+constexpr double kSetsOff = 0.6;
+
 /// What the body is doing about its balance.
 enum class BehaviourState : std::uint8_t {
   kClip,     ///< the animation, and nothing else
@@ -180,6 +183,7 @@ class Behaviour {
   void find_only();
   void act(Character<T>& character, std::span<JointJet<T>> jets, T h);
   void ride(Character<T>& character, JointJet<T>& root, double h) const;
+  bool clip_walks() const;
   bool is_pushed(const MeasuredBody& is, double h);
   void keep_balance(Character<T>& character, const MeasuredBody& is);
   void give_up(Character<T>& character);
@@ -218,6 +222,7 @@ class Behaviour {
   bool may_get_up() const;
   void lie(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void rise(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  void wait(Character<T>& character, std::span<JointJet<T>> jets);
   void take_over(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void tell(BehaviourEventKind kind, BehaviourReason reason, double number = 0);
   bool may_finish(const MeasuredBody& is) const;
@@ -275,6 +280,10 @@ class Behaviour {
   bool allowed_ = false;  ///< to get up
   bool knocked_ = false;  ///< since the last update
   bool risen_ = false;    ///< it has just got up, and balances
+  /// It stands as its get-up clip ends, until it may set off with an animation that does not stand.
+  bool waits_ = false;
+  bool sets_off_ = false;  ///< the fade that has to begin is into such a one
+  double stood_on_ = 0;    ///< m, height of what its animation stood on before it fell
   std::array<BehaviourEvent, 4> events_;
   std::size_t events_count_ = 0;
   std::vector<JointJet<T>> last_;  ///< [joint] what was asked last

@@ -125,6 +125,9 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.flag("may get up", allowed_);
   stream.flag("knocked down", knocked_);
   stream.flag("has just got up", risen_);
+  stream.flag("waits until it may set off", waits_);
+  stream.flag("a fade into a walk begins", sets_off_);
+  stream.value("ground of the animation before it fell", stood_on_);
   for (JointJet<T>& jet : last_) visit_joint("last target", jet, stream);
   stream.flag("there was a target", asked_);
   stream.flag("a fade begins", fades_);

@@ -114,6 +114,13 @@ void GetUp<T>::put(std::span<JointJet<T>> jets) const {
 }
 
 template <class T>
+void GetUp<T>::stand(std::span<JointJet<T>> jets) const {
+  const double end = double(clips_.variants()[static_cast<std::size_t>(variant_)].clip->duration);
+  clips_.sample(variant_, ClipTime{end, 0, 0}, jets);
+  put(jets);
+}
+
+template <class T>
 GetUpOutcome GetUp<T>::fail(GetUpOutcome why) {
   tried_ |= 1u << variant_;
   return why;

@@ -43,6 +43,8 @@ class GetUp {
   bool begin(Character<T>& character, double strength, double ground);
   /// Moves on by h s, and writes what the body is to do.
   GetUpOutcome update(Character<T>& character, std::span<JointJet<T>> jets, double h);
+  /// Writes the pose in which its clip ends, at rest, where that was played. After begin(). O(joints).
+  void stand(std::span<JointJet<T>> jets) const;
   /// Visits what begin() and update() remember. For Behaviour::save() and restore().
   void visit(ByteStream& stream);
   /// Forgets which clips failed.

@@ -23,14 +23,14 @@ void displace_target(CharacterState<T>& state, const Displacement& further);
 /// After a solved part of h seconds of a grounded character, or of one whose muscles have a tone: whether it
 /// has been as its animation wants it for long enough. If so, a grounded one is displaced, and the ordinary
 /// return takes it onto its animation. `touched`: by more than what it stands on, of who has muscles with a
-/// tone.
+/// tone. `depth`: m, that the body of a grounded one lies in what bears it.
 template <class T>
-void hand_back(CharacterState<T>& state, bool touched, T h);
+void hand_back(CharacterState<T>& state, bool touched, double depth, T h);
 
 #define SINEW_GROUNDING_INSTANCES(prefix, T)                                       \
   prefix JointJet<T> displaced<T>(const Displacement& by, const JointJet<T>& jet); \
   prefix void displace_target<T>(CharacterState<T>&, const Displacement&);         \
-  prefix void hand_back<T>(CharacterState<T>&, bool, T);
+  prefix void hand_back<T>(CharacterState<T>&, bool, double, T);
 SINEW_GROUNDING_INSTANCES(extern template, float)
 SINEW_GROUNDING_INSTANCES(extern template, double)
 

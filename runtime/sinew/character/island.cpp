@@ -246,6 +246,21 @@ void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround&
   ground.turn_rate += up * double(angular_velocity(bears.history, body).z());
 }
 
+/// What bears a tree, in the world.
+template <class T>
+BearingGround IslandStepper<T>::ground_of(int tree) const {
+  BearingGround ground;
+  for (const Contact<T>& c : contacts_)
+    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(0)) add_bearing(c, tree, ground);
+  if (!(ground.force > 0)) return ground;
+  ground.place = ground.place / ground.force + settings_.common_origin;
+  ground.velocity /= ground.force;
+  ground.turn_rate /= ground.force;
+  ground.depth /= ground.force;
+  ground.normal.normalize();
+  return ground;
+}
+
 template <class T>
 void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   const TreeProblem<T>& p = s.problem;
@@ -262,15 +277,8 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
     ++r.contacts;
     if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
-    add_bearing(c, tree, r.ground);
   }
-  if (r.ground.force > 0) {
-    r.ground.place = r.ground.place / r.ground.force + settings_.common_origin;
-    r.ground.velocity /= r.ground.force;
-    r.ground.turn_rate /= r.ground.force;
-    r.ground.depth /= r.ground.force;
-    r.ground.normal.normalize();
-  }
+  r.ground = ground_of(tree);
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of<T>(couplings_, tree);
@@ -540,8 +548,11 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   advance_all(h);
   stop_lost();
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone)
-      hand_back<T>(s, s.problem.law.present.tone && touches_more_than_ground(static_cast<int>(n)), h);
+    if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone) {
+      const int tree = static_cast<int>(n);
+      const double depth = s.grounded() ? ground_of(tree).depth : 0;
+      hand_back<T>(s, s.problem.law.present.tone && touches_more_than_ground(tree), depth, h);
+    }
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {
