@@ -375,8 +375,7 @@ double Behaviour<T>::rises_along(const Vec2& way) const {
 }
 
 /// Where the feet are now they stand, as flat as the clip's on ground of that slope. What bears them is as
-/// much higher than what the clip stands on as the foot that is lowest tells, or told when
-/// something last bore it.
+/// much higher than what the clip stands on as the foot that is lowest tells while something bears the body.
 template <class T>
 void Behaviour<T>::choose_support(const MeasuredBody& is) {
   const Quat<double> slope = Quat<double>::FromTwoVectors(Vec3<double>::UnitZ(), normal_);

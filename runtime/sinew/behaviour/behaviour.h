@@ -27,9 +27,6 @@
 
 namespace sinew {
 
-/// s of a human, in which who has got up sets off with an animation that walks.
-constexpr double kSetsOff = 0.6;
-
 /// What the body is doing about its balance.
 enum class BehaviourState : std::uint8_t {
   kClip,     ///< the animation, and nothing else
@@ -171,6 +168,9 @@ class Behaviour {
   const Pendulum& plan() const { return plan_; }
 
  private:
+  /// s of a human, in which who has got up sets off with an animation that walks.
+  static constexpr double kSetsOff = 0.6;
+
   MeasuredBody measure(const Character<T>& character) const;
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(const Character<T>& character, std::span<const JointJet<T>> jets);
@@ -254,12 +254,12 @@ class Behaviour {
                                                    still<double>(Vec3<double>::Zero())};
   std::array<MovingTransform<T>, 2> clip_foot_motion_;
   double ground_ = 0;                            ///< m, height of what the clip stands on
-  double level_ = 0;                             ///< m, that of what the body stands or lies on
+  double level_ = 0;                             ///< m, height of what the body stands or lies on
+  Vec3<double> normal_ = Vec3<double>::UnitZ();  ///< of what the body stands or lies on
   bool leveled_ = false;                         ///< something has borne the body
-  double higher_ = 0;                            ///< m, that than the clip's, as a plan has found it
-  Vec3<double> normal_ = Vec3<double>::UnitZ();  ///< of that
-  CarriedFrame carried_, carried_next_;          ///< by ground that moves: now, and after the next step
-  CarriedFrame ground_before_;                   ///< what bore it last moved so
+  double higher_ = 0;  ///< m, by which that is higher below the feet of a plan than below the clip's
+  CarriedFrame carried_, carried_next_;  ///< by ground that moves: now, and after the next step
+  CarriedFrame ground_before_;           ///< what bore it last moved so
   /// m, of late, by which the clip's foot slips on ground that moves, were it taken along or not.
   double slip_ridden_ = 0, slip_led_ = 0;
   bool led_ = false;  ///< the host's animation goes along by itself
