@@ -30,7 +30,6 @@ constexpr double kShifted = 0.15;                      ///< m/s, from which the 
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
 constexpr double kStops = 0.6;                         ///< of its pace: an animation that walks no longer
 constexpr double kLifted = 0.03;                       ///< m over the other foot: one that is in the air
-constexpr double kOffGround = 3e-3;                    ///< m, by which soles of a clip may be off its ground
 constexpr double kPatient = 0.5;                       ///< s
 constexpr double kLed = 5e-3, kLedTime = 0.5;          ///< m and s, that tell who takes an animation along
 
@@ -241,7 +240,6 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
   clip_root_ = jets[0].rotation.template cast<double>().normalized();
   clip_spin_ = clip_root_ * jets[0].omega.template cast<double>();
   Vec2 middle = Vec2::Zero();
-  double lowest = std::numeric_limits<double>::max();
   for (std::size_t side = 0; side < 2; ++side) {
     const MovingTransform<T>& ankle = model_[static_cast<std::size_t>(body_.legs[side].foot)];
     clip_foot_motion_[side] = ankle;
@@ -252,12 +250,10 @@ void Behaviour<T>::see_clip(const Character<T>& character, std::span<const Joint
             .normalized();
     clip_foot_[side] = from_above(clip_ankle_[side].translation) - clip_body_;
     middle += from_above(clip_ankle_[side].translation) / 2;
-    for (const SolePoint<T>& p : body_.soles[side]) {
-      const MovingVector<T> point = model_[static_cast<std::size_t>(p.joint)] * still<T>(p.local);
-      lowest = std::min(lowest, double(point.z().value));
-    }
   }
-  ground_ = character.animation_ground().value_or(lowest);
+  // Before it has borne anything: under its soles, as flat as they are at rest.
+  const std::optional<double> known = character.animation_ground();
+  ground_ = known ? *known : std::min(body_.lowest_of(0, clip_ankle_[0]), body_.lowest_of(1, clip_ankle_[1]));
   if (!leveled_) level_ = ground_;
   from_clip_ = clip_body_ - middle;
 }

@@ -5,7 +5,6 @@
 
 #include "sinew/behaviour/behaviour.h"
 #include "sinew/character/grounding.h"
-#include "sinew/skeleton/portable_math.h"
 #include "sinew/skeleton/rotation.h"
 
 namespace sinew {
@@ -64,13 +63,11 @@ void Behaviour<T>::lie(Character<T>& character, std::span<JointJet<T>> jets, dou
   if (!std::exchange(asked_, true)) std::copy(jets.begin(), jets.end(), last_.begin());
   let_go(character, h);
   if (report_.state == BehaviourState::kFall && lies(character, h)) report_.state = BehaviourState::kDown;
-  if (report_.state == BehaviourState::kDown && may_get_up()) {
-    if (get_up_.begin(character, strength_, level_)) {
-      report_.state = BehaviourState::kGather;
-      ++report_.tries;
-      tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
-      return rise(character, jets, h);
-    }
+  if (report_.state == BehaviourState::kDown && may_get_up() && get_up_.begin(character, strength_, level_)) {
+    report_.state = BehaviourState::kGather;
+    ++report_.tries;
+    tell(BehaviourEventKind::kRising, allowed_ ? BehaviourReason::kAsked : BehaviourReason::kNone);
+    return rise(character, jets, h);
   }
   std::copy(last_.begin(), last_.end(), jets.begin());
 }
@@ -116,7 +113,7 @@ void Behaviour<T>::wait(Character<T>& character, std::span<JointJet<T>> jets) {
   see_clip(character, jets);
   const Quat<double> off = last_[0].rotation.template cast<double>() * clip_root_.conjugate();
   Displacement further;
-  further.yaw = 2 * portable::atan2(off.z(), off.w());
+  further.yaw = twist_angle<double>(off, Vec3<double>::UnitZ());
   const Vec2 begins = clip_body_ + kSetsOff * time / 2 * clip_velocity_;
   const Vec2 way = is - from_above(further.turn() * Vec3<double>(begins.x(), begins.y(), 0));
   further.x = way.x();

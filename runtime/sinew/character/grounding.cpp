@@ -4,15 +4,14 @@
 #include <cmath>
 
 #include "sinew/muscle/joint_coordinates.h"
-#include "sinew/skeleton/portable_math.h"
+#include "sinew/skeleton/rotation.h"
 
 namespace sinew {
 namespace {
 
 // Of a human: what counts as standing where the animation wants it.
-constexpr double kHeight = 3e-3;  ///< m, by which soles of a clip may be off the ground; else that is another
-constexpr double kTurn = 0.0175;  ///< rad, of the root's tilt and of every joint
-constexpr double kSpeed = 0.02;   ///< m/s, of the root from the animation
+constexpr double kTurn = 0.0175;    ///< rad, of the root's tilt and of every joint
+constexpr double kSpeed = 0.02;     ///< m/s, of the root from the animation
 constexpr double kTurnSpeed = 0.1;  ///< rad/s, of the root and of every joint
 constexpr double kRest = 0.2;       ///< s that it has to stand so
 // Of joints with a tone: near its animation the return goes on with the speed that there is; what bears may
@@ -28,20 +27,19 @@ constexpr double kNear = 0.06, kNearTurn = 0.105;          ///< m, rad
 constexpr double kNearSpeed = 0.12, kNearTurnSpeed = 0.6;  ///< m/s, rad/s
 
 /// The displacement that takes the animation's root to the body's: the turn about the vertical that leaves
-/// the least tilt, and up or down where it stands on ground of another height. It does not lie in
-/// that by the `depth` (m) that its body does: as deep as the animation pressed it, which would go on for
-/// ever.
+/// the least tilt, and up or down where it stands on ground of another height. It does not lie in that by the
+/// `depth` (m) that its body does: as deep as the animation pressed it, which would go on for ever.
 template <class T>
 Displacement towards(const Transform<T>& wanted, const Transform<T>& is, double depth, double unit) {
   const Quat<double> off =
       is.rotation.template cast<double>() * wanted.rotation.template cast<double>().conjugate();
   Displacement d;
-  d.yaw = 2 * portable::atan2(off.z(), off.w());
+  d.yaw = twist_angle<double>(off, Vec3<double>::UnitZ());
   const Vec3<double> from = wanted.translation.template cast<double>();
   const Vec3<double> to = is.translation.template cast<double>(), turned = d.turn() * from;
   d.x = to.x() - turned.x();
   d.y = to.y() - turned.y();
-  if (const double up = to.z() - turned.z(); std::abs(up) > kHeight * unit) d.z = up + depth;
+  if (const double up = to.z() - turned.z(); std::abs(up) > kOffGround * unit) d.z = up + depth;
   return d;
 }
 
@@ -141,7 +139,7 @@ void displace_target(CharacterState<T>& s, const Displacement& further) {
 }
 
 template <class T>
-void hand_back(CharacterState<T>& s, bool touched, double depth, T h) {
+void hand_back(CharacterState<T>& s, bool touched, T h) {
   Grounding<T>& g = s.grounding;
   g.returns = false;
   if (!s.grounded()) return lead_home(s, touched, h);
@@ -149,7 +147,7 @@ void hand_back(CharacterState<T>& s, bool touched, double depth, T h) {
   if (g.comes_back && is_led_back(s)) return;
   const T time = s.tree.scale.time, unit = s.tree.scale.length;
   const Transform<T> wanted{s.target[0].rotation, s.target[0].translation};
-  const Displacement further = towards<T>(wanted, s.local[0], depth, double(unit));
+  const Displacement further = towards<T>(wanted, s.local[0], s.report.ground.depth, double(unit));
   const JointJet<T> there = displaced(further, s.target[0]);
   const std::array<T, 6> left =
       joint_offset_value<T>(s.tree, 0, {there.rotation, there.translation}, s.local[0]);

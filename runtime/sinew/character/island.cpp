@@ -233,7 +233,7 @@ void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround&
   if (!(up > 0) || level < T(kGroundLevel)) return;
   const int below = is_a ? c.tree_b : c.tree_a;
   if (below >= 0 && !states_[below]->is_prop && !states_[below]->is_carrier()) return;
-  const T gap = c.gap - c.slack - c.offset;
+  const T gap = c.distance();
   const Vec3<T> touch = c.point - (c.radius + (is_a ? gap : T(0))) * c.normal;
   ground.force += up;
   ground.depth -= up * double(gap);
@@ -246,28 +246,36 @@ void IslandStepper<T>::add_bearing(const Contact<T>& c, int tree, BearingGround&
   ground.turn_rate += up * double(angular_velocity(bears.history, body).z());
 }
 
-/// What bears a tree, in the world.
+/// Reports what bears each tree, in the world.
 template <class T>
-BearingGround IslandStepper<T>::ground_of(int tree) const {
-  BearingGround ground;
-  for (const Contact<T>& c : contacts_)
-    if ((c.tree_a == tree || c.tree_b == tree) && c.gap < T(0)) add_bearing(c, tree, ground);
-  if (!(ground.force > 0)) return ground;
-  ground.place = ground.place / ground.force + settings_.common_origin;
-  ground.velocity /= ground.force;
-  ground.turn_rate /= ground.force;
-  ground.depth /= ground.force;
-  ground.normal.normalize();
-  return ground;
+void IslandStepper<T>::find_ground() {
+  for (CharacterState<T>* s : states_) s->report.ground = {};
+  for (const Contact<T>& c : contacts_) {
+    if (!(c.gap < T(0))) continue;
+    add_bearing(c, c.tree_a, states_[c.tree_a]->report.ground);
+    if (c.tree_b >= 0) add_bearing(c, c.tree_b, states_[c.tree_b]->report.ground);
+  }
+  for (CharacterState<T>* s : states_) {
+    BearingGround& ground = s->report.ground;
+    if (!(ground.force > 0)) continue;
+    ground.place = ground.place / ground.force + settings_.common_origin;
+    ground.velocity /= ground.force;
+    ground.turn_rate /= ground.force;
+    ground.depth /= ground.force;
+    ground.normal.normalize();
+  }
 }
 
+/// After find_ground().
 template <class T>
 void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   const TreeProblem<T>& p = s.problem;
   const std::uint64_t signature = touching<T>(contacts_, tree), limits = bearing(p);
   const double error = s.report.estimated_error;
+  const BearingGround ground = s.report.ground;
   CharacterReport& r = s.report;
   r = {};
+  r.ground = ground;
   r.dofs = s.tree.dofs;
   r.unknown_dofs = static_cast<int>(std::count(p.free.begin(), p.free.end(), 1));
   r.baked = static_cast<int>(std::count(s.baked.begin(), s.baked.end(), 1));
@@ -278,7 +286,6 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
     if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
   }
-  r.ground = ground_of(tree);
   for (const JointRow<T>& row : p.rows)
     if (row.kind == RowKind::kOneSided) r.elastic_energy += double(row.stored_energy(row.value));
   r.elastic_energy += elastic_of<T>(couplings_, tree);
@@ -547,12 +554,10 @@ void IslandStepper<T>::advance_part(T begin, T end, int splits_left) {
   for (std::size_t n = 0; n < states_.size(); ++n) finish_pose(*states_[n], static_cast<int>(n), h);
   advance_all(h);
   stop_lost();
+  find_ground();
   for (std::size_t n = 0; n < states_.size(); ++n)
-    if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone) {
-      const int tree = static_cast<int>(n);
-      const double depth = s.grounded() ? ground_of(tree).depth : 0;
-      hand_back<T>(s, s.problem.law.present.tone && touches_more_than_ground(tree), depth, h);
-    }
+    if (CharacterState<T>& s = *states_[n]; s.grounded() || s.problem.law.present.tone)
+      hand_back<T>(s, s.problem.law.present.tone && touches_more_than_ground(static_cast<int>(n)), h);
   for (std::size_t n = 0; n < states_.size(); ++n) report(*states_[n], static_cast<int>(n));
   if (log_) log_contacts(h);
   for (const auto& effect : effects_) {

@@ -152,7 +152,7 @@ class IslandStepper {
   void advance_all(T h);
   void advance_by(const TimeScheme<T>& scheme, T h);
   void add_bearing(const Contact<T>& contact, int tree, BearingGround& ground) const;
-  BearingGround ground_of(int tree) const;
+  void find_ground();
   void report(CharacterState<T>& state, int tree);
 
   const WorldSettings* world_ = nullptr;
