@@ -27,6 +27,7 @@ constexpr double kMostGripped =
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
+constexpr double kSoftens = 0.03;  ///< m, of what began inside: impacts press in less
 constexpr double kSlides =
     20;  ///< what slips by as much less than it turns rolls, the more the less it slips
 constexpr double kMayReach = 2;         ///< times the way that it goes in the step: what it may come to
@@ -205,13 +206,21 @@ void ContactFinder<T>::begin_all() {
     }
     c.start_gap = c.gap;
     // Far inside it is damped the more, so that what was crushed comes out of it at a walking pace too.
-    if (c.offset <= T(kLeftInside) * c.length_scale)
+    if (c.offset <= T(kLeftInside) * c.length_scale || c.came_back > T(0))
       c.damp(std::max(damping_time_ * c.speed_scale, -c.gap / (T(kDepenetrationSpeed) * c.speed_scale)), h_);
   }
 }
 
-/// Brings the surface back to where it belongs; all that do so to a tree store no more together than takes it
-/// along at the walking pace, the lighter of two: in what is wedged they would store ever more.
+/// Whether both sides of a contact are of one piece: no muscles press limbs against each other meanwhile.
+template <class T>
+bool ContactFinder<T>::may_soften(const Contact<T>& c) const {
+  return states_[c.tree_a]->tree.bodies == 1 && (c.tree_b < 0 || states_[c.tree_b]->tree.bodies == 1) &&
+         c.offset > T(kSoftens) * c.length_scale;
+}
+
+/// Brings the surface back to where it belongs at a walking pace, as softly as that takes; all that do so to
+/// a tree store no more together than takes it along, the lighter of two. In what is wedged they would store
+/// ever more.
 template <class T>
 void ContactFinder<T>::depenetrate(Contact<T>& c) const {
   const double speed = kDepenetrationSpeed * double(c.speed_scale);
@@ -220,12 +229,40 @@ void ContactFinder<T>::depenetrate(Contact<T>& c) const {
   const auto share = [&](int n) { return T(states_[n]->total_mass) / T(std::max(depenetrating_[n], 1)); };
   const T mass = c.tree_b < 0 ? share(c.tree_a) : std::min(share(c.tree_a), share(c.tree_b));
   const double work = speed / 2 + world_->gravity.norm() * double(h_);  // by mass and speed
-  const T enough = mass * T(kMostStored * speed * work);
-  back = std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough, c.width()) + c.gap), T(0));
-  const T stored = stored_energy(c);
+  const T enough = mass * T(kMostStored * speed * work), stored = stored_energy(c);
+  if (may_soften(c)) {
+    back = soften(c, back, enough);
+    c.came_back = back;
+  } else {
+    back =
+        std::max(std::min(back, ContactLaw<T>::depth_storing(c.stiffness, enough, c.width()) + c.gap), T(0));
+  }
   c.offset -= back;
   c.gap -= back;
   c.depenetration_work = stored_energy(c) - stored;
+}
+
+/// Makes a contact as soft as it has to be, under the same force, for its surface to come back so far (m)
+/// while what it touches goes on as it does, and store no more than `most` (J). How far it may.
+template <class T>
+T ContactFinder<T>::soften(Contact<T>& c, T back, T most) const {
+  const T force = ContactLaw<T>::force(c.stiffness, c.gap, c.width());
+  T ahead = std::max(back - h_ * parting_speed(c), T(0));  // of what it touches, at the end
+  if (2 * force * ahead > most) {
+    back -= ahead - most / (2 * force);
+    ahead = most / (2 * force);
+  }
+  if (!(back > T(0)) || !(ahead > T(0))) return std::max(back, T(0));
+  // (force + k ahead)² = 2 k most
+  const T left = most - force * ahead,
+          soft = (left + std::sqrt(std::max(left * left - force * force * ahead * ahead, T(0)))) /
+                 (ahead * ahead);
+  if (!(soft < c.stiffness)) return back;
+  const T gap = -ContactLaw<T>::depth(soft, force, c.width());
+  c.offset += gap - c.gap;
+  c.gap = gap;
+  c.stiffness = soft;
+  return std::min(back, std::max(c.offset - T(kLeftInside) * c.length_scale, T(0)));
 }
 
 /// m/s, at which the two sides of a contact part where the step begins.
@@ -264,8 +301,10 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.offset = found->offset;
   c.gap += c.offset;
   const T own = std::exchange(c.stiffness, found->stiffness);
+  const bool softens = may_soften(c);
+  if (softens) stiffen(c, own);
   if (!give_way(c)) depenetrate(c);
-  stiffen(c, own);
+  if (!softens) stiffen(c, own);
   // Friction of impulses is theirs (end_velocities.h).
   c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);
 }

@@ -182,6 +182,8 @@ class ContactFinder final : public ContactSearch<T> {
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
+  bool may_soften(const Contact<T>& contact) const;
+  T soften(Contact<T>& contact, T back, T most) const;
   T parting_speed(const Contact<T>& contact) const;
   bool give_way(Contact<T>& contact) const;
   void count_depenetrating();

@@ -152,6 +152,7 @@ struct Contact {
   T restitution = T(0);         ///< of a bounce: impulse of the release by that of the compression
   T offset = T(0);              ///< m, added to the gap: stiffening a loaded contact keeps its force
   T depenetration_work = T(0);  ///< J, that it stores more because the offset shrank when the step began
+  T came_back = T(0);           ///< m, by which it did: the surface moves at that pace
   bool fresh = true;            ///< bore nothing after the last step
   T start_gap = T(0);           ///< when the step began, m
   T stretch = T(1);             ///< 1 + τ/h: change of the damped gap by the gap
@@ -170,10 +171,11 @@ struct Contact {
   T gap = T(0);
   T slip[2] = {T(0), T(0)};
 
-  /// From a step of h seconds that begins at `start_gap` on, for a damping time in seconds.
+  /// From a step of h seconds that begins at `start_gap` on, for a damping time in seconds; against a surface
+  /// that comes back.
   void damp(T damping_time, T h) {
     stretch = T(1) + damping_time / h;
-    lag = damping_time / h * std::max(-start_gap, T(0));
+    lag = damping_time / h * std::max(-(start_gap + came_back), T(0));
   }
   /// m, between the shapes as they are.
   T distance() const { return gap - offset - slack; }
