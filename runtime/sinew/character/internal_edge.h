@@ -15,10 +15,10 @@ constexpr double kSameLevel = 1e-3;  ///< m of a human, that surfaces may differ
 
 /// Whether a contact is with an edge inside of the surface that its shape and another make up that the same
 /// point meets (an edge or a solid: the same body): at the nearest of the edge the other's normal is one of
-/// both, that of the contact is not, and the two are level within `tolerance` (m); or the contact's leads into
-/// the other, as at the foot of a wall. By the poses in the problems of `states`, by which `contacts` number
-/// their trees; they stand in the order of their first trees. O(those of its own), and 0.1 µs for each that
-/// the same point meets along another normal.
+/// both, that of the contact is not, and the two are level within `tolerance` (m); or the contact's leads
+/// into the other, as at the foot of a wall. By the poses in the problems of `states`, by which `contacts`
+/// number their trees; they stand in the order of their first trees. O(those of its own), and 0.1 µs for each
+/// that the same point meets along another normal.
 template <class T>
 bool is_internal_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
                       std::span<CharacterState<T>* const> states);
