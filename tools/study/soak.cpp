@@ -80,13 +80,15 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
   std::vector<float> times;
   times.reserve(static_cast<std::size_t>(report.frames));
   Measurement& m = report.measured;
-  long heap_start = 0;
   for (int frame = 0; frame < report.frames; ++frame) {
     for (int i = 0; i < kCharacters; ++i) disturb(world.character(i), jets[i], i, random);
+    const auto heap_before = static_cast<long>(mallinfo2().uordblks);
     const auto begin = std::chrono::steady_clock::now();
     (void)world.step(T(h));
     times.push_back(
         std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - begin).count());
+    const auto heap = static_cast<long>(mallinfo2().uordblks);
+    if (frame > static_cast<int>(1 / h)) report.heap_growth += heap - heap_before;
     ++m.steps;
     m.microseconds += double(times.back());
     bool finite = true;
@@ -101,9 +103,7 @@ SoakReport soak(double seconds, double h, std::uint64_t seed) {
     report.not_finite += !finite;
     if (frame % kLookEvery == 0) ++report.looked, report.touching += any_touch(world, member);
     m.finite = m.finite && finite;
-    if (frame == static_cast<int>(1 / h)) heap_start = static_cast<long>(mallinfo2().uordblks);
   }
-  report.heap_growth = static_cast<long>(mallinfo2().uordblks) - heap_start;
   std::sort(times.begin(), times.end());
   report.median_us = double(times[times.size() / 2]);
   report.p999_us = double(times[static_cast<std::size_t>(double(times.size() - 1) * 0.999)]);

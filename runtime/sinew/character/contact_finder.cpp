@@ -27,6 +27,9 @@ constexpr double kMostGripped =
 constexpr double kDepenetrationSpeed = 0.45;  ///< m/s, of what begins inside something or was pressed into it
 constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
+/// m, that a contact is deeper in than its force says: it leaves by another face than before, or is what was
+/// crushed and goes back. No spring has stored that, it comes out as what began inside does.
+constexpr double kLeaps = 0.02;
 constexpr double kSoftens = 0.03;  ///< m, of what began inside: impacts press in less
 constexpr double kSlides =
     20;  ///< what slips by as much less than it turns rolls, the more the less it slips
@@ -300,6 +303,11 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
     c.elastic_slip[k] = found->elastic[k] * T(world_->accuracy.stick_speed) * h_ * c.speed_scale;
   c.offset = found->offset;
   c.gap += c.offset;
+  const T before = -ContactLaw<T>::depth(found->stiffness, found->force, c.width());
+  if (c.gap < before - T(kLeaps) * c.length_scale) {
+    c.offset += before - c.gap;
+    c.gap = before;
+  }
   const T own = std::exchange(c.stiffness, found->stiffness);
   const bool softens = may_soften(c);
   if (softens) stiffen(c, own);

@@ -31,7 +31,9 @@ bool goes_on_as(const Contact<T>& edge, const Transform<T>& edge_body, const Con
   const Vec3<T> nearest = edge.point - (edge.radius + edge.distance()) * edge.normal;
   if (!(distance_to(beside, beside_body, nearest).distance < tolerance)) return false;
   const T probe = T(kProbe) * tolerance;
-  if (distance_to<T>(beside, beside_body, nearest + probe * edge.normal).distance < -tolerance) return true;
+  const bool stays = beside.tree_b < 0;  // what may be pushed away is in nobody's way
+  if (stays && distance_to<T>(beside, beside_body, nearest + probe * edge.normal).distance < -tolerance)
+    return true;
   const T out = edge.radius + std::max(edge.distance(), tolerance);
   const Vec3<T> normal = distance_to<T>(beside, beside_body, nearest + out * edge.normal).normal;
   if (!(normal.dot(edge.normal) < T(kSameNormal))) return false;
