@@ -16,6 +16,7 @@ constexpr double kStride = 2;                    ///< s, in which each foot of a
 constexpr double kSoonest = 0.4, kLatest = 0.7;  ///< s, in which it comes up to its animation
 constexpr double kSetsOff = 0.6;                 ///< s, likewise, where no foot comes down for that
 constexpr double kPlaced = 0.2;                  ///< s, in which its feet come under the rule of being placed
+constexpr double kRises = 0.2;                   ///< s, half of the way up, as its legs let it
 constexpr double kRests = 0.6;                   ///< m/s, of a point of a sole that rests
 constexpr double kRestsWithin = 0.02;            ///< m, over the ground
 constexpr double kFarthest = 0.6;                ///< m, of a foot that stands from its animation's
@@ -98,6 +99,7 @@ void Behaviour<T>::place_feet(std::span<JointJet<T>> jets, T h) {
   job.step = h;
   job.settings.farthest = T(kFarthest * unit_);
   job.follow = T(0);  // the root stays with its fade
+  job.rise = T(kRises * std::sqrt(unit_));
   (void)job.Run();
   lift_soles<T>(body_, T(stood_on_), jets);
   if (fade_.elapsed > T(0))
