@@ -291,6 +291,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   if (report_.state == BehaviourState::kClip) {
+    // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
+    if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
     if (!last_step_.root_unknown || !is_pushed(is, h)) return;
     report_ = {.state = BehaviourState::kPassive};
     strength_ = double(character.strength());
