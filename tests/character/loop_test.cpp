@@ -334,6 +334,25 @@ TEST(Loop, WhoFallsOnAnElasticRopeComesUpAgain) {
   }
 }
 
+/// A link and a ball that hangs on it: 1 and 1000 kg, at rest and swung out level.
+TEST(Loop, LightLinksBearWhatHangsOnThem) {
+  for (const double h : {1.0 / 15, 1.0 / 30, 1.0 / 60, 1.0 / 240})
+    for (const bool level : {false, true}) {
+      Scene<float> scene;
+      const V down = level ? V(V::UnitX()) : V(-V::UnitZ());
+      scene.add_ball(0.1 * down, V::Zero(), 1);
+      scene.add_ball(0.5 * down, V::Zero(), 1000);
+      scene.tie(LoopKind::kPoint, world_anchor(V::Zero()), prop_anchor(0, -0.1 * down));
+      scene.tie(LoopKind::kPoint, prop_anchor(0, 0.1 * down), prop_anchor(1, -0.3 * down));
+      double furthest = 0;
+      for (int n = 0; n < 2 / h; ++n) {
+        scene.run(1, h);
+        furthest = std::max(furthest, double(scene.world.prop_pose(1).translation.norm()));
+      }
+      EXPECT_NEAR(furthest, 0.5, level ? 2e-3 : 1e-3) << h << (level ? " swings" : " hangs");
+    }
+}
+
 TEST(Loop, WhatBeginsOpenClosesAtAWalkingPace) {
   Scene<double> scene(airborne(V::Zero()));
   scene.add_ball({0.3, 0, 0});

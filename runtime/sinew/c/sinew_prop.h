@@ -85,7 +85,7 @@ typedef struct sinew_loop_settings {
   sinew_anchor a;        ///< one side
   sinew_anchor b;        ///< the other side
   double length;         ///< m
-  double stiffness;      ///< N/m of each point; 0: the weight of the heavier side moves it by 0.1 mm
+  double stiffness;      ///< N/m of each point; 0: the weight of the heaviest tied to it moves it by 0.1 mm
   int32_t collide;       ///< flag: the two bodies may touch each other
   int32_t unused;        ///< 0
 } sinew_loop_settings;

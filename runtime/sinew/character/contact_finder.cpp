@@ -29,6 +29,7 @@ constexpr double kMostStored =
     2;  ///< times what takes a tree along: a step uses but a part of what surfaces store
 constexpr double kSlides =
     20;  ///< what slips by as much less than it turns rolls, the more the less it slips
+constexpr double kMayReach = 2;         ///< times the way that it goes in the step: what it may come to
 constexpr double kImpactDepth = 0.005;  ///< m, or half the thickness of what is met
 /// m, where something is driven as a whole: it presses on whatever has stopped what strikes, and loads it.
 constexpr double kImpactDepthDriven = 0.025;
@@ -190,9 +191,14 @@ bool ContactFinder<T>::reserve() {
 template <class T>
 void ContactFinder<T>::begin_all() {
   std::erase_if(contacts_, [&](const Contact<T>& c) {
-    return c.fresh && c.meeting == Meeting::kEdges && is_level_with_support(c);
+    return c.fresh && c.meeting == Meeting::kEdges && is_internal(c);
   });
   for (Contact<T>& c : contacts_) {
+    if (c.face >= 0 && c.distance() < T(0) && is_internal(c)) {  // no way out of what they make up together
+      c.face = -1;
+      begin_step<T>(states_[c.tree_a]->problem.kinematics,
+                    c.tree_b < 0 ? nullptr : &states_[c.tree_b]->problem.kinematics, c);
+    }
     if (c.fresh) {
       begin_inside(c);
       stiffen_for_impact(c);
@@ -220,6 +226,14 @@ void ContactFinder<T>::depenetrate(Contact<T>& c) const {
   c.offset -= back;
   c.gap -= back;
   c.depenetration_work = stored_energy(c) - stored;
+}
+
+/// m/s, at which the two sides of a contact part where the step begins.
+template <class T>
+T ContactFinder<T>::parting_speed(const Contact<T>& c) const {
+  Vec3<T> parting = states_[c.tree_a]->point_velocity(c.body_a, c.point);
+  if (c.tree_b >= 0) parting -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
+  return parting.dot(c.normal);
 }
 
 /// How many contacts bring each tree out of something.
@@ -256,26 +270,23 @@ void ContactFinder<T>::remember(Contact<T>& c) const {
   c.grip = c.friction * std::min(c.smooth_before, most_sunk_ * c.length_scale * c.stiffness);
 }
 
-/// See is_level_edge().
+/// See is_internal_edge(); by the poses that the step begins with.
 template <class T>
-bool ContactFinder<T>::is_level_with_support(const Contact<T>& c) const {
-  const auto bore = [](const Contact<T>& rests) { return !rests.fresh && rests.lagged_normal_force > T(0); };
-  return is_level_edge<T>(c, contacts_, T(world_->accuracy.sink_depth) * c.length_scale, bore);
+bool ContactFinder<T>::is_internal(const Contact<T>& c) const {
+  return is_internal_edge<T>(c, contacts_, T(kSameLevel) * c.length_scale, states_);
 }
 
 /// A fast body must be stopped well within the thickness of what it meets: F·h = m·v at that depth.
 template <class T>
 void ContactFinder<T>::stiffen_for_impact(Contact<T>& c) const {
-  Vec3<T> closing = states_[c.tree_a]->point_velocity(c.body_a, c.point);
   T mass = T(states_[c.tree_a]->total_mass), thickness = 2 * impact_depth_ * c.length_scale;
-  if (c.tree_b >= 0) {
-    closing -= states_[c.tree_b]->point_velocity(c.body_b, c.point);
-    mass = std::min(mass, T(states_[c.tree_b]->total_mass));
+  if (c.tree_b >= 0) mass = std::min(mass, T(states_[c.tree_b]->total_mass));
+  const T approach = -parting_speed(c);
+  if (approach > T(0) && c.gap < T(kMayReach) * h_ * approach && is_internal(c)) {  // slides on to it
+    c.face = -1;
+    return;
   }
-  const T approach = -closing.dot(c.normal);
-  const bool reached = approach > T(0) && c.gap < h_ * approach;
-  if (reached && c.gap > T(0) && is_level_with_support(c)) return;  // slides on to it
-  if (c.meeting != Meeting::kSolids) c.approach = approach;         // what strikes is a point or an edge
+  if (c.meeting != Meeting::kSolids) c.approach = approach;  // what strikes is a point or an edge
   thickness = std::min(thickness, half_thickness(c));
   const T span = h_ / 4;  // a step moves a body by at least h²/4 per unit of what stops it
   if (approach > T(0)) stiffen(c, 2 * mass * approach / (span * thickness));
@@ -663,7 +674,8 @@ constexpr ContactTerm<T> kContacts{
     make_finder<T>,      look_around<T>,           is_in_the_way<T>,   ground_under<T>,
     load_props<T>,       ground_that_moves<T>,     append_moving<T>,   come_close<T>,
     swept_box<T>,        boxes_come_close<T>,      place_colliders<T>, predict_colliders<T>,
-    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>};
+    touch_on_the_way<T>, append_contact_points<T>, share_stiffness<T>, measure<T>,
+    is_internal_edge<T>};
 
 }  // namespace
 

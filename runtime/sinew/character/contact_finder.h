@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/character/closeness.h"
+#include "sinew/character/internal_edge.h"
 #include "sinew/character/neighbour_grid.h"
 #include "sinew/character/return_to_animation.h"
 #include "sinew/character/state.h"
@@ -43,30 +44,10 @@ constexpr int kMostTrees = 0xfffe;  ///< that identities have room for
 constexpr int kFirstHost = 0x4000;  ///< their numbers of the host's shapes begin here, obstacles' at 0
 
 constexpr double kLeftInside = 1e-3;  ///< m, that depenetration leaves
-constexpr double kSamePlane = 0.99;   ///< cosine of normals that count as one
 /// Which point of which tree a contact is of.
 template <class T>
 std::uint64_t point_of(const Contact<T>& c) {
   return c.id >> 32;
-}
-/// Whether a contact is with a static edge that lies in the plane of what the same point (an edge: the same
-/// body) rests on by another that `bears`, as where tiles meet, or is higher by less than `tolerance` (m):
-/// whoever slides over it does not run into it.
-template <class T, class Bears>
-bool is_level_edge(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
-                   const Bears& bears) {
-  const auto nearest = [](const Contact<T>& of) {
-    return Vec3<T>(of.point - (of.radius + of.distance()) * of.normal);
-  };
-  const auto same = [&](const Contact<T>& rests) {
-    return edge.meeting == Meeting::kEdges ? rests.tree_a == edge.tree_a && rests.body_a == edge.body_a
-                                           : point_of(rests) == point_of(edge);
-  };
-  return edge.tree_b < 0 && std::any_of(contacts.begin(), contacts.end(), [&](const Contact<T>& rests) {
-           return &rests != &edge && rests.tree_b < 0 && same(rests) && bears(rests) &&
-                  rests.normal.dot(edge.normal) < T(kSamePlane) &&
-                  rests.normal.dot(nearest(edge) - nearest(rests)) < tolerance;
-         });
 }
 
 constexpr double kImpactSpeed = 0.2;  ///< m/s of a human; what closes more slowly is no impact
@@ -201,9 +182,10 @@ class ContactFinder final : public ContactSearch<T> {
   void begin_all();
   void remember(Contact<T>& contact) const;
   void depenetrate(Contact<T>& contact) const;
+  T parting_speed(const Contact<T>& contact) const;
   bool give_way(Contact<T>& contact) const;
   void count_depenetrating();
-  bool is_level_with_support(const Contact<T>& contact) const;
+  bool is_internal(const Contact<T>& contact) const;
   void stiffen_for_impact(Contact<T>& contact) const;
   Contact<T> contact_of(int n, const ContactPoint<T>& point) const;
   Contact<T> contact_of(int n, const Collider& collider) const;
@@ -273,6 +255,9 @@ struct ContactTerm {
   void (*append_points)(const Collider& collider, std::vector<ContactPoint<T>>& out, int index, double unit);
   void (*share_stiffness)(std::vector<ContactPoint<T>>& points);
   void (*measure)(const Kinematics<T>& a, const Kinematics<T>* b, Contact<T>& contact);
+  // See internal_edge.h.
+  bool (*is_internal_edge)(const Contact<T>& edge, std::span<const Contact<T>> contacts, T tolerance,
+                           std::span<CharacterState<T>* const> states);
 };
 
 extern template class ContactFinder<float>;

@@ -72,7 +72,11 @@ void ContactFinder<T>::meet_edges(int n, int collider, const Met& met, T reach) 
     }
     c.side = pair.side;
     c.radius = pair.radius;
-    c.size = Vec3<T>::Constant(std::min(met.size.minCoeff(), own.size.template cast<T>().minCoeff()));
+    c.solid_a = &own;
+    c.shape = met.shape;
+    c.size = met.size;
+    c.hull = met.hull;
+    c.shape_pose = met.local;
     const auto number = own.hull || met.hull ? feature_of_hull : feature;
     c.id = id_of(n, number(of_a.number, of_b.number, collider), met) ^
            std::uint64_t(pair.side < T(0) ? kOtherSide : 0);

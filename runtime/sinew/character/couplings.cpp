@@ -36,7 +36,7 @@ void Couplings<T>::drop_last() {
 }
 
 template <class T>
-void Couplings<T>::count_in(States states, SolveCapacities& rooms) {
+void Couplings<T>::count_in(States states, double gravity, SolveCapacities& rooms) {
   capacities_.clear();
   // Trees that are tied together if all couplings are switched on, by their first.
   std::vector<int> clump_of(states.size());
@@ -55,6 +55,11 @@ void Couplings<T>::count_in(States states, SolveCapacities& rooms) {
       if (to != from) std::replace(clump_of.begin(), clump_of.end(), int(from), int(to));
     });
   }
+  std::vector<double> heaviest(states.size());
+  for (std::size_t n = 0; n < states.size(); ++n)
+    heaviest[clump_of[n]] = std::max(heaviest[clump_of[n]], double(states[n]->total_mass));
+  for (const auto& c : all_)
+    if (const int first = first_tree(*c); first >= 0) c->bear(gravity * heaviest[clump_of[first]]);
   std::vector<SolveCapacity> clump(states.size());
   for (std::size_t n = 0; n < states.size(); ++n) clump[clump_of[n]] += states[n]->problem.capacity;
   for (std::size_t c = 0; c < all_.size(); ++c)

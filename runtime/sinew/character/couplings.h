@@ -27,8 +27,9 @@ class Couplings {
   void set_apart(int a, int b, bool apart);
   /// Whether no body of one ever touches one of the other.
   bool are_apart(int a, int b) const;
-  /// Adds what all of them bring to solves, after all states; what they may tie together is solved as one.
-  void count_in(States states, SolveCapacities& rooms);
+  /// Adds what all of them bring to solves, after all states; what they may tie together is solved as one,
+  /// and each bears the weight of the heaviest of it. `gravity`: m/s².
+  void count_in(States states, double gravity, SolveCapacities& rooms);
   /// What one of them brings to a solve, as counted.
   const SolveCapacity& capacity(int index) const { return capacities_[index]; }
 

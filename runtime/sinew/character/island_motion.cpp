@@ -473,9 +473,10 @@ void IslandStepper<T>::press(T h) {
   struck_.assign(states_.size(), 0);
   for (std::size_t n = 0; n < states_.size(); ++n)
     if (!lasts_[n]) struck_[set_[n]] = 1;
-  const auto bears = [](const Contact<T>& c) { return normal_force(c) > T(0); };
   for (const Contact<T>& c : contacts_) {
-    const bool struck = struck_[set_[c.tree_a]] && bears(c) && !is_level_edge<T>(c, contacts_, -c.gap, bears);
+    const T level = T(kSameLevel) * c.length_scale;
+    const bool struck = struck_[set_[c.tree_a]] && normal_force(c) > T(0) &&
+                        !settings_.plan->contacts->is_internal_edge(c, contacts_, level, states_);
     if (!struck && !(c.grip > T(0))) continue;
     const Prediction<T>& prediction = problems_[c.tree_a]->prediction;
     const T acted = 1 / (h * prediction.weight);  // κh, s; twice that for what is constant over the step

@@ -76,7 +76,7 @@ void World<T>::Impl::count_all() {
   rooms = {};
   checked_rig = {};
   for (const auto& s : states) count_in(*s);
-  couplings.count_in(states, rooms);
+  couplings.count_in(states, std::max(1.0, settings.gravity.norm()), rooms);
 }
 
 /// Of the first worker, and of the others.

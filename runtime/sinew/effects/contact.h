@@ -123,7 +123,7 @@ struct Contact {
   Vec3<T> half_axis_a =
       Vec3<T>::Zero();  ///< body axes; non-zero: the point slides to where the shape is nearest
   Vec3<T> local_b = Vec3<T>::Zero(), half_axis_b = Vec3<T>::Zero();  ///< kCorner, kEdges: of b
-  const Collider* solid_a = nullptr;                                 ///< kSolids
+  const Collider* solid_a = nullptr;                                 ///< kSolids, kEdges
   Vec3<T> before = Vec3<T>::Zero();                                  ///< kSolids: see solid_gap()
   T slack = T(0);  ///< m, that they may lie in each other: what solids leave to others, and clips press
   T side = T(1);   ///< kEdges: see EdgePair

@@ -100,10 +100,19 @@ struct Coupling {
   bool closes_slowly = false;              ///< stencils that begin open close at a limited speed (loops)
   bool strained = false;  ///< one who is tied has a driven root, and limbs: see close_slowly()
   bool driven = false;    ///< in this step: its velocities are those of closing, too
+  double weight = 0;      ///< N, that it is as stiff as to bear: see bear(); 0: any
   T length_scale = T(1);  ///< of what it ties, by a human's: see Scale
   T speed_scale = T(1);   ///< the same of speeds
   double energy = 0;      ///< J, when last measured
 
+  /// Set-up: the heaviest of all that hangs together by couplings weighs so much, N. What is tight gives as
+  /// little under that as it did under less, and springs are torn by as many times more.
+  void bear(double heaviest) {
+    if (!(weight > 0) || !(heaviest > 0)) return;
+    const T share = T(heaviest / weight);
+    for (Stencil<T>& e : stencils) (e.tight > T(0) ? e.stiffness : e.sinks) *= share;
+    weight = heaviest;
+  }
   /// Whether something that began open is still being closed: that does work.
   bool closes() const {
     return std::any_of(stencils.begin(), stencils.end(),

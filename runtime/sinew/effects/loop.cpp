@@ -43,6 +43,7 @@ Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place&
   if (settings.kind == LoopKind::kWeld) held = weld;
   Coupling<T> loop;
   loop.closes_slowly = true;
+  loop.weight = weight;
   loop.length_scale = T(unit);
   loop.speed_scale = T(std::sqrt(unit));
   for (const V& x : held) {

@@ -25,7 +25,7 @@ struct LoopSettings {
   Anchor a;                          ///< one frame
   Anchor b;                          ///< the other
   double length = 0;                 ///< m; rod and rope
-  double stiffness = 0;  ///< N/m of each point; 0: the weight of the heavier side moves it by 0.1 mm
+  double stiffness = 0;  ///< N/m of each point; 0: the weight of the heaviest tied to it moves it by 0.1 mm
   bool collide = false;  ///< the two bodies that it holds may touch each other
 };
 
@@ -33,8 +33,8 @@ struct LoopSettings {
 Status check(const LoopSettings& settings);
 
 /// The elements between two places. `weight` (N): of the heavier side, for the stiffness that settings leave
-/// open; `unit`: its length by a human's (Scale::length), by which hinges and welds hold their axes further
-/// out.
+/// open, until Coupling::bear(); `unit`: its length by a human's (Scale::length), by which hinges and welds
+/// hold their axes further out.
 template <class T>
 Coupling<T> make_loop(const LoopSettings& settings, const Place& a, const Place& b, double weight,
                       double unit);

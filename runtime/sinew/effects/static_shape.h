@@ -2,6 +2,7 @@
 // host's own collision world answers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -23,12 +24,13 @@ class StaticShape {
   virtual double half_thickness() const noexcept { return 1e9; }
 };
 
-/// Half the thickness of what a contact meets, m.
+/// Half the thickness of what a contact meets, m; of edges, of the thinner of the two.
 template <class T>
 T half_thickness(const Contact<T>& c) {
   if (c.plane) return T(1e9);
   if (c.host) return T(c.host->half_thickness());
-  return c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x();
+  const T half = c.shape == Shape::kBox ? c.size.minCoeff() : c.size.x();
+  return c.meeting == Meeting::kEdges ? std::min(half, T(c.solid_a->size.minCoeff())) : half;
 }
 
 /// Heights z over a grid in x and y, interpolated by Catmull–Rom patches: smooth, and the samples are met.
