@@ -62,9 +62,10 @@ Behaviour<T>::Behaviour(const Skeleton& skeleton, const BehaviourSettings& setti
   const std::size_t joints = skeleton.joints.size();
   last_.resize(joints);
   model_.resize(joints);
-  fade_numbers_.resize(inertial_numbers(static_cast<int>(joints), 1));  // the root's
+  for (auto* numbers : {&fade_numbers_, &placing_numbers_})
+    numbers->resize(inertial_numbers(static_cast<int>(joints), 1));  // the root's
   fade_ = {fade_numbers_, static_cast<int>(joints), 1};
-  fade_.duration = T(0);
+  placing_ = {placing_numbers_, static_cast<int>(joints), 1};
 }
 
 template <class T>
@@ -94,7 +95,8 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   const bool restored = std::exchange(restored_, false);
   if (!restored) look_back(character);
   if (waits_) wait(character, jets);
-  const bool acts = report_.state != BehaviourState::kClip || fades_ || fade_.running();
+  const bool acts =
+      report_.state != BehaviourState::kClip || fades_ || fade_.running() || sets_off_ > 0 || waits_;
   if (!acts && !last_step_.root_unknown) {
     measured_ = asked_ = false;
     if (!last_step_.ground.moves()) {
@@ -220,15 +222,17 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
     root.translation += h * root.velocity + h * h / 2 * root.acceleration;
     root.velocity += h * root.acceleration;
     if (!fades_root_) root = jets[0];
-    const double time = std::exchange(sets_off_, false) ? kSetsOff : kFade;
-    (void)begin_inertial<T>(last_, jets, T(time * std::sqrt(unit_)), fade_);
+    const double time = sets_off_ > 0 ? sets_off_ : kFade * std::sqrt(unit_);
+    (void)begin_inertial<T>(last_, jets, T(time), fade_);
   } else {
     fade_.elapsed += h;
   }
-  if (!fade_.running()) return;
-  const JointJet<T> root = jets[0];
-  (void)InertializeJob<T>{jets, &fade_, {}, jets}.Run();
-  if (!fades_root_) jets[0] = root;
+  if (fade_.running()) {
+    const JointJet<T> root = jets[0];
+    (void)InertializeJob<T>{jets, &fade_, {}, jets}.Run();
+    if (!fades_root_) jets[0] = root;
+  }
+  if (sets_off_ > 0) place_feet(jets, h);
 }
 
 /// What the animation does in this frame, and on which ground.
@@ -268,7 +272,7 @@ bool Behaviour<T>::clip_walks() const {
 template <class T>
 bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) {
   Vec2 place = clip_body_ - h * clip_velocity_, velocity = clip_velocity_;
-  if (fade_.running()) {
+  if (fade_.running() || sets_off_ > 0) {
     const MassMotion asked = body_.mass_of(last_, model_);
     place = from_above(asked.place);
     velocity = from_above(asked.velocity);
@@ -287,6 +291,8 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
                 : Vec3<double>::Zero();
   root_before_ = is.root.rotation;
   if (report_.state == BehaviourState::kClip) {
+    // Who is back in a walk, or sets off, is led: no ground gives all that the way there asks for.
+    if (fade_.running() && fades_root_ && clip_walks()) (void)character.come_back();
     if (!last_step_.root_unknown || !is_pushed(is, h)) return;
     report_ = {.state = BehaviourState::kPassive};
     strength_ = double(character.strength());
@@ -396,6 +402,7 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   report_.state = BehaviourState::kBalance;
+  sets_off_ = 0;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
   frequency_ = std::sqrt(settings_.gravity / std::max(is.mass.place.z() - level_, 0.3 * unit_));

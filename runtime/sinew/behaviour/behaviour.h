@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "sinew/animation/foot_lock.h"
 #include "sinew/animation/inertialize_job.h"
 #include "sinew/behaviour/balance_plan.h"
 #include "sinew/behaviour/behaviour_settings.h"
@@ -168,9 +169,6 @@ class Behaviour {
   const Pendulum& plan() const { return plan_; }
 
  private:
-  /// s of a human, in which who has got up sets off with an animation that walks.
-  static constexpr double kSetsOff = 0.6;
-
   MeasuredBody measure(const Character<T>& character) const;
   void watch(Character<T>& character, std::span<const JointJet<T>> jets, T h);
   void see_clip(const Character<T>& character, std::span<const JointJet<T>> jets);
@@ -212,6 +210,9 @@ class Behaviour {
   Vec2 clip_ankle_now(std::size_t side, double h) const;
   void write_walk(std::span<JointJet<T>> jets, double h);
   void fade(std::span<JointJet<T>> jets, T h);
+  void place_feet(std::span<JointJet<T>> jets, T h);
+  bool clip_rests(std::size_t side) const;
+  double time_to_set_off() const;
   static Displacement in_world(const Character<T>& character, const Displacement& further);
   static void displace(Character<T>& character, const Displacement& further);
   void finish(Character<T>& character);
@@ -223,6 +224,7 @@ class Behaviour {
   void lie(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void rise(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void wait(Character<T>& character, std::span<JointJet<T>> jets);
+  void set_off(Character<T>& character);
   void take_over(Character<T>& character, std::span<JointJet<T>> jets, double h);
   void tell(BehaviourEventKind kind, BehaviourReason reason, double number = 0);
   bool may_finish(const MeasuredBody& is) const;
@@ -282,8 +284,11 @@ class Behaviour {
   bool risen_ = false;    ///< it has just got up, and balances
   /// It stands as its get-up clip ends, until it may set off with an animation that does not stand.
   bool waits_ = false;
-  bool sets_off_ = false;  ///< the fade that has to begin is into such a one
-  double stood_on_ = 0;    ///< m, height of what its animation stood on before it fell
+  /// s, in which it fades from there into the animation, until its feet are where those of the animation are.
+  double sets_off_ = 0;
+  std::array<FootState<T>, 2> placed_;  ///< its feet while it does
+  SmoothInput<T> lowered_;              ///< m, by which it is lower meanwhile, as its legs need it
+  double stood_on_ = 0;                 ///< m, height of what its animation stood on before it fell
   std::array<BehaviourEvent, 4> events_;
   std::size_t events_count_ = 0;
   std::vector<JointJet<T>> last_;  ///< [joint] what was asked last
@@ -291,7 +296,8 @@ class Behaviour {
   bool fades_ = false;             ///< a fade has to begin in this frame
   bool fades_root_ = false;        ///< and takes the root along
   InertialState<T> fade_;
-  std::vector<T> fade_numbers_;
+  InertialState<T> placing_;  ///< from where it stood to where its feet are placed as it sets off
+  std::vector<T> fade_numbers_, placing_numbers_;
   std::vector<MovingTransform<T>> model_;
 };
 

@@ -14,7 +14,6 @@ namespace {
 constexpr double kLieStill = 0.1;              ///< m/s
 constexpr double kTurnsStill = 0.3;            ///< rad/s, of the root
 constexpr double kLie = 0.5, kNeverStill = 4;  ///< s; s after which it need not lie still
-constexpr double kWaits = 3;                   ///< s on its feet, after which it sets off however it stands
 
 }  // namespace
 
@@ -24,6 +23,7 @@ void Behaviour<T>::fall(Character<T>& character, BehaviourReason reason, double 
   if (!waits_ && !rose) stood_on_ = character.animation_ground().value_or(ground_);
   report_.state = BehaviourState::kFall;
   risen_ = walks_ = waits_ = false;
+  sets_off_ = 0;
   report_.fell_beyond = reason == BehaviourReason::kBeyondReach ? number : 0;
   report_.time = 0;
   rest_ = 0;
@@ -99,31 +99,6 @@ void Behaviour<T>::rise(Character<T>& character, std::span<JointJet<T>> jets, do
   std::copy(last_.begin(), last_.end(), jets.begin());
 }
 
-/// Stands as its get-up clip ends as long as it balances there. Then it sets off: the host's animation begins
-/// as far behind it as it comes on in half the fade, so that the body gathers speed evenly.
-template <class T>
-void Behaviour<T>::wait(Character<T>& character, std::span<JointJet<T>> jets) {
-  const double time = std::sqrt(unit_);
-  const bool stands = report_.state == BehaviourState::kClip && !fades_ && !fade_.running() &&
-                      (!last_step_.root_unknown || report_.time > kWaits * time);
-  if (!stands) return get_up_.stand(jets);
-  waits_ = false;
-  get_up_.stand(last_);
-  const Vec2 is = from_above(body_.mass_of(last_, model_).place);
-  see_clip(character, jets);
-  const Quat<double> off = last_[0].rotation.template cast<double>() * clip_root_.conjugate();
-  Displacement further;
-  further.yaw = twist_angle<double>(off, Vec3<double>::UnitZ());
-  const Vec2 begins = clip_body_ + kSetsOff * time / 2 * clip_velocity_;
-  const Vec2 way = is - from_above(further.turn() * Vec3<double>(begins.x(), begins.y(), 0));
-  further.x = way.x();
-  further.y = way.y();
-  further.z = ground_ - stood_on_;
-  (void)character.displace_led(in_world(character, further));
-  last_[0] = displaced(further.inverse(), last_[0]);
-  fades_ = fades_root_ = sets_off_ = true;
-}
-
 /// Stands again: balanced over its feet, and from there on to the host's animation.
 template <class T>
 void Behaviour<T>::take_over(Character<T>& character, std::span<JointJet<T>> jets, double h) {
@@ -185,6 +160,7 @@ void Behaviour<T>::stand(Character<T> character) {
   (void)character.set_help(-1, -1);
   report_ = {};
   allowed_ = waits_ = false;
+  sets_off_ = 0;
 }
 
 #define SINEW_FALL_INSTANCES(T)                                                         \
@@ -194,7 +170,6 @@ void Behaviour<T>::stand(Character<T> character) {
   template bool Behaviour<T>::may_get_up() const;                                       \
   template void Behaviour<T>::lie(Character<T>&, std::span<JointJet<T>>, double);       \
   template void Behaviour<T>::rise(Character<T>&, std::span<JointJet<T>>, double);      \
-  template void Behaviour<T>::wait(Character<T>&, std::span<JointJet<T>>);              \
   template void Behaviour<T>::take_over(Character<T>&, std::span<JointJet<T>>, double); \
   template Status Behaviour<T>::use_get_ups(const Skeleton&, std::span<const Clip>);    \
   template Status Behaviour<T>::get_up();                                               \

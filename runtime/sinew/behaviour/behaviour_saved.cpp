@@ -58,6 +58,22 @@ void visit_frame(const char* name, CarriedFrame& frame, ByteStream& stream) {
   stream.value(name, frame.turn_rate);
 }
 
+template <class T>
+void visit_placed(FootState<T>& foot, ByteStream& stream) {
+  auto& [hold, started, ground, point, normal, lock, height, slope, offset, grip, elapsed, duration] = foot;
+  stream.enumeration("what of a placed foot stays", hold, FootHold::kHeel);
+  stream.flag("a placed foot has a ground", started);
+  stream.value("ground of a placed foot", ground);
+  for (std::array<T, 3>* v : {&point, &normal, &lock})
+    for (T& number : *v) stream.value("plane and lock of a placed foot", number);
+  visit_jet("height of a placed foot", height.x, stream);
+  for (SmoothInput<T>& one : slope) visit_jet("slope of a placed foot", one.x, stream);
+  for (TimeJet<T>& one : offset) visit_jet("offset of a placed foot", one, stream);
+  visit_jet("grip of a placed foot", grip, stream);
+  stream.value("time of a placed foot", elapsed);
+  stream.value("duration of a placed foot", duration);
+}
+
 void visit_last_step(LastStep& last, ByteStream& stream) {
   stream.vector("momentum", last.momentum);
   stream.flag("root was solved for", last.root_unknown);
@@ -126,13 +142,16 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.flag("knocked down", knocked_);
   stream.flag("has just got up", risen_);
   stream.flag("waits until it may set off", waits_);
-  stream.flag("a fade into a walk begins", sets_off_);
+  stream.value("time in which it sets off", sets_off_);
+  for (FootState<T>& foot : placed_) visit_placed(foot, stream);
+  visit_jet("lowered while it sets off", lowered_.x, stream);
   stream.value("ground of the animation before it fell", stood_on_);
   for (JointJet<T>& jet : last_) visit_joint("last target", jet, stream);
   stream.flag("there was a target", asked_);
   stream.flag("a fade begins", fades_);
   stream.flag("a fade takes the root along", fades_root_);
   visit_fade(fade_, fade_numbers_, stream);
+  visit_fade(placing_, placing_numbers_, stream);
   visit_last_step(last_step_, stream);
   visit_frame("ground a step before", ground_before_, stream);
   stream.value("slip if taken along", slip_ridden_);

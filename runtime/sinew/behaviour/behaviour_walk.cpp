@@ -76,6 +76,7 @@ void Behaviour<T>::begin_walk(Character<T>& character, const MeasuredBody& world
                               std::span<const JointJet<T>> jets, double h) {
   report_.state = BehaviourState::kStep;
   walks_ = true;
+  sets_off_ = 0;
   pace_ = clip_velocity_.norm();
   (void)character.set_help(0, weight_ * unit_ * settings_.walk_torque);
   stance_ = speed_of(clip_foot_motion_[0]) <= speed_of(clip_foot_motion_[1]) ? 0 : 1;

@@ -6,6 +6,7 @@
 
 #include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/model_motion_job.h"
+#include "sinew/animation/soft_limits.h"
 #include "sinew/effects/contact.h"
 #include "sinew/effects/joint_limit.h"
 #include "sinew/skeleton/rotation.h"
@@ -14,6 +15,8 @@ namespace sinew {
 namespace {
 
 constexpr double kLevel = 0.02;  ///< m over the lowest point of a foot at rest: what may stand
+constexpr double kTip = 0.7;     ///< of the way to their farthest point, from which toes end
+constexpr double kSoft = 1e-3;   ///< m, in which a sole begins to be lifted
 constexpr int kRounds = 3;       ///< in which the root comes to where the centre of mass is wanted
 
 template <class T>
@@ -55,6 +58,18 @@ std::vector<SolePoint<T>> sole_of(const Skeleton& skeleton, int foot, int toes) 
   return sole;
 }
 
+/// Points of toes that are far from their joint: who turns that lifts them.
+template <class T>
+std::vector<SolePoint<T>> tips_of(const std::vector<SolePoint<T>>& sole, int toes) {
+  T farthest = T(0);
+  for (const SolePoint<T>& p : sole)
+    if (p.joint == toes) farthest = std::max(farthest, p.local.norm());
+  std::vector<SolePoint<T>> tips;
+  for (const SolePoint<T>& p : sole)
+    if (p.joint == toes && p.local.norm() > T(kTip) * farthest) tips.push_back(p);
+  return tips;
+}
+
 /// Turns the foot to where it is wanted, whatever the leg above it does, as far from the clip's as its ankle
 /// can.
 template <class T>
@@ -91,6 +106,33 @@ void reach_foot(const StandingBody<T>& body, std::size_t side, const MovingVecto
   set_foot<T>(body, side, foot, jets);
 }
 
+/// m, by which the lowest of those points that are a joint's is below a ground, softly; 0 where none is.
+template <class T>
+TimeJet<T> below(std::span<const SolePoint<T>> points, int joint, const MovingTransform<T>& at, T ground) {
+  TimeJet<T> deepest{T(0)};
+  for (const SolePoint<T>& p : points)
+    if (p.joint == joint)
+      deepest =
+          soft_max<T>(deepest, TimeJet<T>(ground) - MovingVector<T>(at * still<T>(p.local)).z(), T(kSoft));
+  return deepest;
+}
+
+/// Bends toes up whose tips are below a ground.
+template <class T>
+void lift_tips(const StandingBody<T>& body, std::size_t side, T ground, std::span<JointJet<T>> jets) {
+  const std::vector<SolePoint<T>>& tips = body.tips[side];
+  if (tips.empty()) return;
+  const auto joint = static_cast<std::size_t>(tips[0].joint);
+  const MovingTransform<T> foot = model_motion<T>(jets, body.parents, body.parents[joint]);
+  const MovingTransform<T> toes = foot * moving_transform<T>(jets[joint]);
+  Vec3<T> tip = Vec3<T>::Zero();
+  for (const SolePoint<T>& p : tips) tip += p.local / T(tips.size());
+  const MovingVector<T> reach = toes.rotation * still<T>(tip);
+  MovingVector<T> lifted = reach;
+  lifted.z() += below<T>(tips, tips[0].joint, toes, ground);
+  set_rotation<T>(foot.rotation.conjugate() * (shortest_arc<T>(reach, lifted) * toes.rotation), jets[joint]);
+}
+
 /// The root's motion, turned a little about world axes.
 template <class T>
 JointJet<T> turned(const JointJet<T>& root, const MovingVector<double>& turn) {
@@ -120,9 +162,11 @@ Status StandingBody<T>::find(const Skeleton& skeleton) {
     const Joint& foot = skeleton.joints[static_cast<std::size_t>(leg.foot)];
     ankles[side] = {foot.rest.rotation.template cast<T>(), foot.swing_axis.template cast<T>(),
                     static_cast<T>(foot.type == JointType::kBall ? foot.swing_limit : -1)};
-    soles[side] = sole_of<T>(skeleton, leg.foot, skeleton.find(side == 0 ? Role::kToesL : Role::kToesR));
+    const int toes = skeleton.find(side == 0 ? Role::kToesL : Role::kToesR);
+    soles[side] = sole_of<T>(skeleton, leg.foot, toes);
     if (soles[side].empty())
       return Status::error(Code::kInvalidArgument, "a foot without colliders", leg.foot);
+    tips[side] = tips_of<T>(soles[side], toes);
     const Transform<double> hip = rest_of(skeleton, leg.upper), knee = rest_of(skeleton, leg.middle),
                             ankle = rest_of(skeleton, leg.foot);
     leg_length[side] =
@@ -219,10 +263,23 @@ void take_feet(const StandingBody<T>& body, const MovingVector<double>& shift,
     reach_foot<T>(body, side, feet[side].translation, feet[side].rotation, jets);
 }
 
+template <class T>
+void lift_soles(const StandingBody<T>& body, T ground, std::span<JointJet<T>> jets) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const int joint = body.legs[side].foot;
+    MovingTransform<T> foot = model_motion<T>(jets, body.parents, joint);
+    foot.translation.z() += below<T>(body.soles[side], joint, foot, ground);
+    reach_foot<T>(body, side, foot.translation, foot.rotation, jets);
+    lift_tips<T>(body, side, ground, jets);
+  }
+}
+
 template struct StandingBody<float>;
 template struct StandingBody<double>;
 template void take_stance<float>(const StandingBody<float>&, const Stance&, std::span<JointJet<float>>,
                                  std::span<MovingTransform<float>>);
+template void lift_soles<float>(const StandingBody<float>&, float, std::span<JointJet<float>>);
+template void lift_soles<double>(const StandingBody<double>&, double, std::span<JointJet<double>>);
 template void take_feet<float>(const StandingBody<float>&, const MovingVector<double>&,
                                const MovingVector<double>&, const std::array<MovingTransform<float>, 2>&,
                                std::span<JointJet<float>>);

@@ -42,6 +42,7 @@ struct StandingBody {
   std::array<FootLeg<T>, 2> legs;                  ///< left, right
   std::array<Ankle<T>, 2> ankles;                  ///< how far its feet turn
   std::array<std::vector<SolePoint<T>>, 2> soles;  ///< those that are lowest at rest
+  std::array<std::vector<SolePoint<T>>, 2> tips;   ///< those of them with which toes end
   std::array<double, 2> leg_length;                ///< m, hip to ankle, straight
   double total_mass = 0;                           ///< kg
   double height = 0;                               ///< m, of the root's origin at rest over the soles
@@ -85,6 +86,10 @@ void take_feet(const StandingBody<T>& body, const MovingVector<double>& shift,
                const MovingVector<double>& turn, const std::array<MovingTransform<T>, 2>& feet,
                std::span<JointJet<T>> jets);
 
+/// Lifts feet by as much as their soles are below a ground (m), then bends toes up that still are. C².
+template <class T>
+void lift_soles(const StandingBody<T>& body, T ground, std::span<JointJet<T>> jets);
+
 extern template struct StandingBody<float>;
 extern template struct StandingBody<double>;
 /// @cond
@@ -100,6 +105,8 @@ extern template void take_feet<double>(const StandingBody<double>&, const Moving
                                        const MovingVector<double>&,
                                        const std::array<MovingTransform<double>, 2>&,
                                        std::span<JointJet<double>>);
+extern template void lift_soles<float>(const StandingBody<float>&, float, std::span<JointJet<float>>);
+extern template void lift_soles<double>(const StandingBody<double>&, double, std::span<JointJet<double>>);
 /// @endcond
 
 }  // namespace sinew
