@@ -345,21 +345,5 @@ TEST(Impact, FiguresCaughtInEachOtherComeFreeAndFall) {
   EXPECT_LT(highest, height - 0.3f);
 }
 
-TEST(Impact, WhatIsHeavyPressesNothingLightIntoTheFloor) {
-  for (const double hz : {15.0, 30.0, 60.0, 120.0, 240.0}) {
-    Props<float> scene;
-    const int light = scene.add(ball(0.1, 1, {0, 0, 0.1}));
-    PropSettings crate = ball(0.5, 300, {0, 0, 2.7});
-    crate.shape = Shape::kBox;
-    scene.add(crate);
-    double lowest = 1;
-    for (int n = 0; n < 1.5 * hz; ++n) {
-      ASSERT_TRUE(scene.world.step(float(1 / hz)).ok());
-      lowest = std::min(lowest, scene.height(light));
-    }
-    EXPECT_GT(lowest, 0.1 - 0.01) << hz;
-  }
-}
-
 }  // namespace
 }  // namespace sinew

@@ -9,13 +9,11 @@ namespace sinew {
 namespace {
 
 constexpr int kSweeps = 30;
-constexpr double kFarFrom = 0.03;        ///< m/s, rad/s: what sweeps still change where they have to go on
-constexpr std::ptrdiff_t kTurns = 2000;  ///< of rows in a step, that they go on for
-constexpr double kUsed = 0.98;           ///< of friction: all
-constexpr double kStill = 1e-4;          ///< m/s: what slides as slowly is held by the next step's friction
-constexpr double kLeft = 1e-5;           ///< m/s, rad/s: of what closes
-constexpr int kStrikes = 32;             ///< in a step; more are left to the solve
-constexpr double kTouches = 1e-6;        ///< m of a human
+constexpr double kUsed = 0.98;     ///< of friction: all
+constexpr double kStill = 1e-4;    ///< m/s: what slides as slowly is held by the next step's friction
+constexpr double kLeft = 1e-5;     ///< m/s, rad/s: of what closes
+constexpr int kStrikes = 32;       ///< in a step; more are left to the solve
+constexpr double kTouches = 1e-6;  ///< m of a human
 
 /// Of as many entries as a has.
 template <class T>
@@ -438,7 +436,6 @@ template <class T>
 void EndVelocities<T>::begin_pressing() {
   disturbed_.assign(parts_.size(), 0);
   std::fill(done_.begin(), done_.end(), T(0));
-  turns_left_ = kTurns;
   for (Row& row : pressed_)
     for (int n = 0; n < row.sides(); ++n) row.given += dot<T>(side(row, n), rates(row.tree[n]));
 }
@@ -478,50 +475,20 @@ T EndVelocities<T>::press_row(Row& row) {
   return most;
 }
 
-/// One turn of every row that acts: by how much speeds changed at most, m/s or rad/s of a human.
-template <class T>
-template <class Acts>
-T EndVelocities<T>::sweep(const Acts& acts) {
-  T most = T(0);
-  for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips)
-    if (acts(pressed_[at])) most = std::max(most, press_row(pressed_[at]));
-  return most;
-}
-
-/// Where sweeps have not come to an end they go on, each also along the way of those before, as far as the
-/// gradients say: a ton on a ball of a kilogram takes thousands without. Source: Silcowitz et al., "A
-/// nonsmooth nonlinear conjugate gradient method for interactive contact force problems", 2010.
-template <class T>
-template <class Acts>
-void EndVelocities<T>::sweep_on(const Acts& acts) {
-  for (Row& row : pressed_) row.way = T(0);
-  T before = T(0);
-  while (turns_left_ > 0) {
-    turns_left_ -= std::ssize(pressed_);
-    for (Row& row : pressed_) row.last = row.impulse;
-    if (sweep(acts) < T(kLeft)) break;
-    T size = T(0);  // of the gradient, J
-    for (const Row& row : pressed_)
-      size += row.mobility * (row.impulse - row.last) * (row.impulse - row.last);
-    const T share = turns_left_ > 0 && size < before ? size / before : T(0);
-    for (Row& row : pressed_) {
-      const T further = share * row.way;
-      row.way = row.impulse - row.last + further;
-      if (further != T(0)) push(row, further);
-    }
-    before = size;
-  }
-}
-
 template <class T>
 void EndVelocities<T>::press() {
   if (pressed_.empty()) return;
   begin_pressing();
-  for (int n = 0; n < kSweeps; ++n)
-    if (sweep([](const Row&) { return true; }) < T(kLeft)) break;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    T most = T(0);
+    for (std::size_t at = 0; at < pressed_.size(); at += 1 + pressed_[at].grips)
+      most = std::max(most, press_row(pressed_[at]));
+    if (most < T(kLeft)) break;
+  }
   spread();
 }
 
+/// The unknowns' rates as those of joint offsets: the other way round than read_near().
 template <class T>
 void EndVelocities<T>::add_striking(const Contact<T>& c, T drift, const Bounce<T>& bounce) {
   const std::size_t at = pressed_.size();
@@ -611,10 +578,11 @@ bool EndVelocities<T>::strike(T h, T slow) {
     for (Row& row : pressed_) row.impulse = T(0);
     for_each([&](Row& row) { choose_floor(row, slow, now / h); });
     std::copy_n(done_.begin(), unknowns, before_.begin());
-    const auto acts = [](const Row& row) { return row.acts; };
-    T most = T(1);
-    for (int k = 0; k < kSweeps && !(most < T(kLeft)); ++k) most = sweep(acts);
-    if (most > T(kFarFrom)) sweep_on(acts);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      T most = T(0);
+      for_each([&](Row& row) { most = row.acts ? std::max(most, press_row(row)) : most; });
+      if (most < T(kLeft)) break;
+    }
     for (Row& row : pressed_) row.struck += row.impulse;
     for (int u = 0; u < unknowns; ++u) late_[u] += now / h * (done_[u] - before_[u]);
   }

@@ -128,7 +128,6 @@ class EndVelocities {
     T mobility = T(0);  ///< 1/kg
     T impulse = T(0);   ///< N·s, N·m·s
     T struck = T(0);    ///< the same of all strikes
-    T last = T(0), way = T(0);    ///< the same before a sweep, and how it goes on: see sweep_on()
     T least = T(0), most = T(0);  ///< of it
     T gap = T(0), drift = T(0);   ///< m, m/s or rad, rad/s; see add_striking()
     T size = T(1);                ///< m or rad, by a human's
@@ -152,10 +151,6 @@ class EndVelocities {
   T opening(Row& row);
   void begin_pressing();
   T press_row(Row& row);
-  template <class Acts>
-  T sweep(const Acts& acts);
-  template <class Acts>
-  void sweep_on(const Acts& acts);
   bool closes(const Row& row, T opens, T slow) const;
   T wait_for_strike(T left, T slow);
   void choose_floor(Row& row, T slow, T share);
@@ -177,7 +172,6 @@ class EndVelocities {
   std::vector<T> rates_, near_, projection_;
   std::vector<Twist<T>> driven_, twist_;  ///< [body] of the joint alone; of the body
   std::vector<Row> pressed_;
-  std::ptrdiff_t turns_left_ = 0;  ///< of rows, see sweep_on()
   std::vector<T> rows_;  ///< what a unit of each unknown's rate makes of a row's speed: J; once it acts L⁻ᵀJᵀ
   std::vector<T> row_;                 ///< [unknown] of one side
   std::vector<std::uint8_t> on_path_;  ///< [body] the same
