@@ -95,16 +95,43 @@ TEST(UnevenGround, WhoFellOnAGentleSlopeStandsOnIt) {
   }
 }
 
-/// 0.4 m at 120 Hz topple who has no behaviour, too.
-TEST(UnevenGround, WhoIsDroppedALittleLandsOnItsFeet) {
+/// His legs give in, and straighten so slowly that nothing throws him up.
+TEST(UnevenGround, WhoIsDroppedLandsOnHisFeet) {
   for (const double hz : {30.0, 60.0, 120.0, 240.0})
-    for (const float height : {0.2f, 0.3f}) {
+    for (float height = 0.1f; height < 0.51f; height += 0.05f) {
       Uneven body("stand", hz);
       body.lift(height);
-      body.run(5);
+      double highest = 0;
+      body.run(1);
+      for (int n = 0; n < 4 * hz; ++n) {
+        body.step();
+        highest = std::max(highest, double(body.character().model()[0].translation.z()));
+      }
       EXPECT_FALSE(body.fell) << height << " m at " << hz;
+      EXPECT_EQ(body.behaviour.state(), BehaviourState::kClip) << height << " m at " << hz;
       EXPECT_GT(double(body.character().model()[0].translation.z()), 0.85) << height << " m at " << hz;
+      EXPECT_LT(highest, 0.97) << height << " m at " << hz;
     }
+}
+
+/// Nothing but a rope at his chest bears him: that is no fall.
+TEST(UnevenGround, WhoHangsDoesAsHisAnimation) {
+  for (const double hz : {30.0, 60.0, 120.0}) {
+    Uneven body("stand", hz);
+    body.lift(1);
+    LoopSettings rope;
+    rope.a = {AnchorKind::kCharacter, body.hero, body.asset.skeleton.find(Role::kChest), {}};
+    rope.b.frame.translation =
+        body.character().model()[static_cast<std::size_t>(rope.a.joint)].translation.cast<double>();
+    Status status;
+    (void)body.world.add_loop(rope, status);
+    ASSERT_TRUE(status) << status.reason;
+    for (int n = 0; n < 3 * hz; ++n) {
+      body.step();
+      ASSERT_EQ(body.behaviour.state(), BehaviourState::kClip) << body.time() << " s at " << hz;
+    }
+    EXPECT_GT(body.root_height(), 0.9) << hz;
+  }
 }
 
 /// While it lies its clip walks on, with feet that are lifted, and toes that are bent.

@@ -22,9 +22,11 @@ constexpr double kStraight = 0.985;                      ///< of a leg's length,
 constexpr double kStill = 0.05;                          ///< m/s
 constexpr double kSame = 0.01;                           ///< m
 constexpr double kFallen = 0.6;                          ///< of the root's height
+constexpr double kSquats = 0.4;                          ///< likewise, while it lands
 constexpr double kUpright = 0.77;                        ///< cos 40°: who tilts further from the clip falls
 constexpr double kOffPlan = 0.1, kOffPlanSpeed = 1;      ///< m, m/s: a plan that fails is made again
-constexpr double kDrop = 3, kRise = 12;  ///< m/s², of the body: feet that bear nothing can't press
+constexpr double kDrop = 3, kRise = 12;        ///< m/s², of the body: feet that bear nothing can't press
+constexpr double kLands = 0.2, kGivesIn = 25;  ///< s, m/s²: likewise of legs that take up a fall
 constexpr double kMisplaced = 0.03, kMisturned = 0.2;  ///< m, rad: a foot that is put back
 constexpr double kShifted = 0.15;                      ///< m/s, from which the other foot bears all
 constexpr double kWalks = 0.25;                        ///< m/s, of an animation that does not stand
@@ -99,6 +101,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
       report_.state != BehaviourState::kClip || fades_ || fade_.running() || sets_off_ > 0 || waits_;
   if (!acts && !last_step_.root_unknown) {
     measured_ = asked_ = false;
+    airborne_ = rises_ = 0;
     if (!last_step_.ground.moves()) {
       ground_before_ = {};
       return {};
@@ -109,6 +112,7 @@ Status Behaviour<T>::update(Character<T> character, std::span<JointJet<T>> jets,
   report_.time += double(h);
   see_clip(character, jets);
   see_ground(character, double(h));
+  see_flight(double(h));
   if (acts || last_step_.root_unknown) act(character, jets, h);
   ride(character, jets[0], double(h));
   return {};
@@ -200,7 +204,9 @@ void Behaviour<T>::act(Character<T>& character, std::span<JointJet<T>> jets, T h
     std::copy(last_.begin(), last_.end(), jets.begin());
     return;
   }
-  if (walks_)
+  if (in_flight_)
+    write_flight(jets);
+  else if (walks_)
     write_walk(jets, double(h));
   else if (report_.state == BehaviourState::kBalance || report_.state == BehaviourState::kStep)
     write_stance(jets, double(h));
@@ -222,6 +228,10 @@ void Behaviour<T>::fade(std::span<JointJet<T>> jets, T h) {
     root.translation += h * root.velocity + h * h / 2 * root.acceleration;
     root.velocity += h * root.acceleration;
     if (!fades_root_) root = jets[0];
+    if (lands_)  // legs give in at once
+      for (const FootLeg<T>& leg : body_.legs)
+        for (const int joint : {leg.upper, leg.middle, leg.foot})
+          last_[static_cast<std::size_t>(joint)] = jets[static_cast<std::size_t>(joint)];
     const double time = sets_off_ > 0 ? sets_off_ : kFade * std::sqrt(unit_);
     (void)begin_inertial<T>(last_, jets, T(time), fade_);
   } else {
@@ -277,6 +287,7 @@ bool Behaviour<T>::is_pushed(const MeasuredBody& is, double h) {
     place = from_above(asked.place);
     velocity = from_above(asked.velocity);
   }
+  if (flies()) return true;
   const Vec2 off = from_above(is.mass.place) - place, faster = from_above(is.mass.velocity) - velocity;
   return off.norm() > kNoticed * unit_ || faster.norm() > kNoticedSpeed * std::sqrt(unit_);
 }
@@ -300,16 +311,21 @@ void Behaviour<T>::watch(Character<T>& character, std::span<const JointJet<T>> j
   }
   const Quat<double> tilt = is.root.rotation * jets[0].rotation.template cast<double>().conjugate();
   const double high = is.root.translation.z() - level_;
-  if (high < kFallen * body_.height || (tilt * Vec3<double>::UnitZ()).z() < kUpright)
+  if ((high < (lands_ ? kSquats : kFallen) * body_.height && !flies()) ||
+      (tilt * Vec3<double>::UnitZ()).z() < kUpright)
     return fall(character, BehaviourReason::kTilted, high);
   if (report_.state == BehaviourState::kPassive) {
     if (!last_step_.root_unknown) return give_up(character);
     if (report_.time < settings_.reaction) return;
     if (report_.time - h < settings_.reaction)  // the first time
       (void)character.set_help(0, weight_ * unit_ * settings_.help_torque);
+    if (flies()) return fly(is, jets, h);
     if (clip_walks()) return begin_walk(character, world, jets, h);
     begin_plan(is, jets);
   }
+  if (flies()) return fly(is, jets, h);
+  if (in_flight_) land(is, jets);
+  if (lands_) give_in(is, jets[0]);
   if (walks_ && clip_velocity_.norm() < kStops * pace_) stop_walking(is, jets);
   if (walks_) return walk_on(character, world, h);
   if (report_.state == BehaviourState::kStep && swing_time_ >= law_.step_time) end_step(is, jets);
@@ -329,6 +345,7 @@ void Behaviour<T>::keep_balance(Character<T>& character, const MeasuredBody& is)
   const Vec2 capture = plan_.capture_point(frequency_);
   const double speed = plan_.velocity.norm() / std::sqrt(unit_);
   report_.capture_depth = support_.depth(capture);
+  if (lands_ && height_.rate < -kStill * std::sqrt(unit_)) return;  // both legs are needed
   if (report_.capture_depth < 0) {
     home_ = -1;
     const int left = settings_.most_steps - report_.steps;
@@ -402,6 +419,7 @@ void Behaviour<T>::choose_support(const MeasuredBody& is) {
 template <class T>
 void Behaviour<T>::begin_plan(const MeasuredBody& is, std::span<const JointJet<T>> jets) {
   report_.state = BehaviourState::kBalance;
+  in_flight_ = lands_ = false;
   sets_off_ = 0;
   swing_ = home_ = -1;
   plan_ = {from_above(is.mass.place), from_above(is.mass.velocity)};
@@ -564,18 +582,21 @@ void Behaviour<T>::move_height(const std::array<Vec3<double>, 2>& ankle, const V
     const double up = std::sqrt(std::max(length * length - across.squaredNorm(), 0.04 * length * length));
     lower = std::min(lower, ankle[side].z() + up - hip.z());
   }
-  const double time = kHeight * std::sqrt(unit_);
-  height_.acceleration =
-      std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -kDrop, kRise);
+  const double time = (lands_ ? kLands : kHeight) * std::sqrt(unit_);
+  height_.acceleration = std::clamp((lower - height_.value) / (time * time) - 2 / time * height_.rate, -kDrop,
+                                    lands_ ? kGivesIn : kRise);
+  if (lands_) height_.acceleration += yields_;
   height_.value += h * height_.rate + h * h / 2 * height_.acceleration;
   height_.rate += h * height_.acceleration;
+  lands_ &=
+      std::abs(lower - height_.value) > kSame * unit_ || std::abs(height_.rate) > kStill * std::sqrt(unit_);
 }
 
 template <class T>
 bool Behaviour<T>::may_finish(const MeasuredBody& is) const {
   // Who has just got up need not stand as well as it would like to.
   const double patience = risen_ ? 1 + std::max(report_.time - kPatient, 0.0) / kPatient : 1;
-  return swing_ < 0 && !fade_.running() &&
+  return swing_ < 0 && !lands_ && !fade_.running() &&
          from_above(is.mass.velocity).norm() < patience * kStill / 2 * std::sqrt(unit_) &&
          (from_above(is.mass.place) - goal()).norm() < patience * kSame / 2 * unit_ &&
          (turn_ - Vec3<double>(0, 0, to_feet().yaw)).norm() < patience * 0.02;

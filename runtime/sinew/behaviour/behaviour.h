@@ -194,6 +194,12 @@ class Behaviour {
   int misplaced() const;
   Displacement to_feet() const;
   void end_step(const MeasuredBody& is, std::span<const JointJet<T>> jets);
+  void see_flight(double h);
+  bool flies() const;
+  void fly(const MeasuredBody& is, std::span<const JointJet<T>> jets, double h);
+  void write_flight(std::span<JointJet<T>> jets);
+  void land(const MeasuredBody& is, std::span<const JointJet<T>> jets);
+  void give_in(const MeasuredBody& is, const JointJet<T>& root);
   void move_plan(double h);
   void move_trunk(double h);
   void move_swing(double h);
@@ -273,6 +279,11 @@ class Behaviour {
   Vec3<double> turn_ = Vec3<double>::Zero(), turn_rate_ = Vec3<double>::Zero(),
                turn_acceleration_ = Vec3<double>::Zero(), spin_ = Vec3<double>::Zero();
   TimeJet<double> height_{0.0};
+  double rises_ = 0;        ///< m/s, upwards, after the last step
+  double airborne_ = 0;     ///< s, in which nothing has borne it
+  bool in_flight_ = false;  ///< its plan is that of a body in the air
+  double yields_ = 0;       ///< m/s², of its height: as far as its legs give in further than they should
+  bool lands_ = false;      ///< its legs take up what it fell
   Vec3<double> forward_ = Vec3<double>::UnitX();  ///< of the body, root axes
   Quat<double> root_before_ = Quat<double>::Identity();
   bool measured_ = false;  ///< `root_before_` is that of the last frame

@@ -130,6 +130,11 @@ void Behaviour<T>::visit(ByteStream& stream) {
   stream.vector("angular acceleration of the trunk", turn_acceleration_);
   stream.vector("angular velocity of the root", spin_);
   visit_jet("height", height_, stream);
+  stream.value("speed upwards", rises_);
+  stream.value("time in the air", airborne_);
+  stream.value("yields", yields_);
+  stream.flag("is in the air", in_flight_);
+  stream.flag("lands", lands_);
   stream.rotation("root a step before", root_before_);
   stream.value("level of the ground", level_);
   stream.flag("something has borne it", leveled_);
