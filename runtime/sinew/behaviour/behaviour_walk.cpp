@@ -19,6 +19,7 @@ constexpr double kChanges = 0.7;   ///< of the standing foot's speed, at which t
 constexpr double kStepTime = 0.5;  ///< s
 constexpr double kSoonest = 0.05;  ///< s, in which a foot can land
 constexpr double kShares = 3, kQuickest = 0.04;  ///< of that time, s: in which it goes elsewhere
+constexpr double kClears = 0.04, kLifts = 0.04;  ///< m and s: by and in which it is lifted, not to stumble
 constexpr double kYields = 0.08;                 ///< s, in which a foot is asked to be where it came to stand
 constexpr double kObserved = 0.4;                ///< s, in which what it plans comes to what it does
 constexpr double kPresses = 0.1;                 ///< m, that its feet press elsewhere than its animation's
@@ -123,13 +124,16 @@ void Behaviour<T>::walk_on(Character<T>& character, const MeasuredBody& world, d
 }
 
 /// The foot in the air lands by as much elsewhere as the body will be off when it is down, if it can reach
-/// there. The one that stands is asked to be where it is.
+/// there, and is lifted on its way: a body that is lower than its animation would stumble over the ground.
+/// The one that stands is asked to be where it is.
 template <class T>
 void Behaviour<T>::move_offset(double h) {
   const auto stands = static_cast<std::size_t>(stance_), swings = 1 - stands;
   const MovingVector<T>&stance = clip_foot_motion_[stands].translation,
         &swing = clip_foot_motion_[swings].translation;
+  const double lifts = kLifts * std::sqrt(unit_);
   for (int a = 0; a < 2; ++a) approach(foot_offset_[stands][a], 0, kYields * std::sqrt(unit_), h);
+  approach(foot_offset_[stands][2], 0, lifts, h);
   const double walks = std::max(clip_velocity_.norm(), 1e-3), step_time = kStepTime * std::sqrt(unit_);
   const Vec2 ahead = clip_velocity_ / walks;
   const Vec2 way = from_above(Vec3<double>((value_of(swing) - value_of(stance)).template cast<double>())),
@@ -137,10 +141,12 @@ void Behaviour<T>::move_offset(double h) {
   const double forward = way.dot(ahead), speed = rate.dot(ahead);
   MovingVector<double>& offset = foot_offset_[swings];
   if (!(speed > walks)) {  // it still stands, or again
+    approach(offset[2], 0, lifts, h);
     for (int a = 0; a < 2; ++a) offset[a] = TimeJet<double>(offset[a].value);
     return;
   }
   const double left = std::clamp((walks * step_time - forward) / speed, kSoonest, step_time);
+  approach(offset[2], kClears * unit_, lifts, h);
   const Vec2 off = portable::exp(frequency_ * left) * error_.capture_point(frequency_);
   const Vec2 lands = clip_ankle_now(stands, 0) + way + (walks * step_time - forward) * ahead;
   Feet feet{{}, portable::atan2(ahead.y(), ahead.x())};
