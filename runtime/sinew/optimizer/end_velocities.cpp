@@ -452,14 +452,13 @@ T EndVelocities<T>::press_row(Row& row) {
     push(row, change);
     most = std::max(most, std::abs(change * row.mobility) / row.unit);
   }
-  if (row.grips < 2) return most;
-  const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
+  const T grip = row.friction * row.impulse + row.cone;
+  if (row.grips < 2 || !(grip > T(0))) return most;
   Row* const rubs = &row + 1;
-  const T grip = row.friction * row.impulse + row.cone, used = length(rubs[0].impulse, rubs[1].impulse);
-  if (!(grip > T(0)) && !(used > T(0))) return most;  // what nothing presses does not rub
   const T slides[2] = {opening(rubs[0]), opening(rubs[1])};
   // Already as much as it can be, and against the motion.
-  const T speed = length(slides[0], slides[1]),
+  const auto length = [](T x, T y) { return std::sqrt(x * x + y * y); };
+  const T used = length(rubs[0].impulse, rubs[1].impulse), speed = length(slides[0], slides[1]),
           against = -(slides[0] * rubs[0].impulse + slides[1] * rubs[1].impulse);
   if (speed < T(kStill) * row.unit && used <= grip) return most;
   const bool all = used > T(kUsed) * grip && !(T(kUsed) * used > grip);
