@@ -5,8 +5,9 @@
 #include <iterator>
 
 #include "c/scene.h"
-#include "sinew/character/world.h"
+#include "sinew/character/physics_values.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_physics.h"
 #include "sinew/graph/graph_step.h"
 #include "sinew/io/asset.h"
 
@@ -77,10 +78,7 @@ Shown run_in_cpp() {
   std::vector<std::byte> snapshot(world.snapshot_capacity());
   Shown shown;
   const auto play = [&](float h) {
-    for (std::size_t j = 0; j < body.size(); ++j) {
-      body[j].rotation = hero.local()[j].rotation;
-      body[j].translation = hero.local()[j].translation;
-    }
+    physical_motion<float>(hero, body);
     EventSink events{hits};
     GraphStepJob<float> job{&graph, state, h, &scratch, jets, &events};
     job.physical = body;
@@ -105,6 +103,7 @@ Shown run_in_cpp() {
     }
     play(kStep);
     EXPECT_TRUE(world.step(kStep));
+    EXPECT_TRUE(set_physics<float>(graph, state, physics_values<float>(hero)));
     shown.add(hero.model().data(), hero.model().size());
     if (frame == kSavedAt) {
       snapshot.resize(world.save(snapshot));

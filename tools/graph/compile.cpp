@@ -123,6 +123,7 @@ class Compiler {
       GraphParameter p;
       p.name = name;
       parameter(place, p);
+      physics(place, p);
       graph_.parameters.push_back(p);
       parameter_lines_.push_back(place.line());
     }
@@ -161,6 +162,16 @@ class Compiler {
         p.buffer = place.at("buffer").number(0, kLongest);
       }
     }
+  }
+
+  /// Names that begin like those of physical values have to be such.
+  static void physics(const Place& place, const GraphParameter& p) {
+    if (p.name.compare(0, 8, "physics.") != 0) return;
+    std::size_t mask = 0;
+    if (physics_value(p.name, mask) < 0)
+      place.fail("no physical value is called '" + p.name + "', known are: " +
+                 joined({std::begin(kPhysicsNames), std::end(kPhysicsNames)}) + ", physics.load.MASK");
+    if (p.type != ParameterType::kFloat) place.fail("'" + p.name + "' is a number, so a float parameter");
   }
 
   GraphValue value(const Place& place, double least, double most) {
@@ -606,6 +617,12 @@ std::string bind_fault(const Compiled& compiled, const std::string& path, const 
       for (const std::string& name : {layer.mask, layer.reference})
         if (!name.empty() && asset.find_mask(name) < 0 && asset.find_clip(name) < 0)
           what += " ('" + name + "')";
+  }
+  for (const GraphParameter& p : compiled.graph.parameters) {
+    std::size_t mask = 0;
+    if (status.index < 0 && physics_value(p.name, mask) >= 0 && mask > 0 &&
+        asset.find_mask(p.name.substr(mask)) < 0)
+      what += " ('" + p.name + "')";
   }
   return where + ": " + what;
 }

@@ -262,6 +262,20 @@ Status Graph::bind_node(int index, const Asset& asset) {
   return {};
 }
 
+Status Graph::bind_physics(const Asset& asset) {
+  for (std::size_t k = 0; k < definition_.parameters.size(); ++k) {
+    const GraphParameter& p = definition_.parameters[k];
+    std::size_t at = 0;
+    const int value = p.type == ParameterType::kFloat ? physics_value(p.name, at) : -1;
+    if (value < 0) continue;  // the game's own
+    const int mask = at > 0 ? asset.find_mask(p.name.substr(at)) : -1;
+    if (at > 0 && mask < 0)
+      return bad("the asset has no mask of the name that a load's parameter ends with", -1);
+    physics_.push_back({static_cast<int>(k), value, mask});
+  }
+  return {};
+}
+
 Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph& out) {
   if (Status status = validate(definition); !status) return status;
   if (asset.skeleton.joints.empty()) return bad("the asset has no joints", -1);
@@ -277,6 +291,7 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
   for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
   graph.slots_.assign(definition.nodes.size(), -1);
   if (Status status = graph.bind_mirrors(asset); !status) return bad(status.reason, -1);
+  if (Status status = graph.bind_physics(asset); !status) return status;
   for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k)
     if (Status status = graph.bind_node(k, asset); !status) return status;
   graph.lay_out();

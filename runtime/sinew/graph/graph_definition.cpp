@@ -252,6 +252,17 @@ int GraphDefinition::find_parameter(const std::string& wanted) const {
   return found == parameters.end() ? -1 : static_cast<int>(found - parameters.begin());
 }
 
+int physics_value(const std::string& name, std::size_t& mask) {
+  mask = 0;
+  const std::string of_mask = std::string(kPhysicsNames[kPhysicsLoad]) + ".";
+  if (name.size() > of_mask.size() && name.compare(0, of_mask.size(), of_mask) == 0) {
+    mask = of_mask.size();
+    return kPhysicsLoad;
+  }
+  const auto found = std::find(std::begin(kPhysicsNames), std::end(kPhysicsNames), name);
+  return found == std::end(kPhysicsNames) ? -1 : static_cast<int>(found - std::begin(kPhysicsNames));
+}
+
 bool has_empty_state(const GraphDefinition& graph, int node) {
   const std::vector<GraphState>& states = graph.nodes[std::size_t(node)].states;
   return std::any_of(states.begin(), states.end(), [&](const GraphState& state) {
