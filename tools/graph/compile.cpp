@@ -530,12 +530,16 @@ class Compiler {
       if (step.code == ConditionCode::kParameter) used_[step.index] = true;
     return steps;
   }
-  /// Refuses what an earlier transition from the same state always forestalls.
-  static void can_fire(const Place& place, const GraphNode& machine, const GraphTransition& t) {
+  /// Refuses what no values let through, and what an earlier transition from the same state always
+  /// forestalls.
+  void can_fire(const Place& place, const GraphNode& machine, const GraphTransition& t) const {
     const bool conduit = t.from >= 0 && machine.states[std::size_t(t.from)].node < 0;
     if (conduit && t.to == t.from) place.fail("a conduit leads to itself");
     if (t.condition.size() == 1 && t.condition[0].code == ConditionCode::kNumber && t.condition[0].value == 0)
       place.fail("transition can never fire: its condition is false");
+    if (!can_be_true(t.condition, graph_))
+      place.fail("transition to '" + machine.states[std::size_t(t.to)].name +
+                 "' can never fire: no values make \"" + place.at("if").text() + "\" true");
     for (const GraphTransition& earlier : machine.transitions) {
       if (!earlier.condition.empty() || machine.states[std::size_t(earlier.to)].node < 0) continue;
       if (earlier.from == t.from ||
