@@ -68,6 +68,12 @@ TEST(GraphCompile, FaultsNameFileLineAndCulprit) {
       {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"to": "b"}]}})", "'from' is missing"},
       {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "if": "false"}]}})",
        "can never fire: its condition is false"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "kind": "dead", "profile": "m"}]}})",
+       "only inertial transitions without a budget have a profile"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "share": 0.5}]}})",
+       "a share is of the joints of a profile"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "profile": "m", "share": 0}]}})",
+       "must be from 0.1 to 1.0"},
       {"{\"parameters\": {\"s\": 0},\n\"graph\": {\"states\": {\"a\": \"x\", \"b\": \"y\"}, \"transitions\": "
        "[\n"
        "{\"from\": \"a\", \"to\": \"b\", \"if\": \"s > 2 && s < 1\"}]}}",
@@ -238,6 +244,8 @@ TEST(GraphCompile, WhatIsProbablyAMistakeIsAWarning) {
 TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
   const Asset asset = fixtures::graph_asset();
   const Wrong cases[] = {
+      {R"({"graph": {"states": {"a": "idle", "b": "walk"}, "transitions": [{"from": "a", "to": "b", "profile": "tail"}]}})",
+       "no mask of the name of a transition's profile ('tail')"},
       {"{\n\"graph\": \"wolk\"}", "test:2: graph: the asset has no clip of this name ('wolk')"},
       {R"({"graph": {"clip": "idle", "sync": "feet"}})",
        "a synchronised clip has no markers of its phase ('idle')"},

@@ -472,7 +472,8 @@ class Compiler {
     place.fail("no state '" + name + "', known are: " + joined(names));
   }
   void transition(const Place& place, GraphNode& machine) {
-    place.object({"from", "to", "if", "kind", "duration", "budget", "interrupt", "entry"});
+    place.object(
+        {"from", "to", "if", "kind", "duration", "budget", "interrupt", "entry", "profile", "share"});
     GraphTransition t;
     t.to = state_of(place.at("to"), machine);
     if (place.has("if")) t.condition = condition(place.at("if"));
@@ -490,6 +491,14 @@ class Compiler {
     }
     if (place.has("duration")) t.duration = place.at("duration").number(0, kLongest);
     if (place.has("entry")) t.entry = place.at("entry").number(0, kLongest);
+    if (place.has("profile")) t.profile = place.at("profile").text();
+    if (place.has("share")) {
+      if (t.profile.empty())
+        place.at("share").fail("a share is of the joints of a profile, which is missing");
+      t.share = place.at("share").number(0.1, 1);
+    }
+    if (!t.profile.empty() && (t.budget > 0 || t.kind != TransitionKind::kInertial))
+      place.at("profile").fail("only inertial transitions without a budget have a profile");
     if (place.has("interrupt")) interruption(place.at("interrupt"), machine, t);
     const Place from = place.at("from");
     const std::size_t count = from.json().is_array() ? from.size() : 1;
@@ -617,6 +626,8 @@ std::string bind_fault(const Compiled& compiled, const std::string& path, const 
     if (!node.clip.empty()) what += " ('" + node.clip + "')";
     for (const std::string& joint : node.look.joints)
       if (asset.skeleton.find(joint.c_str()) < 0) what += " ('" + joint + "')";
+    for (const GraphTransition& t : node.transitions)
+      if (!t.profile.empty() && asset.find_mask(t.profile) < 0) what += " ('" + t.profile + "')";
     for (const GraphLayer& layer : node.layers)
       for (const std::string& name : {layer.mask, layer.reference})
         if (!name.empty() && asset.find_mask(name) < 0 && asset.find_clip(name) < 0)

@@ -186,7 +186,7 @@ Status Graph::bind_blend(int index) {
   return {};
 }
 
-void Graph::bind_machine(int index) {
+Status Graph::bind_machine(int index, const Asset& asset) {
   const GraphNode& in = node(index);
   slots_[std::size_t(index)] = static_cast<int>(machines_.size());
   BoundMachine machine;
@@ -195,7 +195,13 @@ void Graph::bind_machine(int index) {
   if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
     machine.offset = static_cast<int>(
         std::count_if(machines_.begin(), machines_.end(), [](const auto& m) { return m.offset >= 0; }));
+  for (const GraphTransition& t : in.transitions) {
+    machine.profiles.push_back(t.profile.empty() ? -1 : asset.find_mask(t.profile));
+    if (!t.profile.empty() && machine.profiles.back() < 0)
+      return bad("the asset has no mask of the name of a transition's profile", index);
+  }
   machines_.push_back(machine);
+  return {};
 }
 
 Status Graph::bind_feet(int index, const Asset& asset) {
@@ -247,8 +253,7 @@ Status Graph::bind_node(int index, const Asset& asset) {
     case NodeType::kLayers:
       return bind_layers(index, asset);
     case NodeType::kMachine:
-      bind_machine(index);
-      return {};
+      return bind_machine(index, asset);
     case NodeType::kFeet:
       return bind_feet(index, asset);
     case NodeType::kLook:

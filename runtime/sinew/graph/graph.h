@@ -114,6 +114,7 @@ class Graph {
     int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind;
                          ///< −1: none does
     bool fades = false;  ///< has an empty state
+    std::vector<int> profiles;  ///< [transition] mask of its profile, of the asset; −1: none
   };
   /// The graph's kFeet node.
   struct BoundFeet {
@@ -194,7 +195,7 @@ class Graph {
   Status bind_clip(int node, const Asset& asset);
   Status bind_layers(int node, const Asset& asset);
   Status bind_blend(int node);
-  void bind_machine(int node);
+  Status bind_machine(int node, const Asset& asset);
   Status bind_feet(int node, const Asset& asset);
   Status bind_look(int node, const Asset& asset);
   Status bind_node(int node, const Asset& asset);

@@ -218,6 +218,10 @@ class Check {
       return bad("transition between states that do not exist", index);
     if (!within(t.duration, 0, kLongest) || !within(t.budget, 0, 1000) || !within(t.entry, 0, kLongest))
       return bad("duration, budget or entry of a transition is negative or absurd", index);
+    if (!within(t.share, 0.1f, 1))
+      return bad("share of a transition's profile is not within 0.1 and 1", index);
+    if (!t.profile.empty() && (t.budget > 0 || t.kind != TransitionKind::kInertial))
+      return bad("only inertial transitions without a budget have a profile", index);
     for (const int state : t.interrupted_by)
       if (state < 0 || state >= states) return bad("transition is interrupted by no state", index);
     return condition(t.condition, index);

@@ -90,6 +90,10 @@ struct GraphTransition {
   Interruption interrupt = Interruption::kAny;  ///< by what, while it runs
   std::vector<int> interrupted_by;              ///< kListed: states
   float entry = 0;                              ///< s, where unsynchronised clips of the new state begin
+  /// Of inertial ones without a budget: a mask of the asset, whose joints are done after `share` of the
+  /// duration (0.1 … 1, by their weights in the mask); "": all take as long. As InertializeJob::profile.
+  std::string profile;
+  float share = 1;  ///< see `profile`
 };
 
 /// One of the things that a machine may do.

@@ -315,6 +315,15 @@ class Pose {
       spare[j] = std::max(T(1e-3), T(t.budget) * job_.spare_acceleration[j]);
     m.duration = std::min(m.duration, inertial_duration<T>(state, spare, T(kLeastFade), m.duration));
   }
+  /// [joint] which part of the duration it takes; empty: all of it.
+  std::span<const T> profile_of(const Graph::BoundMachine& machine, int transition) {
+    const int mask = machine.profiles[std::size_t(transition)];
+    if (mask < 0) return {};
+    const T share = T(graph_.node(machine.node).transitions[std::size_t(transition)].share);
+    for (std::size_t j = 0; j < s_.spare.size(); ++j)
+      s_.spare[j] = T(1) - (T(1) - share) * s_.masks[std::size_t(mask)][j];
+    return s_.spare;
+  }
   Status offset(const GraphTask& task, std::size_t joints) {
     const GraphMachineState<T>& m = block_.machine(task.index);
     const Graph::BoundMachine& bound = graph_.machines()[std::size_t(task.index)];
@@ -333,7 +342,8 @@ class Pose {
       out.travel.velocity[k] += x.value;
       out.travel.change[k] += x.rate;
     }
-    return InertializeJob<T>{jets(task.out, joints), &state, {}, jets(task.out, joints)}.Run();
+    const std::span<const T> profile = profile_of(bound, task.layer);
+    return InertializeJob<T>{jets(task.out, joints), &state, profile, jets(task.out, joints)}.Run();
   }
 
   void leave(const GraphTask& task) {
