@@ -23,9 +23,11 @@ void spare_acceleration(const Character<T>& character, std::span<T> out);
 template <class T>
 void carried_inertia(const Character<T>& character, std::span<T> out);
 
+/// @cond
 extern template void carried_inertia<float>(const Character<float>&, std::span<float>);
 extern template void carried_inertia<double>(const Character<double>&, std::span<double>);
 extern template void spare_acceleration<float>(const Character<float>&, std::span<float>);
 extern template void spare_acceleration<double>(const Character<double>&, std::span<double>);
+/// @endcond
 
 }  // namespace sinew

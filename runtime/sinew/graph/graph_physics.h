@@ -15,7 +15,9 @@ namespace sinew {
 template <class T>
 Status set_physics(const Graph& graph, std::span<std::byte> state, const PhysicsValues<T>& values);
 
+/// @cond
 extern template Status set_physics<float>(const Graph&, std::span<std::byte>, const PhysicsValues<float>&);
 extern template Status set_physics<double>(const Graph&, std::span<std::byte>, const PhysicsValues<double>&);
+/// @endcond
 
 }  // namespace sinew

@@ -69,7 +69,7 @@ class GraphReplay {
  public:
   /// What a ray of a frame met.
   struct Ray {
-    GroundHit<T> hit;
+    GroundHit<T> hit;  ///< where `met`
     bool met = false;  ///< it met something
   };
 
