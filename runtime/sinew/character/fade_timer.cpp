@@ -89,8 +89,8 @@ T FadeTimer<T>::duration(const FadeQuestion<T>& question) {
   carried_inertia<T>(character_, inertia_);
   for (std::size_t j = 0; j < spare_.size(); ++j) {
     T least = T(kUnlimited);
-    for (int k = 0; int(j) < s->tree.bodies && k < s->tree.dof_count(int(j)); ++k)
-      least = std::min(least, left_[std::size_t(s->tree.first_dof[int(j)] + k)]);
+    for (int dof = 0; dof < s->tree.dofs; ++dof)
+      if (std::size_t(s->tree.dof_body[dof]) == j) least = std::min(least, left_[dof]);
     const bool limited = least < T(kUnlimited) && inertia_[j] > T(0);
     spare_[j] = limited ? std::max(T(1e-3), question.budget * least / inertia_[j]) : T(kUnlimited);
   }
