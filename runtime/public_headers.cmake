@@ -12,10 +12,11 @@ set(SINEW_PUBLIC_HEADERS
   animation/morph_job.h animation/phase_map.h animation/root_motion.h animation/sampling_job.h animation/skinning_job.h
   animation/smooth_input.h animation/socket.h animation/soft_limits.h
   # graphs
-  graph/graph.h graph/graph_file.h graph/graph_pose.h graph/graph_recorder.h graph/graph_state.h graph/graph_step.h
+  graph/graph.h graph/graph_file.h graph/graph_physics.h graph/graph_pose.h graph/graph_recorder.h graph/graph_state.h graph/graph_step.h
   graph/graph_update.h
   # characters and what surrounds them
-  character/contact_events.h character/debug_draw.h character/queries.h character/recording.h character/sensor.h character/world.h
+  character/contact_events.h character/debug_draw.h character/fade_timer.h character/physics_values.h character/queries.h
+  character/recording.h character/sensor.h character/spare_acceleration.h character/world.h
   behaviour/behaviour.h behaviour/get_up.h behaviour/get_up_clips.h
   crowd/crowd.h crowd/population.h
   # effects by their type

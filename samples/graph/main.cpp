@@ -1,7 +1,7 @@
 // A character that follows a graph: it stands, walks and runs as fast as the stick asks, is pushed while it
 // changes from one to the other, and is taken back to a snapshot of both, graph and world.
 // Usage: graph ASSET.sinew GRAPH.sgraph [SECONDS]
-#include <sinew/character/world.h>
+#include <sinew/character/physics_values.h>
 #include <sinew/graph/graph_file.h>
 #include <sinew/graph/graph_step.h>
 
@@ -73,10 +73,7 @@ int main(int argc, char** argv) {
     }
     if (frame == 200 && world.restore({snapshot.data(), saved})) std::puts("back to 2.33 s");
 
-    for (std::size_t j = 0; j < body.size(); ++j) {  // for states that follow the physical pose
-      body[j].rotation = world.character(hero).local()[j].rotation;
-      body[j].translation = world.character(hero).local()[j].translation;
-    }
+    sinew::physical_motion<float>(world.character(hero), body);  // for states that follow the physical pose
     sinew::EventSink events{hits};
     sinew::GraphStepJob<float> job{&graph, state, frame ? h : 0, &scratch, jets, &events};
     job.physical = body;

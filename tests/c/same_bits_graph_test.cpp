@@ -1,12 +1,14 @@
 // A character that follows a graph through the C interface goes the way of the same one in C++, to the bit.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include "c/scene.h"
-#include "sinew/character/world.h"
+#include "sinew/character/physics_values.h"
 #include "sinew/graph/graph_file.h"
+#include "sinew/graph/graph_physics.h"
 #include "sinew/graph/graph_step.h"
 #include "sinew/io/asset.h"
 
@@ -77,10 +79,7 @@ Shown run_in_cpp() {
   std::vector<std::byte> snapshot(world.snapshot_capacity());
   Shown shown;
   const auto play = [&](float h) {
-    for (std::size_t j = 0; j < body.size(); ++j) {
-      body[j].rotation = hero.local()[j].rotation;
-      body[j].translation = hero.local()[j].translation;
-    }
+    physical_motion<float>(hero, body);
     EventSink events{hits};
     GraphStepJob<float> job{&graph, state, h, &scratch, jets, &events};
     job.physical = body;
@@ -105,6 +104,7 @@ Shown run_in_cpp() {
     }
     play(kStep);
     EXPECT_TRUE(world.step(kStep));
+    EXPECT_TRUE(set_physics<float>(graph, state, physics_values<float>(hero)));
     shown.add(hero.model().data(), hero.model().size());
     if (frame == kSavedAt) {
       snapshot.resize(world.save(snapshot));
@@ -256,6 +256,42 @@ TEST(CInterfaceGraph, WhatItRemembersIsRestoredAndWhatIsDamagedRefused) {
   for (int frame = 0; frame < 30; ++frame) scene.play();
   EXPECT_EQ(scene.where().place[0], once.place[0]);
   EXPECT_EQ(scene.where().velocity[0], once.velocity[0]);
+}
+
+TEST(CInterfaceGraph, TheBodyTellsHowItStandsAndMoves) {
+  for (const bool told : {true, false}) {
+    sinew_graph_settings settings = initialised(sinew_graph_settings_init);
+    EXPECT_EQ(settings.physics, 1);
+    settings.physics = told;
+    const Follower scene(&settings);
+    int face_up = -1;
+    ASSERT_EQ(sinew_graph_find_parameter(scene.graph, "physics.face_up", &face_up), SINEW_OK);
+    scene.begin();
+    for (int k = 0; k < 30; ++k) {
+      scene.play();
+      scene.step();
+    }
+    sinew_physics physics{};
+    EXPECT_EQ(sinew_character_get_physics(scene.hero, &physics), SINEW_INVALID_ARGUMENT) << "no size";
+    physics.size = sizeof physics;
+    ASSERT_EQ(sinew_character_get_physics(scene.hero, &physics), SINEW_OK);
+    EXPECT_LT(physics.tilt, 0.3f);
+    EXPECT_NE(physics.face_up, 0);
+    EXPECT_NEAR(physics.height, 1, 0.1);
+    EXPECT_GT(physics.load, 0);
+    EXPECT_EQ(physics.off_animation, 0);
+    sinew_parameter_value value{};
+    ASSERT_EQ(sinew_character_get_parameter(scene.hero, face_up, &value), SINEW_OK);
+    EXPECT_EQ(value.goal, told ? physics.face_up : 0);
+    std::vector<sinew_jet> body(std::size_t(scene.joints));
+    ASSERT_EQ(sinew_character_get_motion(scene.hero, body.data(), scene.joints), SINEW_OK);
+    EXPECT_EQ(sinew_character_get_motion(scene.hero, body.data(), 3), SINEW_INVALID_ARGUMENT);
+    EXPECT_EQ(sinew_character_get_motion(scene.hero, nullptr, scene.joints), SINEW_INVALID_ARGUMENT);
+    std::vector<float> spare(body.size());
+    ASSERT_EQ(sinew_character_get_spare_acceleration(scene.hero, spare.data(), scene.joints), SINEW_OK);
+    EXPECT_LT(*std::min_element(spare.begin(), spare.end()), 1e6f);
+    EXPECT_EQ(sinew_character_get_spare_acceleration(scene.hero, spare.data(), 0), SINEW_INVALID_ARGUMENT);
+  }
 }
 
 TEST(CInterfaceGraph, NumbersHaveNames) {

@@ -1,5 +1,7 @@
 // Graphs as text and as files: what they say comes back, and what is wrong with them is said in one line.
 #include <array>
+#include <functional>
+#include <random>
 
 #include "graph/attribution.h"
 #include "graph/describe.h"
@@ -66,6 +68,19 @@ TEST(GraphCompile, FaultsNameFileLineAndCulprit) {
       {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"to": "b"}]}})", "'from' is missing"},
       {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "if": "false"}]}})",
        "can never fire: its condition is false"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "kind": "dead", "profile": "m"}]}})",
+       "only inertial transitions without a budget have a profile"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "share": 0.5}]}})",
+       "a share is of the joints of a profile"},
+      {R"({"graph": {"states": {"a": "x", "b": "y"}, "transitions": [{"from": "a", "to": "b", "profile": "m", "share": 0}]}})",
+       "must be from 0.1 to 1.0"},
+      {"{\"parameters\": {\"s\": 0},\n\"graph\": {\"states\": {\"a\": \"x\", \"b\": \"y\"}, \"transitions\": "
+       "[\n"
+       "{\"from\": \"a\", \"to\": \"b\", \"if\": \"s > 2 && s < 1\"}]}}",
+       "test:3: transition to 'b' can never fire: no values make \"s > 2 && s < 1\" true"},
+      {"{\"parameters\": {\"x\": 0,\n\"physics.lod\": 0}, \"graph\": \"walk\"}",
+       "test:2: no physical value is called 'physics.lod', known are: physics.tilt"},
+      {R"({"parameters": {"physics.load": true}, "graph": "walk"})", "'physics.load' is a number"},
       {"{\"graph\": {\"states\": {\"a\": \"x\", \"b\": \"y\", \"c\": \"z\"}, \"transitions\": [\n"
        "{\"from\": \"a\", \"to\": \"b\"},\n{\"from\": \"a\", \"to\": \"c\", \"if\": \"time > 1\"}]}}",
        "test:3: transition can never fire: one before it, to 'b', has no condition"}};
@@ -132,6 +147,88 @@ TEST(GraphCompile, ConditionsSayWhatTheyMean) {
   }
 }
 
+TEST(GraphCompile, ConditionsThatNothingMakesTrueAreFaults) {
+  const char* never[] = {"speed > 2 && speed < 1",
+                         "speed > 1 && speed <= 1",
+                         "speed == 1 && speed != 1",
+                         "speed >= 1 && 1 >= speed && speed != 1",
+                         "speed < speed",
+                         "free && !free",
+                         "!(free || !free)",
+                         "jump && speed > 3 && (speed < 2 || speed == 0)",
+                         "time < 0",
+                         "remaining < -1",
+                         "phase(feet) > 1",
+                         "speed > 2000000",
+                         "!(speed < 1 || speed > 0)",
+                         "2 < 1",
+                         "event(hit) && !event(hit)",
+                         "!(time >= 0)"};
+  for (const char* condition : never) {
+    const std::string error = compile_graph(with_condition(condition), "test").error;
+    EXPECT_NE(error.find("transition to 'b' can never fire: no values make"), std::string::npos)
+        << condition << "\n  said: " << error;
+  }
+  const char* possible[] = {"speed > 1 && speed < 2",
+                            "speed >= 1 && speed <= 1",
+                            "speed > 2 || speed < 1",
+                            "speed < -999999",
+                            "free && !jump",
+                            "time > 100 && remaining > 100",
+                            "phase(feet) >= 0.99 && phase(feet) < 1",
+                            "!(speed > 2 && speed < 1)",
+                            "time <= 0",
+                            "speed < 1 && (speed > 2 || free)"};
+  for (const char* condition : possible)
+    EXPECT_EQ(compile_graph(with_condition(condition), "test").error, "") << condition;
+  const std::string physical = R"({"parameters": {"physics.tilt": 0, "physics.load": 0}, "graph": {"states": {
+    "a": "walk", "b": "run"}, "transitions": [{"from": "a", "to": "b", "if": ")";
+  EXPECT_NE(compile_graph(physical + "physics.tilt > 90\"}]}}", "test").error.find("can never fire"),
+            std::string::npos)
+      << "radians";
+  EXPECT_NE(compile_graph(physical + "physics.load < 0\"}]}}", "test").error.find("can never fire"),
+            std::string::npos);
+  EXPECT_EQ(compile_graph(physical + "physics.tilt > 1.5 && physics.load > 0.9\"}]}}", "test").error, "");
+}
+
+/// Random conditions over few values: what is called impossible is false for all of them, and what has but
+/// thresholds between those values and is false for all of them is called impossible.
+TEST(GraphCompile, ImpossibleIsWhatIsFalseForAllValues) {
+  std::mt19937 random(3);
+  const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+  const std::function<std::string(int)> any = [&](int depth) -> std::string {
+    if (depth == 0 || below(4) == 0) {
+      if (below(3) == 0) return below(2) ? "free" : "!free";
+      static constexpr const char* kOperators[] = {"<", "<=", ">", ">=", "==", "!="};
+      return std::string("speed ") + kOperators[below(6)] + " " + std::to_string(below(4));
+    }
+    const std::string both = "(" + any(depth - 1) + (below(2) ? " && " : " || ") + any(depth - 1) + ")";
+    return below(4) ? both : "!" + both;
+  };
+  const Asset asset = fixtures::graph_asset();
+  int impossible = 0;
+  for (int n = 0; n < 400; ++n) {
+    const std::string condition = any(3);
+    const Compiled compiled = compile_graph(with_condition(condition), "test");
+    bool ever = false;
+    {
+      // Played under "or never", which lets every condition pass the check.
+      Graph graph;
+      fixtures::bind_graph(with_condition("(" + condition + ") || remaining > 1000 && jump"), asset, graph);
+      for (int k = 0; k < 18 && !ever; ++k) {
+        fixtures::GraphPlayer<float> player(graph);
+        player.set("speed", (k / 2 - 1) * 0.5);  // the thresholds, between them, and beyond
+        player.set("free", k % 2);
+        player.update(0);
+        ever = player.in("graph") == "b";
+      }
+    }
+    EXPECT_EQ(compiled.error.empty(), ever) << condition << "\n  said: " << compiled.error;
+    impossible += !ever;
+  }
+  EXPECT_GT(impossible, 10);
+}
+
 TEST(GraphCompile, WhatIsProbablyAMistakeIsAWarning) {
   const Compiled compiled = compile_graph(
       "{\"parameters\": {\"speed\": 0,\n\"unused\": 1},\n\"nodes\": {\"also_unused\": \"walk\"},\n"
@@ -147,6 +244,8 @@ TEST(GraphCompile, WhatIsProbablyAMistakeIsAWarning) {
 TEST(GraphCompile, AnAssetWithoutWhatItPlaysIsRefused) {
   const Asset asset = fixtures::graph_asset();
   const Wrong cases[] = {
+      {R"({"graph": {"states": {"a": "idle", "b": "walk"}, "transitions": [{"from": "a", "to": "b", "profile": "tail"}]}})",
+       "no mask of the name of a transition's profile ('tail')"},
       {"{\n\"graph\": \"wolk\"}", "test:2: graph: the asset has no clip of this name ('wolk')"},
       {R"({"graph": {"clip": "idle", "sync": "feet"}})",
        "a synchronised clip has no markers of its phase ('idle')"},

@@ -142,7 +142,7 @@ inline const char* kSmoothGraph = R"({
       "transitions": [
         {"from": "hit", "to": "other", "if": "rise", "duration": 0.2},
         {"from": "other", "to": "move", "if": "time > 0.8", "duration": 0.3},
-        {"from": "*", "to": "hit", "if": "hit", "duration": 0.3},
+        {"from": "*", "to": "hit", "if": "hit", "duration": 0.3, "profile": "upper", "share": 0.5},
         {"from": ["hit", "rise"], "to": "move", "if": "remaining < 0.2 && !fading", "duration": 0.25},
         {"from": "*", "to": "rise", "if": "rise", "kind": "crossfade", "duration": 0.5},
         {"from": "*", "to": "plane", "if": "dead", "kind": "dead", "duration": 0.4},

@@ -290,6 +290,31 @@ TEST(Graph, TransitionsAreAsFastAsMusclesAllow) {
   EXPECT_NEAR(duration(1e6), 0.08, 1e-6) << "the shortest that there is";
 }
 
+// Joints of a profile's mask are done sooner, by their weights; the others take the whole duration.
+TEST(Graph, JointsOfAProfileAreDoneSooner) {
+  const Asset asset = fixtures::graph_asset();
+  Graph graph;
+  fixtures::bind_graph(R"({"parameters": {"go": false}, "graph": {"states": {"a": "idle", "b": "lean"},
+    "transitions": [{"from": "a", "to": "b", "if": "go", "duration": 0.4, "profile": "upper", "share": 0.5}]}})",
+                       asset, graph);
+  GraphPlayer<double> player(graph);
+  player.step(0);
+  for (int k = 0; k < 10; ++k) player.step(1 / 60.0);
+  player.set("go", 1);
+  std::vector<JointJet<double>> clip(fixtures::kGraphJoints);
+  std::vector<double> done(fixtures::kGraphJoints, 0);
+  for (double t = 0.01; t < 0.45; t += 0.01) {
+    player.step(0.01);
+    ASSERT_TRUE((SamplingJob<double>{&asset.clips[5], t, clip}.Run().ok()));
+    for (std::size_t j = 1; j < clip.size(); ++j)
+      if (angle_between(clip[j].rotation, player.jets[j].rotation) > 1e-9) done[j] = t + 0.01;
+  }
+  for (std::size_t j = 1; j < clip.size(); ++j) {
+    const double weight = double(asset.masks[0].weights[j]) / 255;
+    EXPECT_NEAR(done[j], 0.4 * (1 - 0.5 * weight), 0.0101) << j;
+  }
+}
+
 // A one-shot whose end no transition forestalls comes to rest there, and does not stop dead.
 TEST(Graph, AClipThatEndsSlowsDownBeforeItHolds) {
   const Asset asset = fixtures::graph_asset();

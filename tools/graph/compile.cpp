@@ -123,6 +123,7 @@ class Compiler {
       GraphParameter p;
       p.name = name;
       parameter(place, p);
+      physics(place, p);
       graph_.parameters.push_back(p);
       parameter_lines_.push_back(place.line());
     }
@@ -161,6 +162,16 @@ class Compiler {
         p.buffer = place.at("buffer").number(0, kLongest);
       }
     }
+  }
+
+  /// Names that begin like those of physical values have to be such.
+  static void physics(const Place& place, const GraphParameter& p) {
+    if (p.name.compare(0, 8, "physics.") != 0) return;
+    std::size_t mask = 0;
+    if (physics_value(p.name, mask) < 0)
+      place.fail("no physical value is called '" + p.name + "', known are: " +
+                 joined({std::begin(kPhysicsNames), std::end(kPhysicsNames)}) + ", physics.load.MASK");
+    if (p.type != ParameterType::kFloat) place.fail("'" + p.name + "' is a number, so a float parameter");
   }
 
   GraphValue value(const Place& place, double least, double most) {
@@ -461,7 +472,8 @@ class Compiler {
     place.fail("no state '" + name + "', known are: " + joined(names));
   }
   void transition(const Place& place, GraphNode& machine) {
-    place.object({"from", "to", "if", "kind", "duration", "budget", "interrupt", "entry"});
+    place.object(
+        {"from", "to", "if", "kind", "duration", "budget", "interrupt", "entry", "profile", "share"});
     GraphTransition t;
     t.to = state_of(place.at("to"), machine);
     if (place.has("if")) t.condition = condition(place.at("if"));
@@ -479,6 +491,14 @@ class Compiler {
     }
     if (place.has("duration")) t.duration = place.at("duration").number(0, kLongest);
     if (place.has("entry")) t.entry = place.at("entry").number(0, kLongest);
+    if (place.has("profile")) t.profile = place.at("profile").text();
+    if (place.has("share")) {
+      if (t.profile.empty())
+        place.at("share").fail("a share is of the joints of a profile, which is missing");
+      t.share = place.at("share").number(0.1, 1);
+    }
+    if (!t.profile.empty() && (t.budget > 0 || t.kind != TransitionKind::kInertial))
+      place.at("profile").fail("only inertial transitions without a budget have a profile");
     if (place.has("interrupt")) interruption(place.at("interrupt"), machine, t);
     const Place from = place.at("from");
     const std::size_t count = from.json().is_array() ? from.size() : 1;
@@ -519,12 +539,16 @@ class Compiler {
       if (step.code == ConditionCode::kParameter) used_[step.index] = true;
     return steps;
   }
-  /// Refuses what an earlier transition from the same state always forestalls.
-  static void can_fire(const Place& place, const GraphNode& machine, const GraphTransition& t) {
+  /// Refuses what no values let through, and what an earlier transition from the same state always
+  /// forestalls.
+  void can_fire(const Place& place, const GraphNode& machine, const GraphTransition& t) const {
     const bool conduit = t.from >= 0 && machine.states[std::size_t(t.from)].node < 0;
     if (conduit && t.to == t.from) place.fail("a conduit leads to itself");
     if (t.condition.size() == 1 && t.condition[0].code == ConditionCode::kNumber && t.condition[0].value == 0)
       place.fail("transition can never fire: its condition is false");
+    if (!can_be_true(t.condition, graph_))
+      place.fail("transition to '" + machine.states[std::size_t(t.to)].name +
+                 "' can never fire: no values make \"" + place.at("if").text() + "\" true");
     for (const GraphTransition& earlier : machine.transitions) {
       if (!earlier.condition.empty() || machine.states[std::size_t(earlier.to)].node < 0) continue;
       if (earlier.from == t.from ||
@@ -602,10 +626,18 @@ std::string bind_fault(const Compiled& compiled, const std::string& path, const 
     if (!node.clip.empty()) what += " ('" + node.clip + "')";
     for (const std::string& joint : node.look.joints)
       if (asset.skeleton.find(joint.c_str()) < 0) what += " ('" + joint + "')";
+    for (const GraphTransition& t : node.transitions)
+      if (!t.profile.empty() && asset.find_mask(t.profile) < 0) what += " ('" + t.profile + "')";
     for (const GraphLayer& layer : node.layers)
       for (const std::string& name : {layer.mask, layer.reference})
         if (!name.empty() && asset.find_mask(name) < 0 && asset.find_clip(name) < 0)
           what += " ('" + name + "')";
+  }
+  for (const GraphParameter& p : compiled.graph.parameters) {
+    std::size_t mask = 0;
+    if (status.index < 0 && physics_value(p.name, mask) >= 0 && mask > 0 &&
+        asset.find_mask(p.name.substr(mask)) < 0)
+      what += " ('" + p.name + "')";
   }
   return where + ": " + what;
 }

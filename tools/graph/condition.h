@@ -24,6 +24,11 @@ struct ConditionNames {
 ///     or ")"
 std::vector<ConditionStep> parse_condition(const std::string& text, const ConditionNames& names);
 
+/// Whether there are values for which it holds: numbers within what a game may set (±10⁶), times and phases
+/// as they can be, physical values as they are measured. Numbers that are compared with each other, and
+/// conditions of more than some hundred cases, are taken to be possible. Never false for what can be true.
+bool can_be_true(const std::vector<ConditionStep>& steps, const GraphDefinition& graph);
+
 /// As text again.
 std::string condition_text(const std::vector<ConditionStep>& steps, const GraphDefinition& graph);
 

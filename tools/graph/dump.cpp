@@ -12,32 +12,31 @@ Json row(const Vec3<float>& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json rays_of(const GraphReplay<float>& replay, int k) {
+Json rays_of(std::span<const GraphReplay<float>::Ray> all) {
   Json rays = Json::array();
-  for (int r = 0; r < static_cast<int>(replay.info(k).rays); ++r) {
-    GroundHit<float> hit;
-    if (replay.ray(k, r, hit))
+  for (const auto& [hit, met] : all)
+    if (met)
       rays.push_back({{"point", row(hit.point)}, {"normal", row(hit.normal)}, {"body", hit.ground}});
     else
       rays.push_back(nullptr);
-  }
   return rays;
 }
 
 /// Plays one frame.
-Json frame_of(const Graph& graph, const GraphReplay<float>& replay, int k, GraphScratch<float>& scratch,
+Json frame_of(const Graph& graph, GraphReplay<float>& replay, int k, GraphScratch<float>& scratch,
               std::span<std::byte> state) {
   const GraphFrame<float> info = replay.info(k);
-  Json out = {{"frame", info.number}, {"h", info.h}, {"joints", info.joints}, {"rays", rays_of(replay, k)}};
-  std::memcpy(state.data(), replay.before(k).data(), state.size());
+  std::vector<JointJet<float>> jets(std::size_t(graph.joint_count()));
+  Json out = {{"frame", info.number}, {"h", info.h}, {"joints", info.joints}, {"bytes", info.bytes}};
+  (void)replay.before(k, scratch, state, jets);  // frame() says what is wrong
   out["before"] = describe_state(graph, state);
   std::vector<EventHit> hits(256);
-  std::vector<JointJet<float>> jets(std::size_t(graph.joint_count()));
   EventSink events{hits};
   bool same = false;
   const Status status = replay.frame(k, scratch, state, jets, same, &events);
   if (!status) out["error"] = status.reason;
   out["same"] = same;
+  out["rays"] = rays_of(replay.rays());
   out["after"] = describe_state(graph, state);
   out["events"] = Json::array();
   for (int e = 0; e < events.count; ++e)
@@ -62,7 +61,7 @@ std::string dump_recording(const Graph& graph, const std::string& file, Json& fr
   GraphMemory ring(file.size() - sizeof digest);
   std::memcpy(ring.data(), file.data() + sizeof digest, ring.size());
   if (digest_of(ring) != digest) return "is damaged";
-  const GraphReplay<float> replay(graph, ring);
+  GraphReplay<float> replay(graph, ring);
   if (const Status status = replay.Validate(); !status) return status.reason;
   GraphScratch<float> scratch(graph);
   GraphMemory state(graph.state_bytes<float>());

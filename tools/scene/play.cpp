@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/character/spare_acceleration.h"
+#include "sinew/character/physics_values.h"
 #include "sinew/effects/continuous_detection.h"
 #include "sinew/effects/restitution.h"
 
@@ -40,6 +40,8 @@ convert::Error Play<T>::add_all() {
     if (world_.add_character(c.asset->skeleton, settings, status) < 0)
       return {"character '" + c.name + "': " + status.reason};
     players_.emplace_back(c);
+    timers_.push_back(c.graph.graph ? std::make_unique<FadeTimer<T>>(world_, static_cast<int>(timers_.size()))
+                                    : nullptr);
     auto& behaviour = behaviours_.emplace_back();
     if (c.behaviour) {
       BehaviourSettings own = *c.behaviour;
@@ -100,10 +102,12 @@ convert::Error Play<T>::drive(int c, double t, double h) {
   if (!asked.still) {
     Felt<T> felt{character.local()};
     if (players_[c].has_graph()) {  // loads are worked out when asked for
-      for (const T& l : character.load()) felt.load = std::max(felt.load, double(l));
-      spare_.resize(source.asset->skeleton.joints.size());
-      spare_acceleration<T>(character, spare_);
-      felt.spare_acceleration = spare_;
+      loads_.resize(source.asset->skeleton.joints.size());
+      felt.values = physics_values<T>(character, loads_);
+      body_.resize(loads_.size());
+      physical_motion<T>(character, body_);
+      felt.motion = body_;
+      felt.muscles = {FadeTimer<T>::answer, timers_[c].get()};
     }
     std::span<const JointJet<T>> wanted = players_[c].at(t, felt);
     if (behaviours_[c]) {

@@ -8,6 +8,7 @@
 #include "scene/player.h"
 #include "scene/scene.h"
 #include "sinew/behaviour/behaviour.h"
+#include "sinew/character/fade_timer.h"
 
 namespace sinew::scene {
 
@@ -70,8 +71,11 @@ class Play {
 
   const Scene& s_;
   World<T>& world_;
-  std::vector<T> spare_;  ///< [joint] of the character that is driven
+  // Of the character that is driven, [joint]:
+  std::vector<T> loads_;
+  std::vector<JointJet<T>> body_;
   std::vector<Player<T>> players_;
+  std::vector<std::unique_ptr<FadeTimer<T>>> timers_;      ///< [character] null: has no graph
   std::vector<std::unique_ptr<Behaviour<T>>> behaviours_;  ///< [character] null: has none
   std::vector<JointJet<T>> jets_;  ///< [joint] of the character that is driven, as its behaviour wants it
   std::vector<Asked> asked_;

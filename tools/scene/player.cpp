@@ -40,7 +40,7 @@ Player<T>::Player(const SceneCharacter& c)
       clip_curves_(curves_.size()) {
   for (auto& place : places_) place = upright(c.position, c.yaw);
   for (const ClipUse& use : c.clips) chosen_.push_back(use.clip);
-  if (c.graph.graph) graph_.emplace(c.graph, c.asset->skeleton, upright(c.position, c.yaw));
+  if (c.graph.graph) graph_.emplace(c.graph, upright(c.position, c.yaw));
 }
 
 template <class T>

@@ -8,6 +8,8 @@
 #include "sinew/c/layout.h"
 #include "sinew/c/make_world.h"
 #include "sinew/c/report.h"
+#include "sinew/character/physics_values.h"
+#include "sinew/character/spare_acceleration.h"
 
 namespace sinew::c {
 namespace {
@@ -358,6 +360,42 @@ sinew_status sinew_character_get_report(sinew_character character, sinew_charact
       r.on_animation = c.on_animation();
       Eigen::Map<Vec3<double>>(r.position) = c.position();
     });
+  });
+}
+
+sinew_status sinew_character_get_physics(sinew_character character, sinew_physics* out) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    return fill_sized(out, [&](sinew_physics& p) {
+      const PhysicsValues<float> v = physics_values<float>(c);
+      p.tilt = v.tilt;
+      p.face_up = v.face_up;
+      p.height = v.height;
+      p.load = v.load;
+      p.off_animation = v.off_animation;
+      p.contacts = v.contacts;
+      p.contact_force = v.contact_force;
+    });
+  });
+}
+
+sinew_status sinew_character_get_motion(sinew_character character, sinew_jet* jets, int32_t count) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!jets) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (!aligned(jets)) return fail(SINEW_INVALID_ARGUMENT, kMisaligned);
+    if (count < 0 || std::size_t(count) != c.local().size())
+      return fail(SINEW_INVALID_ARGUMENT, "not one jet per joint", count);
+    physical_motion<float>(c, jets_of(jets, count));
+    return sinew_status(SINEW_OK);
+  });
+}
+
+sinew_status sinew_character_get_spare_acceleration(sinew_character character, float* out, int32_t count) {
+  return with_character(character, [&](OwnedWorld&, const Character<float>& c) {
+    if (!out) return fail(SINEW_INVALID_ARGUMENT, kNull);
+    if (count < 0 || std::size_t(count) != c.local().size())
+      return fail(SINEW_INVALID_ARGUMENT, "not one number per joint", count);
+    spare_acceleration<float>(c, {out, std::size_t(count)});
+    return sinew_status(SINEW_OK);
   });
 }
 

@@ -22,6 +22,7 @@ constexpr auto kSettings = [](auto& c, auto& s, auto&& f) {
   f("no such ground", c.ground, s.ground, SINEW_GROUND_LEVEL, SINEW_GROUND_HOST);
   f("", c.layers, s.layers);
   f("reach must be 1e-3 to 1e4 m", c.reach, s.reach, 1e-3, 1e4);
+  f("", c.physics, s.physics);
 };
 
 /// act(GraphPlayer&, Character) of a character that follows a graph.
@@ -78,7 +79,7 @@ sinew_status add_player(OwnedWorld& world, int index, const std::shared_ptr<cons
   sinew_graph_settings all{};
   static_cast<void>(read_sized(settings, all));
   if (read.ground == SINEW_GROUND_HOST && !all.below) return fail(SINEW_INVALID_ARGUMENT, kNull);
-  player = std::make_unique<GraphPlayer>(bound, scratch_for(world, *bound), read);
+  player = std::make_unique<GraphPlayer>(bound, scratch_for(world, *bound), read, world.world, index);
   player->ground = {read.ground, &world.world, read.layers, read.reach, all.below, all.context, {}};
   world.world.keep_with_state(player->block());
   return SINEW_OK;

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/character/physics_values.h"
 #include "sinew/character/queries.h"
-#include "sinew/character/spare_acceleration.h"
+#include "sinew/graph/graph_physics.h"
 
 namespace sinew::c {
 namespace {
@@ -56,13 +57,14 @@ GraphGround<float> PlayerGround::for_graph() const {
 }
 
 GraphPlayer::GraphPlayer(std::shared_ptr<const BoundGraph> bound,
-                         std::shared_ptr<GraphScratch<float>> scratch, const PlayerSettings& settings)
+                         std::shared_ptr<GraphScratch<float>> scratch, const PlayerSettings& settings,
+                         World<float>& world, int character)
     : bound_(std::move(bound)),
       scratch_(std::move(scratch)),
       block_(bound_->graph.state_bytes<float>()),
       jets_(std::size_t(bound_->graph.joint_count())),
       physical_(bound_->feels ? jets_.size() : 0),
-      spare_(bound_->spends ? jets_.size() : 0),
+      loads_(settings.physics && !bound_->graph.physics().empty() ? jets_.size() : 0),
       curves_(std::size_t(bound_->graph.curve_count()), TimeJet<float>(0.f)),
       hits_(std::size_t(settings.events)),
       events_{hits_} {
@@ -73,20 +75,21 @@ GraphPlayer::GraphPlayer(std::shared_ptr<const BoundGraph> bound,
     jets_[j].rotation = rest[j].rotation;
     jets_[j].translation = rest[j].translation;
   }
+  if (bound_->spends) timer_.emplace(world, character);
   parameters().put({settings.place[0], settings.place[1], 0}, settings.heading);
 }
 
+void GraphPlayer::feel(const Character<float>& character) {
+  if (loads_.empty()) return;
+  static_cast<void>(set_physics<float>(bound_->graph, block_, physics_values<float>(character, loads_)));
+}
+
 Status GraphPlayer::play(const Character<float>& character, float h) {
-  for (std::size_t j = 0; j < physical_.size(); ++j) {
-    physical_[j] = {};
-    physical_[j].rotation = character.local()[j].rotation;
-    physical_[j].translation = character.local()[j].translation;
-  }
-  if (!spare_.empty()) spare_acceleration<float>(character, spare_);
+  if (!physical_.empty()) physical_motion<float>(character, physical_);
   events_ = {hits_};
   GraphStepJob<float> job{&bound_->graph, block_, h, scratch_.get(), jets_, &events_, curves_};
   job.physical = physical_;
-  job.spare_acceleration = spare_;
+  if (timer_) job.muscles = {FadeTimer<float>::answer, &*timer_};
   job.ground = ground.for_graph();
   return job.Run();
 }

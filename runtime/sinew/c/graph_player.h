@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sinew/c/grounds.h"
 #include "sinew/c/sinew.h"
-#include "sinew/character/world.h"
+#include "sinew/character/fade_timer.h"
 #include "sinew/graph/graph_step.h"
 #include "sinew/io/asset.h"
 
@@ -58,6 +59,7 @@ struct PlayerSettings {
   int ground = SINEW_GROUND_LEVEL;
   std::uint32_t layers = ~0u;
   double reach = 10;
+  bool physics = true;
 };
 
 /// What its feet stand on.
@@ -77,9 +79,9 @@ struct PlayerGround {
 /// All that a frame needs is allocated when it is made.
 class GraphPlayer {
  public:
-  /// `scratch`: of one thread, for this graph.
+  /// Of a character of the world, which must outlive it. `scratch`: of one thread, for this graph.
   GraphPlayer(std::shared_ptr<const BoundGraph> bound, std::shared_ptr<GraphScratch<float>> scratch,
-              const PlayerSettings& settings);
+              const PlayerSettings& settings, World<float>& world, int character);
 
   const BoundGraph& bound() const { return *bound_; }
   const std::shared_ptr<GraphScratch<float>>& scratch() const { return scratch_; }
@@ -88,6 +90,8 @@ class GraphPlayer {
   std::span<std::byte> block() { return block_; }
   /// Moves on by h s. What it wants is in jets() then; also, whole, where the status tells of a node.
   Status play(const Character<float>& character, float h);
+  /// After a step: the parameters that tell of the character.
+  void feel(const Character<float>& character);
   std::span<const JointJet<float>> jets() const { return jets_; }
   const EventSink& events() const { return events_; }
   std::span<const TimeJet<float>> curves() const { return curves_; }
@@ -99,7 +103,8 @@ class GraphPlayer {
   std::shared_ptr<GraphScratch<float>> scratch_;
   GraphMemory block_;
   std::vector<JointJet<float>> jets_, physical_;  ///< [joint]
-  std::vector<float> spare_;                      ///< [joint] rad/s²
+  std::optional<FadeTimer<float>> timer_;         ///< where some transition asks
+  std::vector<float> loads_;                      ///< [joint]; none where no parameter tells of the character
   std::vector<TimeJet<float>> curves_;            ///< [slot]
   std::vector<EventHit> hits_;
   EventSink events_;

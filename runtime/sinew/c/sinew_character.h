@@ -102,6 +102,18 @@ typedef struct sinew_character_report {
   double ground_turn_rate;     ///< rad/s, about the vertical
 } sinew_character_report;
 
+/// How a character stands, and what its muscles bear.
+typedef struct sinew_physics {
+  uint32_t size;        ///< bytes of this struct, as the caller knows it
+  float tilt;           ///< rad, 0 to pi: of the root from upright
+  float face_up;        ///< how far its front points up: 1 on the back, -1 on the belly
+  float height;         ///< of the root over the ground, a part of that at rest
+  float load;           ///< the greatest of its muscles; 1: at the limit
+  float off_animation;  ///< m: root mean square, over all mass, of how far it is from its animation
+  float contacts;       ///< contact points that press; 0 where the animation was only played
+  float contact_force;  ///< of these, normal, as parts of its weight on Earth
+} sinew_physics;
+
 /// A clip that a character follows: what it shows at `time` (as sinew_clip_sample) is wanted at the end of
 /// the next step.
 typedef struct sinew_play {
@@ -223,5 +235,15 @@ SINEW_API sinew_status sinew_character_get_ground(sinew_character character, dou
 /// the world's next step, reset or restore: ask again then.
 SINEW_API sinew_status sinew_character_get_view(sinew_character character, sinew_view_kind kind,
                                                 sinew_view* out);
+/// Of the last step; of what a snapshot has put back, contacts and loads follow with the next one.
+SINEW_API sinew_status sinew_character_get_physics(sinew_character character, sinew_physics* out);
+/// How the body moves at the end of the last step, as a clip would tell it: one jet for each joint, aligned
+/// to 16 bytes. What an impact did within the step is in the rates alone. Joints without a body are at rest.
+SINEW_API sinew_status sinew_character_get_motion(sinew_character character, sinew_jet* jets, int32_t count);
+/// By how much the muscles could turn each joint faster than they do now, rad/s2, one number for each joint:
+/// (limit - torque) / inertia, the least of its degrees of freedom; 1e6 where no muscle is. What a transition
+/// may add, for hosts that time theirs by it; graphs with a `budget` do.
+SINEW_API sinew_status sinew_character_get_spare_acceleration(sinew_character character, float* out,
+                                                              int32_t count);
 
 #endif

@@ -140,6 +140,12 @@ typedef struct sinew_graph_settings {
   double reach;              ///< m, how far below feet the world is looked at
   sinew_ground_below below;  ///< of SINEW_GROUND_HOST
   void* context;             ///< given to `below`; must outlive the world
+  /// Flag, on: every sinew_world_step sets those float parameters whose names begin with "physics.", as
+  /// sinew_character_get_physics tells them: physics.tilt, physics.face_up, physics.height, physics.load,
+  /// physics.load.MASK (of the joints of one of the asset's masks), physics.off_animation, physics.contacts,
+  /// physics.contact_force.
+  int32_t physics;
+  int32_t unused;  ///< 0
 } sinew_graph_settings;
 
 /// A parameter, as set and as weights and speeds see it.
@@ -210,8 +216,9 @@ SINEW_API sinew_status sinew_graph_settings_init(sinew_graph_settings* settings)
 SINEW_API sinew_status sinew_character_add_graph(sinew_character character, sinew_graph graph,
                                                  const sinew_graph_settings* settings);
 /// Moves the graph on by h seconds (0 to 1), and what it wants then is wanted at the end of the next step.
-/// States that follow the physical pose begin at the one that the character has. Where a look or a foot
-/// fails, sinew_last_index() is its node: the graph has moved on, and the target is whole without it.
+/// States that follow the physical pose begin at the one that the character has, and as it moves
+/// (sinew_character_get_motion). Transitions with a budget take what its muscles have left. Where a look or a
+/// foot fails, sinew_last_index() is its node: the graph has moved on, and the target is whole without it.
 /// Allocates nothing.
 SINEW_API sinew_status sinew_character_play_graph(sinew_character character, float h);
 /// The same of any number of characters, also of several worlds. Stops at the first that is refused:

@@ -159,8 +159,12 @@ sinew_status sinew_world_set_jobs(sinew_world world, sinew_run_tasks run, void* 
 
 sinew_status sinew_world_step(sinew_world world, float h) {
   return in_world(world, Kind::kWorld, true, [&](OwnedWorld& w) {
-    if (w.crowd) return answer(w.crowd->step(h, w.jobs));
-    return answer(w.recorder ? w.recorder->step(h) : w.world.step(h, w.jobs));
+    const Status stepped = w.crowd      ? w.crowd->step(h, w.jobs)
+                           : w.recorder ? w.recorder->step(h)
+                                        : w.world.step(h, w.jobs);
+    for (std::size_t k = 0; stepped.ok() && k < w.graphs.size(); ++k)
+      if (w.graphs[k]) w.graphs[k]->feel(w.world.character(static_cast<int>(k)));
+    return answer(stepped);
   });
 }
 

@@ -283,6 +283,7 @@ void IslandStepper<T>::report(CharacterState<T>& s, int tree) {
   for (const Contact<T>& c : contacts_) {
     if ((c.tree_a != tree && c.tree_b != tree) || c.gap >= T(0)) continue;
     ++r.contacts;
+    r.contact_force += std::max(0.0, double(normal_force(c)));
     if (c.tree_a == tree) r.elastic_energy += double(stored_energy(c));
     r.penetration = std::max(r.penetration, double(-c.gap));
   }

@@ -370,11 +370,18 @@ void follow(CharacterState<T>& s, const WorldSettings& world, T h) {
 
 template <class T>
 void synchronise(CharacterState<T>& s, std::vector<JointJet<T>>& jets) {
+  if (s.deferred.motion) jets.resize(std::size_t(s.tree.bodies));
+  synchronise(s, std::span<JointJet<T>>(jets));
+}
+
+template <class T>
+void synchronise(CharacterState<T>& s, std::span<JointJet<T>> jets) {
   s.keep_record();
   if (!s.deferred.motion) return;
   s.deferred.history = s.deferred.motion = false;
   // Speeds of the animation, and on top of them those of what is off it.
-  jets.assign(s.last_target().begin(), s.last_target().begin() + s.tree.bodies);
+  std::copy_n(s.last_target().begin(), s.tree.bodies, jets.begin());
+  jets = jets.first(std::size_t(s.tree.bodies));
   for (int i = 0; i < s.tree.bodies; ++i) {
     JointJet<T>& jet = jets[i];
     const Deviation<T>& d = s.deviation[i];

@@ -59,9 +59,11 @@ template <class T>
 void follow(CharacterState<T>& state, const WorldSettings& world, T h);
 
 /// Makes the joint speeds and the history of a character that was played: poses and speeds that it has now.
-/// `jets` is room for its bodies.
+/// `jets` is room for its bodies: memory that is reserved, or, as a span, that is there.
 template <class T>
 void synchronise(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
+template <class T>
+void synchronise(CharacterState<T>& state, std::span<JointJet<T>> jets);
 
 #define SINEW_PLAYBACK_INSTANCES(prefix, T)                                                 \
   prefix bool has_plain_check<T>(const CharacterState<T>&);                                 \
@@ -74,7 +76,8 @@ void synchronise(CharacterState<T>& state, std::vector<JointJet<T>>& jets);
   prefix void begin_tone<T>(CharacterState<T>&, T, const CheckContext<T>&);                 \
   prefix void report_help<T>(CharacterState<T>&);                                           \
   prefix void follow<T>(CharacterState<T>&, const WorldSettings&, T);                       \
-  prefix void synchronise<T>(CharacterState<T>&, std::vector<JointJet<T>>&);
+  prefix void synchronise<T>(CharacterState<T>&, std::vector<JointJet<T>>&);                \
+  prefix void synchronise<T>(CharacterState<T>&, std::span<JointJet<T>>);
 SINEW_PLAYBACK_INSTANCES(extern template, float)
 SINEW_PLAYBACK_INSTANCES(extern template, double)
 

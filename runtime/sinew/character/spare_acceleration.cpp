@@ -24,11 +24,11 @@ double torque_left(const Character<T>& character, int joint) {
 }  // namespace
 
 template <class T>
-void spare_acceleration(const Character<T>& character, std::span<T> out) {
+void carried_inertia(const Character<T>& character, std::span<T> out) {
   const Skeleton& skeleton = character.skeleton();
   const std::span<const Transform<T>> model = character.model();
   const int bodies = std::min(skeleton.body_count, static_cast<int>(out.size()));
-  // First each joint's inertia: every body adds ½ tr I + m|c − o|² to all joints above it and its own.
+  // Every body adds ½ tr I + m|c − o|² to all joints above it and its own.
   std::fill(out.begin(), out.end(), T(0));
   for (int i = 0; i < skeleton.body_count; ++i) {
     const Joint& body = skeleton.joints[std::size_t(i)];
@@ -39,14 +39,22 @@ void spare_acceleration(const Character<T>& character, std::span<T> out) {
       out[std::size_t(j)] += T(body.inertia.trace() / 2 + body.mass * (center - origin).squaredNorm());
     }
   }
+}
+
+template <class T>
+void spare_acceleration(const Character<T>& character, std::span<T> out) {
+  const Skeleton& skeleton = character.skeleton();
+  carried_inertia<T>(character, out);
   for (std::size_t j = 0; j < out.size(); ++j) {
     const int joint = static_cast<int>(j);
-    const bool moved = joint < bodies && skeleton.joints[j].type != JointType::kFree;
+    const bool moved = joint < skeleton.body_count && skeleton.joints[j].type != JointType::kFree;
     const double left = moved ? torque_left(character, joint) : kUnlimited, inertia = double(out[j]);
     out[j] = T(left < kUnlimited && inertia > 0 ? std::min(kUnlimited, left / inertia) : kUnlimited);
   }
 }
 
+template void carried_inertia<float>(const Character<float>&, std::span<float>);
+template void carried_inertia<double>(const Character<double>&, std::span<double>);
 template void spare_acceleration<float>(const Character<float>&, std::span<float>);
 template void spare_acceleration<double>(const Character<double>&, std::span<double>);
 

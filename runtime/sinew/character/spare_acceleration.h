@@ -12,12 +12,22 @@ namespace sinew {
 /// about its origin, at most (half of the trace). As GraphPoseJob and inertial_duration() take it. Joints
 /// that no muscle moves, and those without a body, do not limit anything: 10⁶.
 ///
-/// Of the last step. Torques are worked out where it was only played, see Character::load(). Allocates
-/// nothing. Cost O(joints · depth).
+/// What is left of the motion of the last step. FadeTimer (fade_timer.h) asks about the motion gone to
+/// instead, and confirms what follows from it. Torques are worked out where it was only played, see
+/// Character::load(). Allocates nothing. Cost O(joints · depth).
 template <class T>
 void spare_acceleration(const Character<T>& character, std::span<T> out);
 
+/// `out` [joint]: kg·m², the inertia that the above divides by, in the present pose; 0 of joints without a
+/// body. Allocates nothing. Cost O(joints · depth).
+template <class T>
+void carried_inertia(const Character<T>& character, std::span<T> out);
+
+/// @cond
+extern template void carried_inertia<float>(const Character<float>&, std::span<float>);
+extern template void carried_inertia<double>(const Character<double>&, std::span<double>);
 extern template void spare_acceleration<float>(const Character<float>&, std::span<float>);
 extern template void spare_acceleration<double>(const Character<double>&, std::span<double>);
+/// @endcond
 
 }  // namespace sinew

@@ -115,6 +115,7 @@ struct CharacterReport {
   int corrections = 0;       ///< second-order corrections that saved a full step
   int plain_passes = 0;      ///< passes without the geometric terms, which made the matrix indefinite
   int contacts = 0;          ///< active contact points
+  double contact_force = 0;  ///< N, along their normals, summed, at the end of the step
   int left_out = 0;      ///< of the candidates for contacts, those that there was no memory for: the furthest
   int substeps = 0;      ///< parts that the step was solved in; 0 = played
   int splits = 0;        ///< of these, halvings because a solve did not converge
@@ -195,6 +196,11 @@ struct WorldInternals;
 
 template <class T>
 struct CharacterState;  // residual, history and solver state; world.cpp
+template <class T>
+class Character;
+/// For the library's own: what a handle stands for, or null.
+template <class T>
+CharacterState<T>* state_of(const Character<T>& character);
 
 /// Handle on one character of a world; cheap to copy, valid while the world lives. That of an index which
 /// names nobody is null: what changes something answers kInvalidArgument, what reads gives zeros, identities
@@ -297,6 +303,7 @@ class Character {
   std::optional<double> animation_ground() const;
 
  private:
+  friend CharacterState<T>* state_of<T>(const Character&);
   CharacterState<T>* state_;
 };
 
@@ -454,6 +461,13 @@ class World {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// @cond
+template <class T>
+CharacterState<T>* state_of(const Character<T>& character) {
+  return character.state_;
+}
+/// @endcond
 
 extern template class Character<float>;
 extern template class Character<double>;

@@ -186,7 +186,7 @@ Status Graph::bind_blend(int index) {
   return {};
 }
 
-void Graph::bind_machine(int index) {
+Status Graph::bind_machine(int index, const Asset& asset) {
   const GraphNode& in = node(index);
   slots_[std::size_t(index)] = static_cast<int>(machines_.size());
   BoundMachine machine;
@@ -195,7 +195,13 @@ void Graph::bind_machine(int index) {
   if (std::any_of(in.transitions.begin(), in.transitions.end(), begins_offset))
     machine.offset = static_cast<int>(
         std::count_if(machines_.begin(), machines_.end(), [](const auto& m) { return m.offset >= 0; }));
+  for (const GraphTransition& t : in.transitions) {
+    machine.profiles.push_back(t.profile.empty() ? -1 : asset.find_mask(t.profile));
+    if (!t.profile.empty() && machine.profiles.back() < 0)
+      return bad("the asset has no mask of the name of a transition's profile", index);
+  }
   machines_.push_back(machine);
+  return {};
 }
 
 Status Graph::bind_feet(int index, const Asset& asset) {
@@ -247,8 +253,7 @@ Status Graph::bind_node(int index, const Asset& asset) {
     case NodeType::kLayers:
       return bind_layers(index, asset);
     case NodeType::kMachine:
-      bind_machine(index);
-      return {};
+      return bind_machine(index, asset);
     case NodeType::kFeet:
       return bind_feet(index, asset);
     case NodeType::kLook:
@@ -258,6 +263,20 @@ Status Graph::bind_node(int index, const Asset& asset) {
     case NodeType::kMirror:
     case NodeType::kTravel:
       break;
+  }
+  return {};
+}
+
+Status Graph::bind_physics(const Asset& asset) {
+  for (std::size_t k = 0; k < definition_.parameters.size(); ++k) {
+    const GraphParameter& p = definition_.parameters[k];
+    std::size_t at = 0;
+    const int value = p.type == ParameterType::kFloat ? physics_value(p.name, at) : -1;
+    if (value < 0) continue;  // the game's own
+    const int mask = at > 0 ? asset.find_mask(p.name.substr(at)) : -1;
+    if (at > 0 && mask < 0)
+      return bad("the asset has no mask of the name that a load's parameter ends with", -1);
+    physics_.push_back({static_cast<int>(k), value, mask});
   }
   return {};
 }
@@ -277,6 +296,7 @@ Status Graph::bind(const GraphDefinition& definition, const Asset& asset, Graph&
   for (const std::string& name : definition.events) graph.event_names_.push_back(event_name(name));
   graph.slots_.assign(definition.nodes.size(), -1);
   if (Status status = graph.bind_mirrors(asset); !status) return bad(status.reason, -1);
+  if (Status status = graph.bind_physics(asset); !status) return status;
   for (int k = 0; k < static_cast<int>(definition.nodes.size()); ++k)
     if (Status status = graph.bind_node(k, asset); !status) return status;
   graph.lay_out();

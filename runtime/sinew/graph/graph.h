@@ -114,6 +114,7 @@ class Graph {
     int offset = -1;     ///< which of the block's offsets its transitions use, also for a pose left behind;
                          ///< −1: none does
     bool fades = false;  ///< has an empty state
+    std::vector<int> profiles;  ///< [transition] mask of its profile, of the asset; −1: none
   };
   /// The graph's kFeet node.
   struct BoundFeet {
@@ -144,6 +145,12 @@ class Graph {
         return chain_float;
     }
   };
+  /// A float parameter that set_physics() sets: its name is one of kPhysicsNames.
+  struct BoundPhysics {
+    int parameter = 0;  ///< of the definition
+    int value = 0;      ///< of kPhysicsNames
+    int mask = -1;      ///< of the asset; −1: of all joints
+  };
   /// Of a character's block; that of the other precision differs.
   template <class T>
   const GraphLayout& layout() const {
@@ -162,9 +169,10 @@ class Graph {
   const BoundLayer& layer(int node, int layer) const {
     return layers_[std::size_t(slot(node)) + std::size_t(layer)];
   }
-  const BoundFeet& feet() const { return feet_; }                 ///< a graph has at most one pair
-  const std::vector<BoundLook>& looks() const { return looks_; }  ///< [slot] of kLook nodes
-  const std::vector<JointMask>& masks() const { return masks_; }  ///< the asset's
+  const BoundFeet& feet() const { return feet_; }                        ///< a graph has at most one pair
+  const std::vector<BoundLook>& looks() const { return looks_; }         ///< [slot] of kLook nodes
+  const std::vector<BoundPhysics>& physics() const { return physics_; }  ///< in the parameters' order
+  const std::vector<JointMask>& masks() const { return masks_; }         ///< the asset's
   const std::vector<CurveSlot>& curve_slots() const { return curve_slots_; }  ///< the asset's
   const std::vector<int>& parents() const { return parents_; }                ///< [joint] −1: root
   const std::vector<Transform<float>>& rest() const { return rest_; }         ///< [joint] joint → parent
@@ -187,10 +195,11 @@ class Graph {
   Status bind_clip(int node, const Asset& asset);
   Status bind_layers(int node, const Asset& asset);
   Status bind_blend(int node);
-  void bind_machine(int node);
+  Status bind_machine(int node, const Asset& asset);
   Status bind_feet(int node, const Asset& asset);
   Status bind_look(int node, const Asset& asset);
   Status bind_node(int node, const Asset& asset);
+  Status bind_physics(const Asset& asset);
   void lay_out();
 
   GraphDefinition definition_;
@@ -202,6 +211,7 @@ class Graph {
   std::vector<BoundMachine> machines_;
   BoundFeet feet_;
   std::vector<BoundLook> looks_;
+  std::vector<BoundPhysics> physics_;
   std::vector<JointMask> masks_;
   std::vector<CurveSlot> curve_slots_;
   std::vector<int> parents_;

@@ -218,6 +218,10 @@ class Check {
       return bad("transition between states that do not exist", index);
     if (!within(t.duration, 0, kLongest) || !within(t.budget, 0, 1000) || !within(t.entry, 0, kLongest))
       return bad("duration, budget or entry of a transition is negative or absurd", index);
+    if (!within(t.share, 0.1f, 1))
+      return bad("share of a transition's profile is not within 0.1 and 1", index);
+    if (!t.profile.empty() && (t.budget > 0 || t.kind != TransitionKind::kInertial))
+      return bad("only inertial transitions without a budget have a profile", index);
     for (const int state : t.interrupted_by)
       if (state < 0 || state >= states) return bad("transition is interrupted by no state", index);
     return condition(t.condition, index);
@@ -250,6 +254,17 @@ int GraphDefinition::find_parameter(const std::string& wanted) const {
   const auto found = std::find_if(parameters.begin(), parameters.end(),
                                   [&](const GraphParameter& p) { return p.name == wanted; });
   return found == parameters.end() ? -1 : static_cast<int>(found - parameters.begin());
+}
+
+int physics_value(const std::string& name, std::size_t& mask) {
+  mask = 0;
+  const std::string of_mask = std::string(kPhysicsNames[kPhysicsLoad]) + ".";
+  if (name.size() > of_mask.size() && name.compare(0, of_mask.size(), of_mask) == 0) {
+    mask = of_mask.size();
+    return kPhysicsLoad;
+  }
+  const auto found = std::find(std::begin(kPhysicsNames), std::end(kPhysicsNames), name);
+  return found == std::end(kPhysicsNames) ? -1 : static_cast<int>(found - std::begin(kPhysicsNames));
 }
 
 bool has_empty_state(const GraphDefinition& graph, int node) {

@@ -90,6 +90,10 @@ struct GraphTransition {
   Interruption interrupt = Interruption::kAny;  ///< by what, while it runs
   std::vector<int> interrupted_by;              ///< kListed: states
   float entry = 0;                              ///< s, where unsynchronised clips of the new state begin
+  /// Of inertial ones without a budget: a mask of the asset, whose joints are done after `share` of the
+  /// duration (0.1 … 1, by their weights in the mask); "": all take as long. As InertializeJob::profile.
+  std::string profile;
+  float share = 1;  ///< see `profile`
 };
 
 /// One of the things that a machine may do.
@@ -203,6 +207,17 @@ struct GraphDefinition {
 
   int find_parameter(const std::string& wanted) const;  ///< index, or −1
 };
+
+/// What a float parameter is called that set_physics() is to set (graph_physics.h), in the order of
+/// PhysicsValues; kPhysicsLoad with a dot and the name of a mask behind it is the load of those joints alone.
+inline constexpr const char* kPhysicsNames[] = {
+    "physics.tilt",     "physics.face_up",       "physics.height",        "physics.load",
+    "physics.contacts", "physics.off_animation", "physics.contact_force",
+};
+inline constexpr int kPhysicsLoad = 3;  ///< of kPhysicsNames
+
+/// Which of kPhysicsNames a name is, or −1. `mask`: where in the name that of a mask begins, or 0.
+int physics_value(const std::string& name, std::size_t& mask);
 
 /// Is the node a machine that may show nothing? Then it is a layer.
 bool has_empty_state(const GraphDefinition& graph, int node);

@@ -10,7 +10,7 @@ namespace {
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-constexpr int kGraphMajor = 1, kGraphMinor = 1;  ///< newer major versions are refused, minor ones add fields
+constexpr int kGraphMajor = 1, kGraphMinor = 2;  ///< newer major versions are refused, minor ones add fields
 constexpr int kMaxDepth = 16, kMaxTables = 200'000;
 
 Status bad(const char* reason, int index = -1) {
@@ -51,6 +51,8 @@ Status unpack(const fb::GraphTransition& in, GraphTransition& out) {
   out.interrupt = static_cast<Interruption>(in.interrupt());
   out.interrupted_by = whole(in.interrupted_by());
   out.entry = in.entry();
+  out.profile = text(in.profile());
+  out.share = in.share();
   return {};
 }
 
@@ -152,9 +154,11 @@ Offset<fb::GraphTransition> pack(FlatBufferBuilder& b, const GraphTransition& in
     steps.emplace_back(static_cast<std::uint8_t>(s.code), s.index, s.value);
   const auto condition = b.CreateVectorOfStructs(steps);
   const auto listed = b.CreateVector(narrow(in.interrupted_by));
+  const auto profile = in.profile.empty() ? 0 : b.CreateString(in.profile);
   return fb::CreateGraphTransition(b, static_cast<std::int16_t>(in.from), static_cast<std::int16_t>(in.to),
                                    condition, static_cast<std::uint8_t>(in.kind), in.duration, in.budget,
-                                   static_cast<std::uint8_t>(in.interrupt), listed, in.entry);
+                                   static_cast<std::uint8_t>(in.interrupt), listed, in.entry, profile,
+                                   in.share);
 }
 
 Offset<fb::GraphTravel> pack(FlatBufferBuilder& b, const GraphTravel& in) {

@@ -153,6 +153,7 @@ class Pose {
   }
   Status physical(const GraphTask& task, std::size_t joints) {
     Register& out = at(task.out);
+    s_.shows_physical = true;
     std::copy_n(job_.physical.begin(), joints, out.jets.begin());
     Vec3<T> place;
     T heading;
@@ -290,16 +291,38 @@ class Pose {
       m.travel.velocity[k] = before.travel.velocity[k] - after.travel.velocity[k];
       m.travel.change[k] = before.travel.change[k] - after.travel.change[k];
     }
-    if (t.budget > 0 && job_.spare_acceleration.size() >= std::size_t(graph_.joint_count()))
+    if (t.budget > 0 && job_.muscles.duration)
+      ask_muscles(state, t, after, m);
+    else if (t.budget > 0 && job_.spare_acceleration.size() >= std::size_t(graph_.joint_count()))
       shorten(state, t, m);
     return {};
   }
-  /// As long as the muscles need.
+  /// The host, about the motion gone to, where the character stands.
+  void ask_muscles(const InertialState<T>& state, const GraphTransition& t, const Register& after,
+                   GraphMachineState<T>& m) {
+    const std::span<JointJet<T>> there(s_.left.data(), std::size_t(graph_.joint_count()));
+    std::copy_n(after.jets.begin(), there.size(), there.begin());
+    there[0] = joint_jet<T>(moving_transform(travel_jet(after.travel)) * moving_transform(there[0]));
+    const T least = std::min(T(kLeastFade), m.duration);
+    const T asked = job_.muscles.duration(job_.muscles.host, {there, &state, T(t.budget), least, m.duration});
+    if (asked < m.duration) m.duration = std::max(asked, least);
+  }
+  /// As long as the muscles need, of what they can spare at present.
   void shorten(const InertialState<T>& state, const GraphTransition& t, GraphMachineState<T>& m) {
     const std::span<T> spare = s_.spare;
+    s_.asks_spare = true;
     for (std::size_t j = 0; j < spare.size(); ++j)
       spare[j] = std::max(T(1e-3), T(t.budget) * job_.spare_acceleration[j]);
     m.duration = std::min(m.duration, inertial_duration<T>(state, spare, T(kLeastFade), m.duration));
+  }
+  /// [joint] which part of the duration it takes; empty: all of it.
+  std::span<const T> profile_of(const Graph::BoundMachine& machine, int transition) {
+    const int mask = machine.profiles[std::size_t(transition)];
+    if (mask < 0) return {};
+    const T share = T(graph_.node(machine.node).transitions[std::size_t(transition)].share);
+    for (std::size_t j = 0; j < s_.spare.size(); ++j)
+      s_.spare[j] = T(1) - (T(1) - share) * s_.masks[std::size_t(mask)][j];
+    return s_.spare;
   }
   Status offset(const GraphTask& task, std::size_t joints) {
     const GraphMachineState<T>& m = block_.machine(task.index);
@@ -319,7 +342,8 @@ class Pose {
       out.travel.velocity[k] += x.value;
       out.travel.change[k] += x.rate;
     }
-    return InertializeJob<T>{jets(task.out, joints), &state, {}, jets(task.out, joints)}.Run();
+    const std::span<const T> profile = profile_of(bound, task.layer);
+    return InertializeJob<T>{jets(task.out, joints), &state, profile, jets(task.out, joints)}.Run();
   }
 
   void leave(const GraphTask& task) {
@@ -351,6 +375,7 @@ class Pose {
     return fade(task.out, EaseWeight<T>::at(elapsed, duration), joints);
   }
   void travel();
+  JointJet<T> travel_jet(const TravelVelocity<T>& travel);
 
   const GraphPoseJob<T>& job_;
   const Graph& graph_;
@@ -359,6 +384,36 @@ class Pose {
   MovingTransform<T> place_;                  ///< where the character stands
   static constexpr double kLeastFade = 0.08;  ///< s
 };
+
+/// A velocity and acceleration in heading axes, in the world's.
+template <class T>
+void in_world(const TravelVelocity<T>& t, double heading, Vec3<double>& v, Vec3<double>& a) {
+  const double c = portable::cos(heading), s = portable::sin(heading), turn = double(t.velocity[2]);
+  const double x = double(t.velocity[0]), y = double(t.velocity[1]);
+  const double ax = double(t.change[0]) - turn * y, ay = double(t.change[1]) + turn * x;
+  v << c * x - s * y, s * x + c * y, 0;
+  a << c * ax - s * ay, s * ax + c * ay, 0;
+}
+
+/// Where the character stands, and how it moves over the ground with that travel.
+template <class T>
+JointJet<T> Pose<T>::travel_jet(const TravelVelocity<T>& now) {
+  const GraphHeader<T>& header = block_.header();
+  Vec3<double> v, a;
+  in_world(now, header.heading, v, a);
+  JointJet<T> travel;
+  const double half = header.heading / 2;
+  travel.rotation = Quat<T>(T(portable::cos(half)), T(0), T(0), T(portable::sin(half)));
+  travel.omega = {T(0), T(0), now.velocity[2]};
+  travel.alpha = {T(0), T(0), now.change[2]};
+  const TimeJet<T> height = level();
+  travel.translation = {T(header.place[0]), T(header.place[1]), height.value};
+  travel.velocity = v.cast<T>();
+  travel.acceleration = a.cast<T>();
+  travel.velocity.z() = height.rate;
+  travel.acceleration.z() = height.acceleration;
+  return travel;
+}
 
 /// Moves the character and puts its body there.
 template <class T>
@@ -369,34 +424,16 @@ void Pose<T>::travel() {
   GraphHeader<T>& header = block_.header();
   const TravelVelocity<T> before = header.travel, &now = pose.travel;
   const double h = double(s_.h);
-  const auto world = [](const TravelVelocity<T>& t, double heading, Vec3<double>& v, Vec3<double>& a) {
-    const double c = portable::cos(heading), s = portable::sin(heading), turn = double(t.velocity[2]);
-    const double x = double(t.velocity[0]), y = double(t.velocity[1]);
-    const double ax = double(t.change[0]) - turn * y, ay = double(t.change[1]) + turn * x;
-    v << c * x - s * y, s * x + c * y, 0;
-    a << c * ax - s * ay, s * ax + c * ay, 0;
-  };
   Vec3<double> v0, a0, v1, a1;
-  world(before, header.heading, v0, a0);
+  in_world(before, header.heading, v0, a0);
   if (h > 0)
     header.heading += h / 2 * double(before.velocity[2] + now.velocity[2]) +
                       h * h / 12 * double(before.change[2] - now.change[2]);
-  world(now, header.heading, v1, a1);
+  in_world(now, header.heading, v1, a1);
   if (h > 0)
     for (int k = 0; k < 2; ++k) header.place[k] += h / 2 * (v0[k] + v1[k]) + h * h / 12 * (a0[k] - a1[k]);
   header.travel = now;
-  JointJet<T> travel;
-  const double half = header.heading / 2;
-  travel.rotation = Quat<T>(T(portable::cos(half)), T(0), T(0), T(portable::sin(half)));
-  travel.omega = {T(0), T(0), now.velocity[2]};
-  travel.alpha = {T(0), T(0), now.change[2]};
-  const TimeJet<T> height = level();
-  travel.translation = {T(header.place[0]), T(header.place[1]), height.value};
-  travel.velocity = v1.cast<T>();
-  travel.acceleration = a1.cast<T>();
-  travel.velocity.z() = height.rate;
-  travel.acceleration.z() = height.acceleration;
-  place_ = moving_transform(travel);
+  place_ = moving_transform(travel_jet(now));
   job_.jets[0] = joint_jet<T>(place_ * moving_transform(job_.jets[0]));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sinew/graph/graph_ground.h"
+#include "sinew/graph/graph_muscles.h"
 #include "sinew/graph/graph_scratch.h"
 
 namespace sinew {
@@ -33,6 +34,7 @@ struct GraphPoseJob {
   std::span<const T> spare_acceleration = {};  ///< [joint] rad/s², see GraphTransition::budget
   GraphWatch<T> watch = {};                    ///< for tools
   GraphGround<T> ground = {};                  ///< for NodeType::kFeet
+  GraphMuscles<T> muscles = {};                ///< for GraphTransition::budget, before spare_acceleration
 
   /// Refuses a block or scratch of another graph, no joints or too many, and a graph that plays a physical
   /// pose which is not given for all joints.

@@ -1,72 +1,14 @@
 #include "sinew/graph/graph_recorder.h"
 
+#include <array>
 #include <cstring>
+
+#include "sinew/graph/recorded_frame.h"
 
 namespace sinew {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31474e4952574e53u;  // "SNWRING1"
-constexpr std::uint32_t kMostRays = 64, kMostBodies = 8;
-
-/// At the begin of a recording.
-struct RingHeader {
-  std::uint64_t magic, hash, slot_bytes;
-  std::uint64_t frames;  ///< ever recorded
-};
-constexpr std::size_t kHeader = (sizeof(RingHeader) + 15) / 16 * 16;
-
-template <class T>
-struct RecordedRay {
-  GroundHit<T> hit;
-  int met;
-};
-
-std::size_t rounded(std::size_t bytes) {
-  return (bytes + 15) / 16 * 16;
-}
-
-template <class T>
-GraphRecordingLayout recording_layout(const Graph& graph) {
-  const auto& nodes = graph.definition().nodes;
-  const auto any = [&](auto test) { return std::any_of(nodes.begin(), nodes.end(), test); };
-  const bool physical = any([](const GraphNode& n) { return n.type == NodeType::kPhysical; });
-  const bool budget = any([](const GraphNode& n) {
-    return std::any_of(n.transitions.begin(), n.transitions.end(),
-                       [](const GraphTransition& t) { return t.budget > 0; });
-  });
-  const std::size_t joints = std::size_t(graph.joint_count()), feet = graph.feet().node >= 0;
-  GraphRecordingLayout at;
-  std::size_t end = rounded(sizeof(GraphFrame<T>));
-  const auto place = [&](std::size_t bytes) {
-    const std::size_t begin = end;
-    end += rounded(bytes);
-    return begin;
-  };
-  at.block = place(graph.state_bytes<T>());
-  at.rays = place(feet * kMostRays * sizeof(RecordedRay<T>));
-  at.bodies = place(feet * kMostBodies * sizeof(MovingTransform<T>));
-  at.physical = place(physical ? joints * sizeof(JointJet<T>) : 0);
-  at.spare = place(budget ? joints * sizeof(T) : 0);
-  at.slot = end;
-  return at;
-}
-
-/// Number by number: a recording has no bytes of chance.
-template <class T>
-void copy_jet(const JointJet<T>& from, JointJet<T>& to) {
-  to.rotation = from.rotation;
-  to.omega = from.omega;
-  to.alpha = from.alpha;
-  to.translation = from.translation;
-  to.velocity = from.velocity;
-  to.acceleration = from.acceleration;
-}
-template <class T>
-void copy_hit(const GroundHit<T>& from, GroundHit<T>& to) {
-  to.point = from.point;
-  to.normal = from.normal;
-  to.ground = from.ground;
-}
+using namespace recorded;
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
@@ -91,60 +33,80 @@ std::uint64_t digest_after(std::span<const std::byte> block, std::span<const Joi
   return hash;
 }
 
-template <class V>
-V* in(std::byte* slot, std::size_t offset) {
-  return reinterpret_cast<V*>(slot + offset);
-}
-template <class V>
-const V* in(const std::byte* slot, std::size_t offset) {
-  return reinterpret_cast<const V*>(slot + offset);
+template <class T>
+std::size_t most_bytes(const Graph& graph) {
+  return most_frame_bytes<T>(graph.state_bytes<T>(), graph.joint_count(), graph.feet().node >= 0);
 }
 
-/// Stands between the graph and what its rays meet.
+/// Of a frame on average.
+template <class T>
+std::size_t usual_bytes(const Graph& graph) {
+  return (graph.feet().node >= 0 ? 150 : 100) * sizeof(T) / sizeof(float);
+}
+
+/// Of a page for so many of them.
+template <class T>
+std::size_t page_bytes(const Graph& graph, std::size_t frames) {
+  return rounded(sizeof(PageHead) + graph.state_bytes<T>() + frames * usual_bytes<T>(graph) +
+                 most_bytes<T>(graph));  // which has to be free for the next one to begin
+}
+
+/// What stands between the graph and its host, and writes down what that answers.
 template <class T>
 struct Tap {
-  GraphGround<T> ground;
-  GraphFrame<T>* frame;
-  RecordedRay<T>* rays;
+  const GraphStepJob<T>& job;
+  FrameHead<T>& head;
+  FrameWriter<T>& out;
+  std::array<T, kMostDurations> durations;
 
   static bool below(const void* self, const Vec3<T>& point, GroundHit<T>& hit) {
     const Tap& tap = *static_cast<const Tap*>(self);
-    const bool met = tap.ground.below(tap.ground.host, point, hit);
-    if (tap.frame->rays >= kMostRays) {
-      tap.frame->complete = false;
-      return met;
+    const bool met = tap.job.ground.below(tap.job.ground.host, point, hit);
+    if (tap.head.rays >= kMostRays) {
+      tap.head.set(kIncomplete);
+    } else {
+      ++tap.head.rays;
+      tap.out.ray(point, hit, met);
     }
-    RecordedRay<T>& ray = tap.rays[tap.frame->rays++];
-    copy_hit(hit, ray.hit);
-    ray.met = met;
     return met;
   }
-};
-
-/// Gives the recorded answers in their order.
-template <class T>
-struct Answers {
-  const RecordedRay<T>* rays;
-  std::uint32_t count;
-  mutable std::uint32_t given = 0;
-
-  static bool below(const void* self, const Vec3<T>&, GroundHit<T>& hit) {
-    const Answers& answers = *static_cast<const Answers*>(self);
-    if (answers.given >= answers.count) return false;
-    const RecordedRay<T>& ray = answers.rays[answers.given++];
-    copy_hit(ray.hit, hit);
-    return ray.met != 0;
+  static T duration(void* self, const FadeQuestion<T>& question) {
+    Tap& tap = *static_cast<Tap*>(self);
+    const T answer = tap.job.muscles.duration(tap.job.muscles.host, question);
+    if (tap.head.durations >= kMostDurations)
+      tap.head.set(kIncomplete);
+    else
+      tap.durations[tap.head.durations++] = answer;
+    return answer;
   }
 };
 
-RingHeader header_of(std::span<const std::byte> bytes) {
-  RingHeader header{};
-  if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
-  return header;
+/// What the frame made use of besides, behind what its rays met.
+template <class T>
+void keep_rest(const Tap<T>& tap, const GraphScratch<T>& scratch) {
+  const GraphStepJob<T>& job = tap.job;
+  const std::size_t joints = std::size_t(job.graph->joint_count());
+  for (std::uint32_t k = 0; k < tap.head.durations; ++k) tap.out.number(tap.durations[k]);
+  if (job.graph->feet().node >= 0) {
+    const std::size_t bodies = std::min(job.ground.bodies.size(), kMostBodies);
+    if (bodies < job.ground.bodies.size()) tap.head.set(kIncomplete);
+    tap.head.bodies = static_cast<std::uint8_t>(bodies);
+    for (std::size_t k = 0; k < bodies; ++k) tap.out.body(job.ground.bodies[k]);
+  }
+  if (scratch.shows_physical && job.physical.size() >= joints) {
+    tap.head.set(kPhysical);
+    for (std::size_t j = 0; j < joints; ++j) tap.out.jet(job.physical[j]);
+  }
+  if (scratch.asks_spare && job.spare_acceleration.size() >= joints) {
+    tap.head.set(kSpare);
+    for (std::size_t j = 0; j < joints; ++j) tap.out.number(job.spare_acceleration[j]);
+  }
 }
 
-std::size_t slots_in(std::size_t bytes, std::size_t slot) {
-  return bytes < kHeader ? 0 : (bytes - kHeader) / slot;
+RingHead ring_of(std::span<const std::byte> bytes) {
+  RingHead ring{};
+  if (bytes.size() >= sizeof ring) std::memcpy(&ring, bytes.data(), sizeof ring);
+  return ring;
 }
 
 }  // namespace
@@ -160,147 +122,263 @@ std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t seed) {
 
 template <class T>
 std::size_t GraphRecorder<T>::bytes_for(const Graph& graph, int frames) {
-  return kHeader + std::size_t(std::max(0, frames)) * recording_layout<T>(graph).slot;
+  const std::size_t wanted = std::size_t(std::max(0, frames)), full = kMostFrames;
+  const std::size_t before = pages_begin(graph.state_bytes<T>());
+  if (wanted <= 2 * full) return before + (wanted > 0 ? 3 : 0) * page_bytes<T>(graph, (wanted + 1) / 2);
+  return before + ((wanted + full - 1) / full + 1) * page_bytes<T>(graph, full);
 }
 
 template <class T>
 GraphRecorder<T>::GraphRecorder(const Graph& graph, std::span<std::byte> buffer)
-    : at_(recording_layout<T>(graph)), buffer_(buffer) {
-  if (reinterpret_cast<std::uintptr_t>(buffer.data()) % 16 != 0 || slots_in(buffer.size(), at_.slot) == 0) {
+    : block_bytes_(graph.state_bytes<T>()), most_(most_bytes<T>(graph)), buffer_(buffer) {
+  const std::size_t before = pages_begin(block_bytes_);
+  const std::size_t room = buffer.size() < before ? 0 : buffer.size() - before;
+  RingHead begun{};
+  begun.magic = kMagic;
+  begun.hash = graph.hash();
+  begun.block_bytes = block_bytes_;
+  begun.pages = std::max<std::size_t>(3, room / page_bytes<T>(graph, kMostFrames));
+  begun.page_bytes = room / begun.pages / 16 * 16;
+  if (reinterpret_cast<std::uintptr_t>(buffer.data()) % 16 != 0 ||
+      begun.page_bytes < sizeof(PageHead) + most_ || most_ > kMostFrameBytes) {
     buffer_ = {};
     return;
   }
-  const RingHeader header = header_of(buffer);
-  if (header.magic == kMagic && header.hash == graph.hash() && header.slot_bytes == at_.slot) return;
+  const RingHead ring = ring_of(buffer);
+  if (ring.same_layout(begun)) return;
   std::memset(buffer_.data(), 0, buffer_.size());
-  const RingHeader begun{kMagic, graph.hash(), at_.slot, 0};
   std::memcpy(buffer_.data(), &begun, sizeof begun);
 }
 
+/// Where the next frame is written. `whole`: it begins a page.
 template <class T>
-std::byte* GraphRecorder<T>::next() {
-  RingHeader& header = *in<RingHeader>(buffer_.data(), 0);
-  std::byte* slot = buffer_.data() + kHeader + header.frames % slots_in(buffer_.size(), at_.slot) * at_.slot;
-  std::memset(slot, 0, at_.slot);
-  GraphFrame<T>& frame = *in<GraphFrame<T>>(slot, 0);
-  frame.number = header.frames++;
-  frame.complete = true;
-  return slot;
-}
-
-template <class T>
-void GraphRecorder<T>::keep(const GraphStepJob<T>& job, std::byte* slot) const {
-  GraphFrame<T>& frame = *in<GraphFrame<T>>(slot, 0);
-  frame.h = job.h;
-  frame.joints = static_cast<std::uint32_t>(job.jets.size());
-  std::memcpy(slot + at_.block, job.state.data(), std::min(job.state.size(), at_.rays - at_.block));
-  const std::size_t joints = std::size_t(job.graph->joint_count());
-  if (at_.spare > at_.physical && job.physical.size() >= joints) {
-    frame.physical = true;
-    for (std::size_t j = 0; j < joints; ++j)
-      copy_jet(job.physical[j], in<JointJet<T>>(slot, at_.physical)[j]);
+std::byte* GraphRecorder<T>::begin_frame(bool whole) {
+  RingHead& ring = *reinterpret_cast<RingHead*>(buffer_.data());
+  const auto page = [&] { return buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes; };
+  if (whole) {
+    if (ring.frames > 0) ring.page = (ring.page + 1) % ring.pages;
+    std::memset(page(), 0, ring.page_bytes);
+    *reinterpret_cast<PageHead*>(page()) = {ring.frames, 0, sizeof(PageHead)};
   }
-  if (at_.slot > at_.spare && job.spare_acceleration.size() >= joints) {
-    frame.spare = true;
-    std::copy_n(job.spare_acceleration.begin(), joints, in<T>(slot, at_.spare));
-  }
-  if (at_.bodies == at_.rays) return;  // no feet
-  frame.ground = job.ground.below != nullptr;
-  frame.bodies = static_cast<std::uint32_t>(std::min<std::size_t>(job.ground.bodies.size(), kMostBodies));
-  frame.complete = job.ground.bodies.size() <= kMostBodies;
-  for (std::uint32_t k = 0; k < frame.bodies; ++k) {
-    MovingTransform<T>& body = in<MovingTransform<T>>(slot, at_.bodies)[k];
-    body.rotation = job.ground.bodies[k].rotation;
-    body.translation = job.ground.bodies[k].translation;
-  }
+  return page() + reinterpret_cast<PageHead*>(page())->bytes;
 }
 
 template <class T>
 Status GraphRecorder<T>::step(const GraphStepJob<T>& job) {
-  if (buffer_.empty() || !job.graph) return job.Run();
+  if (buffer_.empty() || !job.graph || !job.scratch) return job.Run();
   if (Status status = check_block<T>(job.graph, job.state, true); !status) return status;
-  std::byte* slot = next();
-  keep(job, slot);
-  GraphFrame<T>& frame = *in<GraphFrame<T>>(slot, 0);
-  const Tap<T> tap{job.ground, &frame, in<RecordedRay<T>>(slot, at_.rays)};
+  RingHead& ring = *reinterpret_cast<RingHead*>(buffer_.data());
+  const std::span<std::byte> after(buffer_.data() + rounded(sizeof(RingHead)), block_bytes_);
+  std::byte* page = buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes;
+  const PageHead& last = *reinterpret_cast<PageHead*>(page);
+  const bool whole = ring.frames == 0 || last.frames >= kMostFrames || last.bytes + most_ > ring.page_bytes ||
+                     changed_bytes(after, job.state) > block_bytes_ / 4;
+  std::byte* at = begin_frame(whole);
+  FrameHead<T>& head = *new (at) FrameHead<T>;
+  FrameWriter<T> out(at + sizeof head);
+  head.h = job.h;
+  head.joints = static_cast<std::uint16_t>(job.jets.size());
+  if (whole) head.set(kWhole);
+  head.patches = whole ? out.block(job.state) : out.changes(after, job.state);
+  Tap<T> tap{job, head, out, {}};
   GraphStepJob<T> tapped = job;
-  if (frame.ground) {
+  if (job.ground.below && job.graph->feet().node >= 0) {
+    head.set(kGround);
     tapped.ground.below = Tap<T>::below;
     tapped.ground.host = &tap;
   }
+  if (job.muscles.duration) {
+    head.set(kMuscles);
+    tapped.muscles = {Tap<T>::duration, &tap};
+  }
+  job.scratch->shows_physical = job.scratch->asks_spare = false;
+  const std::byte* rays = out.end();
   const Status status = tapped.Run();
-  frame.digest = digest_after<T>(job.state, job.jets);
+  head.ray_bytes = static_cast<std::uint16_t>(out.end() - rays);
+  keep_rest(tap, *job.scratch);
+  head.digest = digest_after<T>(job.state, job.jets);
+  head.words = static_cast<std::uint16_t>(rounded(std::size_t(out.end() - at), 8) / 8);
+  std::memcpy(after.data(), job.state.data(), block_bytes_);
+  page = buffer_.data() + pages_begin(block_bytes_) + ring.page * ring.page_bytes;
+  PageHead& now = *reinterpret_cast<PageHead*>(page);
+  now.bytes += 8 * std::uint32_t(head.words);
+  ++now.frames;
+  ++ring.frames;
   return status;
 }
 
 template <class T>
 GraphReplay<T>::GraphReplay(const Graph& graph, std::span<const std::byte> recording)
-    : graph_(graph), at_(recording_layout<T>(graph)), bytes_(recording) {}
+    : graph_(graph), bytes_(recording), block_(graph.state_bytes<T>()), status_(index()) {
+  if (!status_.ok()) at_.clear();
+}
 
+/// Finds the frames, and looks at nothing that they hold.
 template <class T>
-Status GraphReplay<T>::Validate() const {
-  const RingHeader header = header_of(bytes_);
-  if (header.magic != kMagic) return Status::error(Code::kBadFile, "no recording of a graph");
-  if (header.hash != graph_.hash() || header.slot_bytes != at_.slot)
+Status GraphReplay<T>::index() {
+  const RingHead ring = ring_of(bytes_);
+  const std::size_t before = pages_begin(block_.size());
+  if (ring.magic != kMagic) return Status::error(Code::kBadFile, "no recording of a graph");
+  if (ring.hash != graph_.hash() || ring.block_bytes != block_.size())
     return Status::error(Code::kBadFile, "recording of another graph, asset or precision");
-  if (slots_in(bytes_.size(), at_.slot) == 0 || (bytes_.size() - kHeader) % at_.slot != 0 ||
+  if (bytes_.size() < before || ring.pages < 1 || ring.page >= ring.pages ||
+      ring.page_bytes < sizeof(PageHead) ||
+      (bytes_.size() - before) / ring.pages / 16 * 16 != ring.page_bytes ||
       reinterpret_cast<std::uintptr_t>(bytes_.data()) % 16 != 0)
     return Status::error(Code::kBadFile, "recording is cut off, or does not begin at a multiple of 16");
+  const Status damaged = Status::error(Code::kBadFile, "recording is damaged");
+  for (std::uint64_t n = 1; n <= ring.pages; ++n) {  // from the oldest page to the one that was written last
+    const std::size_t at = before + (ring.page + n) % ring.pages * ring.page_bytes;
+    PageHead page;
+    std::memcpy(&page, bytes_.data() + at, sizeof page);
+    if (page.frames == 0) continue;
+    if (at_.empty()) first_ = page.first;
+    if (page.first != first_ + at_.size() || page.bytes > ring.page_bytes) return damaged;
+    std::size_t frame = sizeof(PageHead);
+    for (std::uint32_t k = 0; k < page.frames; ++k) {
+      FrameHead<T> head;
+      if (frame + sizeof head > page.bytes) return damaged;
+      std::memcpy(&head, bytes_.data() + at + frame, sizeof head);
+      const std::size_t bytes = 8 * std::size_t(head.words);
+      if (bytes < sizeof head || frame + bytes > page.bytes || head.has(kWhole) != (k == 0)) return damaged;
+      at_.push_back(at + frame);
+      frame += bytes;
+    }
+  }
   return {};
 }
 
 template <class T>
-int GraphReplay<T>::count() const {
-  if (!Validate()) return 0;
-  return static_cast<int>(
-      std::min<std::uint64_t>(header_of(bytes_).frames, slots_in(bytes_.size(), at_.slot)));
-}
-
-template <class T>
-const std::byte* GraphReplay<T>::slot(int k) const {
-  const std::uint64_t first = header_of(bytes_).frames - std::uint64_t(count());
-  return bytes_.data() + kHeader + (first + std::uint64_t(k)) % slots_in(bytes_.size(), at_.slot) * at_.slot;
-}
-
-template <class T>
 GraphFrame<T> GraphReplay<T>::info(int k) const {
-  return k >= 0 && k < count() ? *in<GraphFrame<T>>(slot(k), 0) : GraphFrame<T>{};
+  GraphFrame<T> out;
+  if (k < 0 || k >= count()) return out;
+  FrameHead<T> head;
+  std::memcpy(&head, bytes_.data() + at_[std::size_t(k)], sizeof head);
+  out.number = first_ + std::uint64_t(k);
+  out.digest = head.digest;
+  out.h = head.h;
+  out.joints = head.joints;
+  out.rays = head.rays;
+  out.bodies = head.bodies;
+  out.durations = head.durations;
+  out.bytes = 8 * std::uint32_t(head.words);
+  out.whole = head.has(kWhole);
+  out.physical = head.has(kPhysical);
+  out.spare = head.has(kSpare);
+  out.ground = head.has(kGround);
+  out.muscles = head.has(kMuscles);
+  out.complete = !head.has(kIncomplete);
+  return out;
+}
+
+/// Gives the recorded answers in their order. Of a ray that is kept which does not follow from where it was
+/// cast, so it is read when it is asked for.
+template <class T>
+struct GraphReplay<T>::Answers {
+  FrameReader<T> in;
+  std::uint32_t rays_left = 0;
+  std::vector<Ray>* rays = nullptr;
+  std::span<const T> durations;
+  std::size_t next_duration = 0;
+
+  static bool below(const void* self, const Vec3<T>& point, GroundHit<T>& hit) {
+    Answers& all = **static_cast<Answers* const*>(self);
+    if (all.rays_left == 0) return false;
+    --all.rays_left;
+    const bool met = all.in.ray(point, hit);
+    all.rays->push_back({hit, met});
+    return met;
+  }
+  static T duration(void* self, const FadeQuestion<T>& question) {
+    Answers& all = *static_cast<Answers*>(self);
+    return all.next_duration < all.durations.size() ? all.durations[all.next_duration++] : question.most;
+  }
+};
+
+/// Plays a frame from the block before it, which block_ holds but for what the game changed.
+template <class T>
+Status GraphReplay<T>::play(int k, GraphScratch<T>& scratch, std::span<JointJet<T>> jets, EventSink* events,
+                            bool& same) {
+  after_ = before_ = -1;
+  same = false;
+  const GraphFrame<T> frame = info(k);
+  if (!frame.complete) return Status::error(Code::kOutOfRange, "frame had more rays or bodies than room", k);
+  const std::size_t joints = std::size_t(graph_.joint_count());
+  FrameReader<T> in(bytes_.subspan(at_[std::size_t(k)], frame.bytes));
+  const FrameHead<T> head = in.head();
+  std::array<T, kMostDurations> durations{};
+  std::array<MovingTransform<T>, kMostBodies> bodies;
+  std::vector<JointJet<T>> physical(frame.physical ? joints : 0);
+  std::vector<T> spare(frame.spare ? joints : 0);
+  in.skip_block(head, block_.size());
+  Answers answers{in, frame.rays, &rays_, {}};
+  in.skip(head.ray_bytes);
+  const std::size_t asked = std::min<std::size_t>(frame.durations, kMostDurations),
+                    moving = std::min<std::size_t>(frame.bodies, kMostBodies);
+  for (std::size_t n = 0; n < asked; ++n) durations[n] = in.number();
+  for (std::size_t n = 0; n < moving; ++n) bodies[n] = in.body();
+  for (JointJet<T>& jet : physical) jet = in.jet();
+  for (T& x : spare) x = in.number();
+  if (!in.good()) return Status::error(Code::kBadFile, "recording is damaged", k);
+  answers.durations = {durations.data(), asked};
+  Answers* const host = &answers;
+  GraphStepJob<T> job{&graph_, block_, frame.h, &scratch, jets.first(frame.joints), events};
+  job.physical = physical;
+  job.spare_acceleration = spare;
+  if (frame.ground) job.ground = {Answers::below, &host};
+  job.ground.bodies = {bodies.data(), moving};
+  if (frame.muscles) job.muscles = {Answers::duration, &answers};
+  rays_.clear();
+  const Status status = job.Run();
+  same = answers.in.good() && digest_after<T>(block_, job.jets) == frame.digest;
+  after_ = k;
+  return status;
+}
+
+/// Makes block_ the one before a frame, from that after the one before it, or from nothing where it is whole.
+template <class T>
+bool GraphReplay<T>::set_block(int k) {
+  FrameReader<T> in(bytes_.subspan(at_[std::size_t(k)], info(k).bytes));
+  const FrameHead<T> head = in.head();
+  return in.take_block(head, block_);
 }
 
 template <class T>
-std::span<const std::byte> GraphReplay<T>::before(int k) const {
-  if (k < 0 || k >= count()) return {};
-  return {slot(k) + at_.block, graph_.state_bytes<T>()};
+Status GraphReplay<T>::before(int k, GraphScratch<T>& scratch, std::span<std::byte> state,
+                              std::span<JointJet<T>> jets) {
+  if (!status_.ok()) return status_;
+  if (k < 0 || k >= count()) return Status::error(Code::kOutOfRange, "no such frame", k);
+  if (Status status = check_block<T>(&graph_, state, false); !status) return status;
+  if (jets.size() < std::size_t(graph_.joint_count()))
+    return Status::error(Code::kInvalidArgument, "not room for all joints", k);
+  const Status damaged = Status::error(Code::kBadFile, "recording is damaged", k);
+  if (before_ == k) return copy_block(state);
+  int from = k;
+  while (from > 0 && from - 1 != after_ && !info(from).whole) --from;
+  for (; from < k; ++from) {
+    bool same = false;
+    if (!set_block(from)) return damaged;
+    if (Status status = play(from, scratch, jets, nullptr, same); after_ != from) return status;
+  }
+  if (!set_block(k)) return damaged;
+  after_ = -1;
+  before_ = k;
+  return copy_block(state);
 }
 
 template <class T>
-bool GraphReplay<T>::ray(int k, int ray, GroundHit<T>& hit) const {
-  if (ray < 0 || static_cast<std::uint32_t>(ray) >= std::min(info(k).rays, kMostRays)) return false;
-  const RecordedRay<T>& recorded = in<RecordedRay<T>>(slot(k), at_.rays)[ray];
-  copy_hit(recorded.hit, hit);
-  return recorded.met != 0;
+Status GraphReplay<T>::copy_block(std::span<std::byte> state) const {
+  std::memcpy(state.data(), block_.data(), block_.size());
+  return {};
 }
 
 template <class T>
 Status GraphReplay<T>::frame(int k, GraphScratch<T>& scratch, std::span<std::byte> state,
-                             std::span<JointJet<T>> jets, bool& same, EventSink* events) const {
+                             std::span<JointJet<T>> jets, bool& same, EventSink* events) {
   same = false;
-  if (Status status = Validate(); !status) return status;
-  if (k < 0 || k >= count()) return Status::error(Code::kOutOfRange, "no such frame", k);
-  if (Status status = check_block<T>(&graph_, state, false); !status) return status;
-  const GraphFrame<T> frame = info(k);
-  if (!frame.complete) return Status::error(Code::kOutOfRange, "frame had more rays or bodies than room", k);
-  if (frame.joints > jets.size()) return Status::error(Code::kInvalidArgument, "fewer joints than posed", k);
-  const std::size_t joints = std::size_t(graph_.joint_count());
-  std::memcpy(state.data(), before(k).data(), state.size());
-  const Answers<T> answers{in<RecordedRay<T>>(slot(k), at_.rays), std::min(frame.rays, kMostRays)};
-  GraphStepJob<T> job{&graph_, state, frame.h, &scratch, jets.first(frame.joints), events};
-  if (frame.physical) job.physical = {in<JointJet<T>>(slot(k), at_.physical), joints};
-  if (frame.spare) job.spare_acceleration = {in<T>(slot(k), at_.spare), joints};
-  if (frame.ground) job.ground = {Answers<T>::below, &answers};
-  job.ground.bodies = {in<MovingTransform<T>>(slot(k), at_.bodies), std::min(frame.bodies, kMostBodies)};
-  const Status status = job.Run();
-  same = digest_after<T>(state, job.jets) == frame.digest;
+  if (Status status = before(k, scratch, state, jets); !status) return status;
+  const Status status = play(k, scratch, jets, events, same);
+  if (after_ == k) (void)copy_block(state);
   return status;
 }
 

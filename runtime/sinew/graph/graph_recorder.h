@@ -9,6 +9,8 @@
 //     for (int k = 0; k < replay.count(); ++k) replay.frame(k, scratch, state, jets, found);
 #pragma once
 
+#include <vector>
+
 #include "sinew/graph/graph_step.h"
 
 namespace sinew {
@@ -16,49 +18,48 @@ namespace sinew {
 /// What a recorded frame is known by.
 template <class T>
 struct GraphFrame {
-  std::uint64_t number = 0;  ///< since the recorder began
-  std::uint64_t digest = 0;  ///< of the block and the pose after it
-  T h = 0;                   ///< s
-  std::uint32_t joints = 0;  ///< that were posed
-  std::uint32_t rays = 0;    ///< that were cast
-  std::uint32_t bodies = 0;  ///< GraphGround::bodies
-  bool physical = false;     ///< GraphStepJob::physical was given, and kept: some node asks for it
-  bool spare = false;        ///< GraphStepJob::spare_acceleration, where some transition has a budget
-  bool ground = false;       ///< GraphGround::below, where the graph has feet
-  /// All that went in has found room: no more than 64 rays (frames of a sixth of a second) and 8 bodies.
+  std::uint64_t number = 0;     ///< since the recorder began
+  std::uint64_t digest = 0;     ///< of the block and the pose after it
+  T h = 0;                      ///< s
+  std::uint32_t joints = 0;     ///< that were posed
+  std::uint32_t rays = 0;       ///< that were cast
+  std::uint32_t bodies = 0;     ///< GraphGround::bodies
+  std::uint32_t durations = 0;  ///< that GraphMuscles was asked for
+  std::uint32_t bytes = 0;      ///< that it takes in the recording
+  bool whole = false;           ///< the block before it is there; else what the game changed of it
+  bool physical = false;        ///< GraphStepJob::physical was shown, and is kept
+  bool spare = false;           ///< GraphStepJob::spare_acceleration was asked for, likewise
+  bool ground = false;          ///< GraphGround::below was there, where the graph has feet
+  bool muscles = false;         ///< GraphMuscles::duration was there
+  /// All that went in has found room: no more than 64 rays (frames of a sixth of a second), 8 bodies and 16
+  /// durations.
   bool complete = true;
 };
 
-/// Where in a recording what stands, in bytes; of a graph and a precision always the same.
-struct GraphRecordingLayout {
-  std::size_t block = 0;     ///< in a frame, behind its GraphFrame: the block before it
-  std::size_t rays = 0;      ///< what they met, in their order; no bytes where the graph has no feet
-  std::size_t bodies = 0;    ///< body → world; likewise
-  std::size_t physical = 0;  ///< JointJet, [joint]; no bytes where no node asks for it
-  std::size_t spare = 0;     ///< rad/s², [joint]; no bytes where no transition has a budget
-  std::size_t slot = 0;      ///< of a whole frame
-};
-
-/// Each frame is kept as the block before it, with all that the game set, and everything else that went in,
-/// so that it can be repeated alone. Allocates nothing; costs some copies, and a digest of what came out.
+/// A frame is kept as all that went in: what the game changed of the block since the frame before, what rays
+/// met, and whatever else the frame made use of. The buffer is a ring of pages, of at most 200 frames each,
+/// that begin with a whole block, from which the others are repeated; the oldest page makes room for the next
+/// one. A frame takes 24 bytes, 12 and more for each parameter that was set, 5 and more for each ray; a
+/// physical pose that is shown takes 76 for each joint (float). Allocates nothing; costs some copies and a
+/// comparison of the block, and a digest of what came out.
 template <class T>
 class GraphRecorder {
  public:
-  /// Of a buffer for so many frames; what is negative counts as 0.
+  /// Of a buffer that always holds so many of the last frames, as long as they take 100 bytes on average (150
+  /// where the graph has feet; twice that in double precision); what is negative counts as 0.
   static std::size_t bytes_for(const Graph& graph, int frames);
 
   /// Goes on with what a recorder of this graph wrote into the buffer, and begins anew in any other. The
-  /// buffer begins at a multiple of 16; one too small for a frame records nothing.
+  /// buffer begins at a multiple of 16; one too small for three frames records nothing.
   GraphRecorder(const Graph& graph, std::span<std::byte> buffer);
 
   /// Runs the job, and keeps what went in. Answers as the job does.
   Status step(const GraphStepJob<T>& job);
 
  private:
-  std::byte* next();
-  void keep(const GraphStepJob<T>& job, std::byte* slot) const;
+  std::byte* begin_frame(bool whole);
 
-  GraphRecordingLayout at_;
+  std::size_t block_bytes_ = 0, most_ = 0;  ///< of a block; of a frame with one
   std::span<std::byte> buffer_;
 };
 
@@ -66,29 +67,48 @@ class GraphRecorder {
 template <class T>
 class GraphReplay {
  public:
-  /// The graph is the recorded one, bound to the same asset.
+  /// What a ray of a frame met.
+  struct Ray {
+    GroundHit<T> hit;  ///< where `met`
+    bool met = false;  ///< it met something
+  };
+
+  /// The graph is the recorded one, bound to the same asset. Allocates; the recording must outlive it, and is
+  /// not to change.
   GraphReplay(const Graph& graph, std::span<const std::byte> recording);
 
-  /// What is wrong with the recording: another graph's, cut off.
-  Status Validate() const;
-  int count() const;                               ///< frames, the oldest first; 0 where Validate() fails
-  GraphFrame<T> info(int k) const;                 ///< of one of them
-  std::span<const std::byte> before(int k) const;  ///< the block before it
+  /// What is wrong with the recording: another graph's, cut off, damaged.
+  Status Validate() const { return status_; }
+  int count() const { return static_cast<int>(at_.size()); }  ///< frames, the oldest first; 0: Validate()
+  GraphFrame<T> info(int k) const;                            ///< of one of them
 
-  /// What ray `ray` of the frame met; false for nothing.
-  bool ray(int k, int ray, GroundHit<T>& hit) const;
-
-  /// Puts `state` where it was before the frame, and plays that. `same`: block and pose are what they were,
-  /// to the bit. Errors are the frame's own, or that it was not complete.
+  /// Puts `state` where it was before the frame: as it was at the frame before, if that was repeated last;
+  /// else by repeating all frames from the last whole block on, at most 200. Spans as of frame().
+  Status before(int k, GraphScratch<T>& scratch, std::span<std::byte> state, std::span<JointJet<T>> jets);
+  /// The same, and plays it. `same`: block and pose are what they were, to the bit; once that is false, it is
+  /// so up to the next whole block. `jets` [joint]: all of the graph. Errors are the frame's own, or that it
+  /// was not complete.
   Status frame(int k, GraphScratch<T>& scratch, std::span<std::byte> state, std::span<JointJet<T>> jets,
-               bool& same, EventSink* events = nullptr) const;
+               bool& same, EventSink* events = nullptr);
+  /// Of the frame that was repeated last, in the order in which they were cast.
+  std::span<const Ray> rays() const { return rays_; }
 
  private:
-  const std::byte* slot(int k) const;
+  struct Answers;
+  Status index();
+  bool set_block(int k);
+  Status copy_block(std::span<std::byte> state) const;
+  Status play(int k, GraphScratch<T>& scratch, std::span<JointJet<T>> jets, EventSink* events, bool& same);
 
   const Graph& graph_;
-  GraphRecordingLayout at_;
   std::span<const std::byte> bytes_;
+  std::uint64_t first_ = 0;      ///< number of the oldest frame
+  std::vector<std::size_t> at_;  ///< [frame] where it begins in the recording
+  GraphMemory block_;            ///< after the frame that was repeated last
+  int after_ = -1;               ///< which one that was; −1: none
+  int before_ = -1;              ///< instead, the frame that block_ is the one before
+  std::vector<Ray> rays_;
+  Status status_;
 };
 
 /// Of any bytes whose number is a multiple of 8: for files to tell damage by.

@@ -98,6 +98,9 @@ struct GraphScratch {
   std::vector<EventHit> hits;              ///< of one clip
   std::vector<float> shares;               ///< [clip] weight in this frame; < 0: not played
   T h = 0;                                 ///< s, of this frame
+  // Of poses since a recorder looked:
+  bool shows_physical = false;  ///< one was of GraphPoseJob::physical
+  bool asks_spare = false;      ///< a transition was as long as GraphPoseJob::spare_acceleration says
 };
 
 /// Refuses none, and that of another graph.

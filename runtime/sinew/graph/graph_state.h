@@ -63,7 +63,7 @@ struct GraphMachineState {
   std::int16_t source;       ///< of a crossfade, or −1
   std::int16_t transition;   ///< that runs, or −1
   GraphFade fade;            ///< how that transition goes
-  std::uint32_t unused;      ///< 0; fills the gap, so that snapshots have no bytes of chance
+  std::int32_t faded_by;     ///< transition whose offset fades, also while a later one fades the machine out
   T elapsed;                 ///< s, of the fade
   T duration;                ///< s, of the fade
   TravelVelocity<T> travel;  ///< what of the travel fades

@@ -25,6 +25,7 @@ struct GraphStepJob {
   std::span<const T> spare_acceleration = {};  ///< likewise
   GraphWatch<T> watch = {};                    ///< of the last part
   GraphGround<T> ground = {};                  ///< for NodeType::kFeet
+  GraphMuscles<T> muscles = {};                ///< as of GraphPoseJob
 
   /// The first error of GraphUpdateJob or GraphPoseJob; what one of the parts refuses leaves the others
   /// before it done.
@@ -42,6 +43,7 @@ struct GraphStepJob {
       GraphPoseJob<T> pose{graph, state, scratch, posed, curves, physical, spare_acceleration};
       if (k == parts) pose.watch = watch;
       pose.ground = ground;
+      pose.muscles = muscles;
       if (Status status = pose.Run(); !status) return status;
     }
     return {};

@@ -259,6 +259,7 @@ void Update<T>::take(int index, int slot, const Choice& choice) {
            : !crossfade                                    ? GraphFade::kOffset
            : t.kind == TransitionKind::kSmoothstep         ? GraphFade::kSmoothstep
                                                            : GraphFade::kCrossfade;
+  m.faded_by = last;
   m.elapsed = T(0);
   m.duration = duration;
   enter_node(graph_, block_, next, double(t.entry));
@@ -490,6 +491,7 @@ void Update<T>::emit_machine(int index, int base, const TimeJet<T>& weight, bool
   GraphTask& t =
       task(m.fade == GraphFade::kLeft ? GraphTask::Kind::kLeft : GraphTask::Kind::kOffset, base, slot);
   t.time = ClipTime(double(m.elapsed), double(m.duration));
+  t.layer = m.faded_by;
 }
 
 template <class T>

@@ -366,7 +366,9 @@ struct GraphTransition FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
     VT_BUDGET = 14,
     VT_INTERRUPT = 16,
     VT_INTERRUPTED_BY = 18,
-    VT_ENTRY = 20
+    VT_ENTRY = 20,
+    VT_PROFILE = 22,
+    VT_SHARE = 24
   };
   int16_t from() const {
     return GetField<int16_t>(VT_FROM, 0);
@@ -395,6 +397,12 @@ struct GraphTransition FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
   float entry() const {
     return GetField<float>(VT_ENTRY, 0.0f);
   }
+  const flatbuffers::String *profile() const {
+    return GetPointer<const flatbuffers::String *>(VT_PROFILE);
+  }
+  float share() const {
+    return GetField<float>(VT_SHARE, 1.0f);
+  }
   bool Verify(flatbuffers::Verifier &verifier) const {
     return VerifyTableStart(verifier) &&
            VerifyField<int16_t>(verifier, VT_FROM, 2) &&
@@ -408,6 +416,9 @@ struct GraphTransition FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
            VerifyOffset(verifier, VT_INTERRUPTED_BY) &&
            verifier.VerifyVector(interrupted_by()) &&
            VerifyField<float>(verifier, VT_ENTRY, 4) &&
+           VerifyOffset(verifier, VT_PROFILE) &&
+           verifier.VerifyString(profile()) &&
+           VerifyField<float>(verifier, VT_SHARE, 4) &&
            verifier.EndTable();
   }
 };
@@ -443,6 +454,12 @@ struct GraphTransitionBuilder {
   void add_entry(float entry) {
     fbb_.AddElement<float>(GraphTransition::VT_ENTRY, entry, 0.0f);
   }
+  void add_profile(flatbuffers::Offset<flatbuffers::String> profile) {
+    fbb_.AddOffset(GraphTransition::VT_PROFILE, profile);
+  }
+  void add_share(float share) {
+    fbb_.AddElement<float>(GraphTransition::VT_SHARE, share, 1.0f);
+  }
   explicit GraphTransitionBuilder(flatbuffers::FlatBufferBuilder &_fbb)
         : fbb_(_fbb) {
     start_ = fbb_.StartTable();
@@ -464,8 +481,12 @@ inline flatbuffers::Offset<GraphTransition> CreateGraphTransition(
     float budget = 0.0f,
     uint8_t interrupt = 0,
     flatbuffers::Offset<flatbuffers::Vector<int16_t>> interrupted_by = 0,
-    float entry = 0.0f) {
+    float entry = 0.0f,
+    flatbuffers::Offset<flatbuffers::String> profile = 0,
+    float share = 1.0f) {
   GraphTransitionBuilder builder_(_fbb);
+  builder_.add_share(share);
+  builder_.add_profile(profile);
   builder_.add_entry(entry);
   builder_.add_interrupted_by(interrupted_by);
   builder_.add_budget(budget);
@@ -488,9 +509,12 @@ inline flatbuffers::Offset<GraphTransition> CreateGraphTransitionDirect(
     float budget = 0.0f,
     uint8_t interrupt = 0,
     const std::vector<int16_t> *interrupted_by = nullptr,
-    float entry = 0.0f) {
+    float entry = 0.0f,
+    const char *profile = nullptr,
+    float share = 1.0f) {
   auto condition__ = condition ? _fbb.CreateVectorOfStructs<sinew::fb::ConditionStep>(*condition) : 0;
   auto interrupted_by__ = interrupted_by ? _fbb.CreateVector<int16_t>(*interrupted_by) : 0;
+  auto profile__ = profile ? _fbb.CreateString(profile) : 0;
   return sinew::fb::CreateGraphTransition(
       _fbb,
       from,
@@ -501,7 +525,9 @@ inline flatbuffers::Offset<GraphTransition> CreateGraphTransitionDirect(
       budget,
       interrupt,
       interrupted_by__,
-      entry);
+      entry,
+      profile__,
+      share);
 }
 
 struct GraphState FLATBUFFERS_FINAL_CLASS : private flatbuffers::Table {
