@@ -145,15 +145,14 @@ Axes<T> axes_of(const LookAtJob<T>& job) {
   const LookChain<T>& c = *job.chain;
   const MovingTransform<T> base =
       c.base < 0 ? MovingTransform<T>() : model_motion<T>(job.jets, job.parents, c.base);
-  return {base.rotation * still<T>(c.forward), base.rotation * still<T>(c.up.cross(c.forward)),
-          base.rotation * still<T>(c.up)};
+  return {base.rotation * c.forward, base.rotation * Vec3<T>(c.up.cross(c.forward)), base.rotation * c.up};
 }
 
 /// The chain in model space, and how far it has been turned so far.
 template <class T>
 struct Chain {
   MovingTransform<T> frames[LookChain<T>::kMost];  ///< as animated
-  Quat<TimeJet<T>> turned = MovingTransform<T>().rotation;
+  MovingRotation<T> turned;
 };
 template <class T>
 Chain<T> chain_of(const LookAtJob<T>& job) {
@@ -171,17 +170,13 @@ template <class T>
 Status turn_joint(const LookAtJob<T>& job, int k, const MovingVector<T>& wanted, const TimeJet<T>& part,
                   Chain<T>& chain) {
   const LookChain<T>& c = *job.chain;
-  const MovingVector<T> now = chain.turned * (chain.frames[c.count - 1].rotation * still<T>(c.axis));
+  const MovingVector<T> now = chain.turned * (chain.frames[c.count - 1].rotation * c.axis);
   if (value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.9999))
     return Status::error(Code::kOutOfRange, "looks the opposite way", c.joints[k]);
-  Quat<TimeJet<T>> turn = shortest_arc<T>(now, wanted);
-  for (int i = 0; i < 4; ++i) turn.coeffs()[i] *= part;
-  turn.w() += TimeJet<T>(T(1)) - part;
-  const TimeJet<T> length = sqrt(turn.squaredNorm());
-  for (int i = 0; i < 4; ++i) turn.coeffs()[i] /= length;
+  const MovingRotation<T> turn = shortest_arc<T>(now, wanted, part);
   JointJet<T>& jet = job.jets[std::size_t(c.joints[k])];
-  const Quat<TimeJet<T>> was = chain.turned * chain.frames[k].rotation;
-  set_rotation<T>(moving_transform(jet).rotation * (was.conjugate() * (turn * was)), jet);
+  const MovingRotation<T> was = chain.turned * chain.frames[k].rotation;
+  set_rotation<T>(moving_rotation(jet) * (was.conjugate() * (turn * was)), jet);
   chain.turned = turn * chain.turned;
   return {};
 }

@@ -72,8 +72,8 @@ struct Rays {
 template <class T>
 void cast_rays(const GraphGround<T>& ground, const MovingTransform<T>& foot, const FootLeg<T>& leg, T floor,
                Rays<T>& rays) {
-  const MovingVector<T> toe = foot * still<T>(leg.toe);
-  const Vec3<T> at = value_of<T>(toe), heel = value_of<T>(MovingVector<T>(foot * still<T>(leg.heel)));
+  const MovingVector<T> toe = foot * leg.toe;
+  const Vec3<T> at = value_of<T>(toe), heel = value_of<T>(foot * leg.heel);
   rays.cast(ground, at, floor, rays.under, rays.under_count);
   rays.cast(ground, heel, floor, rays.under, rays.under_count);
   if (!ground.below) return;

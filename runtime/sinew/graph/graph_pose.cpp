@@ -268,7 +268,7 @@ class Pose {
                       std::span<const T> mask) {
     const std::size_t n = below.size();
     const std::span<const int> parents(graph_.parents().data(), n);
-    const std::span<Quat<TimeJet<T>>> scratch(s_.rotations.data(), 2 * n);
+    const std::span<MovingRotation<T>> scratch(s_.rotations.data(), 2 * n);
     subtract_in_model<T>(parents, {reference.data(), n}, upper, scratch, upper);
     return MeshAdditiveJob<T>{parents, below, upper, w, mask.empty() ? mask : mask.first(n), scratch}.Run();
   }

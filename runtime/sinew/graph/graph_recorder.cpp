@@ -210,7 +210,9 @@ void GraphRecorder<T>::keep(const GraphStepJob<T>& job, std::byte* slot) const {
   frame.complete = job.ground.bodies.size() <= kMostBodies;
   for (std::uint32_t k = 0; k < frame.bodies; ++k) {
     MovingTransform<T>& body = in<MovingTransform<T>>(slot, at_.bodies)[k];
-    body.rotation = job.ground.bodies[k].rotation;
+    body.rotation.value = job.ground.bodies[k].rotation.value;
+    body.rotation.omega = job.ground.bodies[k].rotation.omega;
+    body.rotation.alpha = job.ground.bodies[k].rotation.alpha;
     body.translation = job.ground.bodies[k].translation;
   }
 }

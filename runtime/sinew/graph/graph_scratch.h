@@ -71,7 +71,7 @@ struct GraphScratch {
   std::vector<std::vector<T>> masks;                 ///< [mask][joint]
   std::vector<std::vector<JointJet<T>>> references;  ///< [layer][joint], of the additive ones
   std::vector<Transform<T>> rest;                    ///< [joint] joint → parent
-  std::vector<Quat<TimeJet<T>>> rotations;           ///< two per joint
+  std::vector<MovingRotation<T>> rotations;          ///< two per joint
   std::vector<T> offset;                             ///< of the transition that is carried out
   std::vector<JointJet<T>> left;                     ///< [joint] the pose left behind by it
   std::vector<T> spare;                              ///< [joint] rad/s²
