@@ -8,25 +8,6 @@
 namespace sinew::kernels {
 namespace {
 
-template <class P>
-OffsetRotation<P> rotation_part(const PackedJets<P>& jets) {
-  OffsetRotation<P> r;
-  for (int i = 0; i < 4; ++i) r.q[i] = jets.number[kRotation + i];
-  for (int i = 0; i < 3; ++i) {
-    r.omega[i] = jets.number[kOmega + i];
-    r.alpha[i] = jets.number[kAlpha + i];
-  }
-  return r;
-}
-template <class P>
-void set_rotation_part(const OffsetRotation<P>& r, PackedJets<P>& jets) {
-  for (int i = 0; i < 4; ++i) jets.number[kRotation + i] = r.q[i];
-  for (int i = 0; i < 3; ++i) {
-    jets.number[kOmega + i] = r.omega[i];
-    jets.number[kAlpha + i] = r.alpha[i];
-  }
-}
-
 /// Where the offsets of a joint stand: [block][number][kOffsetBlock].
 template <class T>
 T* offsets_of(T* offsets, int joint) {
@@ -35,15 +16,14 @@ T* offsets_of(T* offsets, int joint) {
 template <class P>
 [[gnu::always_inline]] inline void load_offsets(const typename P::Scalar* offsets, const Block<P>& block,
                                                 P (&out)[kOffsetPart]) {
-  const int first = block.joint[0];
   if (block.whole) {
-    const auto* from = offsets_of(offsets, first);
+    const auto* from = offsets_of(offsets, block.first);
     for (int i = 0; i < kOffsetPart; ++i) out[i] = P::load(from + i * kOffsetBlock);
   } else {
     for (int i = 0; i < kOffsetPart; ++i) {
       typename P::Scalar gathered[P::kLanes];
       for (int lane = 0; lane < P::kLanes; ++lane)
-        gathered[lane] = offsets_of(offsets, block.joint[lane])[i * kOffsetBlock];
+        gathered[lane] = offsets_of(offsets, block.joint(lane))[i * kOffsetBlock];
       out[i] = P::load(gathered);
     }
   }
@@ -54,7 +34,7 @@ template <class P>
 P before(int end, const Block<P>& block) {
   using T = typename P::Scalar;
   T flags[P::kLanes];
-  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint[lane] < end ? T(1) : T(0);
+  for (int lane = 0; lane < P::kLanes; ++lane) flags[lane] = block.joint(lane) < end ? T(1) : T(0);
   return P::load(flags);
 }
 
