@@ -1,14 +1,50 @@
 #include "sinew/animation/moving_transform.h"
 
 #include "sinew/animation/kernels/jet_algebra.h"
+#include "sinew/animation/kernels/pack.h"
 #include "sinew/skeleton/scalar.h"
 
 namespace sinew {
 namespace {
 
+/// A vector in the first three lanes of four, or a quaternion.
 template <class T>
-MovingVector<T> moving_vector(const Vec3<T>& value, const Vec3<T>& rate, const Vec3<T>& acceleration) {
-  const auto component = [&](int i) { return TimeJet<T>(value[i], rate[i], acceleration[i]); };
+using Four = Pack<T, 4>;
+
+template <class T>
+Four<T> four(const Vec3<T>& v) {
+  return typename Four<T>::Vector{v[0], v[1], v[2], T(0)};
+}
+template <class T>
+Four<T> four(const Quat<T>& q) {
+  return Four<T>::load(q.coeffs().data());
+}
+template <class T>
+Vec3<T> vector_of(const Four<T>& x) {
+  return {x.v[0], x.v[1], x.v[2]};
+}
+/// y z x.
+template <class P>
+P turned_round(const P& a) {
+  return rearranged<1, 2, 0, 3>(a);
+}
+template <class P>
+P cross(const P& a, const P& b) {
+  return turned_round(a * turned_round(b) - turned_round(a) * b);
+}
+/// A vector turned by the rotation `q`: v + w·t + q×t, t = 2q×v.
+template <class P>
+P turn(const P& q, const P& v) {
+  const P half = cross(q, v), t = half + half;
+  return v + rearranged<3, 3, 3, 3>(q) * t + cross(q, t);
+}
+template <class T>
+TimeJet<Four<T>> fours(const MovingVector<T>& v) {
+  return {four<T>(value_of<T>(v)), four<T>(rate_of<T>(v)), four<T>(acceleration_of<T>(v))};
+}
+template <class T>
+MovingVector<T> moving_vector(const TimeJet<Four<T>>& x) {
+  const auto component = [&](int i) { return TimeJet<T>(x.value.v[i], x.rate.v[i], x.acceleration.v[i]); };
   return {component(0), component(1), component(2)};
 }
 
@@ -28,32 +64,32 @@ TimeJet<T> product_of_lengths(const MovingVector<T>& a, const MovingVector<T>& b
 
 template <class T>
 MovingRotation<T> MovingRotation<T>::operator*(const MovingRotation& child) const {
-  const Mat3<T> turn = child.value.toRotationMatrix();
-  const Vec3<T> carried = turn.transpose() * omega;
-  return {value * child.value, carried + child.omega,
-          turn.transpose() * alpha + child.alpha + carried.cross(child.omega)};
+  const Four<T> back = four(child.value.conjugate()), carried = turn(back, four(omega)),
+                own = four(child.omega);
+  return {value * child.value, vector_of<T>(carried + own),
+          vector_of<T>(turn(back, four(alpha)) + four(child.alpha) + cross(carried, own))};
 }
 
 template <class T>
 MovingVector<T> MovingRotation<T>::operator*(const MovingVector<T>& v) const {
-  const Mat3<T> turn = value.toRotationMatrix();
-  const Vec3<T> at = value_of<T>(v), along = rate_of<T>(v), rate = along + omega.cross(at);
+  const Four<T> q = four(value), w = four(omega);
+  const TimeJet<Four<T>> at = fours<T>(v);
+  const Four<T> rate = at.rate + cross(w, at.value);
   return moving_vector<T>(
-      turn * at, turn * rate,
-      turn * (acceleration_of<T>(v) + omega.cross(Vec3<T>(rate + along)) + alpha.cross(at)));
+      {turn(q, at.value), turn(q, rate),
+       turn(q, at.acceleration + cross(w, rate + at.rate) + cross(four(alpha), at.value))});
 }
 
 template <class T>
 MovingVector<T> MovingRotation<T>::operator*(const Vec3<T>& v) const {
-  const Mat3<T> turn = value.toRotationMatrix();
-  const Vec3<T> rate = omega.cross(v);
-  return moving_vector<T>(turn * v, turn * rate, turn * (omega.cross(rate) + alpha.cross(v)));
+  const Four<T> q = four(value), w = four(omega), at = four(v), rate = cross(w, at);
+  return moving_vector<T>({turn(q, at), turn(q, rate), turn(q, cross(w, rate) + cross(four(alpha), at))});
 }
 
 template <class T>
 MovingRotation<T> MovingRotation<T>::conjugate() const {
-  const Mat3<T> turn = value.toRotationMatrix();
-  return {value.conjugate(), -(turn * omega), -(turn * alpha)};
+  const Four<T> q = four(value);
+  return {value.conjugate(), vector_of<T>(-turn(q, four(omega))), vector_of<T>(-turn(q, four(alpha)))};
 }
 
 template <class T>
@@ -94,7 +130,8 @@ MovingRotation<T> shortest_arc(const MovingVector<T>& from, const MovingVector<T
 
 template <class T>
 MovingTransform<T> moving_transform(const JointJet<T>& jet) {
-  return {moving_rotation(jet), moving_vector<T>(jet.translation, jet.velocity, jet.acceleration)};
+  return {moving_rotation(jet),
+          moving_vector<T>({four(jet.translation), four(jet.velocity), four(jet.acceleration)})};
 }
 
 template <class T>
