@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/animation/inverse_kinematics.h"
 #include "sinew/animation/soft_limits.h"
 
 namespace sinew {
@@ -84,10 +83,16 @@ void shift_joint(const FootPlacementJob<T>& job, int joint, const MovingVector<T
 }
 
 template <class T>
+LimbMotion<T> limb_motion(const FootPlacementJob<T>& job, std::size_t k) {
+  const FootLeg<T>& leg = job.legs[k];
+  return {job.jets, job.parents, leg.upper, leg.middle, leg.foot};
+}
+
+template <class T>
 Placed<T> place(const FootPlacementJob<T>& job, std::size_t k) {
   const FootLeg<T>& leg = job.legs[k];
   Placed<T> placed;
-  placed.limb = LimbMotion<T>(job.jets, job.parents, leg.upper, leg.middle, leg.foot);
+  placed.limb = job.limbs.empty() ? limb_motion(job, k) : job.limbs[k];
   const MovingTransform<T>&upper = placed.limb.upper, &foot = placed.limb.end;
   placed.motion = FootMotion<T>(foot, leg.toe, leg.heel, job.level);
   placed.pole = upper.rotation * leg.bend;
@@ -172,6 +177,8 @@ Status FootPlacementJob<T>::Validate() const {
   if (Status status = check_settings(*this); !status) return status;
   if (legs.size() > kMostLegs || feet.size() < legs.size() || states.size() < legs.size())
     return Status::error(Code::kInvalidArgument, "more than eight legs, or fewer inputs or states than legs");
+  if (!limbs.empty() && limbs.size() < legs.size())
+    return Status::error(Code::kInvalidArgument, "fewer limbs than legs");
   for (std::size_t k = 0; k < legs.size(); ++k) {
     for (const int joint : {legs[k].upper, legs[k].middle, legs[k].foot})
       if (joint < 0 || std::size_t(joint) >= jets.size())

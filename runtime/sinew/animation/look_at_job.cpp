@@ -152,6 +152,8 @@ Axes<T> axes_of(const LookAtJob<T>& job) {
 template <class T>
 struct Chain {
   MovingTransform<T> frames[LookChain<T>::kMost];  ///< as animated
+  MovingVector<T> gaze;                            ///< where the last one looks, as animated
+  MovingVector<T> place;                           ///< m, of the next joint, where those before carry it
   MovingRotation<T> turned;
 };
 template <class T>
@@ -162,6 +164,8 @@ Chain<T> chain_of(const LookAtJob<T>& job) {
   chain.frames[0] = model_motion<T>(jets, job.parents, c.joints[0]);
   for (int k = 1; k < c.count; ++k)
     chain.frames[k] = chain.frames[k - 1] * model_motion<T>(jets, job.parents, c.joints[k], c.joints[k - 1]);
+  chain.gaze = chain.frames[c.count - 1].rotation * c.axis;
+  chain.place = chain.frames[0].translation;
   return chain;
 }
 
@@ -170,7 +174,7 @@ template <class T>
 Status turn_joint(const LookAtJob<T>& job, int k, const MovingVector<T>& wanted, const TimeJet<T>& part,
                   Chain<T>& chain) {
   const LookChain<T>& c = *job.chain;
-  const MovingVector<T> now = chain.turned * (chain.frames[c.count - 1].rotation * c.axis);
+  const MovingVector<T> now = chain.turned * chain.gaze;
   if (value_of<T>(now).dot(value_of<T>(wanted)) < T(-0.9999))
     return Status::error(Code::kOutOfRange, "looks the opposite way", c.joints[k]);
   const MovingRotation<T> turn = shortest_arc<T>(now, wanted, part);
@@ -178,6 +182,8 @@ Status turn_joint(const LookAtJob<T>& job, int k, const MovingVector<T>& wanted,
   const MovingRotation<T> was = chain.turned * chain.frames[k].rotation;
   set_rotation<T>(moving_rotation(jet) * (was.conjugate() * (turn * was)), jet);
   chain.turned = turn * chain.turned;
+  if (k + 1 < c.count)
+    chain.place += chain.turned * (chain.frames[k + 1].translation - chain.frames[k].translation);
   return {};
 }
 
@@ -195,8 +201,7 @@ Status turn_chain(Turn<T>& turn, Chain<T>& chain) {
     if (Status status = turn_joint<T>(job, k, body, share / left, chain); !status) return status;
     left -= share;
   }
-  const MovingVector<T> carried = model_motion<T>(job.jets, job.parents, c.joints[last]).translation;
-  const MovingVector<T> head = direction(turn.axes, turn.look(carried, job.state->head));
+  const MovingVector<T> head = direction(turn.axes, turn.look(chain.place, job.state->head));
   const TimeJet<T> share = c.shares[last] * job.weight;
   return turn_joint<T>(job, last, head, share / (share + TimeJet<T>(T(1)) - job.weight), chain);
 }
