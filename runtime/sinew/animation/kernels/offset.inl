@@ -62,6 +62,24 @@ void take_offsets(const JetLayout<T>* from, const JetLayout<T>* to, int joints, 
   }
 }
 
+/// Adds what is left of the offsets of a block's translations.
+template <class P>
+void add_shifts(const OffsetFade<typename P::Scalar>& data, const QuinticOffset<P>& fade,
+                const Block<P>& block, PackedJets<P>& jets) {
+  P start[kOffsetPart], value[3], rate[3], acceleration[3];
+  load_offsets(data.offsets.translations, block, start);
+  faded(fade, start, value, rate, acceleration);
+  const P moved = before(data.offsets.translated, block);
+  const auto add = [&](P& number, const P& offset) {
+    number = where_equal(moved, 1, number + offset, number);
+  };
+  for (int i = 0; i < 3; ++i) {
+    add(jets.number[kTranslation + i], value[i]);
+    add(jets.number[kVelocity + i], rate[i]);
+    add(jets.number[kAcceleration + i], acceleration[i]);
+  }
+}
+
 template <class T>
 void add_all(const JetLayout<T>* to, const OffsetFade<T>& data, int joints, JetLayout<T>* out) {
   using P = typename LanesOf<T>::Type;
@@ -69,26 +87,19 @@ void add_all(const JetLayout<T>* to, const OffsetFade<T>& data, int joints, JetL
   QuinticOffset<P> fade = QuinticOffset<P>::at(elapsed, P::all(data.duration));
   for (int first = 0; first < joints; first += P::kLanes) {
     const Block<P> block(first, joints);
-    PackedJets<P> jets = block.load(to);
+    const bool shifts = first < data.offsets.translated;
     if (data.profile) fade = QuinticOffset<P>::at(elapsed, data.duration * block.load(data.profile));
+    PackedJets<P> jets = shifts ? block.load(to) : block.load_turns(to);
     P start[kOffsetPart], value[3], rate[3], acceleration[3];
     load_offsets(data.offsets.rotations, block, start);
     faded(fade, start, value, rate, acceleration);
     set_rotation_part(composition(rotation_part(jets), rotation_of(value, rate, acceleration)), jets);
-    if (first < data.offsets.translated) {
-      load_offsets(data.offsets.translations, block, start);
-      faded(fade, start, value, rate, acceleration);
-      const P moved = before(data.offsets.translated, block);
-      const auto add = [&](P& number, const P& offset) {
-        number = where_equal(moved, T(1), number + offset, number);
-      };
-      for (int i = 0; i < 3; ++i) {
-        add(jets.number[kTranslation + i], value[i]);
-        add(jets.number[kVelocity + i], rate[i]);
-        add(jets.number[kAcceleration + i], acceleration[i]);
-      }
+    if (shifts) {
+      add_shifts(data, fade, block, jets);
+      block.store(jets, out);
+    } else {
+      block.store_turns(jets, to, out);
     }
-    block.store(jets, out);
   }
 }
 

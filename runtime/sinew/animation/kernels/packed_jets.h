@@ -8,7 +8,8 @@
 namespace sinew::kernels {
 namespace {
 
-constexpr int kNumbers = 20;  ///< of a jet, padding included
+constexpr int kNumbers = 20;      ///< of a jet, padding included
+constexpr int kTurnNumbers = 12;  ///< the first ones: all of the rotation, and two of the translation
 constexpr int kRotation = 0, kOmega = 4, kAlpha = 7, kTranslation = 10, kVelocity = 13, kAcceleration = 16;
 
 /// Jets of a pack of joints, number by number in the order of JetLayout.
@@ -54,6 +55,13 @@ struct Block {
     const T* begin = from + kNumbers * first;
     return load_at([&](int lane) { return begin + kNumbers * lane; });
   }
+  /// The first kTurnNumbers alone.
+  PackedJets<P> load_turns(const JetLayout<T>* jets) const {
+    const T* from = reinterpret_cast<const T*>(jets);
+    if (!whole) return load_jets_part(from);
+    const T* begin = from + kNumbers * first;
+    return load_at<kTurnNumbers>([&](int lane) { return begin + kNumbers * lane; });
+  }
   /// At rest in the poses given, or at the parent's origin.
   PackedJets<P> still(const PoseLayout<T>* poses) const {
     PackedJets<P> packed;
@@ -82,6 +90,19 @@ struct Block {
     T* begin = to + kNumbers * first;
     store_at(packed, [&](int lane) { return begin + kNumbers * lane; });
   }
+  /// The first kTurnNumbers alone; the others are those of `rest`, which may be `jets`.
+  void store_turns(const PackedJets<P>& packed, const JetLayout<T>* rest, JetLayout<T>* jets) const {
+    T* to = reinterpret_cast<T*>(jets);
+    if (rest != jets)
+      for (int i = 0; i < P::kLanes; ++i) {
+        const int at = kNumbers * (whole ? first + i : joint(i)) + kTurnNumbers;
+        sinew::store<0, kNumbers - kTurnNumbers>(
+            Pack<T, kNumbers - kTurnNumbers>::load(reinterpret_cast<const T*>(rest) + at), to + at);
+      }
+    if (!whole) return store_part<kTurnNumbers>(packed, to);
+    T* begin = to + kNumbers * first;
+    store_at<kTurnNumbers>(packed, [&](int lane) { return begin + kNumbers * lane; });
+  }
 
  private:
   static constexpr int kPoseNumbers = 8;  ///< of a PoseLayout, padding included
@@ -99,19 +120,19 @@ struct Block {
     const T* begin = from + kPoseNumbers * first;
     load_four_at([&](int lane) { return begin + kPoseNumbers * lane; }, out);
   }
-  template <class At>
+  template <int kCount = kNumbers, class At>
   [[gnu::always_inline]] static PackedJets<P> load_at(At at) {
     PackedJets<P> packed;
-    for (int c = 0; c < kNumbers; c += 4) {
+    for (int c = 0; c < kCount; c += 4) {
       P m[4];
       load_four_at([&](int lane) { return at(lane) + c; }, m);
       for (int r = 0; r < 4; ++r) packed.number[c + r] = m[r];
     }
     return packed;
   }
-  template <class At>
+  template <int kCount = kNumbers, class At>
   [[gnu::always_inline]] static void store_at(const PackedJets<P>& packed, At at) {
-    for (int c = 0; c < kNumbers; c += 4) {
+    for (int c = 0; c < kCount; c += 4) {
       P m[4] = {packed.number[c], packed.number[c + 1], packed.number[c + 2], packed.number[c + 3]};
       transpose(m);
       for_each_index<P::kLanes / 4>([&](auto group) __attribute__((always_inline)) {
@@ -131,10 +152,12 @@ struct Block {
   [[gnu::noinline]] PackedJets<P> load_jets_part(const T* from) const {
     return load_at([&](int lane) { return from + kNumbers * joint(lane); });
   }
+  template <int kCount = kNumbers>
   [[gnu::noinline]] void store_part(const PackedJets<P>& packed, T* to) const {
     T all[P::kLanes * kNumbers];
-    store_at(packed, [&](int lane) { return all + kNumbers * lane; });
-    for (int i = 0; i < (last - first + 1) * kNumbers; ++i) to[kNumbers * first + i] = all[i];
+    store_at<kCount>(packed, [&](int lane) { return all + kNumbers * lane; });
+    for (int i = 0; i <= last - first; ++i)
+      for (int c = 0; c < kCount; ++c) to[kNumbers * (first + i) + c] = all[kNumbers * i + c];
   }
 };
 
