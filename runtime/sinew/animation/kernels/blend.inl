@@ -73,11 +73,6 @@ template <class P>
 struct Sum {
   P p[4], dp[4], ddp[4], translation[9];
 
-  /// Of none.
-  void clear() {
-    for (int i = 0; i < 4; ++i) p[i] = dp[i] = ddp[i] = P::all(0);
-    for (P& x : translation) x = P::all(0);
-  }
   /// `First`: of all. The side of the two quaternions that mean a rotation is the one nearer to `reference`;
   /// of none it stays as it is.
   template <bool First>
@@ -117,6 +112,10 @@ struct Sum {
   }
   [[gnu::always_inline]] PackedJets<P> jets() const {
     PackedJets<P> out;
+    write(out);
+    return out;
+  }
+  [[gnu::always_inline]] void write(PackedJets<P>& out) const {
     P rotation[4], omega[3], alpha[3];
     project(p, dp, ddp, rotation, omega, alpha);
     for (int i = 0; i < 4; ++i) out.number[kRotation + i] = rotation[i];
@@ -128,7 +127,6 @@ struct Sum {
       out.number[kAcceleration + i] = translation[6 + i];
     }
     out.number[kNumbers - 1] = P::all(0);
-    return out;
   }
 
  private:
@@ -212,40 +210,50 @@ template <class P>
   return sum.jets();
 }
 
-/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none stays at
-/// rest, as `jets` are.
+/// The mixed layers as they are, where one alone reaches a joint, and rest, where none does.
 template <class P>
-void mix(const BlendData<typename P::Scalar>& data, const Block<P>& block, PackedJets<P>& jets) {
+[[gnu::noinline]] PackedJets<P> unmixed(const BlendData<typename P::Scalar>& data, const Block<P>& block) {
+  PackedJets<P> jets = block.still(data.rest);
+  for (int n = 0; n < data.layer_count; ++n) {
+    if (data.layers[n].mode != BlendLayerData<typename P::Scalar>::kMix) continue;
+    const BlockLayer<P> layer(data.layers[n], block);
+    replace_where_not(layer.mask, 0, layer.jets, jets);
+  }
+  return jets;
+}
+
+/// Weighted mean of the mixed layers. A joint with one contributor takes it as it is, one with none stays at
+/// rest.
+template <class P>
+PackedJets<P> mix(const BlendData<typename P::Scalar>& data, const Block<P>& block) {
   const P zero = P::all(0);
-  const TimeJet<P> none{zero, zero, zero};
   Sum<P> sum;
-  sum.clear();
-  TimeJet<P> total = none;
+  bool begun = false;
+  TimeJet<P> total{zero, zero, zero};
   P contributors = zero, reference[4];
-  for (int i = 0; i < 4; ++i) reference[i] = jets.number[kRotation + i];
+  block.rotations(data.rest, reference);
   for (int n = 0; n < data.layer_count; ++n) {
     if (data.layers[n].mode != BlendLayerData<typename P::Scalar>::kMix) continue;
     if (is_masked_out(data.layers[n], block)) continue;
     const BlockLayer<P> layer(data.layers[n], block);
     for (int i = 0; i < 4 && !data.rest; ++i)  // then the first layer's, joint by joint
       reference[i] = where_equal(contributors, 0, layer.jets.number[kRotation + i], reference[i]);
-    sum.template add<false>(layer.jets, layer.weight, reference);
+    if (begun)
+      sum.template add<false>(layer.jets, layer.weight, reference);
+    else
+      sum.template add<true>(layer.jets, layer.weight, reference);
+    begun = true;
     total = total + layer.weight;
-    if (layer.masked) {
-      replace_where_not(layer.mask, 0, layer.jets, jets);
-      contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
-    } else {
-      jets = layer.jets;
-      contributors = contributors + P::all(1);
-    }
+    contributors = contributors + where_equal(layer.mask, 0, zero, P::all(1));
   }
+  if (!begun) return unmixed(data, block);
   sum.divide_translations(total);
   contributors = where_equal(total.value, 0, zero, contributors);  // weights that only begin to grow
   const auto several = contributors > P::all(1);
-  if (!any(!several))
-    jets = sum.jets();
-  else if (any(several))
-    replace_where_equal(select(several, P::all(1), zero), 1, sum.jets(), jets);
+  if (!any(!several)) return sum.jets();
+  PackedJets<P> jets = unmixed(data, block);
+  if (any(several)) replace_where_equal(select(several, P::all(1), zero), 1, sum.jets(), jets);
+  return jets;
 }
 
 /// (1 − w)·below + w·layer, both as quaternions on the side of `reference`.
@@ -258,12 +266,11 @@ void override_below(const BlockLayer<P>& layer, const P* reference, PackedJets<P
   Sum<P> sum;
   sum.template add<true>(below, TimeJet<P>{P::all(1), P::all(0), P::all(0)} - layer.weight, reference);
   sum.template add<false>(layer.jets, layer.weight, reference);
-  if (!layer.masked) {
-    below = sum.jets();
-    return;
-  }
-  replace_where_not(layer.mask, 0, sum.jets(), below);
-  if (layer.full) replace_where_equal(layer.mask, 1, layer.jets, below);
+  if (any(layer.mask == P::all(0)))
+    replace_where_not(layer.mask, 0, sum.jets(), below);
+  else
+    sum.write(below);
+  if (layer.masked && layer.full) replace_where_equal(layer.mask, 1, layer.jets, below);
 }
 
 /// What an additive layer is, from its motion.
@@ -297,7 +304,7 @@ void add_to_below(const BlendLayerData<typename P::Scalar>& data, const Block<P>
   part[3].value = part[3].value - P::all(1);
   for (TimeJet<P>& x : part) x = layer.weight * x;
   part[3].value = part[3].value + P::all(1);
-  PackedJets<P> sum;
+  PackedJets<P> masked, &sum = layer.masked ? masked : below;
   set_rotation_part(composition(rotation_part(below), rotation_of(part)), sum);
   for (int i = 0; i < 3; ++i) {
     const int t = kTranslation + i, v = kVelocity + i, a = kAcceleration + i;
@@ -307,10 +314,17 @@ void add_to_below(const BlendLayerData<typename P::Scalar>& data, const Block<P>
     sum.number[a] = below.number[a] + shift.acceleration;
   }
   sum.number[kNumbers - 1] = P::all(0);
-  if (layer.masked)
-    replace_where_not(layer.mask, 0, sum, below);
-  else
-    below = sum;
+  if (layer.masked) replace_where_not(layer.mask, 0, masked, below);
+}
+
+/// The mixed layers of a block.
+template <class P>
+[[gnu::always_inline]] inline PackedJets<P> mixed_block(const BlendData<typename P::Scalar>& data,
+                                                        const PlainMix<typename P::Scalar>& mixed,
+                                                        const Block<P>& block) {
+  if (mixed.count > 1) return mix_plainly(data, mixed, block);
+  if (mixed.count == 1) return block.load(data.layers[mixed.layers[0]].jets);
+  return mix(data, block);
 }
 
 /// Whatever the layers ask of a block.
@@ -319,15 +333,7 @@ template <class P>
                                             const PlainMix<typename P::Scalar>& mixed,
                                             const Block<P>& block) {
   using Layer = BlendLayerData<typename P::Scalar>;
-  PackedJets<P> jets;
-  if (mixed.count > 1) {
-    jets = mix_plainly(data, mixed, block);
-  } else if (mixed.count == 1) {
-    jets = block.load(data.layers[mixed.layers[0]].jets);
-  } else {
-    jets = block.still(data.rest);
-    mix(data, block, jets);
-  }
+  PackedJets<P> jets = mixed_block(data, mixed, block);
   for (int n = mixed.rest; n < data.layer_count; ++n) {
     if (data.layers[n].mode == Layer::kMix || is_masked_out(data.layers[n], block)) continue;
     BlockLayer<P> layer(data.layers[n], block);
