@@ -2,9 +2,11 @@
 // calls' own. 67 joints, float; or a clip of an asset.
 //
 //     animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS
+//     animation_count mix_masked|override_masked|override_half|additive CALLS
 //     animation_count sample|seek CALLS ASSET.sinew CLIP
 //
-// `sample` plays on by a hundredth of a second, `seek` jumps to and fro.
+// `sample` plays on by a hundredth of a second, `seek` jumps to and fro. Masks are 0.5, that of
+// `override_half` is 0 for the first half of the joints.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -64,7 +66,14 @@ int main(int argc, char** argv) {
   InertialState<float> state{numbers, joints, kShifting};
   (void)begin_inertial<float>(a, b, 1, state);
   state.elapsed = 0.3f;
-  const BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  BlendLayer<float> layers[] = {{a, {0.7f, 0, 0}}, {b, {0.3f, 0.1f, 2}}};
+  std::vector<float> mask(joints, 0.5f);
+  if (job == "override_half") std::fill_n(mask.begin(), joints / 2, 0.f);
+  const bool over = job.starts_with("override"),
+             blends = over || job == "blend" || job == "mix_masked" || job == "additive";
+  if (over || job == "mix_masked") layers[1].mask = mask;
+  if (over) layers[1].mode = BlendMode::kOverride;
+  if (job == "additive") layers[1].mode = BlendMode::kAdditive;
   const MirrorMap<float> mirror = mirror_map(joints);
   FootState<float> feet[2];
   LookState<float> head;
@@ -75,7 +84,7 @@ int main(int argc, char** argv) {
       ok = SamplingJob<float>{&clip, 0.01 * i, out}.Run().ok();
     else if (job == "seek")
       ok = SamplingJob<float>{&clip, clip.duration * double(i * 7919 % 10007) / 10007, out}.Run().ok();
-    else if (job == "blend")
+    else if (blends)
       ok = BlendingJob<float>{layers, {}, out}.Run().ok();
     else if (job == "inertialize")
       ok = InertializeJob<float>{b, &state, {}, out}.Run().ok();
@@ -94,8 +103,9 @@ int main(int argc, char** argv) {
   }
   if (ok) return 0;
   std::fputs(
-      "usage: animation_count sample|seek|blend|inertialize|begin|mirror|feet|look|morph CALLS [ASSET.sinew "
-      "CLIP]\n",
+      "usage: animation_count "
+      "sample|seek|blend|mix_masked|override_masked|override_half|additive|inertialize|"
+      "begin|mirror|feet|look|morph CALLS [ASSET.sinew CLIP]\n",
       stderr);
   return 2;
 }
